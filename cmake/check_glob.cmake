@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Shows that a new file in lie/integrators/ is found by the next build, with no line changed anywhere. Works on a copy
+# of the source tree.
+file(REMOVE_RECURSE "${work}")
+
+set(files "")
+if(EXISTS "${source}/.git")
+    execute_process(
+        COMMAND git --no-optional-locks ls-files --cached --others --exclude-standard
+        WORKING_DIRECTORY "${source}" OUTPUT_VARIABLE files ERROR_QUIET)
+    string(STRIP "${files}" files)
+    string(REPLACE "\n" ";" files "${files}")
+endif()
+if(NOT files)
+    file(GLOB_RECURSE files RELATIVE "${source}" "${source}/CMakeLists.txt" "${source}/LICENSE" "${source}/cmake/*")
+    foreach(room lie dae contact granular reference studies)
+        file(GLOB_RECURSE found RELATIVE "${source}" "${source}/${room}/*")
+        list(APPEND files ${found})
+    endforeach()
+endif()
+foreach(f IN LISTS files)
+    if(EXISTS "${source}/${f}" AND NOT f MATCHES "^tests/")
+        get_filename_component(folder "${f}" DIRECTORY)
+        file(COPY "${source}/${f}" DESTINATION "${work}/source/${folder}")
+    endif()
+endforeach()
+
+function(do what)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    if(NOT result EQUAL 0)
+        message(FATAL_ERROR "cannot ${what} (${result}):\n${output}")
+    endif()
+endfunction()
+
+do("configure the copy" ${CMAKE_COMMAND} -S "${work}/source" -B "${work}/build" -G "${generator}"
+    "-DCMAKE_CXX_COMPILER=${compiler}" -DHILDA_TESTS=OFF)
+
+get_filename_component(name "${file}" NAME)
+file(COPY "${file}" DESTINATION "${work}/source/lie/integrators")
+# The smallest target there is: every build looks for new files first.
+do("build the copy" ${CMAKE_COMMAND} --build "${work}/build" --target hilda_version)
+
+file(READ "${work}/build/compile_commands.json" commands)
+string(FIND "${commands}" "/lie/integrators/${name}" place)
+if(place EQUAL -1)
+    message(FATAL_ERROR "the build did not find lie/integrators/${name}")
+endif()

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What we need from the system. All of it is looked for before we stop, so that one message names all that is missing.
+
+set(hilda_missing "")
+set(hilda_missing_debian "")
+
+# hilda_find(<Debian package> <arguments of find_package>...)
+macro(hilda_find debian name)
+    find_package(${name} ${ARGN} QUIET)
+    if(${name}_FOUND)
+        message(STATUS "${name} ${${name}_VERSION}")
+    else()
+        string(REGEX MATCH "^[0-9.]+" hilda_wanted "${ARGN}")
+        string(STRIP "${name} ${hilda_wanted}" hilda_wanted)
+        list(APPEND hilda_missing "${hilda_wanted}")
+        list(APPEND hilda_missing_debian ${debian})
+    endif()
+endmacro()
+
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+hilda_find(libeigen3-dev Eigen3 3.4 CONFIG)
+hilda_find(libsuitesparse-dev KLU 1.3)
+hilda_find(libsuitesparse-dev SPQR 2.0)
+hilda_find(libgsl-dev GSL 2.7)
+hilda_find(nlohmann-json3-dev nlohmann_json 3.11 CONFIG)
+hilda_find(libfmt-dev fmt CONFIG)
+hilda_find(libspdlog-dev spdlog CONFIG)
+hilda_find(libcli11-dev CLI11 CONFIG)
+hilda_find(libc6-dev Threads)
+if(HILDA_TESTS)
+    hilda_find(catch2 Catch2 2.13 CONFIG)
+endif()
+
+if(hilda_missing)
+    list(REMOVE_DUPLICATES hilda_missing_debian)
+    list(JOIN hilda_missing ", " hilda_missing)
+    list(JOIN hilda_missing_debian " " hilda_missing_debian)
+    # NOTICE, because FATAL_ERROR would break the line.
+    message(NOTICE "hilda: missing: ${hilda_missing} (Debian: apt-get install ${hilda_missing_debian})")
+    message(FATAL_ERROR "Libraries are missing: see the line above.")
+endif()
+
+# Optional: only studies/benchmarks asks for it.
+find_package(benchmark CONFIG QUIET)
+
+# Figures are drawn by the system's Python, where Debian puts matplotlib; another python3 may come first in PATH.
+if(EXISTS /usr/bin/python3)
+    set(hilda_python_default /usr/bin/python3)
+else()
+    set(hilda_python_default python3)
+endif()
+set(HILDA_PYTHON "${hilda_python_default}" CACHE STRING "Python with matplotlib, for the figures")

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cmake -D expect=TEXT -P expect.cmake -- COMMAND...: passes when COMMAND ends with 0 and its output contains TEXT.
+# (ctest's PASS_REGULAR_EXPRESSION would forget the exit code.)
+set(command "")
+set(after_dashes FALSE)
+math(EXPR last "${CMAKE_ARGC} - 1")
+foreach(i RANGE ${last})
+    if(after_dashes)
+        list(APPEND command "${CMAKE_ARGV${i}}")
+    elseif("${CMAKE_ARGV${i}}" STREQUAL "--")
+        set(after_dashes TRUE)
+    endif()
+endforeach()
+
+execute_process(COMMAND ${command} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+message("${output}${errors}")
+if(NOT result EQUAL 0)
+    message(FATAL_ERROR "exit code ${result}")
+endif()
+string(FIND "${output}" "${expect}" place)
+if(place EQUAL -1)
+    message(FATAL_ERROR "\"${expect}\" is not in the output")
+endif()

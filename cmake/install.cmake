@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# libhilda.so (the rooms lie and dae), their headers, the program, and a package for find_package(hilda CONFIG).
+# GSL is in none of the library.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
+
+# Not named `hilda`: that would clash with the program's file in the build folder.
+add_library(hilda_library SHARED $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects>)
+add_library(hilda::hilda ALIAS hilda_library)
+set_target_properties(hilda_library PROPERTIES
+    OUTPUT_NAME hilda
+    EXPORT_NAME hilda
+    VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+target_compile_features(hilda_library PUBLIC cxx_std_20)
+target_include_directories(hilda_library PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hilda>)
+target_link_libraries(hilda_library PUBLIC
+    Eigen3::Eigen KLU::KLU SPQR::SPQR nlohmann_json::nlohmann_json fmt::fmt)
+if(NOT HILDA_SANITIZE)
+    # Nothing may be left to whoever links us: this is also the proof that lie and dae do without GSL.
+    target_link_options(hilda_library PRIVATE LINKER:--no-undefined)
+endif()
+if(HILDA_NATIVE)
+    # The instruction set decides how Eigen aligns its types, so both sides must agree on it.
+    target_compile_options(hilda_library INTERFACE -march=native)
+endif()
+
+install(TARGETS hilda_library EXPORT hilda_targets)
+if(TARGET hilda_program)
+    install(TARGETS hilda_program)
+endif()
+foreach(room lie dae)
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
+        FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL
+    FILES_MATCHING PATTERN "*.py")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"
+    INSTALL_DESTINATION "${hilda_package_dir}")
+# Before 1.0 every minor version may break.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(EXPORT hilda_targets FILE hildaTargets.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
+install(
+    FILES "${PROJECT_BINARY_DIR}/hildaConfig.cmake" "${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake"
+        "${PROJECT_SOURCE_DIR}/cmake/FindKLU.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindSPQR.cmake"
+    DESTINATION "${hilda_package_dir}")

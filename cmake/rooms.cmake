@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# How a room becomes targets.
+
+# One precompiled header, owned by the lowest room, used by all. No source may rely on it: the preset tidy builds
+# without.
+function(hilda_precompile target)
+    if(NOT HILDA_PCH)
+        return()
+    endif()
+    if(target STREQUAL "lie_objects")
+        target_precompile_headers(${target} PRIVATE <Eigen/Dense> <cmath> <memory> <string> <vector>)
+    else()
+        target_precompile_headers(${target} REUSE_FROM lie_objects)
+    endif()
+endfunction()
+
+# hilda_room(<room> SOURCES <file>... [ROOMS <room>...] [LIBRARIES <target>...])
+#
+#   <room>_objects  the compiled files; link this to compile against the room
+#   hilda_<room>    the room with its objects and all rooms below; link this to make a program
+#
+# Object libraries, not archives: an archive drops the object files that nobody calls, and the list of schemes would be
+# empty. A program that reaches a room by two paths still gets its objects once.
+function(hilda_room room)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;ROOMS;LIBRARIES")
+
+    add_library(${room}_objects OBJECT ${arg_SOURCES})
+    target_include_directories(${room}_objects PUBLIC "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${room}_objects PUBLIC ${arg_LIBRARIES})
+    hilda_precompile(${room}_objects)
+
+    add_library(hilda_${room} INTERFACE)
+    target_sources(hilda_${room} INTERFACE $<TARGET_OBJECTS:${room}_objects>)
+    target_include_directories(hilda_${room} INTERFACE "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(hilda_${room} INTERFACE ${arg_LIBRARIES})
+
+    foreach(below IN LISTS arg_ROOMS)
+        target_link_libraries(${room}_objects PUBLIC ${below}_objects)
+        target_link_libraries(hilda_${room} INTERFACE hilda_${below})
+    endforeach()
+endfunction()

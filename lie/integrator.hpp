@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a time-stepping scheme is, and the list of them.
+
+#pragma once
+
+#include "lie/saddle.hpp"
+
+namespace hilda::lie {
+
+struct Newton {
+    /// Stop when the correction is shorter than this. Half-implicit schemes measure (Δr, Δθ̄, Δλ̂) in m, rad
+    /// and kg m, fully implicit ones h² (Δr̈, Δω̄̇, Δλ): the same lengths. See correction_norm for the norm.
+    double tolerance = 1e-10;
+    int max_iterations = 30;
+};
+
+/// What a run has cost so far.
+struct Statistics {
+    long steps = 0;
+    long iterations = 0;
+    long factorizations = 0;    ///< with a new choice of pivots
+    long refactorizations = 0;  ///< with the pivots of the last one
+};
+
+class Integrator {
+public:
+    Integrator() = default;
+    Integrator(const Integrator&) = delete;
+    Integrator& operator=(const Integrator&) = delete;
+    virtual ~Integrator() = default;
+
+    /// Takes x from t_n to t_n + h and returns the number of Newton iterations. On a NumericalFailure x is as
+    /// it was.
+    virtual int step(State& x, double h) = 0;
+
+    /// Half-implicit schemes find λ_n, r̈_n, ω̄̇_n in the step that leaves t_n, so a node is known in full one
+    /// step late. Where this is true, step() leaves them in its result, and complete() hands them to the node
+    /// they belong to.
+    virtual bool lags() const { return false; }
+    virtual void complete(State& /*node*/, const State& /*after*/) const {}
+
+    virtual const System& system() const = 0;
+    virtual Statistics statistics() const = 0;
+};
+
+/// A scheme as it stands in the list: what a user picks by name.
+struct Scheme {
+    std::string name;
+    int order = 1;            ///< of r, A, ṙ, ω̄ where the motion is smooth
+    int order_lambda = 1;     ///< of the multipliers, from a moving start
+    std::string formulation;  ///< rA, rp, reps
+    std::string unknowns;     ///< of the Newton iteration
+    std::string source;
+    std::unique_ptr<Integrator> (*make)(const System&, const Newton&) = nullptr;
+};
+
+/// All schemes, by name.
+const std::vector<Scheme>& schemes();
+
+/// The scheme of that name; InvalidInput names those there are.
+const Scheme& scheme(const std::string& name);
+
+/// Puts a scheme into the list: the last line of its file.
+bool enrol(Scheme scheme);
+
+template <class Method>
+bool enrol(Scheme scheme)
+{
+    scheme.make = [](const System& system, const Newton& newton) -> std::unique_ptr<Integrator> {
+        return std::make_unique<Method>(system, newton);
+    };
+    return enrol(std::move(scheme));
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Fully implicit Lie-group scheme of first order (backward Euler).                 Fang (2022), Sec. 3.4
+///
+///     M r̈ + Φ_rᵀ λ = F,   J̄ ω̄̇ + Π̄ᵀ λ = τ̄,   Φ / h² = 0       all at t_{n+1}                          (3.16)
+///     ṙ = ṙ_n + h r̈,   r = r_n + h ṙ,   ω̄ = ω̄_n + h ω̄̇,   A = A_n exp(h ω̄)                            (3.19)
+///
+/// The unknowns are z = (r̈, ω̄̇, λ) at t_{n+1}. The Newton matrix is 3.23 without the sensitivities of the
+/// loads: K at t_n. That costs iterations, never accuracy; a load whose stiffness k passes about m/h² needs a
+/// smaller step.
+
+#include "lie/newton_step.hpp"
+
+namespace hilda::lie {
+namespace {
+
+class FullyImplicit1 final : public NewtonStep {
+public:
+    FullyImplicit1(const System& model, const Newton& newton) : NewtonStep(model, newton), C(model.pattern())
+    {}
+
+    int step(State& x, double h) override
+    {
+        x_n = x;
+        K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eq. 3.23)
+        predict();
+        x.t = x_n.t + h;
+        for (int k = 1; k <= newton.max_iterations; ++k) {
+            place(x, h);
+            set_residual(x, h);
+            K.solve(e);
+            z -= e;
+            correction = h * h * correction_norm(e.squaredNorm());
+            if (correction < newton.tolerance) {
+                place(x, h);
+                for (Motion& body : x.body) body.A = orthonormalised(body.A);
+                return done(k);
+            }
+        }
+        x = x_n;
+        no_convergence("rA-full-1", correction);
+    }
+
+private:
+    void predict()
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            z.segment<3>(6 * i) = x_n.body[i].rddot;
+            z.segment<3>(6 * i + 3) = x_n.body[i].omegadot_bar;
+        }
+        K.constraint_part(z) = x_n.lambda;
+    }
+
+    /// Eq. 3.19
+    void place(State& x, double h)
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Motion& from = x_n.body[i];
+            Motion& body = x.body[i];
+            body.rddot = z.segment<3>(6 * i);
+            body.omegadot_bar = z.segment<3>(6 * i + 3);
+            body.rdot = from.rdot + h * body.rddot;
+            body.omega_bar = from.omega_bar + h * body.omegadot_bar;
+            body.r = from.r + h * body.rdot;
+            body.A = from.A * exp(h * body.omega_bar);
+        }
+        x.lambda = K.constraint_part(z);
+    }
+
+    /// Eq. 3.20
+    void set_residual(const State& x, double h)
+    {
+        model.loads(x, loads);
+        model.variation(x, C);
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Motion& body = x.body[i];
+            e.segment<3>(6 * i) = model.mass().m[i] * body.rddot - loads.F[i];
+            e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
+        }
+        C.add_transpose(1, x.lambda, e);
+        model.phi(x, K.constraint_part(e));
+        K.constraint_part(e) /= h * h;
+    }
+
+    Rows C;  ///< Φ_r, Π̄ at the iterate
+    double correction = 0;
+};
+
+const bool enrolled = enrol<FullyImplicit1>({.name = "rA-full-1",
+                                             .order = 1,
+                                             .order_lambda = 1,
+                                             .formulation = "rA",
+                                             .unknowns = "r'', omega', lambda",
+                                             .source = "Fang (2022), Sec. 3.4"});
+
+}  // namespace
+}  // namespace hilda::lie

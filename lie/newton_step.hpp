@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What the steps of the rA schemes share: the frozen matrix, the work vectors, the loads, the norm, the
+/// failure.
+
+#pragma once
+
+#include "lie/integrator.hpp"
+
+#include <algorithm>
+
+namespace hilda::lie {
+
+class NewtonStep : public Integrator {
+public:
+    NewtonStep(const System& model, const Newton& newton)
+        : model(model), newton(newton), K(model), loads(model.bodies()), z(K.size()), b(K.size()), e(K.size())
+    {
+        for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
+    }
+
+    const System& system() const override { return model; }
+    Statistics statistics() const override
+    {
+        return {steps, iterations, K.factorizations(), K.refactorizations()};
+    }
+
+protected:
+    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i Eq. 3.4b
+    Vec3 tau_bar(int i, const Motion& body) const
+    {
+        return loads.n_bar[i] - body.omega_bar.cross(model.mass().J_bar[i] * body.omega_bar);
+    }
+
+    /// Length of a correction: Euclidean over all unknowns, as in Fang (2022), for a mechanism; beyond four
+    /// bodies the root mean square over groups of four, so that a chain of a thousand stops at the same
+    /// accuracy of each body and not below rounding.
+    double correction_norm(double squared_norm) const
+    {
+        return std::sqrt(squared_norm / std::max(1.0, model.bodies() / 4.0));
+    }
+
+    /// λ, r̈, ω̄̇ of a node, out of the step that leaves it: complete() of the half-implicit schemes
+    static void take_loads(State& node, const State& after)
+    {
+        node.lambda = after.lambda;
+        for (size_t i = 0; i < node.body.size(); ++i) {
+            node.body[i].rddot = after.body[i].rddot;
+            node.body[i].omegadot_bar = after.body[i].omegadot_bar;
+        }
+    }
+
+    /// Book-keeping of an accepted step; returns its iterations.
+    int done(int k)
+    {
+        ++steps;
+        iterations += k;
+        return k;
+    }
+
+    [[noreturn]] void no_convergence(const std::string& scheme, double correction) const
+    {
+        std::ostringstream what;
+        what.precision(2);
+        what << scheme << ": correction " << correction << " after " << newton.max_iterations
+             << " iterations";
+        throw NoConvergence(what.str(), correction, newton.max_iterations);
+    }
+
+    const System& model;
+    const Newton newton;
+    Saddle K;
+    Loads loads;
+    State x_n;
+    Eigen::VectorXd z, b, e;
+    std::vector<Mat3> J_bar_inverse;
+
+private:
+    long steps = 0, iterations = 0;
+};
+
+}  // namespace hilda::lie

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The saddle matrix that carries the whole of `lie` and `dae`:
+///
+///              | M   0   Φ_rᵀ |
+///     K(r,A) = | 0   J̄   Π̄ᵀ   |      unknowns: (r, θ) of body 0, of body 1, ..., then one multiplier a row
+///              | Φ_r Π̄   0    |
+///
+/// It gives the accelerations and multipliers of a state (Fang 2022, Eqs. 2.9, 2.17), and it is the frozen
+/// Newton matrix of the fully implicit scheme (3.23, force sensitivities dropped) and of both half-implicit
+/// ones (3.32, 3.51). It does not contain h.
+
+#pragma once
+
+#include "lie/check.hpp"
+#include "lie/system.hpp"
+
+#include <memory>
+
+namespace hilda::lie {
+
+/// Which metric stands in the diagonal blocks of K.
+enum class Metric {
+    mass,  ///< M and J̄, as above
+    unit   ///< the identity: least-squares problems in the constraint rows alone
+};
+
+class Saddle {
+public:
+    /// Analyses the pattern once. The system must outlive the saddle matrix.
+    explicit Saddle(const System& system, Metric metric = Metric::mass);
+    ~Saddle();
+
+    /// Evaluates the rows in the state x and factors K there. The pivot order of the last full factorisation
+    /// is kept while it serves (klu_refactor); when the reciprocal condition says that it no longer does,
+    /// pivots are chosen anew. Throws SingularMatrix when that does not help, NonFinite when the rows are not
+    /// finite.
+    void assemble(const State& x);
+
+    /// Solves K z = b in place; b has size() numbers. Throws NonFinite when z is not finite.
+    void solve(Eigen::VectorXd& b);
+    /// The same with one step of iterative refinement: for starts and kinematics, where digits count.
+    void solve_refined(Eigen::VectorXd& b);
+
+    /// out = K z
+    void multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const;
+
+    const Rows& rows() const { return C; }  ///< Φ_r, Π̄ as last assembled
+    int size() const { return 6 * bodies + m; }
+    Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const { return z.tail(m); }
+
+    double reciprocal_condition() const { return rcond; }  ///< KLU's estimate for the scaled matrix
+    long factorizations() const { return full; }           ///< with new pivots
+    long refactorizations() const { return again; }        ///< with the pivots of the last full one
+
+private:
+    struct Klu;
+
+    void analyse();
+    void scale_rows();
+    void fill();
+    bool refactor();
+    void factor();
+
+    const System& system;
+    const Metric metric;
+    int bodies, m;
+    Rows C;
+    std::unique_ptr<Klu> klu;
+
+    // K as compressed columns, scaled to S K S with S chosen so that the diagonal blocks and the rows have
+    // length one
+    std::vector<int> column_start, row_index;
+    std::vector<double> value;
+    Eigen::VectorXd scale;
+    struct Slot {
+        int upper, lower;  ///< where a derivative stands in Φ_rᵀ or Π̄ᵀ, and in Φ_r or Π̄
+        double factor;     ///< scale of its row times that of its column
+    };
+    std::vector<Slot> slot;
+    std::vector<int> mass_slot;
+    Eigen::VectorXd work, residual, right_side;
+
+    double rcond = 1, rcond_of_full = 1;
+    long full = 0, again = 0;
+    bool scaled = false, have_pivots = false;
+};
+
+}  // namespace hilda::lie

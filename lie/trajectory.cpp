@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/trajectory.hpp"
+
+namespace hilda::lie {
+
+Grid Grid::over(double t_end, double h, double dt)
+{
+    if (!(h > 0) || !std::isfinite(h)) reject("lie::Grid", "the step must be positive and finite", h);
+    if (!(t_end >= 0) || !std::isfinite(t_end))
+        reject("lie::Grid", "the end must be finite and not negative", t_end);
+    if (!(dt >= 0) || !std::isfinite(dt))
+        reject("lie::Grid", "the output interval must be finite and not negative", dt);
+    if (t_end / h > 1e15) reject("lie::Grid", "more than 1e15 steps are asked for, step", h);
+    constexpr double slack = 1e-9;  // of a step: t_end / h and dt / h are rarely whole in binary
+    Grid grid;
+    grid.h = h;
+    grid.steps = static_cast<long>(std::ceil(t_end / h - slack));
+    grid.every = std::max(1L, static_cast<long>(std::ceil(dt / h - slack)));
+    return grid;
+}
+
+March::March(State x, Integrator& integrator, double h, long n, int iterations)
+    : x(std::move(x)), after(this->x), integrator(integrator), h(h),
+      t_0(this->x.t - static_cast<double>(n) * h), n(n), iterations(iterations)
+{}
+
+int March::try_step(State& to)
+{
+    to = x;
+    const int k = integrator.step(to, h);
+    to.t = t_0 + static_cast<double>(n + 1) * h;  // not a sum of h, which would drift
+    for (const Motion& body : to.body)
+        if (!std::isfinite(body.r.sum() + body.rdot.sum() + body.omega_bar.sum() + body.A.sum()))
+            throw NonFinite("the state after the step is not finite");
+    return k;
+}
+
+void March::advance(std::span<Observer* const> observers)
+{
+    const int k = try_step(after);
+    if (n > 0) integrator.complete(x, after);  // the start keeps the accelerations it was solved for
+    for (Observer* o : observers) o->accepted(x, n, iterations);
+    integrator.system().accepted(x, after);
+    std::swap(x, after);
+    ++n;
+    iterations = k;
+}
+
+void March::finish(std::span<Observer* const> observers)
+{
+    State node = x;
+    if (integrator.lags() && n > 0) {
+        // A node is known in full one step late, also the last one. Where that step fails, its multipliers
+        // and accelerations are those of the node before.
+        try {
+            try_step(after);
+            integrator.complete(node, after);
+        } catch (const NumericalFailure&) {
+        }
+    }
+    for (Observer* o : observers) o->accepted(node, n, iterations);
+}
+
+Trajectory march(State x, Integrator& integrator, const Grid& grid, std::span<Observer* const> observers)
+{
+    struct Recorder final : Observer {
+        const Grid& grid;
+        Trajectory trajectory;
+        explicit Recorder(const Grid& grid) : grid(grid) {}
+        void accepted(const State& node, long n, int) override
+        {
+            if (grid.is_row(n)) trajectory.row.push_back(node);
+        }
+    } recorder(grid);
+
+    std::vector<Observer*> all(observers.begin(), observers.end());
+    all.push_back(&recorder);
+    March progress(std::move(x), integrator, grid.h);
+    while (progress.number() < grid.steps) progress.advance(all);
+    progress.finish(all);
+    return recorder.trajectory;
+}
+
+}  // namespace hilda::lie

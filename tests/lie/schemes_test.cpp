@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What every scheme in the list must show, whoever wrote it.
+
+#include "lie/trajectory.hpp"
+#include "tests/support/no_allocation.hpp"
+#include "tests/support/spinning_top.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using lie::Vec3;
+
+namespace {
+
+lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const lie::State& start, double h,
+                  double t_end)
+{
+    const auto integrator = scheme.make(system, {.tolerance = 1e-13, .max_iterations = 30});
+    return lie::march(start, *integrator, lie::Grid::over(t_end, h, t_end)).row.back();
+}
+
+/// Everything of order `order`: r, A, ṙ, ω̄
+Eigen::VectorXd motion(const lie::State& x)
+{
+    Eigen::VectorXd q(18);
+    const lie::Motion& body = x.body[0];
+    q << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar;
+    return q;
+}
+
+/// Fine enough that the leading term of the error rules, coarse enough to stand above rounding
+double step_for(const lie::Scheme& s) { return s.order > 2 ? 5e-3 : 5e-5; }
+
+double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const Eigen::VectorXd& fine)
+{
+    return std::log2((coarse - middle).norm() / (middle - fine).norm());
+}
+
+}  // namespace
+
+TEST_CASE("declared order is the measured order", "[lie][order]")
+{
+    const tests::SpinningTop top;
+    const lie::State start = top.start();
+    for (const lie::Scheme& s : lie::schemes()) {
+        const double h = step_for(s);
+        const lie::State a = at_end(s, top, start, 4 * h, 0.4), b = at_end(s, top, start, 2 * h, 0.4),
+                         c = at_end(s, top, start, h, 0.4);
+        const double of_motion = order(motion(a), motion(b), motion(c)),
+                     of_lambda = order(a.lambda, b.lambda, c.lambda);
+        INFO(s.name << " declares " << s.order << " and " << s.order_lambda << " for lambda, shows "
+                    << of_motion << " and " << of_lambda);
+        CHECK(of_motion == Approx(s.order).margin(0.15));
+        // wider: an alternating error of O(h) stands beside a smooth one of O(h²)
+        CHECK(of_lambda == Approx(s.order_lambda).margin(0.25));
+    }
+}
+
+TEST_CASE("a torque-free body keeps the declared order in its rotation", "[lie][order]")
+{
+    const tests::SpinningTop top(true);
+    const lie::State start = top.start();
+    for (const lie::Scheme& s : lie::schemes()) {
+        const double h = step_for(s);
+        const double of_motion =
+            order(motion(at_end(s, top, start, 4 * h, 0.4)), motion(at_end(s, top, start, 2 * h, 0.4)),
+                  motion(at_end(s, top, start, h, 0.4)));
+        INFO(s.name << " declares " << s.order << ", shows " << of_motion);
+        CHECK(of_motion == Approx(s.order).margin(0.15));
+    }
+}
+
+TEST_CASE("a step takes nothing from the heap", "[lie][allocation]")
+{
+    const tests::SpinningTop top;
+    for (const lie::Scheme& s : lie::schemes()) {
+        const auto integrator = s.make(top, {});
+        lie::State x = top.start();
+        for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);  // pivots, and buffers that keep their size
+        const long taken = tests::allocations_during([&] {
+            for (int n = 0; n < 100; ++n) integrator->step(x, 1e-3);
+        });
+        INFO(s.name);
+        CHECK(taken == 0);
+    }
+}
+
+TEST_CASE("the heap counter counts", "[lie][allocation]")
+{
+    CHECK(tests::allocations_during([] { delete new int(1); }) >= 0);
+    std::vector<double>* v = nullptr;
+    CHECK(tests::allocations_during([&] { v = new std::vector<double>(100); }) >= 2);
+    delete v;
+}
+
+TEST_CASE("a step that fails leaves the state as it was", "[lie][newton]")
+{
+    const tests::SpinningTop top;
+    for (const char* name : {"rA-full-1", "rA-half-1", "rA-half-2"}) {
+        lie::State x = top.start();
+        const auto integrator = lie::scheme(name).make(top, {.tolerance = 1e-300, .max_iterations = 2});
+        CHECK_THROWS_AS(integrator->step(x, 1e-2), lie::NoConvergence);
+        const lie::State start = top.start();
+        CHECK(x.t == start.t);
+        CHECK(x.body[0].r == start.body[0].r);
+        CHECK(x.body[0].A == start.body[0].A);
+        CHECK(x.lambda == start.lambda);
+    }
+}
+
+TEST_CASE("constraints hold and A stays a rotation", "[lie][invariants]")
+{
+    const tests::SpinningTop top;
+    for (const char* name : {"rA-full-1", "rA-half-1", "rA-half-2"}) {
+        struct Worst final : lie::Observer {
+            const tests::SpinningTop& top;
+            double phi = 0, orthogonality = 0;
+            explicit Worst(const tests::SpinningTop& top) : top(top) {}
+            void accepted(const lie::State& x, long, int) override
+            {
+                Eigen::VectorXd value(3);
+                top.phi(x, value);
+                phi = std::max(phi, value.norm());
+                orthogonality = std::max(orthogonality, lie::orthogonality_error(x.body[0].A));
+            }
+        } worst(top);
+        lie::Observer* observers[] = {&worst};
+        const auto integrator = lie::scheme(name).make(top, {});
+        lie::march(top.start(), *integrator, lie::Grid::over(2, 1e-3, 2), observers);
+        INFO(name << " residual " << worst.phi << ", orthogonality " << worst.orthogonality);
+        CHECK(worst.phi < 1e-12);
+        CHECK(worst.orthogonality < 1e-14);
+    }
+}
+
+TEST_CASE("A stays orthogonal over a million steps", "[lie][invariants]")
+{
+    const tests::SpinningTop top(true);
+    const auto integrator = lie::scheme("rA-half-1").make(top, {});
+    lie::State x = top.start();
+#ifdef NDEBUG
+    const int steps = 1000000;
+#else
+    const int steps = 20000;
+#endif
+    double worst = 0;
+    for (int n = 0; n < steps; ++n) {
+        integrator->step(x, 1e-4);
+        if (n % 100 == 0) worst = std::max(worst, lie::orthogonality_error(x.body[0].A));
+    }
+    CHECK(worst < 1e-14);
+}
+
+TEST_CASE("rows lie on multiples of the output interval, and time does not drift", "[lie][march]")
+{
+    const tests::SpinningTop top(true);
+    const auto integrator = lie::scheme("rA-half-1").make(top, {});
+    const lie::Trajectory trajectory = lie::march(top.start(), *integrator, lie::Grid::over(1, 1e-3, 0.1));
+    REQUIRE(trajectory.row.size() == 11);
+    for (int k = 0; k <= 10; ++k) CHECK(trajectory.row[k].t == Approx(0.1 * k).epsilon(1e-15));
+    CHECK_THROWS_AS(lie::Grid::over(1, 0), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::Grid::over(1, std::nan("")), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::Grid::over(-1, 1e-3), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::scheme("rA-half-9"), lie::InvalidInput);
+}

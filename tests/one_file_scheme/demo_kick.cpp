@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A scheme in one file, as a user would add one: symplectic Euler on the accelerations of the saddle system.
+/// The constraints are kept in acceleration only, so they drift by O(h); it is here to show how little a
+/// scheme needs.
+
+#include "lie/integrator.hpp"
+
+namespace hilda::lie {
+namespace {
+
+class DemoKick final : public Integrator {
+public:
+    DemoKick(const System& model, const Newton&) : model(model), K(model), loads(model.bodies()), a(K.size())
+    {}
+
+    int step(State& x, double h) override
+    {
+        K.assemble(x);
+        model.loads(x, loads);
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Vec3& omega_bar = x.body[i].omega_bar;
+            a.segment<3>(6 * i) = loads.F[i];
+            a.segment<3>(6 * i + 3) = loads.n_bar[i] - omega_bar.cross(model.mass().J_bar[i] * omega_bar);
+        }
+        model.gamma(x, K.constraint_part(a));
+        K.solve(a);
+        for (int i = 0; i < model.bodies(); ++i) {
+            Motion& body = x.body[i];
+            body.rddot = a.segment<3>(6 * i);
+            body.omegadot_bar = a.segment<3>(6 * i + 3);
+            body.rdot += h * body.rddot;
+            body.omega_bar += h * body.omegadot_bar;
+            body.r += h * body.rdot;
+            body.A = orthonormalised(body.A * exp(h * body.omega_bar));
+        }
+        x.lambda = K.constraint_part(a);
+        x.t += h;
+        ++steps;
+        return 1;
+    }
+
+    const System& system() const override { return model; }
+    Statistics statistics() const override
+    {
+        return {steps, steps, K.factorizations(), K.refactorizations()};
+    }
+
+private:
+    const System& model;
+    Saddle K;
+    Loads loads;
+    Eigen::VectorXd a;
+    long steps = 0;
+};
+
+const bool enrolled = enrol<DemoKick>({.name = "demo-kick",
+                                       .order = 1,
+                                       .order_lambda = 1,
+                                       .formulation = "rA",
+                                       .unknowns = "none",
+                                       .source = "symplectic Euler on Fang (2022), Eqs. 2.9, 2.17"});
+
+}  // namespace
+}  // namespace hilda::lie

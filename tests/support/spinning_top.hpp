@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A top on a ball joint, as a lie::System in a few lines: what a stepper needs to know, and no joints, names
+/// or files.
+#pragma once
+
+#include "lie/saddle.hpp"
+
+namespace hilda::tests {
+
+using lie::Mat3;
+using lie::Vec3;
+
+/// The point s_bar of the body stays at the origin; without it (free = true) the body is torque-free.
+class SpinningTop final : public lie::System {
+public:
+    explicit SpinningTop(bool free = false) : free(free)
+    {
+        inertia.m = {2.0};
+        inertia.J_bar = {Vec3(0.05, 0.08, 0.06).asDiagonal()};
+        if (free) return;
+        for (int k = 0; k < 3; ++k) {
+            rows_pattern.entry.push_back({});
+            rows_pattern.start.push_back(k + 1);
+        }
+    }
+
+    const lie::Mass& mass() const override { return inertia; }
+    const lie::Rows& pattern() const override { return rows_pattern; }
+
+    void loads(const lie::State&, lie::Loads& out) const override
+    {
+        out.F[0] = free ? Vec3(0, 0, 0) : Vec3(0, 0, -2.0 * 9.81);
+        out.n_bar[0].setZero();
+    }
+    void phi(const lie::State& x, Eigen::Ref<Eigen::VectorXd> out) const override
+    {
+        if (!free) out = x.body[0].r + x.body[0].A * s_bar;
+    }
+    void variation(const lie::State& x, lie::Rows& out) const override
+    {
+        for (int k = 0; k < (free ? 0 : 3); ++k) {
+            out.entry[k].r = Vec3::Unit(k);
+            out.entry[k].pi = s_bar.cross(x.body[0].A.transpose() * Vec3::Unit(k));
+        }
+    }
+    void nu(const lie::State&, Eigen::Ref<Eigen::VectorXd> out) const override { out.setZero(); }
+    void gamma(const lie::State& x, Eigen::Ref<Eigen::VectorXd> out) const override
+    {
+        const Vec3& omega_bar = x.body[0].omega_bar;
+        if (!free) out = -x.body[0].A * omega_bar.cross(omega_bar.cross(s_bar));
+    }
+    double potential_energy(const lie::State& x) const override
+    {
+        return free ? 0 : 2.0 * 9.81 * x.body[0].r.z();
+    }
+
+    /// Tilted, spinning and falling, consistent in position, velocity and acceleration
+    lie::State start() const
+    {
+        lie::State x;
+        x.body.resize(1);
+        lie::Motion& body = x.body[0];
+        body.A = lie::exp(Vec3(0.7, -0.4, 0.2));
+        body.omega_bar = Vec3(1.0, -2.0, 6.0);
+        if (!free) {
+            body.r = -body.A * s_bar;
+            body.rdot = -body.A * body.omega_bar.cross(s_bar);
+        }
+        lie::Saddle K(*this);
+        K.assemble(x);
+        Eigen::VectorXd a(K.size());
+        lie::Loads load(1);
+        loads(x, load);
+        a.head<3>() = load.F[0];
+        a.segment<3>(3) = -body.omega_bar.cross(inertia.J_bar[0] * body.omega_bar);
+        gamma(x, K.constraint_part(a));
+        K.solve_refined(a);
+        body.rddot = a.head<3>();
+        body.omegadot_bar = a.segment<3>(3);
+        x.lambda = K.constraint_part(a);
+        return x;
+    }
+
+    const bool free;
+    const Vec3 s_bar = Vec3(0.05, -0.1, -0.25);
+
+private:
+    lie::Mass inertia;
+    lie::Rows rows_pattern;
+};
+
+}  // namespace hilda::tests

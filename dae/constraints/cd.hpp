@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/driver.hpp"
+
+namespace hilda::dae {
+
+/// Coordinate-difference block: c · d_ij = f(t) along a direction c fixed in the global frame.
+///
+///     Phi    = c . d_ij - f(t),   d_ij = r_j + A_j s_bar_j - r_i - A_i s_bar_i                Fang (2022),
+///     Eq. 2.5d Phi_ri = -c^T,   Pi_i =  c^T A_i tilde(s_bar_i) Phi_rj =  c^T,   Pi_j = -c^T A_j
+///     tilde(s_bar_j)
+class CD final : public Block {
+public:
+    CD(const Vec3& c, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f = {})
+        : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f))
+    {}
+
+    double phi(const Motion& bi, const Motion& bj, double t) const override
+    {
+        return c.dot(bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i) - f.f(t);
+    }
+
+    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        return {.r_i = -c,
+                .pi_i = -s_bar_i.cross(bi.A.transpose() * c),
+                .r_j = c,
+                .pi_j = s_bar_j.cross(bj.A.transpose() * c)};
+    }
+
+    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+
+    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        return f.fddot(t) - c.dot(s_j.centripetal - s_i.centripetal);
+    }
+
+    unsigned nonzero() const override
+    {
+        unsigned axes = 0;
+        for (int k = 0; k < 3; ++k)
+            if (c[k] != 0) axes |= 1u << k;
+        return axes | crossed(s_bar_i) << 3 | axes << 6 | crossed(s_bar_j) << 9;
+    }
+
+    std::string objection(const Motion&, const Motion&, double) const override
+    {
+        return c.norm() > 0 ? "" : "a vector of length zero has no direction, got |c| = 0";
+    }
+
+    const Vec3 c, s_bar_i, s_bar_j;
+    const Driver f;
+};
+
+}  // namespace hilda::dae

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/driver.hpp"
+
+#include <sstream>
+
+namespace hilda::dae {
+
+/// Distance block: d_ij · d_ij = f(t), the squared distance [m²] of point P of body i and point Q of body j.
+///
+///     Phi    = d_ij . d_ij - f(t),   d_ij = r_j + A_j s_bar_j - r_i - A_i s_bar_i             Fang (2022),
+///     Eq. 2.5c Phi_ri = -2 d_ij^T,   Pi_i =  2 d_ij^T A_i tilde(s_bar_i) Phi_rj =  2 d_ij^T,   Pi_j = -2
+///     d_ij^T A_j tilde(s_bar_j)
+///
+/// Its row and multiplier scale with 2 |d_ij|. Loses rank where the distance is zero.
+class D final : public Block {
+public:
+    D(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f)
+        : Block(i, j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f))
+    {}
+
+    double phi(const Motion& bi, const Motion& bj, double t) const override
+    {
+        return (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).squaredNorm() - f.f(t);
+    }
+
+    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        return {.r_i = -2 * d_ij,
+                .pi_i = -2 * s_bar_i.cross(bi.A.transpose() * d_ij),
+                .r_j = 2 * d_ij,
+                .pi_j = 2 * s_bar_j.cross(bj.A.transpose() * d_ij)};
+    }
+
+    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+
+    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
+        const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
+        return f.fddot(t) - 2 * d_ijdot.squaredNorm() - 2 * d_ij.dot(s_j.centripetal - s_i.centripetal);
+    }
+
+    unsigned nonzero() const override
+    {
+        return 0b111 | crossed(s_bar_i) << 3 | 0b111 << 6 | crossed(s_bar_j) << 9;
+    }
+
+    std::string objection(const Motion&, const Motion&, double t) const override
+    {
+        std::ostringstream text;
+        if (!(f.f(t) > 0)) text << "f is a squared distance and must be positive, got " << f.f(t);
+        return text.str();
+    }
+
+    const Vec3 s_bar_i, s_bar_j;
+    const Driver f;
+};
+
+}  // namespace hilda::dae

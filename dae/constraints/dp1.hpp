@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/driver.hpp"
+
+#include <memory>
+#include <optional>
+#include <sstream>
+
+namespace hilda::dae {
+
+/// First dot-product block: a_i · a_j = f(t), the angle between two body-fixed vectors.
+///
+///     Phi    = (A_i a_bar_i) . (A_j a_bar_j) - f(t)                         Fang (2022), Eq. 2.5a
+///     Pi_i   = -a_j^T A_i tilde(a_bar_i),   Pi_j = -a_i^T A_j tilde(a_bar_j)
+///
+/// Loses rank where the two vectors are parallel, |f| = |a_i| |a_j|. A driver that passes there needs its
+/// complement.
+class DP1 final : public Block {
+public:
+    DP1(int i, const Vec3& a_bar_i, int j, const Vec3& a_bar_j, Driver f = {})
+        : Block(i, j), a_bar_i(a_bar_i), a_bar_j(a_bar_j), f(std::move(f))
+    {}
+
+    double phi(const Motion& bi, const Motion& bj, double t) const override
+    {
+        return (bi.A * a_bar_i).dot(bj.A * a_bar_j) - f.f(t);
+    }
+
+    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Vec3 a_i = bi.A * a_bar_i, a_j = bj.A * a_bar_j;
+        return {.r_i = Vec3::Zero(),
+                .pi_i = a_bar_i.cross(bi.A.transpose() * a_j),
+                .r_j = Vec3::Zero(),
+                .pi_j = a_bar_j.cross(bj.A.transpose() * a_i)};
+    }
+
+    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+
+    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Carried a_i(bi, a_bar_i), a_j(bj, a_bar_j);
+        return f.fddot(t) - a_i.centripetal.dot(a_j.v) - a_i.v.dot(a_j.centripetal) -
+               2 * a_i.vdot.dot(a_j.vdot);
+    }
+
+    unsigned nonzero() const override { return crossed(a_bar_i) << 3 | crossed(a_bar_j) << 9; }
+
+    std::string objection(const Motion&, const Motion&, double t) const override
+    {
+        const double reach = a_bar_i.norm() * a_bar_j.norm(), value = f.f(t);
+        std::ostringstream text;
+        if (!(reach > 0))
+            text << "a vector of length zero has no direction, got |a_i||a_j| = " << reach;
+        else if (std::abs(value) > reach)
+            text << "f must lie between -|a_i||a_j| and |a_i||a_j| = " << reach << ", got " << value;
+        else if (reach - std::abs(value) < 1e-9 * reach)
+            text << "the two vectors are parallel at the start (|f| = |a_i||a_j|), where a DP1 row is "
+                    "singular, got f = "
+                 << value;
+        return text.str();
+    }
+
+    /// How close the row is to losing rank: |f| / (|a_i| |a_j|), 1 where the vectors are parallel.
+    double alignment(double t) const { return std::abs(f.f(t)) / (a_bar_i.norm() * a_bar_j.norm()); }
+
+    /// The block that drives the same turn where this one is singular. With f = c cos g (or c sin g) and both
+    /// vectors in the plane of the turn, a_j also makes the angle whose cosine is ± sin g with the
+    /// perpendicular (a_i × a_j) × a_i of a_i; the perpendicular is fixed in body i, taken at the start, with
+    /// its sign. None for other forms of f.
+    std::unique_ptr<DP1> complement(const Motion& bi, const Motion& bj, double t) const
+    {
+        const std::optional<Driver> other = f.complement();
+        if (!other) return nullptr;
+        const Vec3 a_j = bi.A.transpose() * (bj.A * a_bar_j);
+        const Vec3 axis = a_bar_i.cross(a_j).normalized();
+        Vec3 a_bar_perpendicular = axis.cross(a_bar_i);
+        const double sine = a_bar_perpendicular.dot(a_j);  // positive, by the choice of the axis
+        if (other->f(t) * sine < 0) a_bar_perpendicular = -a_bar_perpendicular;
+        return std::make_unique<DP1>(i, a_bar_perpendicular, j, a_bar_j, *other);
+    }
+
+    const Vec3 a_bar_i, a_bar_j;
+    const Driver f;
+};
+
+}  // namespace hilda::dae

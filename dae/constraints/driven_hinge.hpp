@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/driver.hpp"
+
+namespace hilda::dae {
+
+/// Drives body j about an axis of body i by the angle g(t) - g(t_0) since the start, through whole turns. A
+/// vector b(t) turns in body i ahead of a vector w of body j by a right angle:
+///
+///     Phi  = (A_i b_bar(t)) . (A_j w_bar),    b_bar = u_bar' cos g - u_bar sin g
+///     Pi_i = -w^T A_i tilde(b_bar),   Pi_j = -b^T A_j tilde(w_bar),   nu = -(A_i d/dt b_bar) . w
+///
+/// u_bar, u_bar' and the axis are right-handed and orthonormal. The row has length one at every angle, unlike
+/// DP1.
+class DrivenHinge final : public Block {
+public:
+    /// u_bar ⟂ u_bar_prime, unit, in body i; w_bar, unit, in body j, at the angle g(t_0) from u_bar towards
+    /// u_bar_prime at the start.
+    DrivenHinge(int i, const Vec3& u_bar, const Vec3& u_bar_prime, int j, const Vec3& w_bar, Driver g)
+        : Block(i, j), u_bar(u_bar), u_bar_prime(u_bar_prime), w_bar(w_bar), g(std::move(g))
+    {}
+
+    double phi(const Motion& bi, const Motion& bj, double t) const override
+    {
+        return (bi.A * b_bar(t).b).dot(bj.A * w_bar);
+    }
+
+    Variation variation(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Vec3 b = b_bar(t).b, w = bj.A * w_bar;
+        return {.r_i = Vec3::Zero(),
+                .pi_i = b.cross(bi.A.transpose() * w),
+                .r_j = Vec3::Zero(),
+                .pi_j = w_bar.cross(bj.A.transpose() * (bi.A * b))};
+    }
+
+    double nu(const Motion& bi, const Motion& bj, double t) const override
+    {
+        return -(bi.A * b_bar(t).bdot).dot(bj.A * w_bar);
+    }
+
+    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Turning b = b_bar(t);
+        const Carried w(bj, w_bar);
+        const Vec3& omega_bar = bi.omega_bar;
+        const Vec3 bdot = bi.A * (omega_bar.cross(b.b) + b.bdot);
+        const Vec3 bddot = bi.A * (omega_bar.cross(omega_bar.cross(b.b) + 2 * b.bdot) + b.bddot);
+        return -bddot.dot(w.v) - 2 * bdot.dot(w.vdot) - (bi.A * b.b).dot(w.centripetal);
+    }
+
+    unsigned nonzero() const override
+    {
+        return (crossed(u_bar) | crossed(u_bar_prime)) << 3 | crossed(w_bar) << 9;
+    }
+
+    const Vec3 u_bar, u_bar_prime, w_bar;
+    const Driver g;
+
+private:
+    struct Turning {
+        Vec3 b, bdot, bddot;
+    };
+    Turning b_bar(double t) const
+    {
+        const Jet a = g.jet(t);
+        const double c = std::cos(a.f), s = std::sin(a.f);
+        const Vec3 b = c * u_bar_prime - s * u_bar;
+        const Vec3 ahead = -s * u_bar_prime - c * u_bar;  // db/dg
+        return {b, a.fdot * ahead, a.fddot * ahead - a.fdot * a.fdot * b};
+    }
+};
+
+}  // namespace hilda::dae

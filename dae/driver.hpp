@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// f(t) of a driving constraint, with its first two derivatives.                   Fang (2022), Eqs. 2.5a-d
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dae/expression.hpp"
+
+namespace hilda::dae {
+
+/// A prescribed function of time: a constant (by default 0), or an Expression in t.
+///
+/// Throws ExpressionError for a text that is none, and for a constant that is not finite.
+class Driver {
+public:
+    Driver(double constant = 0);
+    Driver(std::string_view text) : expression(text) {}
+
+    double f(double t) const { return expression.value(t); }
+    double fdot(double t) const { return expression.jet(t).fdot; }
+    double fddot(double t) const { return expression.jet(t).fddot; }
+    Jet jet(double t) const { return expression.jet(t); }
+
+    bool is_constant() const { return expression.is_constant(); }
+    const std::string& text() const { return expression.text(); }
+
+    /// sin(g) for f = cos(g), and cos(g) for f = sin(g), where g is not constant; otherwise nothing.
+    ///
+    /// A DP1 driver f = cos(angle) loses rank at f = +-1, twice per turn. There the complement drives
+    /// instead, against a reference turned by 90 degrees.
+    std::optional<Driver> complement() const;
+
+private:
+    Expression expression;
+};
+
+}  // namespace hilda::dae

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Expression: recursive descent into a postfix program, and its evaluation on numbers or on jets.
+
+#include "dae/expression.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <system_error>
+#include <type_traits>
+
+#include "dae/nearest.hpp"
+
+namespace hilda::dae {
+namespace {
+
+using Op = Expression::Op;
+using Instruction = Expression::Instruction;
+
+struct Function {
+    std::string_view name;
+    Op op;
+    int arity;
+};
+
+constexpr Function functions[] = {
+    {"sin", Op::sin, 1},   {"cos", Op::cos, 1},   {"tan", Op::tan, 1},   {"asin", Op::asin, 1},
+    {"acos", Op::acos, 1}, {"atan", Op::atan, 1}, {"sinh", Op::sinh, 1}, {"cosh", Op::cosh, 1},
+    {"tanh", Op::tanh, 1}, {"exp", Op::exp, 1},   {"log", Op::log, 1},   {"sqrt", Op::sqrt, 1},
+    {"abs", Op::abs, 1},   {"min", Op::min, 2},   {"max", Op::max, 2},   {"step", Op::step, 1},
+    {"if", Op::select, 3},
+};
+
+// --- evaluation ---
+
+// These are for double; argument-dependent lookup adds those for Jet.
+using std::abs, std::exp, std::log, std::pow, std::sqrt;
+using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh;
+
+template <class T>
+T constant(double c)
+{
+    if constexpr (std::is_same_v<T, Jet>)
+        return {c, 0, 0};
+    else
+        return c;
+}
+
+/// xⁿ by repeated multiplication: where x = 0, n x^(n-1) x' has no 0·inf in it.
+template <class T>
+T power(T x, int n)
+{
+    if (n < 0) return constant<T>(1) / power(x, -n);
+    T y = constant<T>(1);
+    for (; n > 0; n /= 2) {
+        if (n % 2 == 1) y = y * x;
+        x = x * x;
+    }
+    return y;
+}
+
+/// Runs the program on T = double or Jet. x[0] is the top of the value stack, whose first place stays empty.
+template <class T>
+T evaluate(std::span<const Instruction> program, std::span<const T> variables) noexcept
+{
+    T stack[1 + Expression::max_depth];
+    T* x = stack;
+    for (const Instruction& i : program) {
+        switch (i.op) {
+            // clang-format off
+            case Op::constant:      *++x = constant<T>(i.c); break;
+            case Op::variable:      *++x = variables[i.n]; break;
+            case Op::add:           --x; x[0] = x[0] + x[1]; break;
+            case Op::subtract:      --x; x[0] = x[0] - x[1]; break;
+            case Op::multiply:      --x; x[0] = x[0] * x[1]; break;
+            case Op::divide:        --x; x[0] = x[0] / x[1]; break;
+            case Op::negate:        x[0] = -x[0]; break;
+            case Op::integer_power: x[0] = power(x[0], i.n); break;
+            case Op::real_power:    x[0] = pow(x[0], i.c); break;
+            case Op::sin:           x[0] = sin(x[0]); break;
+            case Op::cos:           x[0] = cos(x[0]); break;
+            case Op::tan:           x[0] = tan(x[0]); break;
+            case Op::asin:          x[0] = asin(x[0]); break;
+            case Op::acos:          x[0] = acos(x[0]); break;
+            case Op::atan:          x[0] = atan(x[0]); break;
+            case Op::sinh:          x[0] = sinh(x[0]); break;
+            case Op::cosh:          x[0] = cosh(x[0]); break;
+            case Op::tanh:          x[0] = tanh(x[0]); break;
+            case Op::exp:           x[0] = exp(x[0]); break;
+            case Op::log:           x[0] = log(x[0]); break;
+            case Op::sqrt:          x[0] = sqrt(x[0]); break;
+            case Op::abs:           x[0] = abs(x[0]); break;
+            case Op::min:           --x; x[0] = select(x[1] - x[0], x[0], x[1]); break;
+            case Op::max:           --x; x[0] = select(x[0] - x[1], x[0], x[1]); break;
+            case Op::step:          x[0] = step(x[0]); break;
+            case Op::select:        x -= 2; x[0] = select(x[0], x[1], x[2]); break;
+                // clang-format on
+        }
+    }
+    return x[0];
+}
+
+// --- reading ---
+
+bool is_digit(char c) { return '0' <= c && c <= '9'; }
+bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
+
+/// One line of at most 60 characters around the given place, for messages.
+std::string excerpt(std::string_view text, std::size_t place)
+{
+    constexpr std::size_t width = 60;
+    const std::size_t begin = text.size() <= width || place < width / 2 ? 0 : place - width / 2;
+    std::string s(text.substr(begin, width));
+    for (char& c : s)
+        if (c < ' ' || c > '~') c = '?';
+    return (begin > 0 ? "..." : "") + s + (begin + width < text.size() ? "..." : "");
+}
+
+/// Recursive descent, one function per rule:
+///
+///     sum     = product { (+|-) product }
+///     product = signed { (*|/) signed }
+///     signed  = (-|+) signed  |  power
+///     power   = operand [ (^|**) signed ]
+///     operand = number | name | function ( sum {, sum} ) | ( sum )
+class Parser {
+public:
+    Parser(std::string_view text, const std::vector<std::string>& variables)
+        : text(text), variables(variables)
+    {}
+
+    std::vector<Instruction> parse()
+    {
+        if (text.size() > Expression::max_characters)
+            fail("more than " + std::to_string(Expression::max_characters) + " characters",
+                 Expression::max_characters);
+        skip_blanks();
+        if (at_end()) fail("empty expression", place);
+        sum();
+        if (!at_end()) misplaced();
+        return program;
+    }
+
+private:
+    void sum()
+    {
+        product();
+        for (;;) {
+            const std::size_t at = place;
+            if (accept("+")) {
+                product();
+                apply({Op::add}, 2, at);
+            } else if (accept("-")) {
+                product();
+                apply({Op::subtract}, 2, at);
+            } else {
+                return;
+            }
+        }
+    }
+
+    void product()
+    {
+        signed_power();
+        for (;;) {
+            const std::size_t at = place;
+            if (accept("*")) {
+                signed_power();
+                apply({Op::multiply}, 2, at);
+            } else if (accept("/")) {
+                signed_power();
+                apply({Op::divide}, 2, at);
+            } else {
+                return;
+            }
+        }
+    }
+
+    void signed_power()
+    {
+        // Every recursion comes through here, so this bounds the machine's stack as well.
+        if (++nesting > Expression::max_depth) fail_too_deep(place);
+        const std::size_t at = place;
+        if (accept("-")) {
+            signed_power();
+            apply({Op::negate}, 1, at);
+        } else if (accept("+")) {
+            signed_power();
+        } else {
+            power();
+        }
+        --nesting;
+    }
+
+    void power()
+    {
+        constexpr int max_multiplied = 64;  // beyond, pow() is exact enough and not slower
+        operand();
+        const std::size_t at = place;
+        if (!accept("**") && !accept("^")) return;
+        const std::size_t exponent_at = place, exponent_begin = program.size();
+        signed_power();
+        if (program.size() != exponent_begin + 1 || program.back().op != Op::constant)
+            fail("the exponent must be constant", exponent_at, "a^b with variable b is exp(b*log(a))");
+        const double p = program.back().c;
+        program.pop_back();
+        --height;
+        if (std::abs(p) <= max_multiplied && p == std::trunc(p))
+            apply({.op = Op::integer_power, .n = static_cast<int>(p)}, 1, at);
+        else
+            apply({.op = Op::real_power, .c = p}, 1, at);
+    }
+
+    void operand()
+    {
+        const std::size_t at = place;
+        if (at_end()) fail("the expression ends where a value is expected", at);
+        const char c = text[place];
+        if (is_digit(c) || c == '.') return number();
+        if (is_letter(c)) return name();
+        if (accept("(")) {
+            sum();
+            return close(at);
+        }
+        if (std::string_view("*/^),").find(c) != std::string_view::npos)
+            fail(std::string("a value is missing before '") + c + "'", at);
+        fail_character();
+    }
+
+    void number()
+    {
+        const std::size_t at = place;
+        const char* const begin = text.data() + at;
+        double c = 0;
+        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), c);
+        const std::string_view digits = text.substr(at, end - begin);
+        if (error == std::errc::result_out_of_range)
+            fail("the number '" + excerpt(digits, 0) + "' is out of range", at);
+        if (error != std::errc()) fail("'.' without digits is no number", at);
+        place += digits.size();
+        skip_blanks();
+        push({.op = Op::constant, .c = c}, at);
+    }
+
+    void name()
+    {
+        const std::size_t at = place;
+        while (!at_end() && (is_letter(text[place]) || is_digit(text[place]))) ++place;
+        const std::string_view word = text.substr(at, place - at);
+        skip_blanks();
+
+        const auto variable = std::find(variables.begin(), variables.end(), word);
+        const auto function = std::find_if(std::begin(functions), std::end(functions),
+                                           [&](const Function& f) { return f.name == word; });
+        if (variable != variables.end())
+            push({.op = Op::variable, .n = static_cast<int>(variable - variables.begin())}, at);
+        else if (word == "pi")
+            push({.op = Op::constant, .c = std::numbers::pi}, at);
+        else if (word == "e")
+            push({.op = Op::constant, .c = std::numbers::e}, at);
+        else if (function != std::end(functions))
+            call(*function, at);
+        else
+            fail_unknown(word, at);
+    }
+
+    void call(const Function& function, std::size_t at)
+    {
+        const std::string name = "'" + std::string(function.name) + "'";
+        const std::size_t open = place;
+        if (!accept("(")) fail("the function " + name + " needs its arguments in parentheses", at);
+        int n = 0;
+        if (at_end() || text[place] != ')') {
+            do {
+                sum();
+                ++n;
+            } while (accept(","));
+        }
+        close(open);
+        if (n != function.arity)
+            fail("wrong number of arguments of " + name + ": " + std::to_string(n) + " instead of " +
+                     std::to_string(function.arity),
+                 at);
+        apply({function.op}, function.arity, at);
+    }
+
+    void close(std::size_t open)
+    {
+        if (at_end()) fail("'(' is never closed", open);
+        if (!accept(")")) misplaced();
+    }
+
+    // characters
+
+    bool at_end() const { return place == text.size(); }
+
+    void skip_blanks()
+    {
+        while (!at_end() && (text[place] == ' ' || text[place] == '\t')) ++place;
+    }
+
+    bool accept(std::string_view symbol)
+    {
+        if (!text.substr(place).starts_with(symbol)) return false;
+        place += symbol.size();
+        skip_blanks();
+        return true;
+    }
+
+    // the program
+
+    void push(const Instruction& operand, std::size_t at)
+    {
+        if (++height > Expression::max_depth) fail_too_deep(at);
+        append(operand, at);
+    }
+
+    /// Appends an operation on the last n values; computes it at once where they are constants.
+    void apply(const Instruction& operation, int n, std::size_t at)
+    {
+        append(operation, at);
+        height -= n - 1;
+        const auto tail = std::span(program).last(n + 1);
+        const auto is_constant = [](const Instruction& i) { return i.op == Op::constant; };
+        if (!std::all_of(tail.begin(), tail.end() - 1, is_constant)) return;
+        const double c = evaluate<double>(tail, {});
+        if (!std::isfinite(c)) fail("this constant part is not finite", at);
+        program.resize(program.size() - tail.size());
+        program.push_back({.op = Op::constant, .c = c});
+    }
+
+    void append(const Instruction& instruction, std::size_t at)
+    {
+        if (program.size() == Expression::max_instructions)
+            fail("more than " + std::to_string(Expression::max_instructions) + " instructions", at);
+        program.push_back(instruction);
+    }
+
+    // errors
+
+    [[noreturn]] void fail(const std::string& what, std::size_t at, const std::string& hint = "") const
+    {
+        const int column = static_cast<int>(at) + 1;
+        throw ExpressionError(what + " in \"" + excerpt(text, at) + "\" at column " + std::to_string(column) +
+                                  (hint.empty() ? "" : "; " + hint),
+                              column);
+    }
+
+    [[noreturn]] void fail_too_deep(std::size_t at) const
+    {
+        fail("nested deeper than " + std::to_string(Expression::max_depth) + " levels", at);
+    }
+
+    [[noreturn]] void fail_character() const
+    {
+        const auto code = static_cast<unsigned char>(text[place]);
+        if (code >= 128) fail("a character outside ASCII", place);
+        if (code < ' ' || code == 127) fail("control character (code " + std::to_string(code) + ")", place);
+        fail(std::string("unexpected '") + text[place] + "'", place);
+    }
+
+    /// A complete value is followed by what cannot follow it.
+    [[noreturn]] void misplaced() const
+    {
+        const char c = text[place];
+        if (c == ')') fail("')' was never opened", place);
+        if (c == ',') fail("',' outside of the arguments of a function", place);
+        if (is_digit(c) || is_letter(c) || c == '.' || c == '(')
+            fail(std::string("missing operator before '") + c + "'", place, "products are written with '*'");
+        fail_character();
+    }
+
+    [[noreturn]] void fail_unknown(std::string_view word, std::size_t at) const
+    {
+        const bool called = !at_end() && text[place] == '(';
+        std::vector<std::string> known;
+        if (called) {
+            for (const Function& f : functions) known.emplace_back(f.name);
+        } else {
+            known = variables;
+            known.insert(known.end(), {"pi", "e"});
+        }
+        std::string hint = nearest(word, known);
+        if (!hint.empty()) {
+            hint = "did you mean '" + hint + "'?";
+        } else {
+            for (const std::string& w : known) hint += (hint.empty() ? "known: " : ", ") + w;
+        }
+        fail((called ? "unknown function '" : "unknown name '") + excerpt(word, 0) + "'", at, hint);
+    }
+
+    std::string_view text;
+    const std::vector<std::string>& variables;
+    std::vector<Instruction> program;
+    std::size_t place = 0;  // the next character to read
+    int nesting = 0;        // of signed_power
+    int height = 0;         // of the value stack after the program so far
+};
+
+}  // namespace
+
+Expression::Expression(std::string_view text, const std::vector<std::string>& variables)
+    : source(text), arity(variables.size()), program(Parser(text, variables).parse())
+{}
+
+double Expression::value(std::span<const double> x) const noexcept
+{
+    assert(x.size() == arity);
+    return is_constant() ? program[0].c : evaluate(program, x);
+}
+
+Jet Expression::jet(double t) const noexcept
+{
+    assert(arity == 1);
+    const Jet x{t, 1, 0};
+    return is_constant() ? Jet{program[0].c, 0, 0} : evaluate(program, std::span(&x, 1));
+}
+
+std::string_view Expression::outermost() const
+{
+    for (const Function& f : functions)
+        if (f.op == program.back().op) return f.name;
+    return "";
+}
+
+}  // namespace hilda::dae

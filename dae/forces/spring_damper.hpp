@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dae/expression.hpp"
+#include "dae/force.hpp"
+#include "lie/check.hpp"
+
+#include <optional>
+
+namespace hilda::dae {
+
+/// Spring, damper and actuator between point P of body i and point Q of body j:
+///
+///     f = k (l - l_0) + c ldot + F(l, ldot, t)   [N], along d_ij; positive pulls the bodies together Haug
+///     (1989), Sec. 11.2
+///
+/// Throws lie::NonFinite where the two points coincide, which leaves no direction.
+class SpringDamper final : public Force {
+public:
+    int i, j;
+    Vec3 s_bar_i, s_bar_j;
+    double stiffness = 0, damping = 0, free_length = 0;  ///< k [N/m], c [N s/m], l_0 [m]
+    std::optional<Expression> law;                       ///< F in the variables l, ldot, t
+
+    SpringDamper(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, double stiffness, double damping,
+                 double free_length, std::optional<Expression> law = {})
+        : i(i), j(j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), stiffness(stiffness), damping(damping),
+          free_length(free_length), law(std::move(law))
+    {}
+
+    void add(const State& x, lie::Loads& out) const override
+    {
+        const Motion &bi = motion(x, i), &bj = motion(x, j);
+        const Vec3 d = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        const Vec3 ddot =
+            bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot - bi.A * bi.omega_bar.cross(s_bar_i);
+        const double l = d.norm();
+        if (!(l > 0)) throw lie::NonFinite("force '" + name + "': the two points of a spring coincide");
+        const Vec3 along = d / l;
+        const double ldot = along.dot(ddot);
+        double f = stiffness * (l - free_length) + damping * ldot;
+        if (law) {
+            const double variables[] = {l, ldot, x.t};
+            f += law->value(variables);
+        }
+        push(i, f * along, s_bar_i, x, out);
+        push(j, -f * along, s_bar_j, x, out);
+    }
+
+    /// Of the linear spring alone
+    double potential_energy(const State& x) const override
+    {
+        const Motion &bi = motion(x, i), &bj = motion(x, j);
+        const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
+        return 0.5 * stiffness * stretch * stretch;
+    }
+
+    int last_body() const override { return std::max(i, j); }
+};
+
+}  // namespace hilda::dae

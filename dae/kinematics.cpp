@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/kinematics.hpp"
+
+namespace hilda::dae {
+
+namespace {
+
+const Model& without_freedom(const Model& model)
+{
+    const int freedom = 6 * model.bodies() - model.rows();
+    if (freedom != 0)
+        lie::reject("dae::Kinematics", "kinematic analysis needs a mechanism with 0 degrees of freedom",
+                    freedom);
+    return model;
+}
+
+}  // namespace
+
+Kinematics::Kinematics(const Model& model) : model(without_freedom(model)), K(model) {}
+
+void Kinematics::move_to(State& x, double t, double substep)
+{
+    const double t_0 = x.t;
+    const auto n = static_cast<long>(std::max(1.0, std::ceil(std::abs(t - t_0) / substep)));
+    for (long k = 1; k <= n; ++k) {
+        const State before = x;
+        x.t = k == n ? t : t_0 + (t - t_0) * static_cast<double>(k) / static_cast<double>(n);
+        const double h = x.t - before.t;
+        for (Motion& body : x.body) {
+            body.r += h * body.rdot + 0.5 * h * h * body.rddot;
+            body.A = body.A * lie::exp(h * body.omega_bar + 0.5 * h * h * body.omegadot_bar);
+        }
+        project_positions(model, K, x);
+        project_velocities(model, K, x);
+        solve_accelerations(model, K, x);
+        model.accepted(before, x);
+    }
+}
+
+lie::Trajectory Kinematics::run(State x, double dt, long n)
+{
+    lie::Trajectory trajectory;
+    trajectory.row.push_back(x);
+    const double t_0 = x.t;
+    for (long k = 1; k <= n; ++k) {
+        move_to(x, t_0 + static_cast<double>(k) * dt);
+        trajectory.row.push_back(x);
+    }
+    return trajectory;
+}
+
+Eigen::VectorXd inverse_dynamics(const Model& model, const State& x, std::vector<Reaction>* missing)
+{
+    lie::Saddle K(model, lie::Metric::unit);  // [1 Cᵀ; C 0] (rest, λ) = (load - M a, 0): the normal equations
+    K.assemble(x);
+    lie::Loads loads(model.bodies());
+    model.loads(x, loads);
+    Eigen::VectorXd b(K.size());
+    for (int i = 0; i < model.bodies(); ++i) {
+        const Motion& body = x.body[i];
+        const Mat3& J_bar = model.mass().J_bar[i];
+        b.segment<3>(6 * i) = loads.F[i] - model.mass().m[i] * body.rddot;
+        b.segment<3>(6 * i + 3) =
+            loads.n_bar[i] - body.omega_bar.cross(J_bar * body.omega_bar) - J_bar * body.omegadot_bar;
+    }
+    K.constraint_part(b).setZero();
+    K.solve_refined(b);
+    if (missing != nullptr) {
+        missing->assign(x.body.size(), {});
+        for (int i = 0; i < model.bodies(); ++i)
+            (*missing)[i] = {-b.segment<3>(6 * i), -b.segment<3>(6 * i + 3)};
+    }
+    return K.constraint_part(b);
+}
+
+}  // namespace hilda::dae

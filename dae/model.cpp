@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/model.hpp"
+
+#include "dae/constraints/dp1.hpp"
+
+#include <algorithm>
+
+namespace hilda::dae {
+
+namespace {
+
+// A driver is swapped for its complement above this |f| / (|a_i||a_j|); the complement is then below 0.44.
+constexpr double swap_above = 0.9;
+// The complement must hold where it takes over; it does not when the driven vectors leave the plane of the
+// turn.
+constexpr double swap_mismatch = 1e-6;
+
+// Digits left out of an orientation are mended at the start; beyond this ‖AᵀA - I‖ it is no orientation at
+// all.
+constexpr double not_a_rotation = 1e-3;
+
+double length(const Variation& v, const Block& block)
+{
+    double sum = 0;
+    if (block.i != ground) sum += v.r_i.squaredNorm() + v.pi_i.squaredNorm();
+    if (block.j != ground) sum += v.r_j.squaredNorm() + v.pi_j.squaredNorm();
+    return std::sqrt(sum);
+}
+
+}  // namespace
+
+int Model::add(Body b)
+{
+    if (b.name.empty()) lie::reject("dae::Model::add", "a body needs a name", "''");
+    if (b.name == "ground")
+        lie::reject("dae::Model::add", "the name of the fixed body cannot be given", "'ground'");
+    for (const Body& other : body)
+        if (other.name == b.name)
+            lie::reject("dae::Model::add", "two bodies have the same name", "'" + b.name + "'");
+    b.validate();
+    inertia.m.push_back(b.m);
+    inertia.J_bar.push_back(b.J_bar);
+    body.push_back(std::move(b));
+    return static_cast<int>(body.size()) - 1;
+}
+
+int Model::find(const std::string& name) const
+{
+    if (name == "ground") return ground;
+    for (size_t k = 0; k < body.size(); ++k)
+        if (body[k].name == name) return static_cast<int>(k);
+    lie::reject("dae::Model::find", "no body has this name", "'" + name + "'");
+}
+
+void Model::constrain(const std::string& name, Blocks rows)
+{
+    const int bodies = static_cast<int>(body.size());
+    for (const auto& block : rows) {
+        for (const int b : {block->i, block->j})
+            if (b < ground || b >= bodies)
+                lie::reject("constraint '" + name + "'", "no body has this number", b);
+        if (block->i == block->j)
+            lie::reject("constraint '" + name + "'", "a constraint needs two different bodies",
+                        "'" + body_name(block->i) + "' twice");
+    }
+    if (std::find(constraint_names.begin(), constraint_names.end(), name) != constraint_names.end())
+        lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
+    int number = 0;
+    for (auto& block : rows) {
+        active.push_back(static_cast<int>(row.size()));
+        row.push_back({.block = std::move(block),
+                       .complement = nullptr,
+                       .branch = -1,
+                       .constraint = constraints(),
+                       .number = ++number});
+    }
+    constraint_names.push_back(name);
+    set_pattern();
+}
+
+void Model::load(std::unique_ptr<Force> f)
+{
+    if (f->last_body() >= static_cast<int>(body.size()))
+        lie::reject("force '" + f->name + "'", "no body has this number", f->last_body());
+    force.push_back(std::move(f));
+}
+
+void Model::prepare(State& x)
+{
+    if (x.body.size() != body.size())
+        lie::reject("dae::Model::prepare", "the state must have a motion for each of the bodies",
+                    x.body.size());
+    for (size_t b = 0; b < x.body.size(); ++b) {
+        const Mat3& A = x.body[b].A;
+        if (!(lie::orthogonality_error(A) < not_a_rotation) || A.determinant() < 0)
+            lie::reject("body '" + body[b].name + "'", "the orientation must be a rotation matrix", A);
+    }
+    memory = 0;
+    for (Row& r : row) {
+        const Motion &bi = motion(x, r.block->i), &bj = motion(x, r.block->j);
+        if (const std::string why = r.block->objection(bi, bj, x.t); !why.empty())
+            throw ConstraintError(name_of(r) + ": " + why, r.constraint);
+        r.complement.reset();
+        r.branch = -1;
+        if (const auto* dp1 = dynamic_cast<const DP1*>(r.block.get()); dp1 != nullptr)
+            r.complement = dp1->complement(bi, bj, x.t);
+        if (r.complement) r.branch = memory++;
+    }
+    set_pattern();  // the complements may enter where their blocks do not
+    for (const auto& f : force) {
+        f->first_memory = memory;
+        memory += f->memory();
+    }
+    x.memory.assign(memory, 0);
+    x.lambda = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+    for (const auto& f : force) f->remember(x);
+    accepted(x, x);  // a driver may start near its singular point
+}
+
+std::vector<int> Model::dropped_rows() const
+{
+    std::vector<int> dropped;
+    for (int k = 0; k < static_cast<int>(row.size()); ++k)
+        if (!std::binary_search(active.begin(), active.end(), k)) dropped.push_back(k);
+    return dropped;
+}
+
+void Model::drop(int k)
+{
+    std::erase(active, k);
+    set_pattern();
+}
+
+std::string Model::name_of(const Row& r) const
+{
+    return "constraint '" + constraint_names[r.constraint] + "' row " + std::to_string(r.number) +
+           "; bodies '" + body_name(r.block->i) + "', '" + body_name(r.block->j) + "'";
+}
+
+void Model::set_pattern()
+{
+    rows_pattern = {};
+    for (const int k : active) {
+        const Block& block = *row[k].block;
+        const Block* complement = row[k].complement.get();
+        const unsigned nonzero = block.nonzero() | (complement != nullptr ? complement->nonzero() : 0);
+        if (block.i != ground)
+            rows_pattern.entry.push_back({.body = block.i, .nonzero = nonzero & 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+        if (block.j != ground)
+            rows_pattern.entry.push_back({.body = block.j, .nonzero = nonzero >> 6, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+        rows_pattern.start.push_back(static_cast<int>(rows_pattern.entry.size()));
+    }
+}
+
+double Model::scaled_residual(const Row& r, const State& x) const
+{
+    const Block& block = r.in_force(x);
+    const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
+    const double size = length(block.variation(bi, bj, x.t), block);
+    return block.phi(bi, bj, x.t) / (size > 0 ? size : 1);
+}
+
+Model::Residual Model::largest_residual(const State& x) const
+{
+    Residual largest;
+    for (int k = 0; k < static_cast<int>(row.size()); ++k) {
+        const double value = std::abs(scaled_residual(row[k], x));
+        if (!(value <= largest.value) || largest.row < 0) largest = {value, k};
+    }
+    return largest;
+}
+
+Model::Residual Model::largest_velocity_residual(const State& x) const
+{
+    Residual largest;
+    for (int k = 0; k < static_cast<int>(row.size()); ++k) {
+        const Block& block = row[k].in_force(x);
+        const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
+        const Variation v = block.variation(bi, bj, x.t);
+        const double size = length(v, block);
+        const double value = std::abs(v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) +
+                                      v.pi_j.dot(bj.omega_bar) - block.nu(bi, bj, x.t)) /
+                             (size > 0 ? size : 1);
+        if (!(value <= largest.value) || largest.row < 0) largest = {value, k};
+    }
+    return largest;
+}
+
+void Model::loads(const State& x, lie::Loads& out) const
+{
+    for (size_t b = 0; b < body.size(); ++b) {
+        out.F[b] = inertia.m[b] * gravity;
+        out.n_bar[b].setZero();
+    }
+    for (const auto& f : force) f->add(x, out);
+}
+
+void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
+{
+    Eigen::Index n = 0;
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
+    }
+}
+
+void Model::variation(const State& x, lie::Rows& out) const
+{
+    lie::Rows::Entry* entry = out.entry.data();
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        const Variation v = block.variation(motion(x, block.i), motion(x, block.j), x.t);
+        if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
+        if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
+    }
+}
+
+void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
+{
+    Eigen::Index n = 0;
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        out[n++] = block.nu(motion(x, block.i), motion(x, block.j), x.t);
+    }
+}
+
+void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
+{
+    Eigen::Index n = 0;
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        out[n++] = block.gamma(motion(x, block.i), motion(x, block.j), x.t);
+    }
+}
+
+double Model::potential_energy(const State& x) const
+{
+    double e = 0;
+    for (size_t b = 0; b < body.size(); ++b) e -= inertia.m[b] * gravity.dot(x.body[b].r);
+    for (const auto& f : force) e += f->potential_energy(x);
+    return e;
+}
+
+void Model::accepted(const State&, State& after) const
+{
+    for (size_t n = 0; n < active.size(); ++n) {
+        const Row& r = row[active[n]];
+        if (!r.complement) continue;
+        const auto& in_force = static_cast<const DP1&>(r.in_force(after));
+        if (in_force.alignment(after.t) <= swap_above) continue;
+        const Motion &bi = motion(after, in_force.i), &bj = motion(after, in_force.j);
+        const Block& other = &in_force == r.block.get() ? *r.complement : *r.block;
+        if (std::abs(other.phi(bi, bj, after.t)) > swap_mismatch) continue;
+        const Variation from = in_force.variation(bi, bj, after.t);
+        after.memory[r.branch] ^= 1;
+        const Variation to = r.in_force(after).variation(bi, bj, after.t);
+        after.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
+                                                      (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());
+    }
+    for (const auto& f : force) f->remember(after);
+}
+
+void reactions(const lie::System& system, const State& x, lie::Rows& C, std::vector<Reaction>& out)
+{
+    system.variation(x, C);
+    out.assign(x.body.size(), {});
+    for (int k = 0; k < C.rows(); ++k)
+        for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
+            out[C.entry[n].body].F -= x.lambda[k] * C.entry[n].r;
+            out[C.entry[n].body].T -= x.lambda[k] * C.entry[n].pi;
+        }
+}
+
+std::vector<Reaction> reactions(const lie::System& system, const State& x)
+{
+    lie::Rows C = system.pattern();
+    std::vector<Reaction> out;
+    reactions(system, x, C, out);
+    return out;
+}
+
+}  // namespace hilda::dae

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A multibody model: bodies, constraints, forces. Constant while a run lasts; it is a lie::System.
+
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/force.hpp"
+#include "lie/check.hpp"
+
+#include <memory>
+
+namespace hilda::dae {
+
+using Blocks = std::vector<std::unique_ptr<Block>>;
+
+/// Input that one constraint cannot work with. what() names its row and bodies.
+class ConstraintError : public lie::InvalidInput {
+public:
+    ConstraintError(const std::string& what, int constraint) : InvalidInput(what), constraint(constraint) {}
+
+    int constraint;  ///< its number in the model, from 0
+};
+
+class Model final : public lie::System {
+public:
+    Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global
+
+    /// Adds a body and returns its number. InvalidInput for a name already taken (also "ground") or inertia
+    /// that is none.
+    int add(Body body);
+    /// The number of a body, `ground` for "ground". InvalidInput for a name that is not there.
+    int find(const std::string& name) const;
+    const std::vector<Body>& all_bodies() const { return body; }
+
+    /// Adds a named constraint made of these rows: one block, or a joint from joints.hpp.
+    void constrain(const std::string& name, Blocks rows);
+    template <class B>
+    requires std::derived_from<B, Block>
+    void constrain(const std::string& name, B block)
+    {
+        Blocks rows;
+        rows.push_back(std::make_unique<B>(std::move(block)));
+        constrain(name, std::move(rows));
+    }
+
+    void load(std::unique_ptr<Force> force);
+    template <class F>
+    requires std::derived_from<F, Force>
+    void load(F force) { load(std::make_unique<F>(std::move(force))); }
+    const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
+
+    /// Readies the model for a run from x: asks every block whether it can be used there (InvalidInput names
+    /// the constraint), gives DP1 drivers their complement, and sets x.memory and the size of x.lambda.
+    /// Called by start().
+    void prepare(State& x);
+
+    /// A row of a constraint, in the equations or dropped from them.
+    struct Row {
+        std::unique_ptr<Block> block;
+        std::unique_ptr<Block> complement;  ///< of a DP1 driver: in force while memory[branch] is 1
+        int branch = -1;                    ///< index into State::memory
+        int constraint = 0;
+        int number = 0;  ///< within its constraint, from 1
+
+        const Block& in_force(const State& x) const
+        {
+            return complement && x.memory[branch] == 1 ? *complement : *block;
+        }
+    };
+    const std::vector<Row>& all_rows() const { return row; }
+    const std::vector<int>& active_rows() const { return active; }  ///< numbers of the rows in the equations
+    std::vector<int> dropped_rows() const;
+    void drop(int row);  ///< takes a row out of the equations
+    const std::string& constraint_name(int constraint) const { return constraint_names[constraint]; }
+    int constraints() const { return static_cast<int>(constraint_names.size()); }
+    std::string name_of(const Row& row) const;
+
+    /// Φ of one row, also a dropped one, over the length of its variation: an error in m or rad.
+    double scaled_residual(const Row& row, const State& x) const;
+    /// Largest scaled residual over all rows, also the dropped ones, and the row it is in (-1 without rows).
+    struct Residual {
+        double value = 0;
+        int row = -1;
+    };
+    Residual largest_residual(const State& x) const;
+    Residual largest_velocity_residual(const State& x) const;
+
+    const lie::Mass& mass() const override { return inertia; }
+    const lie::Rows& pattern() const override { return rows_pattern; }
+    void loads(const State& x, lie::Loads& out) const override;
+    void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
+    void variation(const State& x, lie::Rows& out) const override;
+    void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
+    void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
+    double potential_energy(const State& x) const override;
+    /// Swaps DP1 drivers that come near |f| = 1 for their complement, with the multiplier that gives the same
+    /// torque, and lets forces remember.
+    void accepted(const State& before, State& after) const override;
+    std::string row_name(int k) const override { return name_of(row[active[k]]); }
+    std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
+
+private:
+    void set_pattern();
+
+    const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
+
+    std::vector<Body> body;
+    std::vector<std::string> constraint_names;
+    std::vector<Row> row;
+    std::vector<int> active;
+    std::vector<std::unique_ptr<Force>> force;
+    int memory = 0;
+
+    lie::Mass inertia;
+    lie::Rows rows_pattern;
+    const Motion ground_motion;
+};
+
+/// Resultant constraint force [N, global] and torque [N m, body frame] on one body: -Φ_rᵀ λ and -Π̄ᵀ λ. They
+/// do not depend on how the constraints are scaled, ordered or swapped.
+struct Reaction {
+    Vec3 F = Vec3::Zero(), T = Vec3::Zero();
+};
+std::vector<Reaction> reactions(const lie::System& system, const State& x);
+/// The same with rows evaluated into C, a copy of system.pattern(): allocates nothing.
+void reactions(const lie::System& system, const State& x, lie::Rows& C, std::vector<Reaction>& out);
+
+}  // namespace hilda::dae

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Expressions and drivers: values, exact derivatives, and what is refused where.
+
+#include "dae/expression.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "dae/driver.hpp"
+#include "dae/nearest.hpp"
+
+using namespace hilda::dae;
+
+namespace {
+
+double at(const std::string& text, double t = 0) { return Expression(text).value(t); }
+
+/// fdot and fddot against central differences of f and fdot; error h²/6 f''' + eps f/h, about 1e-10 of what
+/// is near.
+void check_derivatives(const std::string& text, double t)
+{
+    const Expression f(text);
+    const double h = 1e-5;
+    const Jet a = f.jet(t - h), b = f.jet(t), c = f.jet(t + h);
+    const double scale = 1 + std::abs(b.f) + std::abs(b.fdot) + std::abs(b.fddot);
+    INFO(text << " at t = " << t);
+    CHECK(b.f == f.value(t));
+    CHECK(b.fdot == Approx((c.f - a.f) / (2 * h)).margin(1e-7 * scale));
+    CHECK(b.fddot == Approx((c.fdot - a.fdot) / (2 * h)).margin(1e-7 * scale));
+}
+
+/// A smooth expression, finite for all t, with third derivatives that stay moderate.
+std::string random_expression(std::mt19937& random, int depth)
+{
+    const auto sub = [&] { return random_expression(random, depth - 1); };
+    const auto pick = [&](int n) { return static_cast<int>(random() % n); };
+    if (depth == 0) return std::array{"t", "0.3*t", "1.25", "pi", "(t-1)"}[pick(5)];
+    switch (pick(8)) {
+        case 0:
+            return sub() + "+" + sub();
+        case 1:
+            return "-(" + sub() + ")-" + sub();
+        case 2:
+            return "sin(" + sub() + ")*cos(" + sub() + ")";
+        case 3:
+            return "(" + sub() + ")/(2+sin(" + sub() + "))";
+        case 4:
+            return "tanh(" + sub() + ")^" + std::to_string(pick(4));
+        case 5:
+            return "(3+cos(" + sub() + "))^-1.5";
+        case 6:
+            return "exp(sin(" + sub() + "))";
+        default:
+            return "atan(" + sub() + ")**2";
+    }
+}
+
+struct Bad {
+    std::string text;
+    int column;
+    std::string message;  // a part of it
+};
+
+std::string times(int n, const std::string& s)
+{
+    std::string all;
+    for (int i = 0; i < n; ++i) all += s;
+    return all;
+}
+
+std::vector<Bad> bad_expressions()
+{
+    return {
+        {"sine(2*t)", 1, "unknown function 'sine' in \"sine(2*t)\" at column 1; did you mean 'sin'?"},
+        {"1+cso(t)", 3, "did you mean 'cos'?"},
+        {"arcsin(t)", 1, "did you mean 'asin'?"},
+        {"pow(t,2)", 1, "known: sin, cos, tan"},
+        {"2*Pi", 3, "did you mean 'pi'?"},
+        {"2*T", 3, "did you mean 't'?"},
+        {"x", 1, "unknown name 'x' in \"x\" at column 1; known: t, pi, e"},
+        {"inf", 1, "unknown name 'inf'"},
+        {"nan", 1, "unknown name 'nan'"},
+        {"2*_a1", 3, "unknown name '_a1'"},
+        {"", 1, "empty expression"},
+        {"  \t", 4, "empty expression"},
+        {"2 t", 3, "missing operator before 't'"},
+        {"2t", 2, "missing operator before 't'"},
+        {"2e", 2, "missing operator before 'e'"},
+        {"0x10", 2, "missing operator before 'x'"},
+        {"1.5.2", 4, "missing operator before '.'"},
+        {"t 2", 3, "missing operator before '2'"},
+        {"t(2)", 2, "missing operator before '('"},
+        {"(t)(t)", 4, "missing operator before '('"},
+        {"sin(t)cos(t)", 7, "missing operator before 'c'"},
+        {"(t 1)", 4, "missing operator before '1'"},
+        {"t+", 3, "ends where a value is expected"},
+        {"sin(", 5, "ends where a value is expected"},
+        {"-", 2, "ends where a value is expected"},
+        {"2^", 3, "ends where a value is expected"},
+        {"*t", 1, "a value is missing before '*'"},
+        {"t+/2", 3, "a value is missing before '/'"},
+        {"t* *2", 4, "a value is missing before '*'"},
+        {"t***2", 4, "a value is missing before '*'"},
+        {"t^^2", 3, "a value is missing before '^'"},
+        {"()", 2, "a value is missing before ')'"},
+        {"max(t,)", 7, "a value is missing before ')'"},
+        {"max(,t)", 5, "a value is missing before ','"},
+        {"(t+1", 1, "'(' is never closed"},
+        {"2*sin(t", 6, "'(' is never closed"},
+        {"((t)", 1, "'(' is never closed"},
+        {"t)", 2, "')' was never opened"},
+        {"(t))+1", 4, "')' was never opened"},
+        {"t,1", 2, "',' outside of the arguments"},
+        {"(t,1)", 3, "',' outside of the arguments"},
+        {"sin t", 1, "the function 'sin' needs its arguments in parentheses"},
+        {"2+cos", 3, "the function 'cos' needs its arguments in parentheses"},
+        {"sin()", 1, "wrong number of arguments of 'sin': 0 instead of 1"},
+        {"1+sin(t,t)", 3, "wrong number of arguments of 'sin': 2 instead of 1"},
+        {"min(t)", 1, "wrong number of arguments of 'min': 1 instead of 2"},
+        {"max(1,2,t)", 1, "wrong number of arguments of 'max': 3 instead of 2"},
+        {"if(t,1)", 1, "wrong number of arguments of 'if': 2 instead of 3"},
+        {"t^t", 3, "the exponent must be constant"},
+        {"2^-sin(t)", 3, "the exponent must be constant"},
+        {"1e999", 1, "the number '1e999' is out of range"},
+        {"t+1e-999", 3, "the number '1e-999' is out of range"},
+        {".", 1, "'.' without digits is no number"},
+        {"t+.e3", 3, "'.' without digits is no number"},
+        {"t/0*(1/0)", 7, "not finite"},
+        {"t+log(-1)", 3, "not finite"},
+        {"(-8)^(1/3)", 5, "not finite"},
+        {"1e308*10", 6, "not finite"},
+        {"t=3", 2, "unexpected '='"},
+        {"t$", 2, "unexpected '$'"},
+        {"$", 1, "unexpected '$'"},
+        {"t;1", 2, "unexpected ';'"},
+        {"[t]", 1, "unexpected '['"},
+        {"'t'", 1, "unexpected '''"},
+        {"2*\u03c0", 3, "a character outside ASCII"},
+        {"t\u00b2", 2, "a character outside ASCII"},
+        {"t+\n1", 3, "control character (code 10)"},
+        {std::string("t\0+1", 4), 2, "control character (code 0)"},
+        {std::string(4097, ' '), 4097, "more than 4096 characters"},
+        {"t" + times(512, "+t"), 1024, "more than 1024 instructions"},
+        {times(64, "(") + "t" + times(64, ")"), 65, "nested deeper than 64 levels"},
+        {times(3000, "("), 65, "nested deeper than 64 levels"},
+        {times(3000, "-"), 65, "nested deeper than 64 levels"},
+        {"1" + times(500, "^2"), 129, "nested deeper than 64 levels"},
+        {times(40, "max(t,t*") + "t" + times(40, ")"), 261, "nested deeper than 64 levels"},  // of values
+    };
+}
+
+}  // namespace
+
+TEST_CASE("operators bind and associate as in mathematics", "[dae][expression]")
+{
+    CHECK(at("1+2*3") == 7);
+    CHECK(at("(1+2)*3") == 9);
+    CHECK(at("10-4-3") == 3);
+    CHECK(at("16/4/2") == 2);
+    CHECK(at("16/4*2") == 8);
+    CHECK(at("2^3^2") == 512);
+    CHECK(at("2**3**2") == 512);
+    CHECK(at("-2^2") == -4);
+    CHECK(at("-t^2", 3) == -9);
+    CHECK(at("(-t)^2", 3) == 9);
+    CHECK(at("2^-3") == 0.125);
+    CHECK(at("2^-2^2*32") == 2);
+    CHECK(at("2*-t", 3) == -6);
+    CHECK(at("t - -t", 3) == 6);
+    CHECK(at("--t", 3) == 3);
+    CHECK(at("+t", 3) == 3);
+    CHECK(at("2*t^2/3", 3) == 6);
+    CHECK(at(" \t( 1 + t )\t* 2 ", 3) == 8);
+}
+
+TEST_CASE("numbers are read in all their forms", "[dae][expression]")
+{
+    CHECK(at("1") == 1);
+    CHECK(at(".5") == 0.5);
+    CHECK(at("1.") == 1);
+    CHECK(at("2e-3") == 2e-3);
+    CHECK(at("2.E+3") == 2000);
+    CHECK(at("0.1") == 0.1);
+    CHECK(at("1.7976931348623157e308") == std::numeric_limits<double>::max());
+    CHECK(at("pi") == M_PI);
+    CHECK(at("e") == M_E);
+    CHECK(at("2*e") == 2 * M_E);
+}
+
+TEST_CASE("functions have their values", "[dae][expression]")
+{
+    const double t = 0.4;  // the compiler computes std::f(t) itself, the library may differ in the last place
+    CHECK(at("sin(t)", t) == Approx(std::sin(t)).epsilon(1e-15));
+    CHECK(at("cos(t)", t) == Approx(std::cos(t)).epsilon(1e-15));
+    CHECK(at("tan(t)", t) == Approx(std::tan(t)).epsilon(1e-15));
+    CHECK(at("asin(t)", t) == Approx(std::asin(t)).epsilon(1e-15));
+    CHECK(at("acos(t)", t) == Approx(std::acos(t)).epsilon(1e-15));
+    CHECK(at("atan(t)", t) == Approx(std::atan(t)).epsilon(1e-15));
+    CHECK(at("sinh(t)", t) == Approx(std::sinh(t)).epsilon(1e-15));
+    CHECK(at("cosh(t)", t) == Approx(std::cosh(t)).epsilon(1e-15));
+    CHECK(at("tanh(t)", t) == Approx(std::tanh(t)).epsilon(1e-15));
+    CHECK(at("exp(t)", t) == Approx(std::exp(t)).epsilon(1e-15));
+    CHECK(at("log(t)", t) == Approx(std::log(t)).epsilon(1e-15));
+    CHECK(at("sqrt(t)", t) == Approx(std::sqrt(t)).epsilon(1e-15));
+    CHECK(at("abs(-t)", t) == t);
+    CHECK(at("min(t,1)", t) == t);
+    CHECK(at("max(t,1)", t) == 1);
+    CHECK(at("step(t)", t) == 1);
+    CHECK(at("step(t)", 0) == 1);
+    CHECK(at("step(t)", -t) == 0);
+    CHECK(at("if(t,2,3)", t) == 2);
+    CHECK(at("if(t,2,3)", 0) == 3);
+    CHECK(at("if(t,2,3)", -t) == 3);
+    CHECK(at("if(t,log(t),1)", -t) == 1);  // nan of the other branch is not looked at
+    CHECK(std::isnan(at("if(log(t),1,2)", -t)));
+}
+
+TEST_CASE("derivatives of every function are differences", "[dae][expression]")
+{
+    const std::string functions = GENERATE(
+        as<std::string>(), "sin(3*t)", "cos(t^2)", "tan(t)", "asin(t/2)", "acos(t*t/2)", "atan(4*t)",
+        "sinh(2*t)", "cosh(t^2)", "tanh(3*t)", "exp(-t*t)", "log(2+t)", "sqrt(2+t)", "abs(t-3)", "abs(t+3)",
+        "min(t^2,t-4)", "max(t^2,t-4)", "step(t+2)*t", "if(t-5,t,t^3)", "if(t+5,t^3,t)", "t^3", "t^-3", "t^0",
+        "t^1", "t^70", "(2+t)^2.5", "(2+t)^-0.5", "1/t", "(1+t)/(2+t^2)", "-t*t", "t+t^2-5");
+    for (double t : {-0.8, 0.3, 1.1}) check_derivatives(functions, t);
+}
+
+TEST_CASE("derivatives of random expressions are differences", "[dae][expression]")
+{
+    const int seed = GENERATE(range(0, 100));
+    std::mt19937 random(seed);
+    const std::string text = random_expression(random, 3);
+    for (double t : {-1.3, 0., 0.7}) check_derivatives(text, t);
+}
+
+TEST_CASE("the worked example has its fifteen digits", "[dae][expression]")
+{
+    const Driver f("pi/4*cos(2*t)+exp(-t^2)*sin(3*t)/(1+t^2)");
+    const Jet j = f.jet(0.7);
+    CHECK(j.f == Approx(0.488407883023649).epsilon(1e-13));
+    CHECK(j.fdot == Approx(-3.00101687386036).epsilon(1e-13));
+    CHECK(j.fddot == Approx(0.255410727005937).epsilon(1e-13));
+    CHECK(f.f(0.7) == j.f);
+    CHECK(f.fdot(0.7) == j.fdot);
+    CHECK(f.fddot(0.7) == j.fddot);
+}
+
+TEST_CASE("integer powers are exact at zero and for negative bases", "[dae][expression]")
+{
+    const Jet square = Expression("t^2").jet(0);
+    CHECK(square.f == 0);
+    CHECK(square.fdot == 0);
+    CHECK(square.fddot == 2);
+
+    const Jet cube = Expression("t^3").jet(-2);
+    CHECK(cube.f == -8);
+    CHECK(cube.fdot == 12);
+    CHECK(cube.fddot == -12);
+
+    const Jet one = Expression("t^0").jet(0);
+    CHECK(one.f == 1);
+    CHECK(one.fdot == 0);
+    CHECK(one.fddot == 0);
+
+    const Jet inverse = Expression("t^-1").jet(-2);
+    CHECK(inverse.f == -0.5);
+    CHECK(inverse.fdot == -0.25);
+    CHECK(inverse.fddot == -0.25);
+}
+
+TEST_CASE("at a kink the derivatives are those from the right", "[dae][expression]")
+{
+    CHECK(Expression("abs(t)").jet(0).fdot == 1);
+    CHECK(Expression("abs(-t)").jet(0).fdot == 1);
+    CHECK(Expression("abs(sin(t))").jet(0).fdot == 1);
+    CHECK(Expression("abs(-t^2)").jet(0).fddot == 2);
+    CHECK(Expression("max(0,t)").jet(0).fdot == 1);
+    CHECK(Expression("max(0,-t)").jet(0).fdot == 0);
+    CHECK(Expression("min(0,t)").jet(0).fdot == 0);
+    CHECK(Expression("min(0,-t)").jet(0).fdot == -1);
+    CHECK(Expression("if(t,sin(t),0)").jet(0).fdot == 1);
+    CHECK(Expression("if(-t,sin(t),0)").jet(0).fdot == 0);
+    CHECK(Expression("step(t)").jet(0).f == 1);
+    CHECK(Expression("step(t)").jet(0).fdot == 0);
+}
+
+TEST_CASE("constant parts are computed when the text is read", "[dae][expression]")
+{
+    CHECK(Expression("2*sin(pi/6)^2-max(1,2)").is_constant());
+    CHECK(Expression("if(1,2,3)").is_constant());
+    CHECK_FALSE(Expression("0*t").is_constant());
+    const Jet j = Expression("2*3+1").jet(5);
+    CHECK(j.f == 7);
+    CHECK(j.fdot == 0);
+    CHECK(j.fddot == 0);
+    // Folding keeps a long sum of numbers within the limits.
+    CHECK(at("1" + times(2047, "+1")) == 2048);
+}
+
+TEST_CASE("variables are found by their place", "[dae][expression]")
+{
+    const Expression force("100*(l-0.5)+2*ldot*abs(ldot)+t", {"l", "ldot", "t"});
+    const std::array x{0.75, -3., 0.5};
+    CHECK(force.value(x) == 25 - 18 + 0.5);
+    CHECK_THROWS_WITH(Expression("lbot", {"l", "ldot", "t"}), Catch::Contains("did you mean 'ldot'?"));
+}
+
+TEST_CASE("the limits themselves are allowed", "[dae][expression]")
+{
+    CHECK(at(times(63, "(") + "t" + times(63, ")"), 2) == 2);
+    CHECK(at(times(63, "-") + "t", 2) == -2);
+    CHECK(at("t" + times(511, "+t"), 1) == 512);
+    CHECK(at(std::string(4095, ' ') + "t", 2) == 2);
+}
+
+TEST_CASE("bad expressions are refused with the column and one line", "[dae][expression]")
+{
+    for (const Bad& bad : bad_expressions()) {
+        INFO(bad.text);
+        try {
+            Expression expression(bad.text);
+            FAIL("accepted");
+        } catch (const ExpressionError& error) {
+            const std::string message = error.what();
+            CHECK(error.column == bad.column);
+            CHECK_THAT(message, Catch::Contains(bad.message));
+            CHECK_THAT(message, Catch::Contains("at column " + std::to_string(bad.column)));
+            CHECK(message.find('\n') == std::string::npos);
+            CHECK(message.size() < 300);
+        }
+    }
+}
+
+TEST_CASE("the nearest word is near", "[dae][nearest]")
+{
+    const std::vector<std::string> keys{"mass", "inertia", "r_dot", "r", "omega"};
+    CHECK(nearest("mas", keys) == "mass");
+    CHECK(nearest("Mass", keys) == "mass");
+    CHECK(nearest("inretia", keys) == "inertia");
+    CHECK(nearest("rdot", keys) == "r_dot");
+    CHECK(nearest("omegas", keys) == "omega");
+    CHECK(nearest("q", keys).empty());
+    CHECK(nearest("", keys).empty());
+    CHECK(nearest("moss_i", keys).empty());
+    CHECK(nearest(std::string(100000, 'a'), keys).empty());
+    CHECK(edit_distance("kitten", "sitting") == 3);
+    CHECK(edit_distance("sni", "sin") == 1);
+}
+
+TEST_CASE("a driver is zero, a number or a text", "[dae][driver]")
+{
+    CHECK(Driver().f(3) == 0);
+    CHECK(Driver().is_constant());
+    CHECK(Driver(0).text() == "0");
+    CHECK(Driver().text() == "0");
+    for (double c : {-2.5, 0.1, 1. / 3, 1e-300, -5e-324, 1.7976931348623157e308}) {
+        CHECK(Driver(c).f(3) == c);
+        CHECK(Driver(c).fdot(3) == 0);
+        CHECK(Driver(c).fddot(3) == 0);
+    }
+    CHECK(Driver("t^2").fdot(3) == 6);
+    CHECK(Driver("t^2").text() == "t^2");
+    CHECK_FALSE(Driver("t^2").is_constant());
+    CHECK_THROWS_AS(Driver(std::numeric_limits<double>::infinity()), ExpressionError);
+    CHECK_THROWS_AS(Driver(std::numeric_limits<double>::quiet_NaN()), ExpressionError);
+}
+
+TEST_CASE("the complement of a cosine is the sine of the same angle", "[dae][driver]")
+{
+    for (const char* text : {"cos(pi/2 + pi/4*cos(2*t))", "sin(2*pi*t)", "  +( cos (-2*t) )",
+                             "cos(sin(t)+cos(t))", "sin(asin(t/2))"}) {
+        const Driver f(text);
+        const auto g = f.complement();
+        REQUIRE(g);
+        for (double t : {0., 0.3, 1.7}) {
+            const Jet a = f.jet(t), b = g->jet(t);
+            INFO(text << " and " << g->text() << " at t = " << t);
+            CHECK(a.f * a.f + b.f * b.f == Approx(1).epsilon(1e-15));
+            CHECK(a.f * a.fdot + b.f * b.fdot == Approx(0).margin(1e-14));
+        }
+        CHECK(g->complement()->text() == text);
+    }
+    CHECK(Driver("cos(pi/2 + pi/4*cos(2*t))").complement()->text() == "sin(pi/2 + pi/4*cos(2*t))");
+    CHECK(Driver("sin(t)").complement()->f(0) == 1);
+    for (const char* text : {"0", "cos(pi/3)", "-cos(t)", "2*cos(t)", "cos(t)^2", "acos(t)", "cosh(t)", "t"})
+        CHECK_FALSE(Driver(text).complement());
+}

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Kinematics of the slider-crank and the four-link against their reference trajectories, and inverse dynamics.
+
+#include "dae/kinematics.hpp"
+
+#include "dae/constraints/dp1.hpp"
+#include "dae/joints.hpp"
+#include "tests/support/mechanisms.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <functional>
+
+using namespace hilda;
+using namespace hilda::dae;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The numbers of a CSV file below its first line
+std::vector<std::vector<double>> table(const std::string& file)
+{
+    std::ifstream in(HILDA_TEST_DATA "/" + file);
+    INFO("cannot read " << file);
+    REQUIRE(in);
+    std::vector<std::vector<double>> rows;
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+        rows.emplace_back();
+        std::istringstream cells(line);
+        while (std::getline(cells, cell, ',')) rows.back().push_back(std::strtod(cell.c_str(), nullptr));
+    }
+    return rows;
+}
+
+/// A reference row: columns t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint force (global)
+/// and torque (body frame) of each body.
+struct Reference {
+    double t;
+    std::vector<Motion> body;
+    std::vector<Reaction> reaction;
+
+    explicit Reference(const std::vector<double>& row) : t(row[0])
+    {
+        const size_t bodies = (row.size() - 1) / 30;
+        for (size_t b = 0; b < bodies; ++b) {
+            const double* p = &row[1 + 18 * b];
+            const double* q = &row[1 + 18 * bodies + 12 * b];
+            Motion m;
+            m.r = Vec3(p[0], p[1], p[2]);
+            m.A = tests::matrix({p[3], p[4], p[5]}, {p[6], p[7], p[8]}, {p[9], p[10], p[11]});
+            m.rdot = Vec3(p[12], p[13], p[14]), m.omega_bar = Vec3(p[15], p[16], p[17]);
+            m.rddot = Vec3(q[0], q[1], q[2]), m.omegadot_bar = Vec3(q[3], q[4], q[5]);
+            body.push_back(m);
+            reaction.push_back({Vec3(q[6], q[7], q[8]), Vec3(q[9], q[10], q[11])});
+        }
+    }
+};
+
+std::vector<Reference> references(const std::string& file)
+{
+    std::vector<Reference> all;
+    for (const auto& row : table(file)) all.emplace_back(row);
+    return all;
+}
+
+/// Largest deviations over a run: of r and A as they are, of velocities and accelerations relative to max(1, size), of
+/// forces and torques relative to the largest of the run.
+struct Deviation {
+    double r = 0, A = 0, rdot = 0, omega_bar = 0, rddot = 0, omegadot_bar = 0, F = 0, T = 0;
+};
+
+Deviation deviation(const Model& model, const std::vector<State>& run, const std::vector<Reference>& reference)
+{
+    Deviation most;
+    double largest_F = 0, largest_T = 0;
+    const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
+    const auto relative = [](const Vec3& a, const Vec3& b) { return (a - b).norm() / std::max(1.0, b.norm()); };
+    REQUIRE(run.size() == reference.size());
+    for (size_t k = 0; k < run.size(); ++k) {
+        REQUIRE(run[k].t == Approx(reference[k].t).margin(1e-14));
+        const std::vector<Reaction> reaction = reactions(model, run[k]);
+        REQUIRE(reference[k].body.size() == reaction.size());
+        for (size_t b = 0; b < reaction.size(); ++b) {
+            const Motion &x = run[k].body[b], &y = reference[k].body[b];
+            keep(most.r, (x.r - y.r).norm());
+            keep(most.A, (x.A - y.A).norm());
+            keep(most.rdot, relative(x.rdot, y.rdot));
+            keep(most.omega_bar, relative(x.omega_bar, y.omega_bar));
+            keep(most.rddot, relative(x.rddot, y.rddot));
+            keep(most.omegadot_bar, relative(x.omegadot_bar, y.omegadot_bar));
+            keep(most.F, (reaction[b].F - reference[k].reaction[b].F).norm());
+            keep(most.T, (reaction[b].T - reference[k].reaction[b].T).norm());
+            keep(largest_F, reference[k].reaction[b].F.norm());
+            keep(largest_T, reference[k].reaction[b].T.norm());
+        }
+    }
+    most.F /= largest_F;
+    most.T /= largest_T;
+    return most;
+}
+
+void check(const Deviation& d)
+{
+    INFO("r " << d.r << ", A " << d.A << ", rdot " << d.rdot << ", omega " << d.omega_bar << ", rddot " << d.rddot
+              << ", omegadot " << d.omegadot_bar << ", F " << d.F << ", T " << d.T);
+    CHECK(d.r < 1e-11);
+    CHECK(d.A < 1e-11);
+    CHECK(d.rdot < 1e-10);
+    CHECK(d.omega_bar < 1e-10);
+    CHECK(d.rddot < 1e-10);
+    CHECK(d.omegadot_bar < 1e-10);
+    CHECK(d.F < 1e-9);
+    CHECK(d.T < 1e-9);
+}
+
+struct Mechanism {
+    std::string name;
+    void (*build)(Model&, State&);
+    double rate;  ///< of the driven body about global x [rad/s]
+};
+
+const Mechanism mechanisms[] = {
+    {"slider_crank", [](Model& m, State& x) { tests::slider_crank(m, x); }, -2 * pi},
+    {"four_link", [](Model& m, State& x) { tests::four_link(m, x); }, pi},
+};
+
+/// The slider-crank put together from joints: the same motion from other rows, with a driver that is never singular
+void slider_crank_of_joints(Model& model, State& x)
+{
+    tests::slider_crank_bodies(model, x);
+    const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
+    constexpr int crank = 0, rod = 1, slider = 2;
+    model.constrain("A", revolute(ground, {0, 0.1, 0.12}, X, crank, O, X));
+    model.constrain("B", spherical(crank, {0, 0.08, 0}, rod, {-0.15, 0, 0}));
+    model.constrain("C", revolute_cylindrical(rod, {0.15, 0, 0}, Y, slider, O, Z));
+    model.constrain("D", translational(ground, {0.2, 0, 0}, X, slider, O, Z, x));
+    model.constrain("C stays", distance(rod, {0.15, 0, 0}, slider, Z, 1));
+    model.constrain("motor", hinge_driver(ground, X, crank, X, Driver("-2*pi*t"), x));
+}
+
+/// Torque about global x on the body with the number 0, from the multiplier of the driver alone
+double driver_torque(const Model& model, const State& x, size_t row)
+{
+    const Model::Row& driver = model.all_rows()[row];
+    const Block& block = driver.in_force(x);
+    static const Motion at_rest;
+    const bool first = block.i == 0;
+    const Variation v = first ? block.variation(x.body[0], at_rest, x.t) : block.variation(at_rest, x.body[0], x.t);
+    const double lambda = x.lambda[static_cast<Eigen::Index>(row)];
+    return -lambda * (x.body[0].A * (first ? v.pi_i : v.pi_j)).x();
+}
+
+}  // namespace
+
+TEST_CASE("kinematics follows the reference through whole turns", "[dae][kinematics][acceptance]")
+{
+    for (const Mechanism& mechanism : mechanisms) {
+        INFO(mechanism.name);
+        Model model;
+        State x;
+        mechanism.build(model, x);
+        dae::start(model, x);
+        const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
+        check(deviation(model, run.row, references(mechanism.name + ".csv")));
+        for (const State& y : run.row) CHECK(model.largest_residual(y).value < 1e-13);
+    }
+}
+
+TEST_CASE("the slider-crank made of joints moves as the one made of blocks", "[dae][kinematics]")
+{
+    Model model;
+    State x;
+    slider_crank_of_joints(model, x);
+    const StartReport report = dae::start(model, x);
+    REQUIRE(report.rank == 18);
+    REQUIRE(report.dropped.empty());
+    const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
+    check(deviation(model, run.row, references("slider_crank.csv")));
+}
+
+TEST_CASE("the driver's torque is its power over its rate", "[dae][kinematics]")
+{
+    for (const Mechanism& mechanism : mechanisms) {
+        Model model;
+        State x;
+        mechanism.build(model, x);
+        dae::start(model, x);
+        const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
+        const auto reference = table("driver_" + mechanism.name + ".csv");  // t, energy, power, torque
+        REQUIRE(reference.size() == run.row.size());
+        double largest = 0, worst_torque = 0, worst_power = 0, worst_energy = 0;
+        for (const auto& row : reference) largest = std::max(largest, std::abs(row[3]));
+        for (size_t k = 0; k < run.row.size(); ++k) {
+            const State& y = run.row[k];
+            const double torque = driver_torque(model, y, 17);
+            worst_torque = std::max(worst_torque, std::abs(torque - reference[k][3]));
+            worst_energy = std::max(worst_energy, std::abs(lie::energy(model, y) - reference[k][1]));
+
+            // power balance of our own state: dE/dt by the chain rule, without any multiplier
+            double power = 0;
+            for (size_t b = 0; b < y.body.size(); ++b) {
+                const Motion& m = y.body[b];
+                power += model.mass().m[b] * m.rdot.dot(m.rddot - model.gravity) +
+                         m.omega_bar.dot(model.mass().J_bar[b] * m.omegadot_bar);
+            }
+            worst_power = std::max(worst_power, std::abs(torque * mechanism.rate - power));
+        }
+        INFO(mechanism.name << ": torque " << worst_torque / largest << ", energy " << worst_energy << ", power "
+                            << worst_power);
+        CHECK(worst_torque < 1e-10 * largest);
+        CHECK(worst_power < 1e-10 * largest * std::abs(mechanism.rate));
+        CHECK(worst_energy < 1e-10 * std::abs(reference[0][1]));
+    }
+}
+
+TEST_CASE("inverse dynamics gives back the multipliers of the saddle solve", "[dae][kinematics]")
+{
+    for (const Mechanism& mechanism : mechanisms) {
+        INFO(mechanism.name);
+        Model model;
+        State x;
+        mechanism.build(model, x);
+        dae::start(model, x);
+        Kinematics kinematics(model);
+        for (int k = 0; k < 10; ++k) {
+            kinematics.move_to(x, 0.13 * k);
+            std::vector<Reaction> missing;
+            const Eigen::VectorXd lambda = inverse_dynamics(model, x, &missing);
+            CHECK((lambda - x.lambda).norm() < 1e-11 * x.lambda.norm());
+            for (const Reaction& r : missing) CHECK(r.F.norm() + r.T.norm() < 1e-11 * x.lambda.norm());
+        }
+    }
+}
+
+TEST_CASE("inverse dynamics finds the torque that no constraint supplies", "[dae][kinematics]")
+{
+    // A pendulum held still at an angle: the pin takes the weight, what is missing is a torque about the pin's axis.
+    Model model;
+    State x;
+    const Vec3 X = Vec3::UnitX();
+    const Vec3 arm(0, 0.6, -0.8);
+    tests::add_body(model, x, "bar", 2, {0.5, 0.6, 0.7}, arm, Mat3::Identity());
+    model.constrain("pin", revolute(ground, Vec3::Zero(), X, 0, -arm, X));
+    dae::start(model, x);
+    x.body[0].rddot.setZero();
+    x.body[0].omegadot_bar.setZero();
+    std::vector<Reaction> missing;
+    inverse_dynamics(model, x, &missing);
+    // of all loads that do it, the least: it works on the one free motion, turning about the pin, as the true torque does
+    const Vec3 about_pin = arm.cross(missing[0].F) + missing[0].T;
+    CHECK(about_pin.x() == Approx(2 * 9.81 * 0.6));
+    Eigen::Matrix<double, 6, 1> free, found;
+    free << X.cross(arm), X;
+    found << missing[0].F, missing[0].T;
+    CHECK((found - free * (found.dot(free) / free.squaredNorm())).norm() < 1e-13);
+}
+
+TEST_CASE("kinematics goes backwards in time and by any substep", "[dae][kinematics]")
+{
+    Model model;
+    State x;
+    tests::slider_crank(model, x);
+    dae::start(model, x);
+    const State first = x;
+    Kinematics kinematics(model);
+    kinematics.move_to(x, 0.9);
+    kinematics.move_to(x, 0.0, 1.7e-2);
+    CHECK(x.t == 0);
+    for (size_t b = 0; b < 3; ++b) {
+        CHECK((x.body[b].r - first.body[b].r).norm() < 1e-12);
+        CHECK((x.body[b].A - first.body[b].A).norm() < 1e-12);
+        CHECK((x.body[b].rddot - first.body[b].rddot).norm() < 1e-10);
+    }
+}
+
+TEST_CASE("kinematics refuses a mechanism that is free to move", "[dae][kinematics]")
+{
+    Model model;
+    State x;
+    tests::add_body(model, x, "bar", 2, {0.5, 0.6, 0.7}, Vec3::Zero(), Mat3::Identity());
+    model.constrain("ball", spherical(ground, Vec3::Zero(), 0, Vec3::Zero()));
+    dae::start(model, x);
+    CHECK_THROWS_WITH(Kinematics(model), Catch::Contains("0 degrees of freedom") && Catch::Contains("got 3"));
+}

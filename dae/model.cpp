@@ -4,6 +4,7 @@
 #include "dae/constraints/dp1.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hilda::dae {
 
@@ -106,6 +107,8 @@ void Model::prepare(State& x)
             r.complement = dp1->complement(bi, bj, x.t);
         if (r.complement) r.branch = memory++;
     }
+    active.resize(row.size());
+    std::iota(active.begin(), active.end(), 0);
     set_pattern();  // the complements may enter where their blocks do not
     for (const auto& f : force) {
         f->first_memory = memory;
@@ -145,9 +148,11 @@ void Model::set_pattern()
         const Block* complement = row[k].complement.get();
         const unsigned nonzero = block.nonzero() | (complement != nullptr ? complement->nonzero() : 0);
         if (block.i != ground)
-            rows_pattern.entry.push_back({.body = block.i, .nonzero = nonzero & 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+            rows_pattern.entry.push_back(
+                {.body = block.i, .nonzero = nonzero & 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
         if (block.j != ground)
-            rows_pattern.entry.push_back({.body = block.j, .nonzero = nonzero >> 6, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+            rows_pattern.entry.push_back(
+                {.body = block.j, .nonzero = nonzero >> 6, .r = Vec3::Zero(), .pi = Vec3::Zero()});
         rows_pattern.start.push_back(static_cast<int>(rows_pattern.entry.size()));
     }
 }

@@ -49,9 +49,9 @@ public:
     void load(F force) { load(std::make_unique<F>(std::move(force))); }
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
 
-    /// Readies the model for a run from x: asks every block whether it can be used there (InvalidInput names
-    /// the constraint), gives DP1 drivers their complement, and sets x.memory and the size of x.lambda.
-    /// Called by start().
+    /// Readies the model for a run from x: puts dropped rows back, asks every block whether it can be used
+    /// there (InvalidInput names the constraint) and every body whether its orientation is one, gives DP1
+    /// drivers their complement, and sets x.memory and the size of x.lambda. Called by start().
     void prepare(State& x);
 
     /// A row of a constraint, in the equations or dropped from them.

@@ -3,8 +3,7 @@
 
 #include <SuiteSparseQR.hpp>
 
-#include <memory>
-#include <numeric>
+#include <algorithm>
 
 namespace hilda::dae {
 
@@ -25,9 +24,9 @@ std::string number(double value)
     return text.str();
 }
 
-/// The rows that depend on those before them, as numbers into model.active_rows(). In the metric of the mass,
-/// so that the answer does not depend on units.
-std::vector<int> dependent_rows(const Model& model, const State& x)
+/// The rows that add less than `tolerance` to those before them, as numbers into model.active_rows(). In the
+/// metric of the mass, so that the answer does not depend on units.
+std::vector<int> dependent_rows(const Model& model, const State& x, double tolerance)
 {
     lie::Rows C = model.pattern();
     model.variation(x, C);
@@ -61,21 +60,32 @@ std::vector<int> dependent_rows(const Model& model, const State& x)
     cholmod_sparse* A = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, &common);
     cholmod_l_free_triplet(&triplets, &common);
 
-    // The order is kept, so that of two equal rows the later one is the redundant one.
+    // The order is kept, so that of two equal rows the later one is the redundant one. R is then a staircase:
+    // a column that brings something new reaches one row further down than those before it, a dependent one
+    // does not.
     cholmod_sparse* R = nullptr;
     SuiteSparse_long* E = nullptr;
     const SuiteSparse_long rank =
-        SuiteSparseQR<double>(SPQR_ORDERING_FIXED, rank_tolerance, 0, A, &R, &E, &common);
+        SuiteSparseQR<double>(SPQR_ORDERING_FIXED, tolerance, 0, A, &R, &E, &common);
     std::vector<int> dependent;
-    for (SuiteSparse_long k = rank; k < m; ++k)
-        dependent.push_back(static_cast<int>(E != nullptr ? E[k] : k));
-    std::sort(dependent.begin(), dependent.end());
+    SuiteSparse_long steps = 0;
+    if (rank >= 0 && E == nullptr) {
+        const auto* start = static_cast<const SuiteSparse_long*>(R->p);
+        const auto* index = static_cast<const SuiteSparse_long*>(R->i);
+        for (int k = 0; k < m; ++k) {
+            if (std::find(index + start[k], index + start[k + 1], steps) != index + start[k + 1])
+                ++steps;
+            else
+                dependent.push_back(k);
+        }
+    }
 
     cholmod_l_free(m, sizeof(SuiteSparse_long), E, &common);
     cholmod_l_free_sparse(&R, &common);
     cholmod_l_free_sparse(&A, &common);
     cholmod_l_finish(&common);
-    if (rank < 0) throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
+    if (rank < 0 || rank != steps)
+        throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
     return dependent;
 }
 
@@ -195,6 +205,50 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
     x.lambda = K.constraint_part(a);
 }
 
+namespace {
+
+/// Readies the model at x without the rows that add less than `tolerance` to those before them, and projects
+/// positions onto the others. Returns the numbers of the rows left out.
+std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
+{
+    model.prepare(x);
+    const std::vector<int> redundant = dependent_rows(model, x, tolerance);
+    for (const int k : redundant) model.drop(k);
+    if (model.rows() > 0) {
+        lie::Saddle K(model);
+        project_positions(model, K, x);
+    }
+    return redundant;
+}
+
+/// Puts x on the constraints, and the model into the form without redundant rows it has there.
+///
+/// Off the constraints a redundant row looks independent, by about as much as the data are off. So data to be
+/// mended are first mended with rows counted as redundant up to that, and less and less until the mended
+/// positions satisfy the rows left out as well.
+std::vector<int> drop_and_project(Model& model, State& x, double residual)
+{
+    for (double tolerance = std::min(0.1, 10 * residual); tolerance > rank_tolerance; tolerance /= 10) {
+        State mended = x;
+        try {
+            const bool complete = project_without_redundant(model, mended, tolerance).empty();
+            if (!complete && !(model.largest_residual(mended).value < agreement)) continue;
+        } catch (const lie::NumericalFailure&) {
+            continue;
+        }
+        x = mended;
+        break;
+    }
+    std::vector<int> redundant = project_without_redundant(model, x, rank_tolerance);
+    // Once more where x is now: there a driver's complement is exact, being made from hinges that are.
+    const auto has_complement = [](const Model::Row& row) { return row.complement != nullptr; };
+    if (std::any_of(model.all_rows().begin(), model.all_rows().end(), has_complement))
+        redundant = project_without_redundant(model, x, rank_tolerance);
+    return redundant;
+}
+
+}  // namespace
+
 StartReport start(Model& model, State& x, const StartOptions& options)
 {
     model.prepare(x);
@@ -215,26 +269,15 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                   model.all_rows()[position.row].constraint);
     }
 
-    const std::vector<int> dependent = dependent_rows(model, x);
-    std::vector<int> dropped;
-    for (const int k : dependent) dropped.push_back(model.active_rows()[k]);
-    for (const int k : dropped) {
-        report.dropped.push_back(model.name_of(model.all_rows()[k]));
-        model.drop(k);
-    }
-    report.rank = report.rows - static_cast<int>(dropped.size());
+    const std::vector<int> dropped = drop_and_project(model, x, report.position_residual);
+    for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
+    report.rank = model.rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
-    x.lambda = Eigen::VectorXd::Zero(report.rank);
 
     lie::Saddle K(model);
-    const State given = x;
     if (report.rows > 0) {
-        project_positions(model, K, x);
-        State turned =
-            given;  // the velocities given belong to the positions given; judge them where they now are
-        for (size_t b = 0; b < x.body.size(); ++b)
-            turned.body[b].r = x.body[b].r, turned.body[b].A = x.body[b].A;
-        const Model::Residual velocity = model.largest_velocity_residual(turned);
+        // the velocities given belong to the positions given; they are judged where these are now
+        const Model::Residual velocity = model.largest_velocity_residual(x);
         report.velocity_residual = velocity.value;
         report.worst_velocity = model.name_of(model.all_rows()[velocity.row]);
         if (!options.fix_initial && !(velocity.value <= options.tolerance))

@@ -152,7 +152,8 @@ TEST_CASE("the blocks agree with their matrix forms", "[dae][constraints]")
     const Pair pair(GENERATE(0, 1, 2), random);
     const Motion &bi = pair.bi, &bj = pair.bj;
     const double t = random.number(0, 2);
-    const Vec3 a = random.vector(), b = random.vector(), s = random.vector(), q = random.vector(), c = random.vector();
+    const Vec3 a = random.vector(), b = random.vector(), s = random.vector(), q = random.vector(),
+               c = random.vector();
     const Driver f("sin(2*t)");
 
     using lie::tilde;
@@ -163,8 +164,8 @@ TEST_CASE("the blocks agree with their matrix forms", "[dae][constraints]")
     const Vec3 ud = Ai * Wi * a, wd = Aj * Wj * b, uq = Ai * Wi * Wi * a, wq = Aj * Wj * Wj * b;
     const Vec3 dd = bj.rdot + Aj * Wj * q - bi.rdot - Ai * Wi * s, dq = Aj * Wj * Wj * q - Ai * Wi * Wi * s;
 
-    const auto check = [&](const std::string& name, const Block& block, const Row& r_i, const Row& pi_i, const Row& r_j,
-                           const Row& pi_j, double gamma) {
+    const auto check = [&](const std::string& name, const Block& block, const Row& r_i, const Row& pi_i,
+                           const Row& r_j, const Row& pi_j, double gamma) {
         Vec12 expected;
         expected << r_i.transpose(), pi_i.transpose(), r_j.transpose(), pi_j.transpose();
         INFO(name);
@@ -172,7 +173,8 @@ TEST_CASE("the blocks agree with their matrix forms", "[dae][constraints]")
         CHECK(block.nu(bi, bj, t) == f.fdot(t));
         CHECK(block.gamma(bi, bj, t) == Approx(gamma + f.fddot(t)).epsilon(1e-14).margin(2e-14));
     };
-    const Row zero = Row::Zero(), ut = u.transpose(), wt = w.transpose(), dt = d.transpose(), ct = c.transpose();
+    const Row zero = Row::Zero(), ut = u.transpose(), wt = w.transpose(), dt = d.transpose(),
+              ct = c.transpose();
     check("DP1", DP1(pair.i, a, pair.j, b, f), zero, -wt * Ai * tilde(a), zero, -ut * Aj * tilde(b),
           -(uq.dot(w) + 2 * ud.dot(wd) + u.dot(wq)));
     check("DP2", DP2(pair.i, a, s, pair.j, q, f), -ut, a.transpose() * tilde(s) - dt * Ai * tilde(a), ut,
@@ -199,7 +201,8 @@ TEST_CASE("a driven hinge is a dot product with a vector that turns with the dri
     turning.omega_bar = R.transpose() * pair.bi.omega_bar + g.fdot(t) * axis;
     const DP1 dot(0, frame.col(1), 1, w);
     CHECK(hinge.phi(pair.bi, pair.bj, t) == Approx(dot.phi(turning, pair.bj, t)).margin(1e-15));
-    const Variation of_dot = dot.variation(turning, pair.bj, t), of_hinge = hinge.variation(pair.bi, pair.bj, t);
+    const Variation of_dot = dot.variation(turning, pair.bj, t),
+                    of_hinge = hinge.variation(pair.bi, pair.bj, t);
     CHECK((of_hinge.pi_i - R * of_dot.pi_i).norm() < 1e-15);
     CHECK((of_hinge.pi_j - of_dot.pi_j).norm() < 1e-15);
     CHECK(hinge.nu(pair.bi, pair.bj, t) == Approx(-g.fdot(t) * of_dot.pi_i.dot(axis)).margin(1e-14));

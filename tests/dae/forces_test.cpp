@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Forces: minus the gradient of their potential, action and reaction, power of dampers, turns of torsion springs.
+/// Forces: minus the gradient of their potential, action and reaction, power of dampers, turns of torsion
+/// springs.
 
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
@@ -23,7 +24,8 @@ constexpr double pi = 3.14159265358979323846;
 void add_bodies(Model& model, int bodies)
 {
     for (int b = 0; b < bodies; ++b)
-        model.add({.name = "body " + std::to_string(b), .m = 1.5 + b, .J_bar = Vec3(1, 1.2, 1.4).asDiagonal()});
+        model.add(
+            {.name = "body " + std::to_string(b), .m = 1.5 + b, .J_bar = Vec3(1, 1.2, 1.4).asDiagonal()});
 }
 
 lie::Loads loads(const Force& force, const State& x)
@@ -51,11 +53,13 @@ Vec3 total_moment(const lie::Loads& l, const State& x)
 double power(const lie::Loads& l, const State& x)
 {
     double sum = 0;
-    for (size_t b = 0; b < x.body.size(); ++b) sum += l.F[b].dot(x.body[b].rdot) + l.n_bar[b].dot(x.body[b].omega_bar);
+    for (size_t b = 0; b < x.body.size(); ++b)
+        sum += l.F[b].dot(x.body[b].rdot) + l.n_bar[b].dot(x.body[b].omega_bar);
     return sum;
 }
 
-/// Two bodies turned about a common axis, axis_i in the first and axis_j in the second, by `angle` against each other
+/// Two bodies turned about a common axis, axis_i in the first and axis_j in the second, by `angle` against
+/// each other
 struct Twisted {
     State x;
     Vec3 axis_i, axis_j;
@@ -66,7 +70,8 @@ struct Twisted {
         x = random.state(2);
         x.memory.assign(1, 0);
         const Vec3 axis = x.body[0].A * axis_i;
-        A_j0 = Eigen::Quaterniond::FromTwoVectors(x.body[1].A * axis_j, axis).toRotationMatrix() * x.body[1].A;
+        A_j0 =
+            Eigen::Quaterniond::FromTwoVectors(x.body[1].A * axis_j, axis).toRotationMatrix() * x.body[1].A;
         twist(0);
     }
     void twist(double angle) { x.body[1].A = lie::exp(angle * (x.body[0].A * axis_i)) * A_j0; }
@@ -119,7 +124,8 @@ TEST_CASE("forces are minus the gradient of the potential energy", "[dae][forces
                 return model.potential_energy(moved);
             });
             INFO("body " << b << ", component " << c);
-            CHECK((c < 3 ? exact.F[b][c] : exact.n_bar[b][c - 3]) == Approx(-gradient).epsilon(1e-7).margin(1e-7));
+            CHECK((c < 3 ? exact.F[b][c] : exact.n_bar[b][c - 3]) ==
+                  Approx(-gradient).epsilon(1e-7).margin(1e-7));
         }
 }
 
@@ -188,13 +194,15 @@ TEST_CASE("a spring pulls by k (l - l0) + c ldot + F(l, ldot, t)", "[dae][forces
 TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
 {
     Random random(GENERATE(range(31u, 34u)));
-    const double step = GENERATE(0.1, 1.0, 2.3) * GENERATE(1, -1);  // just under three eighths of a turn is 2.356
+    const double step =
+        GENERATE(0.1, 1.0, 2.3) * GENERATE(1, -1);  // just under three eighths of a turn is 2.356
     const bool first_is_ground = GENERATE(true, false);
     Twisted twisted(random);
     State& x = twisted.x;
     if (first_is_ground) {
         x.body[0] = Motion();
-        twisted.A_j0 = Eigen::Quaterniond::FromTwoVectors(x.body[1].A * twisted.axis_j, twisted.axis_i).toRotationMatrix() *
+        twisted.A_j0 = Eigen::Quaterniond::FromTwoVectors(x.body[1].A * twisted.axis_j, twisted.axis_i)
+                           .toRotationMatrix() *
                        x.body[1].A;
         twisted.twist(0);
     }
@@ -228,7 +236,8 @@ TEST_CASE("a torsion spring refuses axes that are none or not parallel", "[dae][
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), O = Vec3::Zero();
     CHECK_THROWS_AS(TorsionSpring(0, O, 1, X, 1, 0, 0, x), lie::InvalidInput);
     CHECK_THROWS_AS(TorsionSpring(0, X, 1, O, 1, 0, 0, x), lie::InvalidInput);
-    CHECK_THROWS_WITH(TorsionSpring(0, X, 1, Y, 1, 0, 0, x), Catch::Contains("parallel") && Catch::Contains("got 0"));
+    CHECK_THROWS_WITH(TorsionSpring(0, X, 1, Y, 1, 0, 0, x),
+                      Catch::Contains("parallel") && Catch::Contains("got 0"));
     CHECK_THROWS_AS(TorsionSpring(0, X, 1, -X, 1, 0, 0, x), lie::InvalidInput);
 }
 
@@ -286,9 +295,11 @@ TEST_CASE("a force written by a user carries a body round a circle", "[dae][forc
     const double energy = lie::energy(model, x);
     CHECK(energy == Approx(-1));  // -k/2r
     const auto scheme = lie::scheme("rA-half-2").make(model, {});
-    const lie::Trajectory orbit = lie::march(x, *scheme, lie::Grid{.h = pi / 4000, .steps = 4000, .every = 1000});
+    const lie::Trajectory orbit =
+        lie::march(x, *scheme, lie::Grid{.h = pi / 4000, .steps = 4000, .every = 1000});
     const State& end = orbit.row.back();
-    CHECK((end.body[0].r - x.body[0].r).norm() < 1e-4);  // the scheme is of second order: (2 pi / 4000)² of 2 pi rad
+    CHECK((end.body[0].r - x.body[0].r).norm() <
+          1e-4);  // the scheme is of second order: (2 pi / 4000)² of 2 pi rad
     CHECK((orbit.row[2].body[0].r + x.body[0].r).norm() < 1e-4);
     CHECK(lie::energy(model, end) == Approx(energy).epsilon(1e-5));
 }

@@ -39,7 +39,7 @@ struct Joint {
     int freedom;
     std::function<Blocks(int, const Frame&, int, const Frame&, const State&)> make;
     std::function<Relative(Random&)> allowed;  ///< a random relative pose the joint allows
-    std::vector<int> forbidden;                ///< directions no small motion may take: 0–2 along, 3–5 about the axes of i
+    std::vector<int> forbidden;  ///< directions no small motion may take: 0–2 along, 3–5 about the axes of i
 };
 
 /// All joints; add the next one here.
@@ -48,37 +48,54 @@ std::vector<Joint> joints()
     const Mat3 right_angle = about(0, pi / 2);
     const auto turn = [](Random& random) { return random.number(-3, 3); };
     std::vector<Joint> all;
-    all.push_back({"spherical", 3,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) { return spherical(i, a.s_bar, j, b.s_bar); },
-                   [](Random& random) { return Relative{Vec3::Zero(), random.rotation()}; },
+    all.push_back({"spherical",
+                   3,
+                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                       return spherical(i, a.s_bar, j, b.s_bar);
+                   },
+                   [](Random& random) {
+                       return Relative{Vec3::Zero(), random.rotation()};
+                   },
                    {0, 1, 2}});
-    all.push_back({"revolute", 1,
+    all.push_back({"revolute",
+                   1,
                    [](int i, const Frame& a, int j, const Frame& b, const State&) {
                        return revolute(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
-                   [=](Random& random) { return Relative{Vec3::Zero(), about(2, turn(random))}; },
+                   [=](Random& random) {
+                       return Relative{Vec3::Zero(), about(2, turn(random))};
+                   },
                    {0, 1, 2, 3, 4}});
-    all.push_back({"cylindrical", 2,
+    all.push_back({"cylindrical",
+                   2,
                    [](int i, const Frame& a, int j, const Frame& b, const State&) {
                        return cylindrical(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
-                   [=](Random& random) { return Relative{random.number() * Vec3::UnitZ(), about(2, turn(random))}; },
+                   [=](Random& random) {
+                       return Relative{random.number() * Vec3::UnitZ(), about(2, turn(random))};
+                   },
                    {0, 1, 3, 4}});
-    all.push_back({"translational", 1,
+    all.push_back({"translational",
+                   1,
                    [](int i, const Frame& a, int j, const Frame& b, const State& x) {
                        return translational(i, a.s_bar, a.axis(), j, b.s_bar, b.axis(), x);
                    },
-                   [](Random& random) { return Relative{random.number() * Vec3::UnitZ(), about(2, 0.7)}; },
+                   [](Random& random) {
+                       return Relative{random.number() * Vec3::UnitZ(), about(2, 0.7)};
+                   },
                    {0, 1, 3, 4, 5}});
-    all.push_back({"universal", 2,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
-                       return universal(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
-                   },
-                   [=](Random& random) {
-                       return Relative{Vec3::Zero(), about(2, turn(random)) * right_angle * about(2, turn(random))};
-                   },
-                   {0, 1, 2}});
-    all.push_back({"revolute_cylindrical", 3,
+    all.push_back(
+        {"universal",
+         2,
+         [](int i, const Frame& a, int j, const Frame& b, const State&) {
+             return universal(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
+         },
+         [=](Random& random) {
+             return Relative{Vec3::Zero(), about(2, turn(random)) * right_angle * about(2, turn(random))};
+         },
+         {0, 1, 2}});
+    all.push_back({"revolute_cylindrical",
+                   3,
                    [](int i, const Frame& a, int j, const Frame& b, const State&) {
                        return revolute_cylindrical(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
@@ -87,15 +104,21 @@ std::vector<Joint> joints()
                        return Relative{random.number() * Q.col(2), Q};
                    },
                    {2}});  // along the revolute axis, which the cylindrical one is perpendicular to
-    all.push_back({"fixed", 0,
+    all.push_back({"fixed",
+                   0,
                    [](int i, const Frame&, int j, const Frame&, const State& x) { return fixed(i, j, x); },
-                   [](Random&) { return Relative{Vec3(0.3, -0.2, 0.5), about(0, 1.0) * about(1, 2.0)}; },
+                   [](Random&) {
+                       return Relative{Vec3(0.3, -0.2, 0.5), about(0, 1.0) * about(1, 2.0)};
+                   },
                    {0, 1, 2, 3, 4, 5}});
-    all.push_back({"distance", 5,
+    all.push_back({"distance",
+                   5,
                    [](int i, const Frame& a, int j, const Frame& b, const State&) {
                        return distance(i, a.s_bar, j, b.s_bar, 1.7);
                    },
-                   [](Random& random) { return Relative{1.7 * random.unit(), random.rotation()}; },
+                   [](Random& random) {
+                       return Relative{1.7 * random.unit(), random.rotation()};
+                   },
                    {}});
     return all;
 }
@@ -118,7 +141,8 @@ struct Pair {
     const State& state()
     {
         x.body.clear();
-        for (const Motion* b : {&bi, &bj}) x.body.push_back(*b);  // numbers 0 and 1; the ground leaves a spare
+        for (const Motion* b : {&bi, &bj})
+            x.body.push_back(*b);  // numbers 0 and 1; the ground leaves a spare
         return x;
     }
 };
@@ -148,7 +172,8 @@ Eigen::MatrixXd variations(const Blocks& blocks, const Motion& bi, const Motion&
     return C;
 }
 
-/// A bar of 2 kg on a hinge at its end: ground point `pin`, axis `axis` of the ground and of the bar; centre at `arm`.
+/// A bar of 2 kg on a hinge at its end: ground point `pin`, axis `axis` of the ground and of the bar; centre
+/// at `arm`.
 void crank(Model& model, State& x, const Vec3& pin, const Vec3& axis, const Vec3& arm, double omega)
 {
     model.add({.name = "crank", .m = 2, .J_bar = Vec3(0.3, 0.5, 0.6).asDiagonal()});
@@ -241,7 +266,8 @@ TEST_CASE("a joint refuses an axis or a length that is none", "[dae][joints]")
     CHECK_THROWS_AS(distance(0, O, 1, O, 0), lie::InvalidInput);
     CHECK_THROWS_AS(distance(0, O, 1, O, -1), lie::InvalidInput);
     CHECK_THROWS_AS(hinge_driver(0, O, 1, X, Driver("t"), x), lie::InvalidInput);
-    CHECK_THROWS_WITH(hinge_driver(0, X, 1, -X, Driver("t"), x), Catch::Contains("parallel") && Catch::Contains("got -1"));
+    CHECK_THROWS_WITH(hinge_driver(0, X, 1, -X, Driver("t"), x),
+                      Catch::Contains("parallel") && Catch::Contains("got -1"));
 }
 
 TEST_CASE("a hinge driver turns a crank through three whole turns and back", "[dae][joints]")
@@ -266,7 +292,8 @@ TEST_CASE("a hinge driver turns a crank through three whole turns and back", "[d
 
 TEST_CASE("a DP1 driver swaps to its complement and so drives whole turns", "[dae][joints]")
 {
-    // a_i · a_j = cos(angle) is singular twice a turn. Both ways round, from both quadrants, with the crank as body i or j.
+    // a_i · a_j = cos(angle) is singular twice a turn. Both ways round, from both quadrants, with the crank
+    // as body i or j.
     const double sense = GENERATE(1.0, -1.0), start_angle = GENERATE(0.4, 2.5);
     const bool crank_first = GENERATE(true, false);
     const bool sine = GENERATE(true, false);

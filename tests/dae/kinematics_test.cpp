@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Kinematics of the slider-crank and the four-link against their reference trajectories, and inverse dynamics.
+/// Kinematics of the slider-crank and the four-link against their reference trajectories, and inverse
+/// dynamics.
 
 #include "dae/kinematics.hpp"
 
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -36,8 +38,8 @@ std::vector<std::vector<double>> table(const std::string& file)
     return rows;
 }
 
-/// A reference row: columns t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint force (global)
-/// and torque (body frame) of each body.
+/// A reference row: columns t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint
+/// force (global) and torque (body frame) of each body.
 struct Reference {
     double t;
     std::vector<Motion> body;
@@ -67,19 +69,22 @@ std::vector<Reference> references(const std::string& file)
     return all;
 }
 
-/// Largest deviations over a run: of r and A as they are, of velocities and accelerations relative to max(1, size), of
-/// forces and torques relative to the largest of the run.
+/// Largest deviations over a run: of r and A as they are, of velocities and accelerations relative to max(1,
+/// size), of forces and torques relative to the largest of the run.
 struct Deviation {
     double r = 0, A = 0, rdot = 0, omega_bar = 0, rddot = 0, omegadot_bar = 0, F = 0, T = 0;
 };
 
-Deviation deviation(const Model& model, const std::vector<State>& run, const std::vector<Reference>& reference)
+Deviation deviation(const Model& model, const std::vector<State>& run,
+                    const std::vector<Reference>& reference)
 {
     Deviation most;
     double largest_F = 0, largest_T = 0;
     const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
-    const auto relative = [](const Vec3& a, const Vec3& b) { return (a - b).norm() / std::max(1.0, b.norm()); };
-    REQUIRE(run.size() == reference.size());
+    const auto relative = [](const Vec3& a, const Vec3& b) {
+        return (a - b).norm() / std::max(1.0, b.norm());
+    };
+    REQUIRE(run.size() <= reference.size());
     for (size_t k = 0; k < run.size(); ++k) {
         REQUIRE(run[k].t == Approx(reference[k].t).margin(1e-14));
         const std::vector<Reaction> reaction = reactions(model, run[k]);
@@ -105,8 +110,8 @@ Deviation deviation(const Model& model, const std::vector<State>& run, const std
 
 void check(const Deviation& d)
 {
-    INFO("r " << d.r << ", A " << d.A << ", rdot " << d.rdot << ", omega " << d.omega_bar << ", rddot " << d.rddot
-              << ", omegadot " << d.omegadot_bar << ", F " << d.F << ", T " << d.T);
+    INFO("r " << d.r << ", A " << d.A << ", rdot " << d.rdot << ", omega " << d.omega_bar << ", rddot "
+              << d.rddot << ", omegadot " << d.omegadot_bar << ", F " << d.F << ", T " << d.T);
     CHECK(d.r < 1e-11);
     CHECK(d.A < 1e-11);
     CHECK(d.rdot < 1e-10);
@@ -128,7 +133,8 @@ const Mechanism mechanisms[] = {
     {"four_link", [](Model& m, State& x) { tests::four_link(m, x); }, pi},
 };
 
-/// The slider-crank put together from joints: the same motion from other rows, with a driver that is never singular
+/// The slider-crank put together from joints: the same motion from other rows, with a driver that is never
+/// singular
 void slider_crank_of_joints(Model& model, State& x)
 {
     tests::slider_crank_bodies(model, x);
@@ -149,7 +155,8 @@ double driver_torque(const Model& model, const State& x, size_t row)
     const Block& block = driver.in_force(x);
     static const Motion at_rest;
     const bool first = block.i == 0;
-    const Variation v = first ? block.variation(x.body[0], at_rest, x.t) : block.variation(at_rest, x.body[0], x.t);
+    const Variation v =
+        first ? block.variation(x.body[0], at_rest, x.t) : block.variation(at_rest, x.body[0], x.t);
     const double lambda = x.lambda[static_cast<Eigen::Index>(row)];
     return -lambda * (x.body[0].A * (first ? v.pi_i : v.pi_j)).x();
 }
@@ -158,16 +165,15 @@ double driver_torque(const Model& model, const State& x, size_t row)
 
 TEST_CASE("kinematics follows the reference through whole turns", "[dae][kinematics][acceptance]")
 {
-    for (const Mechanism& mechanism : mechanisms) {
-        INFO(mechanism.name);
-        Model model;
-        State x;
-        mechanism.build(model, x);
-        dae::start(model, x);
-        const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
-        check(deviation(model, run.row, references(mechanism.name + ".csv")));
-        for (const State& y : run.row) CHECK(model.largest_residual(y).value < 1e-13);
-    }
+    const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
+    INFO(mechanism.name);
+    Model model;
+    State x;
+    mechanism.build(model, x);
+    dae::start(model, x);
+    const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
+    check(deviation(model, run.row, references(mechanism.name + ".csv")));
+    for (const State& y : run.row) CHECK(model.largest_residual(y).value < 1e-13);
 }
 
 TEST_CASE("the slider-crank made of joints moves as the one made of blocks", "[dae][kinematics]")
@@ -182,63 +188,82 @@ TEST_CASE("the slider-crank made of joints moves as the one made of blocks", "[d
     check(deviation(model, run.row, references("slider_crank.csv")));
 }
 
+TEST_CASE("data that were mended lead to the same motion, through every swap of the driver",
+          "[dae][kinematics]")
+{
+    // The complement of the driver must come from the mended pose, not from the one that was given.
+    const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
+    INFO(mechanism.name);
+    tests::Random random(5);
+    Model model;
+    State x;
+    mechanism.build(model, x);
+    for (Motion& m : x.body) {
+        Eigen::Matrix<double, 6, 1> delta;
+        delta << random.vector(1e-3), random.vector(1e-3);
+        m = tests::displaced(m, delta);
+    }
+    dae::start(model, x, {.fix_initial = true});
+    const lie::Trajectory run = Kinematics(model).run(x, 0.1, 20);
+    check(deviation(model, run.row, references(mechanism.name + ".csv")));
+}
+
 TEST_CASE("the driver's torque is its power over its rate", "[dae][kinematics]")
 {
-    for (const Mechanism& mechanism : mechanisms) {
-        Model model;
-        State x;
-        mechanism.build(model, x);
-        dae::start(model, x);
-        const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
-        const auto reference = table("driver_" + mechanism.name + ".csv");  // t, energy, power, torque
-        REQUIRE(reference.size() == run.row.size());
-        double largest = 0, worst_torque = 0, worst_power = 0, worst_energy = 0;
-        for (const auto& row : reference) largest = std::max(largest, std::abs(row[3]));
-        for (size_t k = 0; k < run.row.size(); ++k) {
-            const State& y = run.row[k];
-            const double torque = driver_torque(model, y, 17);
-            worst_torque = std::max(worst_torque, std::abs(torque - reference[k][3]));
-            worst_energy = std::max(worst_energy, std::abs(lie::energy(model, y) - reference[k][1]));
+    const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
+    Model model;
+    State x;
+    mechanism.build(model, x);
+    dae::start(model, x);
+    const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
+    const auto reference = table("driver_" + mechanism.name + ".csv");  // t, energy, power, torque
+    REQUIRE(reference.size() == run.row.size());
+    double largest = 0, worst_torque = 0, worst_power = 0, worst_energy = 0;
+    for (const auto& row : reference) largest = std::max(largest, std::abs(row[3]));
+    for (size_t k = 0; k < run.row.size(); ++k) {
+        const State& y = run.row[k];
+        const double torque = driver_torque(model, y, 17);
+        worst_torque = std::max(worst_torque, std::abs(torque - reference[k][3]));
+        worst_energy = std::max(worst_energy, std::abs(lie::energy(model, y) - reference[k][1]));
 
-            // power balance of our own state: dE/dt by the chain rule, without any multiplier
-            double power = 0;
-            for (size_t b = 0; b < y.body.size(); ++b) {
-                const Motion& m = y.body[b];
-                power += model.mass().m[b] * m.rdot.dot(m.rddot - model.gravity) +
-                         m.omega_bar.dot(model.mass().J_bar[b] * m.omegadot_bar);
-            }
-            worst_power = std::max(worst_power, std::abs(torque * mechanism.rate - power));
+        // power balance of our own state: dE/dt by the chain rule, without any multiplier
+        double power = 0;
+        for (size_t b = 0; b < y.body.size(); ++b) {
+            const Motion& m = y.body[b];
+            power += model.mass().m[b] * m.rdot.dot(m.rddot - model.gravity) +
+                     m.omega_bar.dot(model.mass().J_bar[b] * m.omegadot_bar);
         }
-        INFO(mechanism.name << ": torque " << worst_torque / largest << ", energy " << worst_energy << ", power "
-                            << worst_power);
-        CHECK(worst_torque < 1e-10 * largest);
-        CHECK(worst_power < 1e-10 * largest * std::abs(mechanism.rate));
-        CHECK(worst_energy < 1e-10 * std::abs(reference[0][1]));
+        worst_power = std::max(worst_power, std::abs(torque * mechanism.rate - power));
     }
+    INFO(mechanism.name << ": torque " << worst_torque / largest << ", energy " << worst_energy << ", power "
+                        << worst_power);
+    CHECK(worst_torque < 1e-10 * largest);
+    CHECK(worst_power < 1e-10 * largest * std::abs(mechanism.rate));
+    CHECK(worst_energy < 1e-10 * std::abs(reference[0][1]));
 }
 
 TEST_CASE("inverse dynamics gives back the multipliers of the saddle solve", "[dae][kinematics]")
 {
-    for (const Mechanism& mechanism : mechanisms) {
-        INFO(mechanism.name);
-        Model model;
-        State x;
-        mechanism.build(model, x);
-        dae::start(model, x);
-        Kinematics kinematics(model);
-        for (int k = 0; k < 10; ++k) {
-            kinematics.move_to(x, 0.13 * k);
-            std::vector<Reaction> missing;
-            const Eigen::VectorXd lambda = inverse_dynamics(model, x, &missing);
-            CHECK((lambda - x.lambda).norm() < 1e-11 * x.lambda.norm());
-            for (const Reaction& r : missing) CHECK(r.F.norm() + r.T.norm() < 1e-11 * x.lambda.norm());
-        }
+    const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
+    INFO(mechanism.name);
+    Model model;
+    State x;
+    mechanism.build(model, x);
+    dae::start(model, x);
+    Kinematics kinematics(model);
+    for (int k = 0; k < 10; ++k) {
+        kinematics.move_to(x, 0.13 * k);
+        std::vector<Reaction> missing;
+        const Eigen::VectorXd lambda = inverse_dynamics(model, x, &missing);
+        CHECK((lambda - x.lambda).norm() < 1e-11 * x.lambda.norm());
+        for (const Reaction& r : missing) CHECK(r.F.norm() + r.T.norm() < 1e-11 * x.lambda.norm());
     }
 }
 
 TEST_CASE("inverse dynamics finds the torque that no constraint supplies", "[dae][kinematics]")
 {
-    // A pendulum held still at an angle: the pin takes the weight, what is missing is a torque about the pin's axis.
+    // A pendulum held still at an angle: the pin takes the weight, what is missing is a torque about the
+    // pin's axis.
     Model model;
     State x;
     const Vec3 X = Vec3::UnitX();
@@ -250,7 +275,8 @@ TEST_CASE("inverse dynamics finds the torque that no constraint supplies", "[dae
     x.body[0].omegadot_bar.setZero();
     std::vector<Reaction> missing;
     inverse_dynamics(model, x, &missing);
-    // of all loads that do it, the least: it works on the one free motion, turning about the pin, as the true torque does
+    // of all loads that do it, the least: it works on the one free motion, turning about the pin, as the true
+    // torque does
     const Vec3 about_pin = arm.cross(missing[0].F) + missing[0].T;
     CHECK(about_pin.x() == Approx(2 * 9.81 * 0.6));
     Eigen::Matrix<double, 6, 1> free, found;

@@ -50,7 +50,8 @@ TEST_CASE("bodies are found by their names", "[dae][model]")
 TEST_CASE("a body that cannot be is refused with the reason and the value", "[dae][model]")
 {
     Model model;
-    CHECK_THROWS_WITH(model.add(body("b", -2)), Contains("body 'b'") && Contains("mass") && Contains("got -2"));
+    CHECK_THROWS_WITH(model.add(body("b", -2)),
+                      Contains("body 'b'") && Contains("mass") && Contains("got -2"));
     CHECK_THROWS_AS(model.add(body("b", 0)), lie::InvalidInput);
     CHECK_THROWS_AS(model.add(body("b", NAN)), lie::InvalidInput);
     CHECK_THROWS_AS(model.add(body("b", INFINITY)), lie::InvalidInput);
@@ -69,7 +70,8 @@ TEST_CASE("a body that cannot be is refused with the reason and the value", "[da
     // the inequality is one of principal moments, whatever the axes
     const Mat3 R = Random(1).rotation();
     model.add(body("turned plate", 1, R * diagonal(1, 2, 2.99) * R.transpose()));
-    CHECK_THROWS_AS(model.add(body("turned", 1, R * diagonal(1, 2, 3.01) * R.transpose())), lie::InvalidInput);
+    CHECK_THROWS_AS(model.add(body("turned", 1, R * diagonal(1, 2, 3.01) * R.transpose())),
+                    lie::InvalidInput);
     CHECK(model.bodies() == 4);
 }
 
@@ -80,7 +82,8 @@ TEST_CASE("a constraint that names no two bodies is refused", "[dae][model]")
     model.add(body("rod"));
     CHECK_THROWS_WITH(model.constrain("pin", spherical(0, O, 2, O)), Contains("'pin'") && Contains("got 2"));
     CHECK_THROWS_WITH(model.constrain("pin", spherical(-2, O, 0, O)), Contains("got -2"));
-    CHECK_THROWS_WITH(model.constrain("pin", spherical(1, O, 1, O)), Contains("different") && Contains("'rod'"));
+    CHECK_THROWS_WITH(model.constrain("pin", spherical(1, O, 1, O)),
+                      Contains("different") && Contains("'rod'"));
     CHECK_THROWS_AS(model.constrain("pin", spherical(ground, O, ground, O)), lie::InvalidInput);
     CHECK(model.rows() == 0);
     model.constrain("pin", spherical(ground, O, 0, O));
@@ -116,8 +119,7 @@ TEST_CASE("a model asks for a state with the right bodies in it", "[dae][model]"
     try {
         model.prepare(x);
         FAIL("a singular DP1 was accepted");
-    }
-    catch (const ConstraintError& e) {
+    } catch (const ConstraintError& e) {
         CHECK(e.constraint == 0);
         CHECK_THAT(e.what(), Contains("constraint 'unfit' row 1") && Contains("parallel"));
     }
@@ -177,7 +179,8 @@ TEST_CASE("phi, nu, gamma and the variation leave out dropped rows and the groun
     // residuals count the dropped row too, over the length of its variation
     const Model::Residual largest = model.largest_residual(x);
     double expected = 0;
-    for (const Model::Row& row : model.all_rows()) expected = std::max(expected, std::abs(model.scaled_residual(row, x)));
+    for (const Model::Row& row : model.all_rows())
+        expected = std::max(expected, std::abs(model.scaled_residual(row, x)));
     CHECK(largest.value == expected);
     const Variation v = model.all_rows()[0].block->variation(a, b, x.t);
     CHECK(model.scaled_residual(model.all_rows()[0], x) ==
@@ -241,14 +244,16 @@ TEST_CASE("a body that falls freely follows its parabola and keeps its energy", 
     CHECK(x.body[0].rddot == model.gravity);
     CHECK(x.body[0].omegadot_bar.norm() < 1e-15);
     const double e = lie::energy(model, x);
-    CHECK(e == Approx(0.5 * 2 * at_0.rdot.squaredNorm() + 0.5 * at_0.omega_bar.squaredNorm() - 2 * model.gravity.dot(at_0.r)));
+    CHECK(e == Approx(0.5 * 2 * at_0.rdot.squaredNorm() + 0.5 * at_0.omega_bar.squaredNorm() -
+                      2 * model.gravity.dot(at_0.r)));
 
     const auto scheme = lie::scheme("rA-half-2").make(model, {});
     const State end = lie::march(x, *scheme, lie::Grid::over(1, 1e-2)).row.back();
     CHECK(end.t == 1);
     CHECK((end.body[0].r - (at_0.r + at_0.rdot + 0.5 * model.gravity)).norm() < 1e-12);
     CHECK((end.body[0].rdot - (at_0.rdot + model.gravity)).norm() < 1e-12);
-    CHECK((end.body[0].A - at_0.A * lie::exp(at_0.omega_bar)).norm() < 1e-12);  // a ball turns about a fixed axis
+    CHECK((end.body[0].A - at_0.A * lie::exp(at_0.omega_bar)).norm() <
+          1e-12);  // a ball turns about a fixed axis
     CHECK(lie::energy(model, end) == Approx(e).epsilon(1e-13));
 }
 

@@ -22,8 +22,8 @@ const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Ze
 /// Angle at the near end of side a, of a triangle with the sides a, b and the third side c opposite it
 double corner(double a, double b, double c) { return std::acos((a * a + b * b - c * c) / (2 * a * b)); }
 
-/// A four-bar in the plane x = 0: crank 1 m from A = (0, 0, 0), coupler 2.5 m, rocker 2 m from D = (0, 3, 0). Bars lie along
-/// their y axes.
+/// A four-bar in the plane x = 0: crank 1 m from A = (0, 0, 0), coupler 2.5 m, rocker 2 m from D = (0, 3, 0).
+/// Bars lie along their y axes.
 struct FourBar {
     static constexpr double crank_length = 1, coupler_length = 2.5, rocker_length = 2;
     const Vec3 A = O, D = 3 * Y;
@@ -34,7 +34,8 @@ struct FourBar {
     {
         const Vec3 B = crank_length * Vec3(0, std::cos(crank_angle), std::sin(crank_angle)), BD = D - B;
         const double diagonal = BD.norm();
-        const double coupler_angle = std::atan2(BD.z(), BD.y()) + corner(coupler_length, diagonal, rocker_length);
+        const double coupler_angle =
+            std::atan2(BD.z(), BD.y()) + corner(coupler_length, diagonal, rocker_length);
         const Vec3 C = B + coupler_length * Vec3(0, std::cos(coupler_angle), std::sin(coupler_angle));
         const Vec3 DC = C - D;
         bar(model, x, "crank", 1, A, crank_angle, crank_length);
@@ -45,7 +46,8 @@ struct FourBar {
     }
 
 private:
-    static void bar(Model& model, State& x, const std::string& name, double m, const Vec3& from, double angle, double length)
+    static void bar(Model& model, State& x, const std::string& name, double m, const Vec3& from, double angle,
+                    double length)
     {
         const Mat3 turned = lie::exp(angle * X);
         tests::add_body(model, x, name, m, m * Vec3(length * length / 12, 1e-3, length * length / 12),
@@ -71,8 +73,9 @@ void four_bar_without_redundance(Model& model, const FourBar& f)
     model.constrain("D", revolute(2, -f.end(f.rocker_length), X, ground, f.D, X));
 }
 
-/// Bricard's mechanism of the IFToMM benchmark: five rods of 1 m along edges of a cube, the sixth edge is the ground; each
-/// joint's axis is perpendicular to the two rods it joins, so neighbouring axes are perpendicular to each other.
+/// Bricard's mechanism of the IFToMM benchmark: five rods of 1 m along edges of a cube, the sixth edge is the
+/// ground; each joint's axis is perpendicular to the two rods it joins, so neighbouring axes are
+/// perpendicular to each other.
 void bricard(Model& model, State& x)
 {
     const Vec3 along[] = {X, Y, Z, -X, -Y, -Z};
@@ -80,16 +83,24 @@ void bricard(Model& model, State& x)
     for (int k = 0; k < 5; ++k) {
         Mat3 A;  // the rod along body x
         A << along[k], along[k + 1], along[k].cross(along[k + 1]);
-        tests::add_body(model, x, "rod " + std::to_string(k + 1), 1, {2e-3, 1.0 / 12, 1.0 / 12}, at + 0.5 * along[k], A);
+        tests::add_body(model, x, "rod " + std::to_string(k + 1), 1, {2e-3, 1.0 / 12, 1.0 / 12},
+                        at + 0.5 * along[k], A);
         at += along[k];
     }
-    for (int k = 0; k < 6; ++k) {  // joint k is at the beginning of rod k, the last one at the ground (0, 0, 1)
-        const int before = k == 0 ? ground : k - 1, after = k == 5 ? ground : k;
+    // Joint k + 1 is at the beginning of rod k + 1; the last one is at the ground, (0, 0, 1). Of the last
+    // joint, the last row is dropped: with the ground as body i it holds the ground vector across the sixth
+    // edge and the axis. The weight of that row in the dependence of all never comes near zero. That of the
+    // others does (next at t = 0.89 s), and there the rows left would lose rank.
+    for (int k = 0; k < 6; ++k) {
         const Vec3 axis = along[(k + 5) % 6].cross(along[k]);
-        const auto in = [&](int b) { return b == ground ? axis : Vec3(x.body[b].A.transpose() * axis); };
-        model.constrain("joint " + std::to_string(k + 1),
-                        revolute(before, before == ground ? O : 0.5 * X, in(before), after,
-                                 after == ground ? Z : Vec3(-0.5 * X), in(after)));
+        const auto in = [&](int b) { return Vec3(x.body[b].A.transpose() * axis); };
+        const std::string name = "joint " + std::to_string(k + 1);
+        if (k == 0)
+            model.constrain(name, revolute(ground, O, axis, 0, -0.5 * X, in(0)));
+        else if (k == 5)
+            model.constrain(name, revolute(ground, Z, axis, 4, 0.5 * X, in(4)));
+        else
+            model.constrain(name, revolute(k - 1, 0.5 * X, in(k - 1), k, -0.5 * X, in(k)));
     }
     model.gravity = {0, -9.81, 0};
 }
@@ -117,7 +128,8 @@ void hinged_bar(Model& model, State& x)
 
 }  // namespace
 
-TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and names them", "[dae][overconstrained]")
+TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and names them",
+          "[dae][overconstrained]")
 {
     const FourBar f;
     Model model;
@@ -130,14 +142,16 @@ TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and 
     CHECK(report.degrees_of_freedom == 1);
     REQUIRE(report.dropped.size() == 3);
     // the loop is closed at D, so what is redundant shows there
-    for (const std::string& name : report.dropped) CHECK_THAT(name, Contains("constraint 'D' row") && Contains("'rocker'"));
+    for (const std::string& name : report.dropped)
+        CHECK_THAT(name, Contains("constraint 'D' row") && Contains("'rocker'"));
     CHECK(model.rows() == 17);
     CHECK(model.dropped_rows().size() == 3);
     CHECK(model.largest_residual(x).value < 1e-14);
     CHECK(model.largest_velocity_residual(x).value < 1e-13);
 }
 
-TEST_CASE("an overconstrained four-bar moves as the one without redundance", "[dae][overconstrained][acceptance]")
+TEST_CASE("an overconstrained four-bar moves as the one without redundance",
+          "[dae][overconstrained][acceptance]")
 {
     const FourBar f;
     Model redundant, lean;
@@ -195,15 +209,16 @@ TEST_CASE("a hinge driven twice is refused unless both drive it alike", "[dae][o
     model.constrain("other motor", hinge_driver(ground, X, 0, X, Driver(c.second), x));
     INFO(c.second);
     if (c.level == nullptr) {
-        CHECK(dae::start(model, x).dropped == std::vector<std::string>{"constraint 'other motor' row 1; bodies 'ground', 'bar'"});
+        CHECK(dae::start(model, x).dropped ==
+              std::vector<std::string>{"constraint 'other motor' row 1; bodies 'ground', 'bar'"});
         return;
     }
     try {
         dae::start(model, x, {.fix_initial = true});
         FAIL("two different drivers were accepted");
-    }
-    catch (const ConstraintError& e) {
-        CHECK_THAT(e.what(), Contains("constraint 'other motor' row 1") && Contains("contradicts") && Contains(c.level));
+    } catch (const ConstraintError& e) {
+        CHECK_THAT(e.what(), Contains("constraint 'other motor' row 1") && Contains("contradicts") &&
+                                 Contains(c.level));
         CHECK(model.constraint_name(e.constraint) == "other motor");
     }
 }
@@ -218,15 +233,16 @@ TEST_CASE("a distance that cannot be is refused", "[dae][overconstrained]")
     try {
         dae::start(model, x, {.fix_initial = fix_initial});
         FAIL("an impossible distance was accepted");
-    }
-    catch (const ConstraintError& e) {
-        CHECK_THAT(e.what(), Contains("constraint 'stay' row 1") && Contains(fix_initial ? "contradicts" : "violate"));
+    } catch (const ConstraintError& e) {
+        CHECK_THAT(e.what(),
+                   Contains("constraint 'stay' row 1") && Contains(fix_initial ? "contradicts" : "violate"));
     }
 }
 
 TEST_CASE("redundant rows are found in data that need mending", "[dae][overconstrained]")
 {
-    // Off the constraints the redundant rows look independent; they must be told by where the mechanism can be.
+    // Off the constraints the redundant rows look independent; they must be told by where the mechanism can
+    // be.
     tests::Random random(GENERATE(range(1u, 6u)));
     const double size = GENERATE(1e-6, 1e-4, 1e-2);
     const FourBar f;
@@ -280,10 +296,11 @@ TEST_CASE("Bricard's mechanism moves although its rows leave it no freedom", "[d
     lie::Observer* observers[] = {&watch};
     const auto scheme = lie::scheme("rA-half-2").make(model, {.tolerance = 1e-12});
     lie::march(x, *scheme, lie::Grid::over(2, 1e-3, 2), observers);
-    INFO("energy error " << watch.energy_error << " J of " << watch.kinetic << " J, dropped row " << watch.residual
-                         << ", path " << watch.path << " m");
+    INFO("energy error " << watch.energy_error << " J of " << watch.kinetic << " J, dropped row "
+                         << watch.residual << ", path " << watch.path << " m");
     CHECK(watch.path > 0.5);
     CHECK(watch.kinetic > 5);
-    CHECK(watch.energy_error < 1e-3 * watch.kinetic);
+    CHECK(watch.energy_error <
+          2e-4 * watch.kinetic);  // second order in h = 1 ms, at up to 10 rad/s; 7e-5 measured
     CHECK(watch.residual < 1e-9);
 }

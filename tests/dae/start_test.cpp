@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The consistent start: projections that are least in the metric of the mass, accelerations and multipliers in closed
-/// form, inconsistent data refused or mended.
+/// The consistent start: projections that are least in the metric of the mass, accelerations and multipliers
+/// in closed form, inconsistent data refused or mended.
 
 #include "dae/start.hpp"
 
@@ -22,7 +22,8 @@ namespace {
 
 const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
-/// A chain of three unlike bars: a spherical, a universal and a revolute joint; 6 degrees of freedom. Placed exactly.
+/// A chain of three unlike bars: a spherical, a universal and a revolute joint; 6 degrees of freedom. Placed
+/// exactly.
 void chain(Model& model, State& x, Random& random)
 {
     Vec3 tip = O;
@@ -78,7 +79,8 @@ Eigen::VectorXd displacement(const State& from, const State& x)
 {
     Eigen::VectorXd q(6 * x.body.size());
     for (size_t b = 0; b < x.body.size(); ++b)
-        q.segment<6>(6 * b) << x.body[b].r - from.body[b].r, lie::log(from.body[b].A.transpose() * x.body[b].A);
+        q.segment<6>(6 * b) << x.body[b].r - from.body[b].r,
+            lie::log(from.body[b].A.transpose() * x.body[b].A);
     return q;
 }
 
@@ -154,7 +156,8 @@ TEST_CASE("far starts are projected too, or refused with the residual", "[dae][s
     y.body[0].r = {0.5, 0.3, 0.1};
     impossible.constrain("near", distance(ground, O, 0, O, 1));
     impossible.constrain("far", distance(ground, 2 * X, 0, O, 5));
-    CHECK_THROWS_WITH(dae::start(impossible, y), Contains("constraint 'far'") && Contains("initial positions"));
+    CHECK_THROWS_WITH(dae::start(impossible, y),
+                      Contains("constraint 'far'") && Contains("initial positions"));
     CHECK_THROWS_AS(dae::start(impossible, y, {.fix_initial = true}), lie::NumericalFailure);
 }
 
@@ -210,9 +213,11 @@ TEST_CASE("a moving pendulum has the accelerations and the reaction of the close
     bar.omega_bar = omega * X;
     bar.rdot = l * omega * ahead;
     x.body.push_back(bar);
-    // body i is the bar, then the ground: the multipliers are those of the point of the bar, then of the ground
+    // body i is the bar, then the ground: the multipliers are those of the point of the bar, then of the
+    // ground
     const bool bar_first = GENERATE(true, false);
-    model.constrain("pin", bar_first ? revolute(0, {0, 0, l}, X, ground, O, X) : revolute(ground, O, X, 0, {0, 0, l}, X));
+    model.constrain(
+        "pin", bar_first ? revolute(0, {0, 0, l}, X, ground, O, X) : revolute(ground, O, X, 0, {0, 0, l}, X));
     const StartReport report = dae::start(model, x);
     CHECK(report.rank == 5);
     CHECK(report.degrees_of_freedom == 1);
@@ -265,9 +270,9 @@ TEST_CASE("the published data of the four-link are refused with their residual",
     try {
         dae::start(model, x);
         FAIL("data off by 8.7e-3 m were accepted");
-    }
-    catch (const ConstraintError& e) {
-        CHECK_THAT(e.what(), Contains("initial positions") && Contains("constraint 'revD-CD-i'") && Contains("--fix-initial"));
+    } catch (const ConstraintError& e) {
+        CHECK_THAT(e.what(), Contains("initial positions") && Contains("constraint 'revD-CD-i'") &&
+                                 Contains("--fix-initial"));
         CHECK(model.constraint_name(e.constraint) == "revD-CD-i");
     }
     // the residual in m, and over the length of its row as the message gives it
@@ -292,7 +297,8 @@ TEST_CASE("the published data of the four-link are mended on request", "[dae][st
     CHECK(report.dropped.empty());
     CHECK_THAT(report.worst_position, Contains("revD-CD-i"));
     CHECK(report.position_residual > 1e-3);
-    CHECK(report.velocity_residual == Approx(3.1416).epsilon(0.3));  // the rotor at rest, which should turn at pi rad/s
+    CHECK(report.velocity_residual ==
+          Approx(3.1416).epsilon(0.3));  // the rotor at rest, which should turn at pi rad/s
     CHECK(model.largest_residual(x).value < 1e-12);
     CHECK(model.largest_velocity_residual(x).value < 1e-12);
 
@@ -316,8 +322,9 @@ TEST_CASE("wrong velocities alone are refused too", "[dae][start]")
 
 TEST_CASE("consistent data are accepted and hardly moved", "[dae][start]")
 {
-    const auto build = GENERATE(+[](Model& m, State& x) { tests::slider_crank(m, x); },
-                                +[](Model& m, State& x) { tests::four_link(m, x); });
+    const auto build = GENERATE(
+        +[](Model& m, State& x) { tests::slider_crank(m, x); },
+        +[](Model& m, State& x) { tests::four_link(m, x); });
     Model model;
     State x;
     build(model, x);
@@ -333,6 +340,19 @@ TEST_CASE("consistent data are accepted and hardly moved", "[dae][start]")
     CHECK(displacement(given, x).norm() < 1e-13);
     CHECK((velocities(given) - velocities(x)).norm() < 1e-12);
     CHECK(model.largest_residual(x).value < 1e-14);
+}
+
+TEST_CASE("a model can be started again", "[dae][start]")
+{
+    Random random(8);
+    Model model;
+    State x;
+    chain(model, x, random);
+    model.constrain("ball again", spherical(ground, O, 0, -Z));
+    const StartReport first = dae::start(model, x), second = dae::start(model, x);
+    CHECK(first.dropped.size() == 3);
+    CHECK(second.dropped == first.dropped);
+    CHECK(second.rank == first.rank);
 }
 
 TEST_CASE("data within the tolerance are moved onto the constraints", "[dae][start]")

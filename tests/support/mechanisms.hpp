@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The driven benchmark mechanisms by hand: slider-crank and four-link of Fang (2022), Tables 3.3 to 3.5, with their 18
-/// rows each. Numbers as in the published code (sbel-reproducibility, HalfImplicit_JCND; crank mass of the Table).
+/// The driven benchmark mechanisms by hand: slider-crank and four-link of Fang (2022), Tables 3.3 to 3.5,
+/// with their 18 rows each. Numbers as in the published code (sbel-reproducibility, HalfImplicit_JCND; crank
+/// mass of the Table).
 
 #pragma once
 
@@ -23,8 +24,9 @@ inline Mat3 matrix(const Vec3& first_row, const Vec3& second_row, const Vec3& th
     return A;
 }
 
-inline int add_body(dae::Model& model, lie::State& x, const std::string& name, double m, const Vec3& J_bar, const Vec3& r,
-                    const Mat3& A, const Vec3& rdot = Vec3::Zero(), const Vec3& omega_bar = Vec3::Zero())
+inline int add_body(dae::Model& model, lie::State& x, const std::string& name, double m, const Vec3& J_bar,
+                    const Vec3& r, const Mat3& A, const Vec3& rdot = Vec3::Zero(),
+                    const Vec3& omega_bar = Vec3::Zero())
 {
     lie::Motion motion;
     motion.r = r, motion.rdot = rdot, motion.A = A, motion.omega_bar = omega_bar;
@@ -35,8 +37,8 @@ inline int add_body(dae::Model& model, lie::State& x, const std::string& name, d
 /// The three bodies of the slider-crank and their consistent motion at t = 0
 inline void slider_crank_bodies(dae::Model& model, lie::State& x)
 {
-    add_body(model, x, "crank", 0.12, {1e-4, 1e-5, 1e-4}, {0, 0.1, 0.12}, matrix({1, 0, 0}, {0, 0, -1}, {0, 1, 0}),
-             {0, 0, 0}, {-6.2831853071795862, 0, 0});
+    add_body(model, x, "crank", 0.12, {1e-4, 1e-5, 1e-4}, {0, 0.1, 0.12},
+             matrix({1, 0, 0}, {0, 0, -1}, {0, 1, 0}), {0, 0, 0}, {-6.2831853071795862, 0, 0});
     add_body(model, x, "connecting rod", 0.5, {4e-3, 4e-4, 4e-3}, {0.1, 0.05, 0.1},
              matrix({0.66666666666666667, 0, 0.74535599249992989},
                     {-0.33333333333333333, 0.89442719099991588, 0.29814239699997196},
@@ -97,8 +99,7 @@ inline void four_link(dae::Model& model, lie::State& x, FourLinkStart start = Fo
                  matrix({0, 0.4717723564633253, 0.8817203886023283}, {-1, 0, 0},
                         {0, -0.8817203886023285, 0.4717723564633257}),
                  {-5.266847522470134, 0, -2.818073732816258}, {1.6144259810377577, 0, 0});
-    }
-    else {
+    } else {
         add_body(model, x, "rotor", 2, {4, 2, 2}, O, A_rotor);
         add_body(model, x, "link 2", 1, {12.4, 0.1, 12.4}, {-3.74555772, -4.25, 4.26236544},
                  matrix({0.750157212, 0.614025856, 0.24543106}, {-0.661259471, 0.696721311, 0.278056337},
@@ -109,7 +110,8 @@ inline void four_link(dae::Model& model, lie::State& x, FourLinkStart start = Fo
                  {-5.26684752, 0, -2.81807373}, {1.61443, 0, 0});
     }
     constexpr int rotor = 0, link_2 = 1, link_3 = 2;
-    const Vec3 D(-4, -8.5, 0), D_3(0, 3.7, 0), C_3(0, -3.7, 0), C_2(0, -6.1, 0), B_1(-2, 0, 0), B_2(0, 6.1, 0);
+    const Vec3 D(-4, -8.5, 0), D_3(0, 3.7, 0), C_3(0, -3.7, 0), C_2(0, -6.1, 0), B_1(-2, 0, 0),
+        B_2(0, 6.1, 0);
 
     model.constrain("revA-dp1-ki", DP1(rotor, X, ground, X));
     model.constrain("revA-dp1-ji", DP1(rotor, Y, ground, X));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Random input for tests, from a seed: numbers, vectors, rotations, motions; and where a motion goes from there.
+/// Random input for tests, from a seed: numbers, vectors, rotations, motions; and where a motion goes from
+/// there.
 
 #pragma once
 
@@ -14,7 +15,10 @@ class Random {
 public:
     explicit Random(unsigned seed) : engine(seed) {}
 
-    double number(double low = -1, double high = 1) { return std::uniform_real_distribution<>(low, high)(engine); }
+    double number(double low = -1, double high = 1)
+    {
+        return std::uniform_real_distribution<>(low, high)(engine);
+    }
     /// In the cube |x|, |y|, |z| < size
     lie::Vec3 vector(double size = 1)
     {
@@ -55,8 +59,8 @@ private:
     std::mt19937 engine;
 };
 
-/// The pose of a motion after a time tau, r + ṙ τ + r̈ τ²/2 and A exp(ω̄ τ + ω̄̇ τ²/2): a curve with the velocities and
-/// accelerations of the motion at τ = 0.
+/// The pose of a motion after a time tau, r + ṙ τ + r̈ τ²/2 and A exp(ω̄ τ + ω̄̇ τ²/2): a curve with the
+/// velocities and accelerations of the motion at τ = 0.
 inline lie::Motion pose_after(const lie::Motion& m, double tau)
 {
     lie::Motion at = m;

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/model_file.hpp"
+
+#include "dae/forces/prescribed.hpp"
+#include "dae/model_file_types.hpp"
+#include "dae/nearest.hpp"
+#include "lie/euler_parameters.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace hilda::dae {
+
+namespace {
+
+// Orientations are written with few digits; so much is mended, more is a mistake.
+constexpr double orientation_tolerance = 1e-6;
+// An A this near to a rotation is left as it is, so that a model written and read again is the same.
+constexpr double exact_rotation = 1e-14;
+
+Mat3 orientation(ObjectReader& o)
+{
+    const std::vector<std::string> forms = {"A", "p", "axis_angle"};
+    const auto given = std::count_if(forms.begin(), forms.end(),
+                                     [&](const std::string& key) { return o.look(key) != nullptr; });
+    if (given > 1)
+        o.fail("the orientation must be given once, as one of A, p and axis_angle; got " +
+               std::to_string(given));
+
+    const auto off = [](const std::string& what, double value) {
+        return what + ", got " + shortest(value) + "; at most " + shortest(orientation_tolerance) +
+               " off is mended";
+    };
+    Mat3 A = Mat3::Identity();
+    if (o.has("A")) {
+        A = o.matrix("A");
+        if (const double error = lie::orthogonality_error(A); !(error <= orientation_tolerance))
+            o.fail("A", off("A must be a rotation matrix: |A^T A - I| must be 0", error));
+        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection with det A = -1");
+        if (lie::orthogonality_error(A) > exact_rotation) A = lie::nearest_rotation(A);
+    } else if (o.has("p")) {
+        const std::vector<double> e = o.numbers("p", 4);
+        const lie::Vec4 p(e[0], e[1], e[2], e[3]);
+        if (!(std::abs(p.norm() - 1) <= orientation_tolerance))
+            o.fail("p", off("p must have length 1", p.norm()));
+        A = lie::rotation(p.normalized());
+    } else if (o.has("axis_angle")) {
+        const std::vector<double> a = o.numbers("axis_angle", 4);
+        const Vec3 u(a[0], a[1], a[2]);
+        if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
+            o.fail("axis_angle", off("the axis of axis_angle must have length 1", u.norm()));
+        A = lie::exp(a[3] * u.normalized());
+    }
+    return A;
+}
+
+Mat3 inertia(ObjectReader& o)
+{
+    const Json* v = o.look("inertia");
+    const bool full =
+        v != nullptr && v->list() != nullptr && !v->list()->empty() && v->list()->front().list() != nullptr;
+    return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
+}
+
+class ModelReader {
+public:
+    ModelReader(const JsonSource& source, Description& out) : source(source), out(out), model(*out.model) {}
+
+    void read()
+    {
+        ObjectReader o(source, source.root, "");
+        version(o);
+        out.name = o.name("name");
+        model.gravity = o.vec3("gravity", model.gravity);
+        out.end = o.positive("end", out.end);
+        o.keep("bodies",
+               each(o, "bodies", true, [this](const Json& v, const std::string& at) { return body(v, at); }));
+        if (model.all_bodies().empty())
+            o.fail("bodies", "a model needs at least one body with mass, got none");
+        o.keep("constraints", each(o, "constraints", false, [this](const Json& v, const std::string& at) {
+                   return constraint(v, at);
+               }));
+        o.keep("forces", each(o, "forces", false,
+                              [this](const Json& v, const std::string& at) { return load(v, at); }));
+        if (const Json::List& contacts = o.list("contacts", false); !contacts.empty())
+            o.fail("contacts", "contacts cannot be run from a model file yet; the list must be empty, got " +
+                                   std::to_string(contacts.size()));
+        out.text = written(o.finish()) + "\n";
+        if (ignored > 0)
+            out.warnings.push_back(ignored_place +
+                                   ": f_dot and f_ddot are ignored, f is differentiated exactly; in " +
+                                   std::to_string(ignored) + (ignored == 1 ? " constraint" : " constraints"));
+    }
+
+private:
+    void version(ObjectReader& o)
+    {
+        if (!o.has("hilda_model")) {
+            // so that the dissertation's published files can be read
+            o.look("hilda_model");
+            out.warnings.push_back(o.place() + ": no key 'hilda_model', read as version 1");
+            o.keep("hilda_model", {.value = 1.0});
+        } else if (const double v = o.number("hilda_model"); v != 1) {
+            o.fail("hilda_model", "the version of the format must be 1, got " + shortest(v));
+        }
+    }
+
+    /// Reads the elements of a list and returns what they keep; null for those that need not be kept.
+    template <class Read>
+    Json each(ObjectReader& o, std::string_view key, bool required, Read read)
+    {
+        Json::List kept;
+        const Json::List& list = o.list(key, required);
+        for (size_t k = 0; k < list.size(); ++k) {
+            Json element = read(list[k], pointer_to(o.pointer(key), std::to_string(k)));
+            if (element.object() != nullptr) kept.push_back(std::move(element));
+        }
+        return {.value = std::move(kept)};
+    }
+
+    Json body(const Json& v, const std::string& at)
+    {
+        ObjectReader o(source, v, at);
+        const std::string name = o.name("name");
+        if (o.has("id") && !o.has("r") && !o.has("mass") && !o.has("inertia")) return ground_body(o, name);
+        if (name == "ground")
+            o.fail("name", "'ground' is the fixed body; a body with mass needs another name, got \"ground\"");
+        enter(o, name, model.bodies());
+        Body b;
+        b.name = name;
+        b.m = o.positive("mass");
+        b.J_bar = inertia(o);
+
+        Motion m;
+        m.r = o.vec3("r");
+        m.A = orientation(o);
+        o.keep("A", json(m.A));
+        m.rdot = o.vec3("r_dot", Vec3::Zero());
+        m.omega_bar = o.vec3("omega", Vec3::Zero());
+        Json kept = o.finish();
+        std::erase_if(std::get<Json::Object>(kept.value),
+                      [](const Json::Member& k) { return k.key == "p" || k.key == "axis_angle"; });
+        try {
+            model.add(std::move(b));
+        } catch (const lie::InvalidInput& e) {
+            o.fail("inertia", e.what());
+        }
+        out.x.body.push_back(m);
+        return kept;
+    }
+
+    /// The published files list the ground among the bodies, without r. In the canonical text it goes without
+    /// saying.
+    Json ground_body(ObjectReader& o, const std::string& name)
+    {
+        if (ground_listed)
+            o.fail("a second body without r and mass, which is the ground, got '" + name + "'");
+        ground_listed = true;
+        enter(o, name, ground);
+        o.finish();
+        return {};
+    }
+
+    /// Makes a body known by its name, and its id where it has one.
+    void enter(ObjectReader& o, const std::string& name, int number)
+    {
+        if (name != "ground" && !by_name.emplace(name, number).second)
+            o.fail("name", "two bodies have the same name, got " + described({.value = name}));
+        if (o.look("id") != nullptr)
+            if (const int id = o.integer("id"); !by_id.emplace(id, number).second)
+                o.fail("id", "two bodies have the same id, got " + std::to_string(id));
+    }
+
+    int body_named(ObjectReader& o, std::string_view key)
+    {
+        const Json* v = o.look(key);
+        if (v != nullptr && v->number() != nullptr) {
+            const int id = o.integer(key);
+            const auto found = by_id.find(id);
+            if (found == by_id.end()) o.fail(key, "no body has this id, got " + std::to_string(id));
+            o.keep(key, {.value = model.body_name(found->second)});
+            return found->second;
+        }
+        if (v != nullptr && v->string() == nullptr)
+            o.fail(key, std::string(key) + " must be the name or the id of a body, got " + described(*v));
+        const std::string name = o.text(key);
+        const auto found = by_name.find(name);
+        if (name != "ground" && found == by_name.end()) {
+            std::vector<std::string> known = {"ground"};
+            for (const auto& entry : by_name) known.push_back(entry.first);
+            const std::string meant = nearest(name, known);
+            o.fail(key, "no body has this name, got " + described({.value = name}) +
+                            (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+        }
+        const int number = name == "ground" ? ground : found->second;
+        o.keep(key, {.value = model.body_name(number)});
+        return number;
+    }
+
+    /// body_i and body_j, which must differ
+    std::pair<int, int> pair(ObjectReader& o)
+    {
+        const int i = body_named(o, "body_i"), j = body_named(o, "body_j");
+        if (i == j)
+            o.fail("body_j",
+                   "body_i and body_j must be two different bodies, got '" + model.body_name(i) + "' twice");
+        return {i, j};
+    }
+
+    /// Runs `build`, and puts the place of the object in front of what a constructor refuses.
+    template <class Build>
+    auto placed(const ObjectReader& o, Build build)
+    {
+        try {
+            return build();
+        } catch (const PlacedError&) {
+            throw;
+        } catch (const lie::InvalidInput& e) {
+            o.fail(e.what());
+        } catch (const ExpressionError& e) {
+            o.fail(e.what());
+        }
+    }
+
+    struct Heading {
+        std::string name, type;
+    };
+    /// Name and type of a constraint or force. The name is by default the type and the number in the list.
+    Heading heading(ObjectReader& o, const std::vector<std::string>& types, std::set<std::string>& taken)
+    {
+        o.keep("name", {});  // in front of the type
+        std::string type = o.one_of("type", types);
+        std::string name = o.name("name", type + "-" + std::to_string(taken.size() + 1));
+        if (!taken.insert(name).second)
+            o.fail("name", "this name is taken already, got " + described({.value = name}));
+        return {std::move(name), std::move(type)};
+    }
+
+    Json constraint(const Json& v, const std::string& at)
+    {
+        ObjectReader o(source, v, at);
+        const auto [name, type] = heading(o, constraint_types(), constraint_names);
+        const auto [i, j] = pair(o);
+        Blocks rows = placed(o, [&, t = type, i = i, j = j] { return read_constraint(t, o, i, j, out.x); });
+        if (type == "DP1" || type == "DP2" || type == "D" || type == "CD") ignore_derivatives(o);
+        Json kept = o.finish();
+        model.constrain(name, std::move(rows));
+        out.constraint_place.push_back(o.place());
+        return kept;
+    }
+
+    void ignore_derivatives(ObjectReader& o)
+    {
+        const bool given = o.has("f_dot") || o.has("f_ddot");
+        if (given && ++ignored == 1) ignored_place = o.place(o.has("f_dot") ? "f_dot" : "f_ddot");
+        o.look("f_dot");
+        o.look("f_ddot");
+    }
+
+    Json load(const Json& v, const std::string& at)
+    {
+        std::vector<std::string> types = pair_force_types();
+        types.insert(types.end(), {"force", "torque"});
+        ObjectReader o(source, v, at);
+        const auto [name, type] = heading(o, types, force_names);
+        std::unique_ptr<Force> force;
+        if (type == "force" || type == "torque") {
+            force = prescribed(o, type);
+        } else {
+            const auto [i, j] = pair(o);
+            force = placed(o, [&, t = type, i = i, j = j] { return read_pair_force(t, o, i, j, out.x); });
+        }
+        force->name = name;
+        Json kept = o.finish();
+        model.load(std::move(force));
+        return kept;
+    }
+
+    std::unique_ptr<Force> prescribed(ObjectReader& o, const std::string& type)
+    {
+        const int b = body_named(o, "body");
+        if (b == ground) o.fail("body", "a " + type + " must act on a body that moves, got 'ground'");
+        const Vec3 point_bar = type == "force" ? o.vec3("point_bar", Vec3::Zero()) : Vec3::Zero();
+        const Frame frame = o.one_of("frame", {"global", "body"}) == "global" ? Frame::global : Frame::body;
+        std::array<Expression, 3> in_t = components(o);
+        if (type == "force") return std::make_unique<PrescribedForce>(b, point_bar, frame, std::move(in_t));
+        return std::make_unique<PrescribedTorque>(b, frame, std::move(in_t));
+    }
+
+    std::array<Expression, 3> components(ObjectReader& o)
+    {
+        const Json::List& list = o.list("components", true);
+        if (list.size() != 3)
+            o.fail("components", "components must be three numbers or expressions in t, got a list of " +
+                                     std::to_string(list.size()));
+        const auto component = [&](size_t k) {
+            const std::string at = pointer_to(o.pointer("components"), std::to_string(k));
+            const Json& v = list[k];
+            if (v.number() == nullptr && v.string() == nullptr)
+                source.fail(v, at,
+                            "a component must be a number or an expression in a string, got " + described(v));
+            try {
+                Expression e(v.number() != nullptr ? shortest(*v.number()) : *v.string());
+                if (!std::isfinite(e.value(0)))
+                    source.fail(v, at,
+                                "a component must be finite at t = 0, got " + described(v) + " with " +
+                                    shortest(e.value(0)));
+                return e;
+            } catch (const ExpressionError& e) {
+                source.fail(v, at, e.what());
+            }
+        };
+        o.keep("components", {.value = list});
+        return {component(0), component(1), component(2)};
+    }
+
+    const JsonSource& source;
+    Description& out;
+    Model& model;
+    std::map<std::string, int> by_name;
+    std::map<int, int> by_id;
+    std::set<std::string> constraint_names, force_names;
+    bool ground_listed = false;
+    int ignored = 0;  // constraints with f_dot or f_ddot
+    std::string ignored_place;
+};
+
+}  // namespace
+
+Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set)
+{
+    JsonSource source(text, file);
+    for (const std::string& change : set) source.set(change);
+    Description description;
+    description.model = std::make_unique<Model>();
+    ModelReader(source, description).read();
+    return description;
+}
+
+Description load_model(const std::string& path, std::span<const std::string> set)
+{
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw lie::InvalidInput(path + ": there is no such file");
+    if (!fs::is_regular_file(status))
+        throw lie::InvalidInput(path + ": a model is read from a regular file; this is none");
+    const auto size = fs::file_size(path, error);
+    if (!error && size > JsonSource::max_bytes)
+        throw lie::InvalidInput(path + ": the file has " + std::to_string(size) + " bytes; at most " +
+                                std::to_string(JsonSource::max_bytes) + " are allowed");
+    std::ifstream in(path, std::ios::binary);
+    std::string text(error ? 0 : size, '\0');
+    if (error || !in.read(text.data(), static_cast<std::streamsize>(size)))
+        throw lie::InvalidInput(
+            path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
+    return read_model(text, path, set);
+}
+
+StartReport start(Description& description, const StartOptions& options)
+{
+    try {
+        return start(*description.model, description.x, options);
+    } catch (const ConstraintError& e) {
+        throw ConstraintError(
+            description.constraint_place[static_cast<size_t>(e.constraint)] + ": " + e.what(), e.constraint);
+    }
+}
+
+}  // namespace hilda::dae

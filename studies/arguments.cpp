@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/arguments.hpp"
+
+#include "dae/nearest.hpp"
+#include "studies/exit_codes.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace hilda::studies {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& text)
+{
+    throw UsageError(option + ": " + what + ", got '" + text + "'");
+}
+
+/// The number that is all of the text; NaN when there is none
+double parse(std::string_view text)
+{
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end && std::isfinite(value) ? value : std::nan("");
+}
+
+}  // namespace
+
+double number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (std::isnan(value)) refuse(option, "must be a finite number", text);
+    return value;
+}
+
+double positive_number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value > 0)) refuse(option, "must be a positive, finite number", text);
+    return value;
+}
+
+double nonnegative_number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 0)) refuse(option, "must be a finite number, not negative", text);
+    return value;
+}
+
+int positive_count(const std::string& option, const std::string& text)
+{
+    int value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || at != end || value < 1)
+        refuse(option, "must be a whole number, at least 1", text);
+    return value;
+}
+
+std::vector<std::string> list(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> parts;
+    for (size_t from = 0; from <= text.size();) {
+        const size_t to = std::min(text.find(',', from), text.size());
+        if (to == from) refuse(option, "must be a list such as A,B with no part empty", text);
+        parts.push_back(text.substr(from, to - from));
+        from = to + 1;
+    }
+    return parts;
+}
+
+std::vector<double> steps(const std::string& option, const std::string& text)
+{
+    std::vector<double> h;
+    for (const std::string& part : list(option, text)) h.push_back(positive_number(option, part));
+    std::sort(h.rbegin(), h.rend());
+    if (std::adjacent_find(h.begin(), h.end()) != h.end()) refuse(option, "must name each step once", text);
+    return h;
+}
+
+std::string setting(const std::string& option, const std::string& text)
+{
+    if (!text.starts_with('/') || text.find('=') == std::string::npos)
+        refuse(option, "must be /json/pointer=VALUE, such as /bodies/0/mass=2", text);
+    return text;
+}
+
+Expectation expectation(const std::string& option, const std::string& text)
+{
+    const size_t equals = text.find('='), plus_minus = text.find("+-");
+    const std::string form = "must be KEY=VALUE or KEY=VALUE+-TOL, such as order=2+-0.1";
+    if (equals == std::string::npos || equals == 0) refuse(option, form, text);
+    Expectation e{.key = text.substr(0, equals), .text = text};
+    e.value = parse(std::string_view(text).substr(equals + 1, plus_minus - std::min(plus_minus, equals + 1)));
+    if (plus_minus != std::string::npos) e.tolerance = parse(std::string_view(text).substr(plus_minus + 2));
+    if (std::isnan(e.value) || !(e.tolerance >= 0)) refuse(option, form, text);
+    return e;
+}
+
+std::string with_nearest(const std::string& word, std::span<const std::string> known)
+{
+    const std::string near = dae::nearest(word, known);
+    return " '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+std::vector<std::string> integrators(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> known;
+    for (const lie::Scheme& scheme : lie::schemes()) known.push_back(scheme.name);
+    std::vector<std::string> chosen = list(option, text);
+    for (size_t k = 0; k < chosen.size(); ++k) {
+        if (std::find(known.begin(), known.end(), chosen[k]) == known.end())
+            throw UsageError(option + ": unknown integrator" + with_nearest(chosen[k], known) +
+                             " (hilda integrators lists them)");
+        if (std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(k), chosen[k]) !=
+            chosen.begin() + static_cast<std::ptrdiff_t>(k))
+            refuse(option, "must name each integrator once", text);
+    }
+    return chosen;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Values on the command line: numbers, lists, names. Each is refused with the option it belongs to and what
+/// was typed.
+
+#pragma once
+
+#include "studies/study.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hilda::studies {
+
+/// A finite number, all of the text
+double number(const std::string& option, const std::string& text);
+/// The same, larger than zero, or at least zero
+double positive_number(const std::string& option, const std::string& text);
+double nonnegative_number(const std::string& option, const std::string& text);
+/// A whole number, at least 1
+int positive_count(const std::string& option, const std::string& text);
+
+/// A,B,C: no part empty
+std::vector<std::string> list(const std::string& option, const std::string& text);
+/// Step sizes H1,H2,...: positive, the largest first
+std::vector<double> steps(const std::string& option, const std::string& text);
+
+/// /json/pointer=VALUE, as it is
+std::string setting(const std::string& option, const std::string& text);
+/// KEY=VALUE[+-TOL]
+Expectation expectation(const std::string& option, const std::string& text);
+
+/// " 'x'; did you mean 'y'?" with the known word nearest to x, where one is near
+std::string with_nearest(const std::string& word, std::span<const std::string> known);
+
+/// The integrators named; UsageError for one that is not there.
+std::vector<std::string> integrators(const std::string& option, const std::string& text);
+
+}  // namespace hilda::studies

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/check_model.hpp"
+
+#include "studies/message.hpp"
+#include "studies/named_model.hpp"
+#include "studies/output.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iostream>
+
+namespace hilda::studies {
+
+namespace {
+
+/// A quantity at its largest, and the body it is at
+struct Largest {
+    double value = 0;
+    std::string body;
+
+    void look(double candidate, const std::string& name)
+    {
+        if (!(candidate <= value) || body.empty()) value = candidate, body = name;
+    }
+};
+
+/// How far the start that is used lies from the one given
+struct Change {
+    Largest r, A, rdot, omega_bar;  ///< [m], [rad], [m/s], [rad/s]
+};
+
+Change change(const dae::Model& model, const lie::State& from, const lie::State& to)
+{
+    Change c;
+    for (int b = 0; b < model.bodies(); ++b) {
+        const lie::Motion &x = from.body[b], &y = to.body[b];
+        c.r.look((y.r - x.r).norm(), model.body_name(b));
+        c.A.look(lie::log(x.A.transpose() * y.A).norm(), model.body_name(b));
+        c.rdot.look((y.rdot - x.rdot).norm(), model.body_name(b));
+        c.omega_bar.look((y.omega_bar - x.omega_bar).norm(), model.body_name(b));
+    }
+    return c;
+}
+
+struct Reactions {
+    Largest F, T;  ///< [N], [N m]
+};
+
+Reactions largest_reactions(const dae::Model& model, const lie::State& x)
+{
+    Reactions largest;
+    const std::vector<dae::Reaction> all = dae::reactions(model, x);
+    for (int b = 0; b < model.bodies(); ++b) {
+        largest.F.look(all[b].F.norm(), model.body_name(b));
+        largest.T.look(all[b].T.norm(), model.body_name(b));
+    }
+    return largest;
+}
+
+nlohmann::ordered_json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
+
+}  // namespace
+
+int check_model(const CheckOptions& options)
+{
+    dae::Description d = named_model(options.model, options.set);
+    const lie::State given = d.x;
+    const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
+    const dae::Model& model = *d.model;
+    const double energy = lie::energy(model, d.x);
+    const Reactions loads = largest_reactions(model, d.x);
+    const Change moved = change(model, given, d.x);
+
+    if (options.json) {
+        nlohmann::ordered_json out = {
+            {"status", "ok"},
+            {"model", d.name},
+            {"bodies", model.bodies()},
+            {"constraints", model.constraints()},
+            {"forces", model.forces().size()},
+            {"rows", start.rows},
+            {"rank", start.rank},
+            {"degrees_of_freedom", start.degrees_of_freedom},
+            {"dropped_rows", start.dropped},
+            {"position_residual", {{"value", start.position_residual}, {"row", start.worst_position}}},
+            {"velocity_residual", {{"value", start.velocity_residual}, {"row", start.worst_velocity}}},
+            {"energy", energy},
+            {"largest_reaction_force", as_json(loads.F)},
+            {"largest_reaction_torque", as_json(loads.T)},
+            {"end", d.end},
+            {"warnings", d.warnings}};
+        if (options.fix_initial)
+            out["fix_initial"] = {{"projected", start.projected},
+                                  {"r", as_json(moved.r)},
+                                  {"A", as_json(moved.A)},
+                                  {"rdot", as_json(moved.rdot)},
+                                  {"omega_bar", as_json(moved.omega_bar)}};
+        std::cout << as_text(out);
+        return exit_code::done;
+    }
+
+    for (const std::string& w : d.warnings) warning(w);
+    if (options.quiet) return exit_code::done;
+    const auto line = [](const char* what, const std::string& text) {
+        std::cout << fmt::format("{:<20}{}\n", what, text);
+    };
+    const auto at = [](const Largest& l, const char* unit) {
+        return l.body.empty() ? std::string("none") : fmt::format("{:.3e} {} on '{}'", l.value, unit, l.body);
+    };
+    const auto residual = [](double value, const char* unit, const std::string& row) {
+        return row.empty() ? std::string("none") : fmt::format("{:.1e} {}, {}", value, unit, row);
+    };
+    line("model", d.name);
+    line("bodies", std::to_string(model.bodies()));
+    line("constraints",
+         fmt::format("{} with {} rows of rank {}", model.constraints(), start.rows, start.rank));
+    line("forces", std::to_string(model.forces().size()));
+    line("degrees of freedom", std::to_string(start.degrees_of_freedom));
+    for (const std::string& row : start.dropped) line("redundant", row);
+    line("position residual", residual(start.position_residual, "m or rad", start.worst_position));
+    line("velocity residual", residual(start.velocity_residual, "m/s or rad/s", start.worst_velocity));
+    line("energy", fmt::format("{:.6e} J", energy));
+    line("largest reaction", at(loads.F, "N") + ", " + at(loads.T, "N m"));
+    line("end", fmt::format("{:g} s", d.end));
+    if (options.fix_initial) {
+        line("--fix-initial", start.projected ? "moves the start:" : "changes nothing but rounding:");
+        line("  r", at(moved.r, "m"));
+        line("  A", at(moved.A, "rad"));
+        line("  r_dot", at(moved.rdot, "m/s"));
+        line("  omega", at(moved.omega_bar, "rad/s"));
+    }
+    return exit_code::done;
+}
+
+}  // namespace hilda::studies

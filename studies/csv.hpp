@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Fields of CSV files.
+
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace hilda::studies {
+
+/// The shortest decimal that reads back as the same double
+inline void append_number(std::string& row, double value)
+{
+    char digits[32];
+    row.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+inline void append_number(std::string& row, long value)
+{
+    char digits[32];
+    row.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+template <class Vector>
+void append_vector(std::string& row, const Vector& v)
+{
+    for (int k = 0; k < v.size(); ++k) {
+        row += ',';
+        append_number(row, v[k]);
+    }
+}
+
+/// A name as a field of the header: quoted where it has a comma, a quote or a line break
+inline std::string csv_field(const std::string& name)
+{
+    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    std::string quoted = "\"";
+    for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/csv_trajectory.hpp"
+
+#include "studies/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file,
+                             bool with_reactions)
+    : model(model), grid(grid), file(file), with_reactions(with_reactions), dropped(model.dropped_rows()),
+      C(model.pattern())
+{}
+
+void TrajectoryCsv::write_header()
+{
+    std::string& row = file.buffer;
+    const auto columns = [&](const std::string& name, std::initializer_list<const char*> of) {
+        for (const char* column : of) row += ',' + csv_field(name + '.' + column);
+    };
+    row += "t";
+    for (const dae::Body& body : model.all_bodies())
+        columns(body.name, {"rx", "ry", "rz", "A11", "A12", "A13", "A21", "A22", "A23", "A31", "A32", "A33",
+                            "vx", "vy", "vz", "wx",  "wy",  "wz",  "ax",  "ay",  "az",  "alx", "aly", "alz"});
+    row += ",energy,constraint_norm";
+    if (with_reactions) {
+        for (const dae::Body& body : model.all_bodies())
+            columns(body.name, {"Fx", "Fy", "Fz", "Tx", "Ty", "Tz"});
+        // A dropped row has no multiplier. Where a constraint has several rows they are told apart by their
+        // numbers.
+        std::vector<int> rows(model.constraints());
+        for (const dae::Model::Row& r : model.all_rows()) ++rows[r.constraint];
+        for (const int k : model.active_rows()) {
+            const dae::Model::Row& r = model.all_rows()[k];
+            const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
+            row += ',' + csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
+        }
+    }
+    row += '\n';
+}
+
+void TrajectoryCsv::accepted(const lie::State& x, long n, int)
+{
+    if (!grid.is_row(n)) return;
+    const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
+    std::string& row = file.buffer;
+    append_number(row, x.t);
+    for (const lie::Motion& body : x.body) {
+        append_vector(row, body.r);
+        for (int i = 0; i < 3; ++i) append_vector(row, body.A.row(i));
+        append_vector(row, body.rdot);
+        append_vector(row, body.omega_bar);
+        append_vector(row, body.rddot);
+        append_vector(row, body.omegadot_bar);
+    }
+    row += ',';
+    append_number(row, energy);
+    row += ',';
+    append_number(row, constraint_norm);
+    if (with_reactions) {
+        dae::reactions(model, x, C, reactions);
+        for (const dae::Reaction& on : reactions) {
+            append_vector(row, on.F);
+            append_vector(row, on.T);
+        }
+        append_vector(row, x.lambda);
+    }
+    row += '\n';
+    file.flush_when_full();
+
+    note(x, energy, constraint_norm);
+    if (!dropped.empty() && !(constraint_norm <= drift_limit)) check_dropped(x);
+}
+
+void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_norm)
+{
+    if (invariants.rows++ == 0) invariants.energy_start = energy;
+    invariants.energy_end = energy;
+    invariants.energy_drift = std::max(invariants.energy_drift, std::abs(energy - invariants.energy_start));
+    invariants.constraint_norm = std::max(invariants.constraint_norm, constraint_norm);
+    for (const lie::Motion& body : x.body)
+        invariants.orthogonality = std::max(invariants.orthogonality, lie::orthogonality_error(body.A));
+}
+
+void TrajectoryCsv::check_dropped(const lie::State& x) const
+{
+    for (const int k : dropped) {
+        const dae::Model::Row& r = model.all_rows()[k];
+        const double residual = std::abs(model.scaled_residual(r, x));
+        if (!(residual <= drift_limit))
+            throw lie::NumericalFailure(
+                "constraint_drift",
+                fmt::format(
+                    "{}, dropped as redundant at the start, is off by {:.1e}, more than {:.0e} m or rad",
+                    model.name_of(r), residual, drift_limit));
+    }
+}
+
+}  // namespace hilda::studies

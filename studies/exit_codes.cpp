@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/exit_codes.hpp"
+
+#include "lie/check.hpp"
+#include "studies/message.hpp"
+
+#include <new>
+
+namespace hilda::studies {
+
+int report(const std::exception& error)
+{
+    const auto say = [&](const std::string& head, int code) {
+        message("hilda: " + head + ": " + error.what() + '\n');
+        return code;
+    };
+    if (const auto* failure = dynamic_cast<const Failure*>(&error)) return say("error", failure->code);
+    if (dynamic_cast<const lie::InvalidInput*>(&error) != nullptr)
+        return say("error", exit_code::invalid_input);
+    if (const auto* failure = dynamic_cast<const lie::NumericalFailure*>(&error))
+        return say("error[" + failure->status + "]", exit_code::numerical_failure);
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+        message("hilda: internal error: out of memory\n");
+        return exit_code::internal_error;
+    }
+    return say("internal error", exit_code::internal_error);
+}
+
+}  // namespace hilda::studies

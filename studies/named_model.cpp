@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/named_model.hpp"
+
+#include "studies/problem.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace hilda::studies {
+
+namespace fs = std::filesystem;
+
+bool is_built_in(const std::string& name)
+{
+    try {
+        problem(name);
+        return true;
+    } catch (const lie::InvalidInput&) {
+        return false;
+    }
+}
+
+dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set)
+{
+    std::error_code error;
+    const bool looks_like_path =
+        name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json");
+    if (looks_like_path || (!is_built_in(name_or_path) && fs::exists(name_or_path, error)))
+        return dae::load_model(name_or_path, set);
+    const Problem built_in = problem(name_or_path);
+    return dae::read_model(built_in.model, built_in.name, set);
+}
+
+std::string short_name(const std::string& name_or_path)
+{
+    const fs::path path(name_or_path);
+    const std::string name = path.extension() == ".json" ? path.stem() : path.filename();
+    return name.empty() || name == "." || name == ".." ? "model" : name;
+}
+
+}  // namespace hilda::studies

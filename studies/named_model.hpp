@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A model as the command line names it.
+
+#pragma once
+
+#include "dae/model_file.hpp"
+
+#include <span>
+#include <string>
+
+namespace hilda::studies {
+
+bool is_built_in(const std::string& name);
+
+/// Reads a built-in model by its name, or else the model file at that path. lie::InvalidInput as read_model()
+/// and problem().
+dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set);
+
+/// The name of its output directory below out/
+std::string short_name(const std::string& name_or_path);
+
+}  // namespace hilda::studies

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/output.hpp"
+
+#include <fmt/format.h>
+#include <CLI/Version.hpp>
+#include <hilda/version.hpp>
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace hilda::studies {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& what)
+{
+    const int error = errno;
+    throw IoError(path + ": " + what + ": " + std::strerror(error));
+}
+
+/// A descriptor that is closed, and a file that is removed unless it was kept
+class Temporary {
+public:
+    explicit Temporary(const std::string& goal) : goal(goal), path(goal + ".tmp")
+    {
+        descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (descriptor < 0) fail(goal, "cannot be written");
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+    ~Temporary()
+    {
+        if (descriptor >= 0) close(descriptor);
+        if (!kept) unlink(path.c_str());
+    }
+
+    void write(const std::string& content) const
+    {
+        size_t done = 0;
+        while (done < content.size()) {
+            const ssize_t n = ::write(descriptor, content.data() + done, content.size() - done);
+            if (n < 0 && errno == EINTR) continue;
+            if (n < 0) fail(goal, "cannot be written");
+            done += static_cast<size_t>(n);
+        }
+        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(goal, "cannot be written");
+    }
+
+    void become_goal()
+    {
+        rename_file(path, goal);
+        kept = true;
+    }
+
+private:
+    const std::string goal, path;
+    int descriptor = -1;
+    bool kept = false;
+};
+
+void sync_directory(const std::string& path)
+{
+    const fs::path parent = fs::path(path).parent_path();
+    const int descriptor = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;  // the file is there; only a power cut could now undo its name
+    fsync(descriptor);
+    close(descriptor);
+}
+
+std::string processor()
+{
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name"))
+            if (const size_t at = line.find(": "); at != std::string::npos) return line.substr(at + 2);
+    return "unknown";
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& content)
+{
+    Temporary file(path);
+    file.write(content);
+    file.become_goal();
+}
+
+void rename_file(const std::string& from, const std::string& to)
+{
+    if (rename(from.c_str(), to.c_str()) != 0) fail(to, "cannot be written");
+    sync_directory(to);
+}
+
+std::string read_file(const std::string& path, size_t most)
+{
+    struct stat s {};
+    if (stat(path.c_str(), &s) != 0) fail(path, "cannot be read");
+    if (!S_ISREG(s.st_mode)) throw IoError(path + ": is not a regular file");
+    if (static_cast<size_t>(s.st_size) > most)
+        throw IoError(fmt::format("{}: is larger than {} bytes, got {}", path, most, s.st_size));
+    std::string content(static_cast<size_t>(s.st_size), '\0');
+    std::ifstream in(path, std::ios::binary);
+    if (!in.read(content.data(), s.st_size)) fail(path, "cannot be read");
+    return content;
+}
+
+bool is_vacant(const std::string& directory)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(directory, error);
+    if (status.type() == fs::file_type::not_found) return true;
+    if (status.type() != fs::file_type::directory)
+        throw IoError(directory + ": " + (error ? error.message() : "is there, and is not a directory"));
+    const bool empty = fs::is_empty(directory, error);
+    if (error) throw IoError(directory + ": " + error.message());
+    return empty;
+}
+
+void make_directory(const std::string& directory)
+{
+    std::error_code error;
+    fs::create_directories(directory, error);
+    if (error) throw IoError(directory + ": cannot be made: " + error.message());
+}
+
+std::string as_text(const nlohmann::ordered_json& json)
+{
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+nlohmann::ordered_json provenance(const std::string& command_line, int threads)
+{
+    return {
+        {"version", version::number},
+        {"git", version::git},
+        {"build_type", version::build_type},
+        {"flags", version::flags},
+        {"compiler", version::compiler},
+        {"libraries",
+         {{"Eigen", version::eigen},
+          {"KLU", version::klu},
+          {"SPQR", version::spqr},
+          {"GSL", version::gsl},
+          {"CLI11", CLI11_VERSION},
+          {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+          {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                        NLOHMANN_JSON_VERSION_PATCH)}}},
+        {"command_line", command_line},
+        {"cpu", processor()},
+        {"threads", threads}};
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace hilda::studies {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path)
+{
+    const int error = errno;
+    throw IoError(path + ": cannot be written: " + std::strerror(error));
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string file, std::uint64_t keep, bool go_on)
+    : path(std::move(file)), written(keep)
+{
+    descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | (go_on ? 0 : O_CREAT | O_TRUNC), 0666);
+    if (descriptor < 0) fail(path);
+    if (!go_on) return;
+    struct stat s {};
+    if (fstat(descriptor, &s) != 0) fail(path);
+    if (static_cast<std::uint64_t>(s.st_size) < keep) {
+        close(descriptor);
+        throw IoError(path + ": is shorter than the checkpoint says: " + std::to_string(s.st_size) +
+                      " bytes, not " + std::to_string(keep));
+    }
+    if (ftruncate(descriptor, static_cast<off_t>(keep)) != 0 || lseek(descriptor, 0, SEEK_END) < 0)
+        fail(path);
+}
+
+OutputFile::~OutputFile()
+{
+    if (descriptor >= 0) close(descriptor);
+}
+
+void OutputFile::flush()
+{
+    size_t done = 0;
+    while (done < buffer.size()) {
+        const ssize_t n = write(descriptor, buffer.data() + done, buffer.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            written += done;
+            buffer.clear();  // whoever catches this must not meet it again
+            fail(path);
+        }
+        done += static_cast<size_t>(n);
+    }
+    written += done;
+    buffer.clear();
+}
+
+void OutputFile::sync()
+{
+    flush();
+    if (fdatasync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(path);
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A bar driven to and fro on a revolute joint about x.
+
+#include "studies/problem.hpp"
+
+#include "reference/trusted.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+const bool enrolled = enrol(
+    {.name = "single_pendulum",
+     .what = "bar driven to and fro about x, nothing free (the published code of Fang 2022)",
+     .model = R"json({"hilda_model": 1, "name": "single_pendulum",
+  "note": "bar of 4 m, section 0.05 m, 7800 kg/m3; driver of the published code of Fang (2022)",
+  "gravity": [0, 0, -9.81], "end": 3,
+  "bodies": [
+    {"name": "bar", "mass": 78, "inertia": [0.0325, 104.01625, 104.01625],
+      "r": [0, 1.4142135623730951, -1.4142135623730951],
+      "A": [[0, 0, 1], [0.70710678118654752, 0.70710678118654752, 0], [-0.70710678118654752, 0.70710678118654752, 0]]}
+  ],
+  "constraints": [
+    {"name": "revJoint_DP1_1", "type": "DP1", "body_i": "bar", "body_j": "ground", "a_bar_i": [1, 0, 0], "a_bar_j": [1, 0, 0]},
+    {"name": "revJoint_DP1_2", "type": "DP1", "body_i": "bar", "body_j": "ground", "a_bar_i": [0, 1, 0], "a_bar_j": [1, 0, 0]},
+    {"name": "revJoint_CD_1",  "type": "CD",  "body_i": "bar", "body_j": "ground", "c": [1, 0, 0], "s_bar_p_i": [-2, 0, 0]},
+    {"name": "revJoint_CD_2",  "type": "CD",  "body_i": "bar", "body_j": "ground", "c": [0, 1, 0], "s_bar_p_i": [-2, 0, 0]},
+    {"name": "revJoint_CD_3",  "type": "CD",  "body_i": "bar", "body_j": "ground", "c": [0, 0, 1], "s_bar_p_i": [-2, 0, 0]},
+    {"name": "DP1-drive", "type": "DP1", "body_i": "bar", "body_j": "ground", "a_bar_i": [0, 1, 0], "a_bar_j": [0, 0, -1],
+      "f": "cos(pi/2 + pi/4*cos(2*t))"}
+  ]
+}
+)json",
+     .truth_name = "kinematic analysis at 1e-13",
+     .truth = [](dae::Description& d,
+                 const std::vector<double>& instants) { return reference::trusted(*d.model, d.x, instants); },
+     .watched = {}});
+
+}  // namespace
+
+}  // namespace hilda::studies

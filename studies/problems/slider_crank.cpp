@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The spatial slider-crank, its crank driven at one turn a second: Fang (2022), Table 3.4.
+
+#include "studies/problem.hpp"
+
+#include "reference/trusted.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+const bool enrolled = enrol(
+    {.name = "slider_crank",
+     .what = "spatial slider-crank, crank driven at one turn a second, nothing free (Fang 2022, Table 3.4)",
+     .model = R"json({"hilda_model": 1, "name": "slider_crank",
+  "note": "Fang (2022), Table 3.4, crank mass 0.12; start projected on the constraints; the D row trans_D keeps the rod's end on the slider",
+  "gravity": [0, 0, -9.81], "end": 3,
+  "bodies": [
+    {"name": "crank", "mass": 0.12, "inertia": [1e-4, 1e-5, 1e-4],
+      "r": [0, 0.1, 0.12], "A": [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
+      "omega": [-6.2831853071795862, 0, 0]},
+    {"name": "rod", "mass": 0.5, "inertia": [4e-3, 4e-4, 4e-3],
+      "r": [0.1, 0.05, 0.1],
+      "A": [[ 0.66666666666666667,  0,                   0.74535599249992989],
+            [-0.33333333333333333,  0.89442719099991588, 0.29814239699997196],
+            [-0.66666666666666667, -0.44721359549995794, 0.59628479399994392]],
+      "r_dot": [-0.12566370614359172, 0.25132741228718345, 0],
+      "omega": [-1.3404128655316495, 1.1239703569665, -1.498627142622026]},
+    {"name": "slider", "mass": 2, "inertia": [1e-4, 1e-4, 1e-4],
+      "r": [0.2, 0, 0], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
+      "r_dot": [-0.25132741228718345, 0, 0]}
+  ],
+  "constraints": [
+    {"name": "rev_A_CD_1",       "type": "CD",  "body_i": "ground", "body_j": "crank", "c": [1, 0, 0], "s_bar_p_i": [0, 0.1, 0.12]},
+    {"name": "rev_A_CD_2",       "type": "CD",  "body_i": "ground", "body_j": "crank", "c": [0, 1, 0], "s_bar_p_i": [0, 0.1, 0.12]},
+    {"name": "rev_A_CD_3",       "type": "CD",  "body_i": "ground", "body_j": "crank", "c": [0, 0, 1], "s_bar_p_i": [0, 0.1, 0.12]},
+    {"name": "rev_A_DP1_1",      "type": "DP1", "body_i": "ground", "body_j": "crank", "a_bar_i": [0, 1, 0], "a_bar_j": [1, 0, 0]},
+    {"name": "rev_A_DP1_2",      "type": "DP1", "body_i": "ground", "body_j": "crank", "a_bar_i": [0, 0, 1], "a_bar_j": [1, 0, 0]},
+    {"name": "sphere_B_CD_1",    "type": "CD",  "body_i": "rod", "body_j": "crank", "c": [1, 0, 0], "s_bar_p_i": [-0.15, 0, 0], "s_bar_q_j": [0, 0.08, 0]},
+    {"name": "sphere_B_CD_2",    "type": "CD",  "body_i": "rod", "body_j": "crank", "c": [0, 1, 0], "s_bar_p_i": [-0.15, 0, 0], "s_bar_q_j": [0, 0.08, 0]},
+    {"name": "sphere_B_CD_3",    "type": "CD",  "body_i": "rod", "body_j": "crank", "c": [0, 0, 1], "s_bar_p_i": [-0.15, 0, 0], "s_bar_q_j": [0, 0.08, 0]},
+    {"name": "rev_cyl_C_DP1_1",  "type": "DP1", "body_i": "rod", "body_j": "slider", "a_bar_i": [0, 1, 0], "a_bar_j": [0, 0, 1]},
+    {"name": "rev_cyl_C_DP2_1",  "type": "DP2", "body_i": "rod", "body_j": "slider", "a_bar_i": [0, 1, 0], "s_bar_p_i": [0.15, 0, 0]},
+    {"name": "rev_cyl_C_DP2_2",  "type": "DP2", "body_i": "rod", "body_j": "slider", "a_bar_i": [0, 0, 1], "s_bar_p_i": [0.15, 0, 0]},
+    {"name": "trans_D_DP1_1",    "type": "DP1", "body_i": "slider", "body_j": "ground", "a_bar_i": [-1, 0, 0], "a_bar_j": [1, 0, 0]},
+    {"name": "trans_D_DP1_2",    "type": "DP1", "body_i": "slider", "body_j": "ground", "a_bar_i": [0, 1, 0], "a_bar_j": [1, 0, 0]},
+    {"name": "trans_D_DP2_1",    "type": "DP2", "body_i": "slider", "body_j": "ground", "a_bar_i": [-1, 0, 0], "s_bar_q_j": [0.2, 0, 0]},
+    {"name": "trans_C_DP2_2",    "type": "DP2", "body_i": "slider", "body_j": "ground", "a_bar_i": [0, 1, 0], "s_bar_q_j": [0.2, 0, 0]},
+    {"name": "trans_D_DP1_3",    "type": "DP1", "body_i": "slider", "body_j": "ground", "a_bar_i": [-1, 0, 0], "a_bar_j": [0, 1, 0]},
+    {"name": "trans_D",          "type": "D",   "body_i": "rod", "body_j": "slider", "s_bar_p_i": [0.15, 0, 0], "s_bar_q_j": [0, 0, 1], "f": "1"},
+    {"name": "driver",           "type": "DP1", "body_i": "ground", "body_j": "crank", "a_bar_i": [0, 1, 0], "a_bar_j": [0, 1, 0], "f": "cos(-2*pi*t + pi/2)"}
+  ]
+}
+)json",
+     .truth_name = "kinematic analysis at 1e-13",
+     .truth = [](dae::Description& d,
+                 const std::vector<double>& instants) { return reference::trusted(*d.model, d.x, instants); },
+     .watched = {.body = "slider", .component = "rx"}});
+
+}  // namespace
+
+}  // namespace hilda::studies

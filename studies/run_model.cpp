@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/run_model.hpp"
+
+#include "studies/interrupt.hpp"
+#include "studies/message.hpp"
+#include "studies/named_model.hpp"
+#include "studies/output.hpp"
+#include "studies/single_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace hilda::studies {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+/// One for each integrator; those that may not be written to are refused before the first run begins.
+std::vector<std::string> directories(const RunOptions& options)
+{
+    const std::string output = options.output.empty() ? "out/" + short_name(options.model) : options.output;
+    std::vector<std::string> all;
+    for (const std::string& name : options.integrators) {
+        all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
+        if (!is_vacant(all.back()) && !options.force && !options.resume)
+            throw UsageError(all.back() + ": is not empty; --force overwrites, --resume goes on");
+    }
+    return all;
+}
+
+}  // namespace
+
+int run_model(const RunOptions& options)
+{
+    const std::vector<std::string> directory = directories(options);
+    const Interrupt interrupt;
+    int code = exit_code::done;
+    ordered_json all = ordered_json::array();
+    for (size_t k = 0; k < directory.size(); ++k) {
+        if (Interrupt::caught() != 0) {
+            code = exit_code::signal + Interrupt::caught();
+            break;
+        }
+        if (options.resume && directory.size() > 1 && SingleRun::has_ended(directory[k])) {
+            if (!options.quiet) warning(directory[k] + ": its run has ended; left as it is");
+            continue;
+        }
+        const Result result = SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).go();
+        if (code == exit_code::done) code = result.exit_code;
+        if (options.json) all.push_back(summary(result));
+        if (options.json || options.quiet) continue;
+        if (k > 0) std::cout << '\n';
+        print(result, std::cout);
+    }
+    if (options.json) std::cout << as_text(directory.size() == 1 ? all[0] : ordered_json{{"runs", all}});
+    return code;
+}
+
+}  // namespace hilda::studies

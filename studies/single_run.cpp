@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/single_run.hpp"
+
+#include "studies/diagnosis.hpp"
+#include "studies/interrupt.hpp"
+#include "studies/message.hpp"
+#include "studies/named_model.hpp"
+#include "studies/output.hpp"
+#include "studies/plot.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::studies {
+
+namespace {
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+lie::Grid grid_of(const RunOptions& options, double end)
+{
+    try {
+        return lie::Grid::over(end, options.step, options.every.value_or(end / 1000));
+    } catch (const lie::InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+}
+
+}  // namespace
+
+SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory)
+    : options(options), scheme(scheme), directory(std::move(directory))
+{}
+
+bool SingleRun::has_ended(const std::string& directory)
+{
+    std::error_code error;
+    const std::filesystem::path in(directory);
+    return std::filesystem::exists(in / "summary.json", error) &&
+           !std::filesystem::exists(in / "checkpoint", error) &&
+           !std::filesystem::exists(in / "checkpoint.1", error);
+}
+
+Result SingleRun::go()
+{
+    begin = Clock::now();
+    read();
+    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, options.newton);
+    const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
+    if (!from) clear_directory();
+    result.setup_seconds = seconds(Clock::now() - begin);
+    march(*integrator, from);
+    finish();
+    return std::move(result);
+}
+
+void SingleRun::read()
+{
+    description = named_model(options.model, options.set);
+    result.start = dae::start(description, {.fix_initial = options.fix_initial});
+    result.end = options.end.value_or(description.end);
+    grid = grid_of(options, result.end);
+    for (const std::string& w : description.warnings) warn(w);
+    for (const std::string& row : result.start.dropped)
+        warn(row + ": redundant with the constraints before it, dropped from the equations");
+    say(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
+                    result.start.position_residual, result.start.velocity_residual,
+                    result.start.projected ? ", projected" : ""));
+
+    result.model = description.name;
+    result.integrator = scheme.name;
+    result.step = grid.h;
+    result.every = static_cast<double>(grid.every) * grid.h;
+    result.tolerance = options.newton.tolerance;
+    result.bodies = description.model->bodies();
+    result.constraints = description.model->constraints();
+    result.warnings = description.warnings;
+    result.set = options.set;
+    result.command_line = options.command_line;
+    result.threads = options.threads;
+    result.directory = directory;
+    result.files = {"model.json", "trajectory.csv"};
+    if (options.log_steps) result.files.emplace_back("steps.csv");
+    settings =
+        fmt::format("model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}{}{}{}",
+                    hash(description.text), scheme.name, grid.h, result.end, result.every,
+                    options.newton.tolerance, options.fix_initial ? ", --fix-initial" : "",
+                    options.reactions ? ", --reactions" : "", options.log_steps ? ", --log-steps" : "");
+}
+
+std::optional<Checkpoint> SingleRun::load_checkpoint() const
+{
+    if (has_ended(directory))
+        throw UsageError(directory + ": has no checkpoint, and its run has ended; --force starts it again");
+    std::optional<Checkpoint> found = load(directory);
+    if (!found) warn(directory + ": has no checkpoint; starting at the beginning");
+    if (found && found->settings != settings)
+        throw UsageError(fmt::format("{}: the checkpoint belongs to another run: ({}), not ({})", directory,
+                                     found->settings, settings));
+    return found;
+}
+
+// What an earlier run left must not be taken for ours.
+void SingleRun::clear_directory() const
+{
+    make_directory(directory);
+    remove_checkpoints(directory);
+    for (const char* file : {"summary.json", "trajectory.csv", "steps.csv", "trajectory.png"})
+        std::remove(path(file).c_str());
+    write_file(path("model.json"),
+               description.text.ends_with('\n') ? description.text : description.text + '\n');
+}
+
+void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoint>& from)
+{
+    Recorder recorder(*description.model, integrator, grid, directory,
+                      {.reactions = options.reactions, .log_steps = options.log_steps}, from);
+    lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
+                            : lie::March(description.x, integrator, grid.h);
+    if (from) {
+        seconds_before = from->wall_seconds;
+        result.resumed_at = from->number;
+    }
+    begin = Clock::now();
+    // From the first moment on there is something to go on from.
+    if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
+    advance(march, integrator, recorder);
+    result.invariants = recorder.invariants();
+    recorder.flush();
+}
+
+void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
+{
+    const std::vector<lie::Observer*> observers = recorder.observers();
+    Progress line(options.quiet, result.end, grid.steps, march.number());
+    const bool watch_clock = line.shown() || options.checkpoint > 0;
+    Clock::time_point saved = Clock::now();
+    try {
+        while (march.number() < grid.steps && Interrupt::caught() == 0) {
+            march.advance(observers);
+            if (!watch_clock) continue;
+            const Clock::time_point now = Clock::now();
+            line.update(now, march.node().t, march.number(), integrator.statistics());
+            if (options.checkpoint > 0 && seconds(now - saved) >= options.checkpoint) {
+                save_checkpoint(march, recorder);
+                saved = Clock::now();
+            }
+        }
+        count(march, recorder);  // the look ahead of finish() is no step of the run
+        line.clear();
+        if (march.number() == grid.steps) return march.finish(observers);
+        result.status = "interrupted";
+        result.exit_code = exit_code::signal + Interrupt::caught();
+        save_checkpoint(march, recorder);
+        if (!options.quiet)
+            message("hilda: interrupted; --resume goes on from the checkpoint in " + directory + '\n');
+    } catch (const lie::NumericalFailure& failure) {
+        count(march, recorder);
+        line.clear();
+        failed(failure, march);
+        // The node that the failed step should have left is the last good one, and may be a row.
+        if (failure.status != "constraint_drift") march.finish(observers);
+    }
+}
+
+void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+{
+    Checkpoint c = recorder.checkpoint(march);
+    c.settings = settings;
+    c.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+    save(c, directory);
+    say(fmt::format("checkpoint at step {}", march.number()));
+}
+
+void SingleRun::count(const lie::March& march, const Recorder& recorder)
+{
+    result.statistics = recorder.statistics();
+    result.t = march.node().t;
+    result.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+}
+
+void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
+{
+    const Diagnosis d =
+        diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme.name);
+    result.status = failure.status;
+    result.exit_code = exit_code::numerical_failure;
+    result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
+    message("hilda: error[" + failure.status + "]: " + d.what + '\n');
+    if (!d.detail.empty()) message("  " + d.detail + '\n');
+}
+
+void SingleRun::finish()
+{
+    result.files.emplace_back("summary.json");
+    if (result.status == "ok") remove_checkpoints(directory);
+    if (result.status == "interrupted") result.files.emplace_back("checkpoint");
+    if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
+    write_file(path("summary.json"), as_text(summary(result)));
+}
+
+void SingleRun::say(const std::string& what) const
+{
+    if (options.verbose && !options.quiet) message("hilda: " + what + '\n');
+}
+
+void SingleRun::warn(const std::string& what) const
+{
+    if (!options.quiet) warning(what);
+}
+
+}  // namespace hilda::studies

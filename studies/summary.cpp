@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/summary.hpp"
+
+#include "studies/diagnosis.hpp"
+#include "studies/output.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ostream>
+
+namespace hilda::studies {
+
+namespace {
+
+double per_step(const lie::Statistics& s)
+{
+    return static_cast<double>(s.iterations) / static_cast<double>(std::max(1L, s.steps));
+}
+
+std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+nlohmann::ordered_json summary(const Result& r)
+{
+    nlohmann::ordered_json out = {{"status", r.status}, {"exit_code", r.exit_code}};
+    if (!r.message.empty()) out["message"] = r.message;
+    out["model"] = {{"name", r.model},
+                    {"bodies", r.bodies},
+                    {"constraints", r.constraints},
+                    {"rows", r.start.rows},
+                    {"rank", r.start.rank},
+                    {"degrees_of_freedom", r.start.degrees_of_freedom},
+                    {"dropped_rows", r.start.dropped},
+                    {"initial_position_residual", r.start.position_residual},
+                    {"initial_velocity_residual", r.start.velocity_residual},
+                    {"initial_projected", r.start.projected},
+                    {"set", r.set},
+                    {"warnings", r.warnings}};
+    out["integrator"] = {{"name", r.integrator},
+                         {"step", r.step},
+                         {"end", r.end},
+                         {"every", r.every},
+                         {"tolerance", r.tolerance}};
+    out["counters"] = {{"steps", r.statistics.steps},
+                       {"newton_iterations", r.statistics.iterations},
+                       {"factorizations", r.statistics.factorizations},
+                       {"refactorizations", r.statistics.refactorizations},
+                       {"rows", r.invariants.rows},
+                       {"t", r.t}};
+    out["invariants"] = {{"constraint_norm", r.invariants.constraint_norm},
+                         {"orthogonality", r.invariants.orthogonality},
+                         {"energy_start", r.invariants.energy_start},
+                         {"energy_end", r.invariants.energy_end},
+                         {"energy_drift", r.invariants.energy_drift},
+                         {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
+    out["files"] = r.files;
+    out["timing"] = {{"setup_seconds", r.setup_seconds},
+                     {"wall_seconds", r.wall_seconds},
+                     {"steps_per_second",
+                      r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0}};
+    out["provenance"] = provenance(r.command_line, r.threads);
+    if (r.resumed_at >= 0) out["provenance"]["resumed_at_step"] = r.resumed_at;
+    return out;
+}
+
+void print(const Result& r, std::ostream& out)
+{
+    const auto line = [&](const char* what, const std::string& text) {
+        out << fmt::format("{:<14}{}\n", what, text);
+    };
+    line("model",
+         fmt::format("{}: {}, {}, {}", r.model, r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
+                     count(r.start.rows, "constraint row"),
+                     fmt::format("{} of freedom", count(r.start.degrees_of_freedom, "degree"))));
+    line("integrator", fmt::format("{}, step {} s, end {:g} s", r.integrator, step_text(r.step), r.end));
+    if (r.status != "ok") line("status", fmt::format("{} at t = {:g} s", r.status, r.t));
+    line("steps", fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps,
+                              per_step(r.statistics), count(r.statistics.factorizations, "factorization"),
+                              count(r.statistics.refactorizations, "refactorization")));
+    line("energy",
+         fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest drift {:.1e} J",
+                     r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
+    line("constraints", fmt::format("{:.1e} m or rad, largest residual", r.invariants.constraint_norm));
+    line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));
+    line("wall time",
+         fmt::format("{:.3f} s, {:.0f} steps/s", r.wall_seconds,
+                     r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0));
+    std::string files;
+    for (const std::string& file : r.files) files += (files.empty() ? "" : ", ") + file;
+    line("written", fmt::format("{} in {}: {}", count(r.invariants.rows, "row"), r.directory, files));
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What came of a run: summary.json for programs, a short table for people.
+
+#pragma once
+
+#include "dae/start.hpp"
+#include "studies/csv_trajectory.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace hilda::studies {
+
+struct Result {
+    std::string status = "ok", message;
+    int exit_code = 0;
+
+    std::string model, integrator;
+    double step = 0, end = 0, every = 0, tolerance = 0;  ///< every: between rows as they lie on the grid
+    double t = 0;                                        ///< reached [s]
+
+    int bodies = 0, constraints = 0;
+    dae::StartReport start;
+    std::vector<std::string> warnings, set;
+
+    lie::Statistics statistics;
+    Invariants invariants;
+    double setup_seconds = 0, wall_seconds = 0;
+    long resumed_at = -1;  ///< step number; -1: not resumed
+    std::string command_line;
+    int threads = 1;
+
+    std::string directory;
+    std::vector<std::string> files;  ///< written into the directory
+};
+
+nlohmann::ordered_json summary(const Result& result);
+
+void print(const Result& result, std::ostream& out);
+
+}  // namespace hilda::studies

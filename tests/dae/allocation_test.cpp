@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/expression.hpp"
+#include "dae/forces/prescribed.hpp"
+#include "dae/forces/spring_damper.hpp"
+#include "dae/forces/torsion_spring.hpp"
+#include "dae/start.hpp"
+#include "lie/trajectory.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/no_allocation.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using lie::Vec3;
+
+TEST_CASE("a step of a mechanism with drivers, springs and expressions takes nothing from the heap",
+          "[dae][allocation]")
+{
+    for (const lie::Scheme& s : lie::schemes()) {
+        dae::Model model;
+        lie::State x;
+        tests::slider_crank(model, x);
+        model.load(dae::SpringDamper(0, Vec3(0.01, 0, 0), 2, Vec3(0, 0.02, 0), 10, 0.1, 0.05,
+                                     dae::Expression("2*sin(t)*l - 0.1*ldot", {"l", "ldot", "t"})));
+        model.load(dae::TorsionSpring(dae::ground, Vec3::UnitX(), 0, Vec3::UnitX(), 0.01, 1e-3, 0.2, x));
+        model.load(
+            dae::PrescribedForce(1, Vec3(0, 0.1, 0), dae::Frame::body,
+                                 {dae::Expression("t"), dae::Expression("0"), dae::Expression("cos(3*t)")}));
+        dae::start(model, x, {.fix_initial = true});
+        const auto integrator = s.make(model, {});
+        lie::March march(x, *integrator, 1e-3);
+        for (int n = 0; n < 5; ++n) march.advance({});
+        const long taken = tests::allocations_during([&] {
+            for (int n = 0; n < 300; ++n) march.advance({});  // past the first swap of the driver
+        });
+        INFO(s.name);
+        CHECK(march.node().memory[0] == 1);
+        CHECK(taken <= integrator->statistics().factorizations * 64);  // new pivots are KLU's to store
+        const long steady = tests::allocations_during([&] {
+            for (int n = 0; n < 20; ++n) march.advance({});
+        });
+        CHECK(steady == 0);
+    }
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The headline study, against numbers that two independent prototypes agree on.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+namespace {
+
+using nlohmann::json;
+
+/// What `hilda ARGUMENTS` prints on stdout, as JSON
+json hilda(const std::string& arguments)
+{
+    const std::string command = std::string(HILDA_PROGRAM) + " " + arguments + " --json --quiet";
+    FILE* pipe = popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::string text;
+    char buffer[4096];
+    while (const size_t n = fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+    CHECK(pclose(pipe) == 0);
+    return json::parse(text);
+}
+
+/// The series of one scheme, by name
+std::map<std::string, json> by_scheme(const json& study)
+{
+    std::map<std::string, json> out;
+    for (const json& series : study["series"]) out[series["integrator"]] = series;
+    return out;
+}
+
+double at(const json& series, double h, const char* key)
+{
+    for (const json& row : series["rows"])
+        if (row["h"] == Approx(h).epsilon(1e-12))
+            return row[key].is_null() ? std::nan("") : row[key].get<double>();
+    FAIL("no row with h = " << h);
+    return 0;
+}
+
+}  // namespace
+
+TEST_CASE("the double pendulum shows the prototype's errors, orders and iterations", "[studies][convergence]")
+{
+#ifdef NDEBUG
+    const json study = hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3,4e-4,1e-4");
+#else
+    const json study = hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3");
+#endif
+    const auto series = by_scheme(study);
+    struct Expected {
+        const char* scheme;
+        double h, r, Q, iterations;  // Q 0: not known
+    };
+    const Expected all[] = {
+        {"rA-full-1", 1e-2, 7.31e-1, 0, 6.21},       {"rA-full-1", 1e-3, 1.00e-1, 0, 3.27},
+        {"rA-full-1", 1e-4, 1.04e-2, 0, 2.00},       {"rA-half-1", 1e-2, 3.56e-2, 2.47e-2, 5.28},
+        {"rA-half-1", 1e-3, 3.51e-3, 2.39e-3, 2.98}, {"rA-half-1", 1e-4, 3.50e-4, 2.38e-4, 2.00},
+        {"rA-half-2", 1e-2, 5.32e-3, 3.73e-3, 5.29}, {"rA-half-2", 1e-3, 7.28e-5, 4.46e-5, 2.98},
+        {"rA-half-2", 1e-4, 7.51e-7, 0, 2.00},
+    };
+    for (const Expected& e : all) {
+#ifndef NDEBUG
+        if (e.h < 1e-3) continue;
+#endif
+        INFO(e.scheme << " at h = " << e.h);
+        CHECK(at(series.at(e.scheme), e.h, "r") == Approx(e.r).epsilon(0.02));
+        if (e.Q > 0) CHECK(at(series.at(e.scheme), e.h, "Q") == Approx(e.Q).epsilon(0.02));
+        CHECK(at(series.at(e.scheme), e.h, "iterations_per_step") == Approx(e.iterations).epsilon(0.05));
+    }
+#ifdef NDEBUG
+    for (const auto& [name, one] : series) {
+        INFO(name);
+        CHECK(one["fitted_order"]["r"].get<double>() ==
+              Approx(one["declared_order"].get<double>()).margin(0.05));
+        CHECK(one["fitted_order"]["A"].get<double>() ==
+              Approx(one["declared_order"].get<double>()).margin(0.05));
+    }
+#endif
+}
+
+#ifdef NDEBUG
+TEST_CASE("driven mechanisms show the order in their velocities, and that lambda of rA-half-2 is of order 1",
+          "[studies][convergence]")
+{
+    const json study =
+        hilda("study convergence --problem slider_crank,four_link --steps 1e-3,8e-4,4e-4,2e-4,1e-4");
+    for (const json& one : study["series"]) {
+        INFO(one["integrator"] << " on " << one["problem"]);
+        const double declared = one["declared_order"];
+        CHECK(one["fitted_order"]["v"].get<double>() == Approx(declared).margin(0.05));
+        CHECK(one["fitted_order"]["omega"].get<double>() == Approx(declared).margin(0.05));
+        if (one["integrator"] == "rA-half-2" && one["problem"] == "four_link")
+            CHECK(one["fitted_order"]["Q"].get<double>() == Approx(1).margin(0.2));
+    }
+    const std::map<std::string, std::map<std::string, double>> iterations = {
+        {"slider_crank", {{"rA-full-1", 1.92}, {"rA-half-1", 1.92}, {"rA-half-2", 1.95}}},
+        {"four_link", {{"rA-full-1", 2.00}, {"rA-half-1", 2.00}, {"rA-half-2", 2.00}}}};
+    for (const json& one : study["series"])
+        CHECK(at(one, 1e-4, "iterations_per_step") ==
+              Approx(iterations.at(one["problem"]).at(one["integrator"])).epsilon(0.05));
+}
+
+TEST_CASE("moving and spatial starts show the declared order, and rA-half-2 order 1 in lambda",
+          "[studies][convergence]")
+{
+    const json study =
+        hilda("study convergence --problem double_pendulum_moving,n_pendulum_2_spin --steps 4e-4,2e-4,1e-4");
+    for (const json& one : study["series"])
+        for (const char* quantity : {"r", "A", "v", "omega"}) {
+            // of the finest pair: rA-full-1 is off by 24 % at 1e-3 s on the spinning bars, too far for a fit
+            // from there
+            const double order = std::log2(at(one, 2e-4, quantity) / at(one, 1e-4, quantity));
+            INFO(one["integrator"] << " on " << one["problem"] << ": " << quantity);
+            CHECK(order == Approx(one["declared_order"].get<double>()).margin(0.05));
+        }
+    for (const json& one : study["series"])
+        if (one["integrator"] == "rA-half-2")
+            CHECK(one["fitted_order"]["Q"].get<double>() == Approx(1).margin(0.1));
+}
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// About 100 000 steps: half a second
+std::vector<std::string> long_run(const std::string& integrator, const std::string& directory)
+{
+    return {"run",     "slider_crank", "--integrator", integrator,    "--step",  "1e-5",     "--end",  "0.6",
+            "--every", "1e-3",         "--reactions",  "--log-steps", "--quiet", "--output", directory};
+}
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
+{
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+/// steps.csv without its last column, the time that a step took
+std::string without_times(const fs::path& file)
+{
+    std::istringstream in(read(file));
+    std::string all;
+    for (std::string line; std::getline(in, line);) all += line.substr(0, line.rfind(',')) + '\n';
+    return all;
+}
+
+ordered_json counters_and_invariants(const fs::path& directory)
+{
+    const ordered_json summary = ordered_json::parse(read(directory / "summary.json"));
+    return {summary["status"], summary["counters"], summary["invariants"]};
+}
+
+}  // namespace
+
+// The driver of the slider-crank passes four singular points a turn, so that pivots are chosen anew on the
+// way: all that an integrator remembers outside the state.
+TEST_CASE("an interrupted and killed run ends as one that was left alone", "[studies][resume]")
+{
+    const std::string integrator = GENERATE("rA-half-1", "rA-half-2", "rA-full-1");
+    CAPTURE(integrator);
+    const Scratch in;
+    REQUIRE(call(in, long_run(integrator, "whole")).code == 0);
+
+    const std::vector<std::string> parts = with(long_run(integrator, "parts"), {"--checkpoint", "0.02"});
+    const Program first(in, parts);
+    REQUIRE(appears(in / "parts/checkpoint.1"));
+    first.send(SIGINT);
+    const Ended interrupted = first.wait();
+    CHECK(interrupted.code == 130);
+    CHECK(ordered_json::parse(read(in / "parts/summary.json"))["status"] == "interrupted");
+    CHECK(ordered_json::parse(read(in / "parts/summary.json"))["exit_code"] == 130);
+
+    for (int k = 0; k < 2; ++k) {
+        const Program killed(in, with(parts, {"--resume"}));
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        killed.send(SIGKILL);
+        killed.wait();
+    }
+    const Ended last = call(in, with(parts, {"--resume"}));
+    CAPTURE(last.err);
+    REQUIRE(last.code == 0);
+    CHECK(read(in / "parts/trajectory.csv") == read(in / "whole/trajectory.csv"));
+    CHECK(without_times(in / "parts/steps.csv") == without_times(in / "whole/steps.csv"));
+    CHECK(counters_and_invariants(in / "parts") == counters_and_invariants(in / "whole"));
+    CHECK_FALSE(fs::exists(in / "parts/checkpoint"));
+}
+
+TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "[studies][resume]")
+{
+    const Scratch in;
+    const Program program(in, long_run("rA-half-1", "a"));
+    REQUIRE(appears(in / "a/model.json"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    program.send(SIGTERM);
+    CHECK(program.wait().code == 143);
+    REQUIRE(fs::exists(in / "a/checkpoint"));
+
+    // of another run
+    const Ended other = call(in, with(long_run("rA-half-1", "a"), {"--resume", "--tolerance", "1e-9"}));
+    CHECK(other.code == 2);
+    CHECK_THAT(other.err, Contains("belongs to another run"));
+
+    // damaged, with none before it
+    std::string bytes = read(in / "a/checkpoint");
+    bytes[bytes.size() / 2] ^= 1;
+    write(in / "a/checkpoint", bytes);
+    const Ended damaged = call(in, with(long_run("rA-half-1", "a"), {"--resume"}));
+    CHECK(damaged.code == 5);
+    CHECK_THAT(damaged.err, StartsWith("hilda: error: a/checkpoint: the checkpoint is damaged"));
+
+    // damaged, with a whole one before it
+    bytes[bytes.size() / 2] ^= 1;
+    write(in / "a/checkpoint.1", bytes);
+    const Ended fallen_back = call(in, with(long_run("rA-half-1", "a"), {"--resume"}));
+    CHECK(fallen_back.code == 0);
+    CHECK_THAT(fallen_back.err, StartsWith("hilda: warning: a/checkpoint: the checkpoint is damaged"));
+}
+
+TEST_CASE("a resumed run starts at the beginning where nothing has been done", "[studies][resume]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"run", "double_pendulum", "--end", "0.1", "--resume", "--output", "a"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.err, Contains("starting at the beginning"));
+}

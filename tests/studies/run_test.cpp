@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json summary_in(const fs::path& directory)
+{
+    return ordered_json::parse(read(directory / "summary.json"));
+}
+
+std::vector<std::string> lines(const fs::path& file)
+{
+    std::vector<std::string> all;
+    std::istringstream in(read(file));
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a run writes the files and columns that are promised", "[studies][run]")
+{
+    const Scratch in;
+    write(in / "bar.json", pendulum());
+    const Ended ended =
+        call(in, {"run", "bar.json", "--end", "0.1", "--every", "0.01", "--reactions", "--log-steps"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK(ended.err.empty());
+    CHECK_THAT(ended.out, Contains("pendulum") && Contains("energy"));
+
+    const std::vector<std::string> rows = lines(in / "out/bar/trajectory.csv");
+    REQUIRE(rows.size() == 12);
+    CHECK(rows[0] ==
+          "t,bar.rx,bar.ry,bar.rz,bar.A11,bar.A12,bar.A13,bar.A21,bar.A22,bar.A23,bar.A31,bar.A32,bar.A33,"
+          "bar.vx,bar.vy,"
+          "bar.vz,bar.wx,bar.wy,bar.wz,bar.ax,bar.ay,bar.az,bar.alx,bar.aly,bar.alz,energy,constraint_norm,"
+          "bar.Fx,bar.Fy,bar.Fz,bar.Tx,bar.Ty,bar.Tz,hinge.lambda1,hinge.lambda2,hinge.lambda3,hinge.lambda4,"
+          "hinge.lambda5");
+    CHECK_THAT(rows[1], StartsWith("0,0,1,0,1,0,0,0,1,0,0,0,1,0,0,0,0,0,0,"));
+    CHECK_THAT(rows[2], StartsWith("0.01,"));
+    CHECK_THAT(rows[11], StartsWith("0.1,"));
+
+    const std::vector<std::string> steps = lines(in / "out/bar/steps.csv");
+    REQUIRE(steps.size() == 101);
+    CHECK(steps[0] == "t,h,newton_iterations,correction,constraint_norm,energy,factorizations,wall_ns");
+    CHECK_THAT(steps[1], StartsWith("0.001,0.001,"));
+    CHECK_THAT(steps[100], StartsWith("0.1,0.001,"));
+
+    const ordered_json summary = summary_in(in / "out/bar");
+    CHECK(summary["status"] == "ok");
+    CHECK(summary["exit_code"] == 0);
+    CHECK(summary["model"]["degrees_of_freedom"] == 1);
+    CHECK(summary["counters"]["steps"] == 100);
+    CHECK(summary["counters"]["newton_iterations"] >= 100);
+    CHECK(summary["counters"]["rows"] == 11);
+    CHECK(summary["invariants"]["constraint_norm"] < 1e-9);
+    CHECK(summary["invariants"]["orthogonality"] < 1e-12);
+    for (const char* key : {"version", "git", "flags", "libraries", "command_line", "cpu", "threads"})
+        CHECK(summary["provenance"].contains(key));
+    CHECK(ordered_json::parse(read(in / "out/bar/model.json"))["name"] == "pendulum");
+    CHECK_FALSE(fs::exists(in / "out/bar/checkpoint"));
+}
+
+TEST_CASE("two identical runs write identical files but for timing and provenance", "[studies][run]")
+{
+    const Scratch in;
+    for (const char* directory : {"a", "b"})
+        REQUIRE(
+            call(in, {"run", "slider_crank", "--end", "0.5", "--reactions", "--quiet", "--output", directory})
+                .code == 0);
+    for (const char* file : {"trajectory.csv", "model.json"})
+        CHECK(read(in / "a" / file) == read(in / "b" / file));
+    ordered_json a = summary_in(in / "a"), b = summary_in(in / "b");
+    for (ordered_json* s : {&a, &b}) s->erase("timing"), s->erase("provenance");
+    CHECK(a == b);
+}
+
+TEST_CASE("several integrators run one after the other", "[studies][run]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"run", "double_pendulum", "--integrator", "rA-half-1,rA-half-2", "--end", "0.1", "--json"});
+    REQUIRE(ended.code == 0);
+    const ordered_json all = ordered_json::parse(ended.out);
+    CHECK(all["runs"].size() == 2);
+    CHECK(summary_in(in / "out/double_pendulum/rA-half-2")["integrator"]["name"] == "rA-half-2");
+    CHECK(fs::exists(in / "out/double_pendulum/rA-half-1/trajectory.csv"));
+}
+
+TEST_CASE("a directory that is not empty is refused without --force", "[studies][run]")
+{
+    const Scratch in;
+    fs::create_directory(in / "a");
+    write(in / "a/notes.txt", "mine");
+    const Ended refused = call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a"});
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, StartsWith("hilda: error: a: is not empty"));
+    CHECK_FALSE(fs::exists(in / "a/trajectory.csv"));
+    CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--force"}).code == 0);
+    CHECK(read(in / "a/notes.txt") == "mine");
+    CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--resume"}).code == 2);
+}
+
+TEST_CASE("an invalid model exits with 3 and writes nothing", "[studies][run]")
+{
+    const Scratch in;
+    write(in / "bad.json", R"({"hilda_model": 1, "name": "bad", "bodies": [{"name": "b", "mass": -1}]})");
+    for (const char* command : {"run", "check"}) {
+        const Ended ended = call(in, {command, "bad.json"});
+        CAPTURE(ended.err);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: bad.json:"));
+    }
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("a change by --set is made and recorded", "[studies][run]")
+{
+    const Scratch in;
+    write(in / "bar.json", pendulum());
+    REQUIRE(
+        call(in, {"run", "bar.json", "--end", "0.1", "--output", "a", "--set", "/bodies/0/mass=5"}).code ==
+        0);
+    CHECK(summary_in(in / "a")["model"]["set"][0] == "/bodies/0/mass=5");
+    CHECK(ordered_json::parse(read(in / "a/model.json"))["bodies"][0]["mass"] == 5);
+    CHECK(call(in, {"run", "bar.json", "--set", "/bodies/0/mas=5"}).code == 3);
+}
+
+TEST_CASE("a load that stops being a number ends the run with 4 and keeps its rows", "[studies][run]")
+{
+    const Scratch in;
+    write(in / "bar.json", pendulum("", R"json({"type": "force", "body": "bar", "point_bar": [0, 0, 0],
+        "frame": "global", "name": "push", "components": ["sqrt(0.5 - t)", 0, 0]})json"));
+    const Ended ended = call(in, {"run", "bar.json", "--step", "1e-2", "--every", "1e-2", "--output", "a"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 4);
+    CHECK_THAT(ended.err, StartsWith("hilda: error[nonfinite]: t=0.5") && Contains("(rA-half-1, h=0.01)") &&
+                              Contains("'bar'"));
+    const std::vector<std::string> rows = lines(in / "a/trajectory.csv");
+    CHECK(rows.size() >= 52);
+    CHECK(rows.size() <= 54);
+    CHECK_THAT(rows[50], StartsWith("0.49,"));
+    CHECK(summary_in(in / "a")["status"] == "nonfinite");
+    CHECK(summary_in(in / "a")["exit_code"] == 4);
+}
+
+TEST_CASE("Newton's method that does not converge is named, with where", "[studies][run]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"run", "slider_crank", "--tolerance", "1e-300", "--output", "a", "--json"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 4);
+    CHECK_THAT(
+        ended.err,
+        StartsWith("hilda: error[newton_diverged]: t=0.0010 step 1 (rA-half-1, h=1e-3): correction ") &&
+            Contains(" after 30 iterations\n  largest: constraint '") && Contains("reciprocal condition"));
+    CHECK(ordered_json::parse(ended.out)["status"] == "newton_diverged");
+    CHECK(lines(in / "a/trajectory.csv").size() == 2);
+}
+
+TEST_CASE("a dropped row that stops being redundant ends the run", "[studies][run]")
+{
+    const Scratch in;
+    // t^4 agrees with 0 in position, velocity and acceleration at the start, and not after that
+    write(in / "bar.json", pendulum(R"(, {"name": "again", "type": "CD", "body_i": "bar", "body_j": "ground",
+        "c": [1, 0, 0], "s_bar_p_i": [0, -1, 0], "s_bar_q_j": [0, 0, 0], "f": "t^4"})"));
+    const Ended ended = call(in, {"run", "bar.json", "--every", "0", "--output", "a"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 4);
+    CHECK_THAT(ended.err, StartsWith("hilda: warning: constraint 'again' row 1") &&
+                              Contains("hilda: error[constraint_drift]: t=0.03"));
+    const ordered_json summary = summary_in(in / "a");
+    CHECK(summary["status"] == "constraint_drift");
+    CHECK(summary["model"]["dropped_rows"].size() == 1);
+}
+
+TEST_CASE("a full disk exits with 5 and names the file", "[studies][run]")
+{
+    const Scratch in;
+    const std::vector<std::string> arguments = {"run", "double_pendulum", "--every", "0", "--output",
+                                                "a",   "--quiet"};
+    const Ended ended = call(in, arguments, {.file_bytes = 100000});
+    CHECK(ended.code == 5);
+    CHECK_THAT(ended.err, StartsWith("hilda: error: a/trajectory.csv: cannot be written"));
+    CHECK_FALSE(fs::exists(in / "a/summary.json"));
+
+    // no place for the model either: no temporary file stays behind
+    CHECK(call(in, {"run", "double_pendulum", "--output", "b", "--quiet"}, {.file_bytes = 10}).code == 5);
+    CHECK(fs::is_empty(in / "b"));
+}
+
+TEST_CASE("check says what the model is and writes nothing", "[studies][check]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"check", "slider_crank"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("degrees of freedom") && Contains("largest reaction"));
+    const ordered_json facts = ordered_json::parse(call(in, {"check", "slider_crank", "--json"}).out);
+    CHECK(facts["bodies"] == 3);
+    CHECK(facts["rank"] == 18);
+    CHECK(facts["degrees_of_freedom"] == 0);
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("a start off its constraints is refused, or moved by --fix-initial", "[studies][check]")
+{
+    const Scratch in;
+    write(in / "bar.json", pendulum());
+    const std::vector<std::string> off = {"check", "bar.json", "--json", "--set",
+                                          "/bodies/0/r=[0, 1.001, 0]"};
+    const Ended refused = call(in, off);
+    CHECK(refused.code == 3);
+    CHECK_THAT(refused.err, Contains("hinge") && Contains("--fix-initial"));
+    std::vector<std::string> fixed = off;
+    fixed.emplace_back("--fix-initial");
+    const ordered_json facts = ordered_json::parse(call(in, fixed).out);
+    CHECK(facts["fix_initial"]["projected"] == true);
+    CHECK(facts["fix_initial"]["r"]["value"] == Approx(1e-3).epsilon(0.01));
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda::tests;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+Ended study(const Scratch& in, const std::vector<std::string>& more)
+{
+    std::vector<std::string> arguments = {
+        "study",        "convergence", "--problem", "double_pendulum",  "--end",    "0.3",
+        "--integrator", "rA-half-2",   "--steps",   "1e-2,5e-3,2.5e-3", "--no-plot"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return call(in, arguments);
+}
+
+}  // namespace
+
+TEST_CASE("a study writes its table, and exits with 6 when an expectation fails", "[studies][study]")
+{
+    const Scratch in;
+    const Ended met = study(in, {"--expect", "order=2+-0.2"});
+    CAPTURE(met.err);
+    CHECK(met.code == 0);
+    CHECK(fs::exists(in / "out/convergence/study.csv"));
+    CHECK(fs::exists(in / "out/convergence/study.json"));
+
+    CHECK(study(in, {}).code == 2);  // the directory is not empty
+    const Ended failed = study(in, {"--expect", "order=7", "--force"});
+    CHECK(failed.code == 6);
+    CHECK_THAT(failed.err, StartsWith("hilda: error: expected order=7, got "));
+}
+
+TEST_CASE("a study as JSON prints one object and writes files only where it is told to", "[studies][study]")
+{
+    const Scratch in;
+    const Ended ended = study(in, {"--json"});
+    CHECK(ended.code == 0);
+    CHECK(nlohmann::json::parse(ended.out)["study"] == "convergence");
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("a study that cannot begin leaves no directory", "[studies][study]")
+{
+    const Scratch in;
+    CHECK(call(in, {"study", "convergence", "--problem", "none", "--output", "a"}).code == 3);
+    CHECK_FALSE(fs::exists(in / "a"));
+}

@@ -50,7 +50,7 @@ public:
     static constexpr std::size_t max_bytes = std::size_t{64} << 20;
     static constexpr int max_depth = 64;
     static constexpr std::size_t max_string = 4096;     ///< bytes
-    static constexpr std::size_t max_values = 4000000;  ///< 48 bytes each
+    static constexpr std::size_t max_values = 2000000;  ///< about 50 bytes each
 
     Json root;
 

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace hilda::dae {
@@ -55,7 +56,7 @@ Mat3 orientation(ObjectReader& o)
         const Vec3 u(a[0], a[1], a[2]);
         if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
             o.fail("axis_angle", off("the axis of axis_angle must have length 1", u.norm()));
-        A = lie::exp(a[3] * u.normalized());
+        A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
     }
     return A;
 }

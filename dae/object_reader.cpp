@@ -92,7 +92,7 @@ Vec3 ObjectReader::vec3(std::string_view key, const std::optional<Vec3>& fallbac
 
 Vec3 ObjectReader::direction(std::string_view key)
 {
-    const Vec3 v = vec3(key);
+    Vec3 v = vec3(key);
     const double length = v.norm();
     if (!(length > 0) || !std::isfinite(length))
         fail(key, std::string(key) + " must have a direction, got " + described(*look(key)) + " of length " +

@@ -31,9 +31,6 @@ void step(benchmark::State& timer, const char* scheme)
     const lie::Statistics statistics = integrator->statistics();
     timer.counters["iterations_per_step"] =
         static_cast<double>(statistics.iterations) / static_cast<double>(statistics.steps);
-    timer.counters["us_per_bar"] =
-        benchmark::Counter(static_cast<double>(timer.range(0)) * 1e-6,
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 BENCHMARK_CAPTURE(step, half_1, "rA-half-1")

@@ -57,7 +57,7 @@ def draw(directory, problem, rows):
                 mine = [row for row in rows if row["integrator"] == scheme and row[norm] not in ("", "0")]
                 h = [float(row["h"]) for row in mine]
                 e = [float(row[norm]) for row in mine]
-                points += list(zip(h, e))
+                points += [(x, y) for x, y, row in zip(h, e, mine) if row["floor_" + norm] != "1"]
                 colour = COLOURS[k % len(COLOURS)]
                 axes.loglog(h, e, "-", color=colour, lw=1.4)
                 for hollow in (False, True):

@@ -50,7 +50,7 @@ Problem double_pendulum(const std::string& name, const std::string& what, const 
     return {.name = name,
             .what = what,
             .model = "{\"hilda_model\": 1, \"name\": \"" + name + "\"," + head_and_bodies + joints,
-            .truth_name = "two-angle equations by rk8pd at 1e-13 (index 1 where --set leaves the plane)",
+            .truth_name = "two-angle equations (rk8pd, 1e-13)",
             .truth = two_angles,
             .watched = {}};
 }

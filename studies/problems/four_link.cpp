@@ -67,7 +67,7 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
                 [](dae::Description& d, const std::vector<double>& instants) {
                     return reference::trusted(*d.model, d.x, instants);
                 },
-            .watched = {}};
+            .watched = {.body = "link_2", .component = "vz"}};
 }
 
 const bool code = enrol(four_link(

@@ -55,7 +55,7 @@ const bool enrolled = enrol(
      .truth_name = "kinematic analysis at 1e-13",
      .truth = [](dae::Description& d,
                  const std::vector<double>& instants) { return reference::trusted(*d.model, d.x, instants); },
-     .watched = {.body = "slider", .component = "rx"}});
+     .watched = {.body = "slider", .component = "vx"}});
 
 }  // namespace
 

@@ -62,7 +62,7 @@ const bool thrown =
   ]
 }
 )",
-           .truth_name = "closed form (index 1 at 1e-13 where --set leaves it)",
+           .truth_name = "closed form",
            .truth = free_flight,
            .watched = {.body = "top", .component = "wx"}});
 
@@ -82,7 +82,7 @@ const bool on_its_tip =
   ]
 }
 )",
-           .truth_name = "closed form (index 1 at 1e-13 where --set leaves it)",
+           .truth_name = "closed form",
            .truth = steady_precession,
            .watched = {.body = "top", .component = "rx"}});
 

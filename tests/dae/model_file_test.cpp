@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <numbers>
 
 #include "dae/constraints/cd.hpp"
 #include "dae/constraints/d.hpp"
@@ -222,6 +223,9 @@ TEST_CASE("the three forms of an orientation are one rotation", "[dae][model_fil
     CHECK((read("p", list(p)) - A).norm() < 1e-15);
     CHECK((read("p", list(-p)) - A).norm() < 1e-15);
     CHECK((read("axis_angle", list(lie::Vec4(u.x(), u.y(), u.z(), phi))) - A).norm() < 1e-15);
+    CHECK((read("axis_angle", list(lie::Vec4(u.x(), u.y(), u.z(), phi - 6 * std::numbers::pi))) - A).norm() <
+          1e-14);
+    CHECK(lie::orthogonality_error(read("axis_angle", list(lie::Vec4(0, 0, 1, 1e300)))) < 1e-15);
     CHECK(dae::read_model(bar(""), "m").x.body[0].A == Mat3::Identity());
 
     // A with seven digits is moved to the nearest rotation

@@ -183,3 +183,22 @@ TEST_CASE("problems are found by name, and a slip is answered with the name that
     CHECK(studies::problem("n_pendulum").truth);
     CHECK_THROWS_AS(studies::enrol(studies::problem("n_pendulum")), std::logic_error);
 }
+
+TEST_CASE("Andrews' squeezer ends where Hairer and Wanner have it", "[studies][problems]")
+{
+    // The reference solution of the problem at 0.03 s: Solving ODEs II, Sec. VII.7. Body k's angle is the turn of its frame.
+    dae::Description d = started(studies::problem("andrews_squeezer"));
+    CHECK(d.model->dropped_rows().size() == 9);  // three loops of revolute joints in space
+    const lie::State x = studies::problem("andrews_squeezer").truth(d, {0.0, 0.03}).row.back();
+    const auto angle = [&](const char* body) {
+        const lie::Mat3& A = x.body[d.model->find(body)].A;
+        return std::atan2(A(1, 0), A(0, 0));
+    };
+    constexpr double beta = 15.8107711962990, gamma = 0.0408222401307310, delta = 0.524409965880530,
+                     epsilon = 1.04808074104226;
+    constexpr double turn = 6.283185307179586;
+    CHECK(std::abs(std::remainder(angle("K1") - beta, turn)) < 1e-8);
+    CHECK(angle("K3") == Approx(gamma).margin(1e-9));
+    CHECK(angle("K5") == Approx(delta).margin(1e-9));
+    CHECK(angle("K7") == Approx(epsilon).margin(1e-9));
+}

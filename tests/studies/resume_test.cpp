@@ -14,7 +14,7 @@ namespace {
 /// About 100 000 steps: half a second
 std::vector<std::string> long_run(const std::string& integrator, const std::string& directory)
 {
-    return {"run",     "slider_crank", "--integrator", integrator,    "--step",  "1e-5",     "--end",  "0.6",
+    return {"run",     "slider_crank", "--integrator", integrator,    "--step",  "1e-5",     "--end",  "1",
             "--every", "1e-3",         "--reactions",  "--log-steps", "--quiet", "--output", directory};
 }
 
@@ -59,15 +59,15 @@ TEST_CASE("an interrupted and killed run ends as one that was left alone", "[stu
     CHECK(ordered_json::parse(read(in / "parts/summary.json"))["status"] == "interrupted");
     CHECK(ordered_json::parse(read(in / "parts/summary.json"))["exit_code"] == 130);
 
-    for (int k = 0; k < 2; ++k) {
+    int code = 137;
+    for (int k = 0; k < 2 && code == 137; ++k) {  // a fast machine is done before it is killed
         const Program killed(in, with(parts, {"--resume"}));
         std::this_thread::sleep_for(std::chrono::milliseconds(60));
         killed.send(SIGKILL);
-        killed.wait();
+        code = killed.wait().code;
     }
-    const Ended last = call(in, with(parts, {"--resume"}));
-    CAPTURE(last.err);
-    REQUIRE(last.code == 0);
+    if (code == 137) code = call(in, with(parts, {"--resume"})).code;
+    REQUIRE(code == 0);
     CHECK(read(in / "parts/trajectory.csv") == read(in / "whole/trajectory.csv"));
     CHECK(without_times(in / "parts/steps.csv") == without_times(in / "whole/steps.csv"));
     CHECK(counters_and_invariants(in / "parts") == counters_and_invariants(in / "whole"));
@@ -79,7 +79,7 @@ TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "
     const Scratch in;
     const Program program(in, long_run("rA-half-1", "a"));
     REQUIRE(appears(in / "a/model.json"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
     program.send(SIGTERM);
     CHECK(program.wait().code == 143);
     REQUIRE(fs::exists(in / "a/checkpoint"));

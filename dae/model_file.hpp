@@ -20,14 +20,15 @@ struct Description {
     std::vector<std::string> constraint_place;  ///< "FILE:LINE:COL (/constraints/3)" of each constraint
 };
 
-/// Reads a model file. `file` is its name in messages. Each of `set` is "/json/pointer=VALUE" (VALUE is JSON, or
-/// else taken as a string) and changes one entry, or adds a key, before the model is built.
+/// Reads a model file. `file` is its name in messages. Each of `set` is "/json/pointer=VALUE" (VALUE is JSON,
+/// or else taken as a string) and changes one entry, or adds a key, before the model is built.
 ///
-/// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for everything that
-/// is not a model: syntax, unknown, missing and duplicate keys, types, ranges, names, expressions.
+/// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for everything
+/// that is not a model: syntax, unknown, missing and duplicate keys, types, ranges, names, expressions.
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {});
 
-/// The same from a regular file of at most 64 MiB. One that cannot be read is InvalidInput too, without a line.
+/// The same from a regular file of at most 64 MiB. One that cannot be read is InvalidInput too, without a
+/// line.
 Description load_model(const std::string& path, std::span<const std::string> set = {});
 
 /// start(), with the place in the file in front of what it refuses.

@@ -64,7 +64,7 @@ void Model::constrain(const std::string& name, Blocks rows)
             lie::reject("constraint '" + name + "'", "a constraint needs two different bodies",
                         "'" + body_name(block->i) + "' twice");
     }
-    if (std::find(constraint_names.begin(), constraint_names.end(), name) != constraint_names.end())
+    if (!names_taken.insert(name).second)
         lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
     int number = 0;
     for (auto& block : rows) {
@@ -74,9 +74,9 @@ void Model::constrain(const std::string& name, Blocks rows)
                        .branch = -1,
                        .constraint = constraints(),
                        .number = ++number});
+        add_to_pattern(row.back());
     }
     constraint_names.push_back(name);
-    set_pattern();
 }
 
 void Model::load(std::unique_ptr<Force> f)
@@ -143,18 +143,20 @@ std::string Model::name_of(const Row& r) const
 void Model::set_pattern()
 {
     rows_pattern = {};
-    for (const int k : active) {
-        const Block& block = *row[k].block;
-        const Block* complement = row[k].complement.get();
-        const unsigned nonzero = block.nonzero() | (complement != nullptr ? complement->nonzero() : 0);
-        if (block.i != ground)
-            rows_pattern.entry.push_back(
-                {.body = block.i, .nonzero = nonzero & 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
-        if (block.j != ground)
-            rows_pattern.entry.push_back(
-                {.body = block.j, .nonzero = nonzero >> 6, .r = Vec3::Zero(), .pi = Vec3::Zero()});
-        rows_pattern.start.push_back(static_cast<int>(rows_pattern.entry.size()));
-    }
+    for (const int k : active) add_to_pattern(row[k]);
+}
+
+void Model::add_to_pattern(const Row& r)
+{
+    const Block& block = *r.block;
+    const unsigned nonzero = block.nonzero() | (r.complement ? r.complement->nonzero() : 0);
+    if (block.i != ground)
+        rows_pattern.entry.push_back(
+            {.body = block.i, .nonzero = nonzero & 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+    if (block.j != ground)
+        rows_pattern.entry.push_back(
+            {.body = block.j, .nonzero = nonzero >> 6, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+    rows_pattern.start.push_back(static_cast<int>(rows_pattern.entry.size()));
 }
 
 double Model::scaled_residual(const Row& r, const State& x) const
@@ -175,17 +177,33 @@ Model::Residual Model::largest_residual(const State& x) const
     return largest;
 }
 
+double Model::scaled_velocity_residual(const Row& r, const State& x) const
+{
+    const Block& block = r.in_force(x);
+    const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
+    const Variation v = block.variation(bi, bj, x.t);
+    const double size = length(v, block);
+    return (v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) + v.pi_j.dot(bj.omega_bar) -
+            block.nu(bi, bj, x.t)) /
+           (size > 0 ? size : 1);
+}
+
+double Model::scaled_acceleration_residual(const Row& r, const State& x) const
+{
+    const Block& block = r.in_force(x);
+    const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
+    const Variation v = block.variation(bi, bj, x.t);
+    const double size = length(v, block);
+    return (v.r_i.dot(bi.rddot) + v.pi_i.dot(bi.omegadot_bar) + v.r_j.dot(bj.rddot) +
+            v.pi_j.dot(bj.omegadot_bar) - block.gamma(bi, bj, x.t)) /
+           (size > 0 ? size : 1);
+}
+
 Model::Residual Model::largest_velocity_residual(const State& x) const
 {
     Residual largest;
     for (int k = 0; k < static_cast<int>(row.size()); ++k) {
-        const Block& block = row[k].in_force(x);
-        const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
-        const Variation v = block.variation(bi, bj, x.t);
-        const double size = length(v, block);
-        const double value = std::abs(v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) +
-                                      v.pi_j.dot(bj.omega_bar) - block.nu(bi, bj, x.t)) /
-                             (size > 0 ? size : 1);
+        const double value = std::abs(scaled_velocity_residual(row[k], x));
         if (!(value <= largest.value) || largest.row < 0) largest = {value, k};
     }
     return largest;

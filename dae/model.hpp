@@ -8,6 +8,7 @@
 #include "lie/check.hpp"
 
 #include <memory>
+#include <unordered_set>
 
 namespace hilda::dae {
 
@@ -77,6 +78,9 @@ public:
 
     /// Φ of one row, also a dropped one, over the length of its variation: an error in m or rad.
     double scaled_residual(const Row& row, const State& x) const;
+    /// The same of Φ_r ṙ + Π̄ ω̄ - ν and of Φ_r r̈ + Π̄ ω̄̇ - γ
+    double scaled_velocity_residual(const Row& row, const State& x) const;
+    double scaled_acceleration_residual(const Row& row, const State& x) const;
     /// Largest scaled residual over all rows, also the dropped ones, and the row it is in (-1 without rows).
     struct Residual {
         double value = 0;
@@ -101,11 +105,13 @@ public:
 
 private:
     void set_pattern();
+    void add_to_pattern(const Row& row);
 
     const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
 
     std::vector<Body> body;
     std::vector<std::string> constraint_names;
+    std::unordered_set<std::string> names_taken;  ///< of constraints
     std::vector<Row> row;
     std::vector<int> active;
     std::vector<std::unique_ptr<Force>> force;
@@ -113,7 +119,7 @@ private:
 
     lie::Mass inertia;
     lie::Rows rows_pattern;
-    const Motion ground_motion;
+    const Motion ground_motion{};
 };
 
 /// Resultant constraint force [N, global] and torque [N m, body frame] on one body: -Φ_rᵀ λ and -Π̄ᵀ λ. They

@@ -89,38 +89,26 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
     return dependent;
 }
 
-/// Row k, dropped from the equations, in position, velocity and acceleration; all three vanish when it says
-/// nothing new.
+/// A row dropped from the equations, in position, velocity and acceleration, each relative to what moves there; all three
+/// vanish when it says nothing new.
 void check_agreement(const Model& model, const Model::Row& row, const State& x)
 {
-    const Block& block = row.in_force(x);
-    static const Motion at_rest;
-    const Motion& bi = block.i == ground ? at_rest : x.body[block.i];
-    const Motion& bj = block.j == ground ? at_rest : x.body[block.j];
-    const Variation v = block.variation(bi, bj, x.t);
-    const double size =
-        std::sqrt(v.r_i.squaredNorm() + v.pi_i.squaredNorm() + v.r_j.squaredNorm() + v.pi_j.squaredNorm());
-
-    const double position = block.phi(bi, bj, x.t) / size;
-    const double velocity = (v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) +
-                             v.pi_j.dot(bj.omega_bar) - block.nu(bi, bj, x.t)) /
-                            size;
-    const double acceleration = (v.r_i.dot(bi.rddot) + v.pi_i.dot(bi.omegadot_bar) + v.r_j.dot(bj.rddot) +
-                                 v.pi_j.dot(bj.omegadot_bar) - block.gamma(bi, bj, x.t)) /
-                                size;
-    double scale = 1;
-    for (const Motion* b : {&bi, &bj}) scale = std::max({scale, b->rddot.norm(), b->omegadot_bar.norm()});
-    const char* level = std::abs(position) > agreement               ? "position"
-                        : std::abs(velocity) > agreement * scale     ? "velocity"
-                        : std::abs(acceleration) > agreement * scale ? "acceleration"
-                                                                     : nullptr;
-    if (level != nullptr)
-        throw ConstraintError(model.name_of(row) + ": contradicts the constraints before it in " + level +
-                                  ", by " +
-                                  number(level[0] == 'p'   ? position
-                                         : level[0] == 'v' ? velocity
-                                                           : acceleration),
-                              row.constraint);
+    double velocity_scale = 1, acceleration_scale = 1;
+    for (const int b : {row.block->i, row.block->j}) {
+        if (b == ground) continue;
+        const Motion& body = x.body[b];
+        velocity_scale = std::max({velocity_scale, body.rdot.norm(), body.omega_bar.norm()});
+        acceleration_scale = std::max({acceleration_scale, body.rddot.norm(), body.omegadot_bar.norm()});
+    }
+    const auto check = [&](const char* level, double residual, double scale) {
+        if (std::abs(residual) > agreement * scale)
+            throw ConstraintError(model.name_of(row) + ": contradicts the constraints before it in " + level +
+                                      ", by " + number(residual),
+                                  row.constraint);
+    };
+    check("position", model.scaled_residual(row, x), 1);
+    check("velocity", model.scaled_velocity_residual(row, x), velocity_scale);
+    check("acceleration", model.scaled_acceleration_residual(row, x), acceleration_scale);
 }
 
 }  // namespace
@@ -265,7 +253,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         if (!options.fix_initial && position.value > options.tolerance)
             throw ConstraintError("the initial positions violate " + report.worst_position + " by " +
                                       number(position.value) + ", more than " + number(options.tolerance) +
-                                      " m or rad; --fix-initial moves them",
+                                      " m or rad; --fix-initial tries to move them",
                                   model.all_rows()[position.row].constraint);
     }
 
@@ -283,7 +271,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         if (!options.fix_initial && !(velocity.value <= options.tolerance))
             throw ConstraintError("the initial velocities violate " + report.worst_velocity + " by " +
                                       number(velocity.value) + ", more than " + number(options.tolerance) +
-                                      " m/s or rad/s; --fix-initial moves them",
+                                      " m/s or rad/s; --fix-initial tries to move them",
                                   model.all_rows()[velocity.row].constraint);
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
@@ -291,6 +279,18 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     solve_accelerations(model, K, x);
     for (const int k : dropped) check_agreement(model, model.all_rows()[k], x);
     return report;
+}
+
+void check_dropped_rows(const Model& model, const State& x)
+{
+    for (const int k : model.dropped_rows()) {
+        const Model::Row& row = model.all_rows()[k];
+        const double residual = std::abs(model.scaled_residual(row, x));
+        if (!(residual <= agreement))
+            throw lie::NumericalFailure(
+                "constraint_drift", model.name_of(row) + ", dropped as redundant at the start, is off by " +
+                                        number(residual) + ", more than " + number(agreement) + " m or rad");
+    }
 }
 
 }  // namespace hilda::dae

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A consistent start: positions and velocities on their constraints, accelerations and multipliers from the
-/// saddle system, and a set of constraint rows that is independent.                     Fang (2022),
-/// Eqs. 2.2, 2.8, 2.9, 2.17
+/// saddle system, and a set of constraint rows that is independent.   Fang (2022), Eqs. 2.2, 2.8, 2.9, 2.17
 
 #pragma once
 
@@ -39,5 +38,9 @@ struct StartReport {
 /// constraints too, which changes them by less than it. Throws lie::InvalidInput, naming the rows, for data
 /// off the constraints and for rows that contradict the others in position, velocity or acceleration.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
+
+/// Throws lie::NumericalFailure "constraint_drift" when a row that was dropped as redundant is off by more than 1e-6 m or
+/// rad in x: then it says something that the others do not, and the motion is not that of the model.
+void check_dropped_rows(const Model& model, const State& x);
 
 }  // namespace hilda::dae

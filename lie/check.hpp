@@ -44,6 +44,9 @@ public:
 
     double correction;  ///< norm of the last correction, in the units of the scheme
     int iterations;
+    std::string largest =
+        {};  ///< name of the constraint row with the largest residual at the last iterate, if any
+    double residual = 0;  ///< that residual, as Phi gives it
 };
 
 /// The saddle matrix has no inverse that double precision can use: redundant or singular constraints.

@@ -20,6 +20,12 @@ struct Statistics {
     long iterations = 0;
     long factorizations = 0;    ///< with a new choice of pivots
     long refactorizations = 0;  ///< with the pivots of the last one
+    double correction = 0;      ///< norm of the last one, in the units of Newton::tolerance
+
+    double iterations_per_step() const
+    {
+        return steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0;
+    }
 };
 
 class Integrator {

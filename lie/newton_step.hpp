@@ -21,7 +21,7 @@ public:
     const System& system() const override { return model; }
     Statistics statistics() const override
     {
-        return {steps, iterations, K.factorizations(), K.refactorizations()};
+        return {steps, iterations, K.factorizations(), K.refactorizations(), correction};
     }
 
 protected:
@@ -57,13 +57,22 @@ protected:
         return k;
     }
 
-    [[noreturn]] void no_convergence(const std::string& scheme, double correction) const
+    /// `x` is the last iterate: its worst constraint row is where to look.
+    [[noreturn]] void no_convergence(const std::string& scheme, double correction, const State& x) const
     {
         std::ostringstream what;
         what.precision(2);
         what << scheme << ": correction " << correction << " after " << newton.max_iterations
              << " iterations";
-        throw NoConvergence(what.str(), correction, newton.max_iterations);
+        NoConvergence failure(what.str(), correction, newton.max_iterations);
+        if (model.rows() > 0) {
+            Eigen::VectorXd Phi(model.rows());
+            model.phi(x, Phi);
+            int largest = 0;
+            failure.residual = Phi.cwiseAbs().maxCoeff(&largest);
+            failure.largest = model.row_name(largest);
+        }
+        throw failure;
     }
 
     const System& model;
@@ -72,6 +81,7 @@ protected:
     Loads loads;
     State x_n;
     Eigen::VectorXd z, b, e;
+    double correction = 0;  ///< norm of the last one
     std::vector<Mat3> J_bar_inverse;
 
 private:

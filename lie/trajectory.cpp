@@ -21,14 +21,23 @@ Grid Grid::over(double t_end, double h, double dt)
 
 March::March(State x, Integrator& integrator, double h, long n, int iterations)
     : x(std::move(x)), after(this->x), integrator(integrator), h(h),
-      t_0(this->x.t - static_cast<double>(n) * h), n(n), iterations(iterations)
+      t_0(n == 0 ? this->x.t : this->x.t - time(n)), n(n), iterations(iterations)
 {}
+
+// Not a sum of h, which would drift; and where a second holds a whole number of steps the quotient, which is the double
+// nearest to a decimal like 0.009 where the product is not.
+double March::time(long node) const
+{
+    const double per_second = std::round(1 / h);
+    const auto count = static_cast<double>(node);
+    return per_second >= 1 && std::abs(per_second * h - 1) < 1e-14 ? count / per_second : count * h;
+}
 
 int March::try_step(State& to)
 {
     to = x;
     const int k = integrator.step(to, h);
-    to.t = t_0 + static_cast<double>(n + 1) * h;  // not a sum of h, which would drift
+    to.t = t_0 + time(n + 1);
     for (const Motion& body : to.body)
         if (!std::isfinite(body.r.sum() + body.rdot.sum() + body.omega_bar.sum() + body.A.sum()))
             throw NonFinite("the state after the step is not finite");

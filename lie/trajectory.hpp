@@ -15,9 +15,8 @@ struct Grid {
     long steps = 0;
     long every = 1;
 
-    /// Nodes up to the first at or after t_end, and rows at the first node at or after each multiple of `dt`
-    /// (each node when dt is 0). Both are exact when they are multiples of h. InvalidInput when a number
-    /// makes no sense.
+    /// Nodes up to the first at or after t_end; of them every ceil(dt/h)-th is a row, each when dt is 0. Both
+    /// are exact when they are multiples of h. InvalidInput when a number makes no sense.
     static Grid over(double t_end, double h, double dt = 0);
 
     bool is_row(long n) const { return n % every == 0 || n == steps; }
@@ -56,6 +55,7 @@ public:
 
 private:
     int try_step(State& after);
+    double time(long node) const;  ///< node h [s]
 
     State x, after;
     Integrator& integrator;

@@ -107,11 +107,12 @@ void pass(Archive& a, Checkpoint& c)
     pass(a, c.iterations);
     pass(a, c.pivots);
     for (long* n : {&c.statistics.steps, &c.statistics.iterations, &c.statistics.factorizations,
-                    &c.statistics.refactorizations, &c.invariants.rows, &c.last_step.factorizations,
-                    &c.last_step.wall_ns})
+                    &c.statistics.refactorizations, &c.invariants.nodes, &c.invariants.rows,
+                    &c.last_step.factorizations, &c.last_step.wall_ns})
         pass(a, *n);
     for (double* v : {&c.invariants.energy_start, &c.invariants.energy_end, &c.invariants.energy_drift,
-                      &c.invariants.constraint_norm, &c.invariants.orthogonality, &c.wall_seconds})
+                      &c.invariants.constraint_norm, &c.invariants.orthogonality, &c.wall_seconds,
+                      &c.last_step.correction})
         pass(a, *v);
     pass(a, c.trajectory_bytes);
     pass(a, c.steps_bytes);

@@ -182,7 +182,10 @@ private:
         c->add_flag("--reactions", o.reactions, "also write constraint forces and multipliers");
         c->add_flag("--log-steps", o.log_steps, "also write steps.csv, a line for each step");
         c->add_flag("--plot", o.plot, "also draw trajectory.png");
-        value(c, "--threads", "N", "threads inside one run, by default 1", assign(o.threads, positive_count));
+        value(c, "--threads", "N", "threads inside one run; results are the same for any, and one is used",
+              assign(o.threads, positive_count));
+        c->add_flag_callback(
+            "--no-plot", [this] { run.plot = false; }, "draw no figure, as by default");
         c->add_flag("--json", o.json, "the summary as JSON on stdout, and nothing else there");
         c->add_flag("--quiet", o.quiet, "print neither result nor warnings nor progress");
         c->add_flag("-v,--verbose", o.verbose, "say what is done");
@@ -201,6 +204,7 @@ private:
         c->add_flag("--fix-initial", o.fix_initial, "say what projecting the initial data would change");
         c->add_flag("--json", o.json, "the result as JSON");
         c->add_flag("--quiet", o.quiet, "only the exit code");
+        c->add_flag("-v,--verbose", verbose, "as by default");
     }
 
     void add_models()
@@ -247,6 +251,7 @@ private:
         c->add_flag_callback(
             "--no-plot", [this] { study.plot = false; }, "draw no figures");
         c->add_flag("--quiet", o.quiet, "print neither result nor progress");
+        c->add_flag("-v,--verbose", verbose, "as by default");
         c->add_flag("--json", o.json, "the result as JSON on stdout; files only with --output");
     }
 
@@ -328,7 +333,7 @@ private:
     StudyOptions study;
     std::vector<std::string> chosen_integrators;
     std::string name, write_to, kind, directory;
-    bool json = false, force = false;
+    bool json = false, force = false, verbose = false;
 };
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include "studies/convergence.hpp"
 
 #include "studies/errors.hpp"
+#include "studies/exit_codes.hpp"
+#include "studies/message.hpp"
 #include "studies/output.hpp"
 #include "studies/plot.hpp"
 #include "studies/pool.hpp"
@@ -57,28 +59,50 @@ dae::Description ready(const Problem& problem, const StudyOptions& options)
     return d;
 }
 
-Case with_truth(const Problem& problem, const StudyOptions& options)
+/// The case without its truth; refuses steps that do not fit it, and says what the model drops.
+Case checked(const Problem& problem, const std::vector<double>& steps, const StudyOptions& options)
 {
-    dae::Description d = ready(problem, options);
+    dae::Description d = dae::read_model(problem.model, problem.name, options.set);
+    const dae::StartReport report = dae::start(d, {});
+    if (!options.quiet) {
+        for (const std::string& w : d.warnings) warning(w);
+        for (const std::string& row : report.dropped)
+            warning(problem.name + ": " + row +
+                    ": redundant with the constraints before it, dropped from the equations");
+    }
     Case c{.problem = problem, .instants = {}, .truth = {}, .size = {}, .watched = problem.watched};
     if (c.watched.body.empty()) c.watched.body = d.model->all_bodies().back().name;
-    c.instants.dt = options.end.value_or(d.end) / static_cast<double>(c.instants.count);
+    const double end = options.end.value_or(d.end);
+    c.instants.dt = end / static_cast<double>(c.instants.count);
+    const double most = c.instants.dt * c.instants.stride;
+    for (const double h : steps)
+        if (h > most * (1 + 1e-9) || std::abs(end / h - std::round(end / h)) > 1e-6)
+            throw UsageError(fmt::format(
+                "study convergence: --steps must divide the end of {}, {} s, and be at most {:.4g} s, got {}",
+                problem.name, end, most, h));
+    return c;
+}
+
+void add_truth(Case& c, const StudyOptions& options)
+{
+    dae::Description d = ready(c.problem, options);
     std::vector<double> times;
     for (long k = 0; k <= c.instants.count; ++k) times.push_back(static_cast<double>(k) * c.instants.dt);
-    c.truth = problem.truth(d, times);
+    c.truth = c.problem.truth(d, times);
+    for (const lie::State& x : c.truth.row) dae::check_dropped_rows(*d.model, x);
     c.size = sizes(*d.model, c.truth, c.instants, c.watched);
-    return c;
 }
 
 /// Keeps the nodes that are instants of the truth, and what the invariants were there
 class AtInstants final : public lie::Observer {
 public:
     AtInstants(const dae::Model& model, const Instants& instants, double h)
-        : model(model), instants(instants), h(h)
+        : model(model), instants(instants), h(h), has_dropped_rows(!model.dropped_rows().empty())
     {}
 
     void accepted(const lie::State& x, long n, int) override
     {
+        if (has_dropped_rows) dae::check_dropped_rows(model, x);
         const double k = static_cast<double>(n) * h / instants.dt;
         const long nearest = std::lround(k);
         if (nearest > instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;
@@ -97,6 +121,7 @@ private:
     const dae::Model& model;
     const Instants& instants;
     const double h;
+    const bool has_dropped_rows;
 };
 
 struct Run {
@@ -195,8 +220,7 @@ void print(const Series& series, std::ostream& out)
                                            : fmt::format("{:.3e}{}", e, run->at_floor[n] ? "*" : " "));
             row.emplace_back(run->order[n]);
         }
-        row.emplace_back(static_cast<double>(run->statistics.iterations) /
-                         static_cast<double>(std::max(1L, run->statistics.steps)));
+        row.emplace_back(run->statistics.iterations_per_step());
         row.emplace_back(run->constraint_norm);
         row.emplace_back(run->orthogonality);
         table.add(row);
@@ -229,8 +253,7 @@ Table as_table(const std::vector<Run>& runs)
         for (const double p : run.order) row.emplace_back(p);
         for (const bool f : run.at_floor) row.emplace_back(f ? 1.0 : 0.0);
         row.emplace_back(static_cast<double>(run.statistics.steps));
-        row.emplace_back(static_cast<double>(run.statistics.iterations) /
-                         static_cast<double>(std::max(1L, run.statistics.steps)));
+        row.emplace_back(run.statistics.iterations_per_step());
         row.emplace_back(static_cast<double>(run.statistics.factorizations));
         row.emplace_back(static_cast<double>(run.statistics.refactorizations));
         row.emplace_back(run.constraint_norm);
@@ -262,8 +285,8 @@ ordered_json as_json(const std::vector<Series>& all, const StudyOptions& options
             ordered_json row = {{"h", run->h}, {"status", run->status}};
             if (!run->message.empty()) row["message"] = run->message;
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number(run->errors.value[n]);
-            row["iterations_per_step"] = static_cast<double>(run->statistics.iterations) /
-                                         static_cast<double>(std::max(1L, run->statistics.steps));
+            row["iterations_per_step"] = run->statistics.iterations_per_step();
+            row["factorizations"] = run->statistics.factorizations;
             row["cpu_seconds"] = run->seconds;
             rows.push_back(row);
         }
@@ -279,8 +302,18 @@ ordered_json as_json(const std::vector<Series>& all, const StudyOptions& options
     return out;
 }
 
-/// What --expect asks for: order (of the first quantity whose order shows), order_r … order_watched, or an
-/// error by its name at the smallest step
+/// What --expect knows: order (of the first quantity whose order shows), order_r … order_watched, or an error by its
+/// name at the smallest step
+void check_key(const std::string& key)
+{
+    const std::string quantity = key.starts_with("order_") ? key.substr(6) : key;
+    if (key != "order" && std::find(norm::names.begin(), norm::names.end(), quantity) == norm::names.end())
+        throw UsageError(
+            "study convergence: --expect knows order, order_X and X with X one of r, A, v, omega, Q, r_end, "
+            "A_end, v_end, omega_end, watched, got '" +
+            key + "'");
+}
+
 double value_of(const std::string& key, const Series& series)
 {
     if (key == "order") {
@@ -288,15 +321,10 @@ double value_of(const std::string& key, const Series& series)
             if (const double p = fit(series, n); !std::isnan(p)) return p;
         return std::nan("");
     }
-    for (int n = 0; n < norm::count; ++n) {
-        if (key == std::string("order_") + norm::names[n]) return fit(series, n);
-        if (key == norm::names[n]) return series.back()->errors.value[n];
-    }
-    lie::reject(
-        "--expect",
-        "the study convergence knows order, order_X and X with X one of r, A, v, omega, Q, r_end, A_end, "
-        "v_end, omega_end, watched",
-        "'" + key + "'");
+    const bool of_order = key.starts_with("order_");
+    const auto name = std::find(norm::names.begin(), norm::names.end(), of_order ? key.substr(6) : key);
+    const auto n = static_cast<int>(name - norm::names.begin());
+    return of_order ? fit(series, n) : series.back()->errors.value[n];
 }
 
 /// Names what was expected and did not come, one line each; true when all came.
@@ -308,8 +336,8 @@ bool as_expected(const std::vector<Series>& all, const std::vector<Expectation>&
             const double value = value_of(e.key, series);
             if (std::abs(value - e.value) <= e.tolerance) continue;
             met = false;
-            std::cerr << fmt::format("hilda: error: expected {}, got {:.6g} for {} on {}\n", e.text, value,
-                                     series.front()->scheme->name, series.front()->c->problem.name);
+            message(fmt::format("hilda: error: expected {}, got {:.6g} for {} on {}\n", e.text, value,
+                                series.front()->scheme->name, series.front()->c->problem.name));
         }
     return met;
 }
@@ -325,6 +353,7 @@ std::vector<std::string> default_problems()
 
 int convergence(const StudyOptions& options)
 {
+    for (const Expectation& e : options.expect) check_key(e.key);
     std::vector<double> steps = options.steps.empty() ? default_steps() : options.steps;
     std::sort(steps.rbegin(), steps.rend());
     std::vector<const lie::Scheme*> chosen;
@@ -333,26 +362,21 @@ int convergence(const StudyOptions& options)
         for (const lie::Scheme& s : lie::schemes()) chosen.push_back(&s);
 
     // The problems are read here, one after the other, so that the first error is always the same one.
-    std::vector<Problem> wanted;
-    for (const std::string& name : options.problems.empty() ? default_problems() : options.problems)
-        wanted.push_back(problem_or_file(name));
-    std::vector<Case> cases(wanted.size());
-    Pool pool(options.jobs, options.quiet ? "" : "truth", static_cast<long>(wanted.size()));
-    pool.run([&](long k) { cases[k] = with_truth(wanted[k], options); });
+    std::vector<Case> cases;
+    for (const std::string& name : options.problems.empty() ? default_problems() : options.problems) {
+        cases.push_back(checked(problem_or_file(name), steps, options));
+        for (size_t k = 0; k + 1 < cases.size(); ++k)
+            if (cases[k].problem.name == cases.back().problem.name)
+                throw UsageError("study convergence: two problems are called '" + cases[k].problem.name +
+                                 "'");
+    }
+    Pool pool(options.jobs, options.quiet ? "" : "truth", static_cast<long>(cases.size()));
+    pool.run([&](long k) { add_truth(cases[k], options); });
 
     std::vector<Run> runs;
     for (const Case& c : cases)
         for (const lie::Scheme* s : chosen)
             for (const double h : steps) {
-                const double t_end = c.instants.dt * static_cast<double>(c.instants.count);
-                const double most = c.instants.dt * c.instants.stride;
-                if (h > most * (1 + 1e-9) || std::abs(t_end / h - std::round(t_end / h)) > 1e-6)
-                    lie::reject(
-                        "study convergence",
-                        fmt::format(
-                            "the end, {} s, must be a multiple of every step, and a step at most {} s", t_end,
-                            most),
-                        h);
                 Run run;
                 run.c = &c, run.scheme = s, run.h = h;
                 run.order.fill(std::nan(""));

@@ -28,7 +28,7 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
         field(x.t);
         field(h);
         field(static_cast<long>(iterations));
-        row += ',';  // no scheme tells its last correction
+        field(last.correction);
         field(model.largest_residual(x).value);
         field(lie::energy(model, x));
         field(last.factorizations);
@@ -38,7 +38,8 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
     }
     // The march tells us of a node once the step that leaves it is done.
     const long counted = integrator.statistics().factorizations;
-    last = {counted - factorizations, std::chrono::nanoseconds(now - since).count()};
+    last = {counted - factorizations, std::chrono::nanoseconds(now - since).count(),
+            integrator.statistics().correction};
     factorizations = counted;
     since = Clock::now();
 }

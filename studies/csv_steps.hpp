@@ -28,6 +28,7 @@ public:
     /// when the march leaves that node, for only then is the node known in full.
     struct Cost {
         long factorizations = 0, wall_ns = 0;
+        double correction = 0;  ///< last one of the step
     } last;
 
 private:

@@ -3,26 +3,23 @@
 
 #pragma once
 
-#include "dae/model.hpp"
+#include "dae/start.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/output_file.hpp"
 
 namespace hilda::studies {
 
-/// Over the rows written
+/// Over every node of the run
 struct Invariants {
-    long rows = 0;
+    long nodes = 0, rows = 0;                 ///< nodes seen, and rows written of them
     double energy_start = 0, energy_end = 0;  ///< [J]
     double energy_drift = 0;                  ///< largest |E - E_0| [J]
     double constraint_norm = 0;               ///< largest scaled residual, also of dropped rows [m or rad]
     double orthogonality = 0;                 ///< largest ‖AᵀA - I‖
 };
 
-/// A dropped row that is off by more than this is not redundant any more.
-inline constexpr double drift_limit = 1e-6;
-
-/// Writes those nodes that are rows of the grid. Throws lie::NumericalFailure "constraint_drift", after the
-/// row is written, when a constraint row that was dropped as redundant stops being so.
+/// Writes those nodes that are rows of the grid. Throws lie::NumericalFailure "constraint_drift"
+/// at the node where a constraint row that was dropped as redundant stops being so.
 class TrajectoryCsv final : public lie::Observer {
 public:
     TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file, bool with_reactions);
@@ -34,7 +31,6 @@ public:
 
 private:
     void note(const lie::State& x, double energy, double constraint_norm);
-    void check_dropped(const lie::State& x) const;
 
     const dae::Model& model;
     const lie::Grid& grid;

@@ -61,8 +61,11 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         how = fmt::format("correction {:.1e} after {} iterations", newton->correction, newton->iterations);
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(h))) + 1, 1, 15);
     Diagnosis d;
-    d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + h, decimals, number + 1, scheme,
-                         step_text(h), how);
+    // an observer objects to the node itself, a step fails on the way to the next one
+    const bool at_node = failure.status == "constraint_drift";
+    d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
+                         number + (at_node ? 0 : 1), scheme, step_text(h), how);
+    if (at_node) return d;
 
     lie::State next = node;
     next.t += h;
@@ -72,10 +75,12 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
             return d;
         }
     if (model.all_rows().empty()) return d;
+    const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
     const dae::Model::Residual largest = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
     d.detail = fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
-                           model.name_of(model.all_rows()[largest.row]), largest.value, rcond,
+                           newton != nullptr ? newton->largest : model.name_of(model.all_rows()[largest.row]),
+                           newton != nullptr ? newton->residual : largest.value, rcond,
                            rcond < 1e-12 ? ": redundant or singular constraints?" : "");
     return d;
 }

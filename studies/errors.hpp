@@ -11,18 +11,15 @@
 
 namespace hilda::studies {
 
-/// The norms of a convergence study. "Stacked" is the Euclidean norm over all bodies, A by its Frobenius
-/// norm.
+/// The norms of a convergence study. "Stacked" is the Euclidean norm over all bodies, A by its Frobenius norm.
 ///
-///     r, A, v, omega      root mean square over the instants of the stacked difference            [m, -,
-///     m/s, rad/s] Q                   the same of |ΔQ| / |Q|, Q the resultant constraint forces and torques
-///     of all bodies stacked,
-///                         over the instants before the end (a half-implicit scheme knows a node's loads one
-///                         step late)
+///     r, A, v, omega      root mean square over the instants of the stacked difference [m, -, m/s, rad/s]
+///     Q                   the same of |ΔQ| / |Q|, Q the resultant constraint forces and torques of all bodies
+///                         stacked, over the instants before the end (a half-implicit scheme knows a node's
+///                         loads one step late)
 ///     r_end … omega_end   of the watched body at the end
-///     watched             sqrt(Σ (z - z_ref)² / n) of the watched scalar: the norm of Fang (2022),
-///     Sec. 3.8.1, here over
-///                         every node that is also an instant of the truth
+///     watched             sqrt(Σ (z - z_ref)² / n) of the watched scalar, the norm of Fang (2022), Sec. 3.8.1,
+///                         over every node that is also an instant of the truth
 namespace norm {
 
 enum : int { r, A, v, omega, Q, r_end, A_end, v_end, omega_end, watched, count };

@@ -20,13 +20,16 @@ bool is_built_in(const std::string& name)
     }
 }
 
-dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set)
+bool is_model_path(const std::string& name_or_path)
 {
     std::error_code error;
-    const bool looks_like_path =
-        name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json");
-    if (looks_like_path || (!is_built_in(name_or_path) && fs::exists(name_or_path, error)))
-        return dae::load_model(name_or_path, set);
+    return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json") ||
+           (!is_built_in(name_or_path) && fs::exists(name_or_path, error));
+}
+
+dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set)
+{
+    if (is_model_path(name_or_path)) return dae::load_model(name_or_path, set);
     const Problem built_in = problem(name_or_path);
     return dae::read_model(built_in.model, built_in.name, set);
 }

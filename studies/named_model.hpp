@@ -12,6 +12,9 @@ namespace hilda::studies {
 
 bool is_built_in(const std::string& name);
 
+/// True for what names a file: with a slash or ending in .json, or no built-in model but there.
+bool is_model_path(const std::string& name_or_path);
+
 /// Reads a built-in model by its name, or else the model file at that path. lie::InvalidInput as read_model()
 /// and problem().
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set);

@@ -87,8 +87,18 @@ std::string processor()
 
 }  // namespace
 
-void write_file(const std::string& path, const std::string& content)
+void write_file(const std::string& name, const std::string& content)
 {
+    std::error_code error;
+    const fs::path goal = fs::weakly_canonical(name, error);  // a link keeps pointing where it does
+    const std::string path = error ? name : goal.string();
+    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+        // a device or a pipe is written to, not replaced
+        std::ofstream out(path, std::ios::binary);
+        out << content << std::flush;
+        if (!out) fail(name, "cannot be written");
+        return;
+    }
     Temporary file(path);
     file.write(content);
     file.become_goal();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/pool.hpp"
 
+#include "studies/message.hpp"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -38,9 +40,8 @@ void Pool::run(const std::function<void(long)>& job) const
             if (!show || (n < count && now - shown < std::chrono::milliseconds(200))) continue;
             shown = now;
             const double seconds = std::chrono::duration<double>(now - begin).count();
-            fmt::print(stderr, "\r{} {}/{}, {:.1f} s\033[K{}", label, n, count, seconds,
-                       n == count ? "\r\033[K" : "");
-            std::fflush(stderr);
+            message(fmt::format("\r{} {}/{}, {:.1f} s\033[K{}", label, n, count, seconds,
+                                n == count ? "\r\033[K" : ""));
         }
     };
     std::vector<std::jthread> team;

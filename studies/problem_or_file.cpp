@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/trusted.hpp"
+#include "studies/named_model.hpp"
 #include "studies/output.hpp"
 #include "studies/problem.hpp"
 
@@ -9,9 +10,10 @@ namespace hilda::studies {
 
 Problem problem_or_file(const std::string& name_or_path)
 {
-    const bool is_path = name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json");
-    if (!is_path) return problem(name_or_path);
+    if (!is_model_path(name_or_path)) return problem(name_or_path);
     constexpr size_t most = 64 << 20;
+    if (!std::filesystem::exists(name_or_path))
+        throw lie::InvalidInput(name_or_path + ": there is no such file");
     return {.name = std::filesystem::path(name_or_path).stem().string(),
             .what = "model file " + name_or_path,
             .model = read_file(name_or_path, most),

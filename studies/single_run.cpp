@@ -64,6 +64,14 @@ void SingleRun::read()
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(description.end);
     grid = grid_of(options, result.end);
+    const double reached = static_cast<double>(grid.steps) * grid.h,
+                 between = static_cast<double>(grid.every) * grid.h;
+    if (reached > result.end * (1 + 1e-9))
+        warn(fmt::format("the end {} s is no multiple of the step: the run ends at {:.12g} s", result.end,
+                         reached));
+    if (options.every && *options.every > 0 && between > *options.every * (1 + 1e-9))
+        warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.every,
+                         between));
     for (const std::string& w : description.warnings) warn(w);
     for (const std::string& row : result.start.dropped)
         warn(row + ": redundant with the constraints before it, dropped from the equations");
@@ -81,7 +89,7 @@ void SingleRun::read()
     result.warnings = description.warnings;
     result.set = options.set;
     result.command_line = options.command_line;
-    result.threads = options.threads;
+    result.threads = 1;  // what was used, for any --threads
     result.directory = directory;
     result.files = {"model.json", "trajectory.csv"};
     if (options.log_steps) result.files.emplace_back("steps.csv");

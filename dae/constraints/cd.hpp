@@ -8,9 +8,10 @@ namespace hilda::dae {
 
 /// Coordinate-difference block: c · d_ij = f(t) along a direction c fixed in the global frame.
 ///
-///     Phi    = c . d_ij - f(t),   d_ij = r_j + A_j s_bar_j - r_i - A_i s_bar_i                Fang (2022),
-///     Eq. 2.5d Phi_ri = -c^T,   Pi_i =  c^T A_i tilde(s_bar_i) Phi_rj =  c^T,   Pi_j = -c^T A_j
-///     tilde(s_bar_j)
+///     Phi    = c . d_ij - f(t)                                              Fang (2022), Eq. 2.5d
+///     d_ij   = r_j + A_j s_bar_j - r_i - A_i s_bar_i
+///     Phi_ri = -c^T,   Pi_i =  c^T A_i tilde(s_bar_i)
+///     Phi_rj =  c^T,   Pi_j = -c^T A_j tilde(s_bar_j)
 class CD final : public Block {
 public:
     CD(const Vec3& c, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f = {})

@@ -10,9 +10,10 @@ namespace hilda::dae {
 
 /// Distance block: d_ij · d_ij = f(t), the squared distance [m²] of point P of body i and point Q of body j.
 ///
-///     Phi    = d_ij . d_ij - f(t),   d_ij = r_j + A_j s_bar_j - r_i - A_i s_bar_i             Fang (2022),
-///     Eq. 2.5c Phi_ri = -2 d_ij^T,   Pi_i =  2 d_ij^T A_i tilde(s_bar_i) Phi_rj =  2 d_ij^T,   Pi_j = -2
-///     d_ij^T A_j tilde(s_bar_j)
+///     Phi    = d_ij . d_ij - f(t)                                           Fang (2022), Eq. 2.5c
+///     d_ij   = r_j + A_j s_bar_j - r_i - A_i s_bar_i
+///     Phi_ri = -2 d_ij^T,   Pi_i =  2 d_ij^T A_i tilde(s_bar_i)
+///     Phi_rj =  2 d_ij^T,   Pi_j = -2 d_ij^T A_j tilde(s_bar_j)
 ///
 /// Its row and multiplier scale with 2 |d_ij|. Loses rank where the distance is zero.
 class D final : public Block {

@@ -8,9 +8,10 @@ namespace hilda::dae {
 
 /// Second dot-product block: a_i · d_ij = f(t), with d_ij from point P of body i to point Q of body j.
 ///
-///     Phi    = (A_i a_bar_i) . d_ij - f(t),  d_ij = r_j + A_j s_bar_j - r_i - A_i s_bar_i     Fang (2022),
-///     Eq. 2.5b Phi_ri = -a_i^T,   Pi_i = a_bar_i^T tilde(s_bar_i) - d_ij^T A_i tilde(a_bar_i) Phi_rj =
-///     a_i^T,   Pi_j = -a_i^T A_j tilde(s_bar_j)
+///     Phi    = (A_i a_bar_i) . d_ij - f(t)                                  Fang (2022), Eq. 2.5b
+///     d_ij   = r_j + A_j s_bar_j - r_i - A_i s_bar_i
+///     Phi_ri = -a_i^T,   Pi_i = a_bar_i^T tilde(s_bar_i) - d_ij^T A_i tilde(a_bar_i)
+///     Phi_rj =  a_i^T,   Pi_j = -a_i^T A_j tilde(s_bar_j)
 class DP2 final : public Block {
 public:
     DP2(int i, const Vec3& a_bar_i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f = {})

@@ -11,8 +11,9 @@ namespace hilda::dae {
 
 /// Spring, damper and actuator between point P of body i and point Q of body j:
 ///
-///     f = k (l - l_0) + c ldot + F(l, ldot, t)   [N], along d_ij; positive pulls the bodies together Haug
-///     (1989), Sec. 11.2
+///     f = k (l - l_0) + c ldot + F(l, ldot, t)   [N]                            Haug (1989), Sec. 11.2
+///
+/// along d_ij; positive pulls the bodies together.
 ///
 /// Throws lie::NonFinite where the two points coincide, which leaves no direction.
 class SpringDamper final : public Force {

@@ -36,8 +36,9 @@ public:
                 return done(k);
             }
         }
+        const State last = x;
         x = x_n;
-        no_convergence("rA-full-1", correction);
+        no_convergence("rA-full-1", correction, last);
     }
 
 private:
@@ -82,7 +83,6 @@ private:
     }
 
     Rows C;  ///< Φ_r, Π̄ at the iterate
-    double correction = 0;
 };
 
 const bool enrolled = enrol<FullyImplicit1>({.name = "rA-full-1",

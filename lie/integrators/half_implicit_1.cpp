@@ -8,6 +8,9 @@
 ///
 /// The unknowns are z = (r_{n+1} - r_n, θ̄ = h ω̄_{n+1}, λ̂ = h² λ_n): the increment instead of the r_{n+1} of
 /// (3.27), which changes no iterate but keeps the digits that M r_{n+1} - M r_n would lose.
+///
+/// ṙ_{n+1} and ω̄_{n+1} are reported as the scheme stores them. They are the velocities at t_n + h/2 rather than at t_{n+1},
+/// which is its first-order error; converting them would hide what the orders are measured for.
 
 #include "lie/newton_step.hpp"
 
@@ -39,8 +42,9 @@ public:
                 return done(k);
             }
         }
+        const State last = x;
         x = x_n;
-        no_convergence("rA-half-1", correction);
+        no_convergence("rA-half-1", correction, last);
     }
 
     bool lags() const override { return true; }
@@ -93,8 +97,6 @@ private:
             body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, x_n.body[i]) - b.segment<3>(6 * i + 3));
         }
     }
-
-    double correction = 0;
 };
 
 const bool enrolled = enrol<HalfImplicit1>({.name = "rA-half-1",

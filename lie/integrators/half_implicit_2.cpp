@@ -3,8 +3,9 @@
 ///
 ///     M r̈_n + Φ_rᵀ λ_n = F_n,   J̄ ω̄̇_n + Π̄ᵀ λ_n = τ̄_n        all at t_n                      (3.39, 3.40)
 ///     ṙ_{n+1} = ṙ_n + h (3 r̈_n - r̈_{n-1}) / 2,   r_{n+1} = r_n + h (ṙ_n + ṙ_{n+1}) / 2        (3.35, 3.36)
-///     ω̄_{n+1} = ω̄_n + h (3 ω̄̇_n - ω̄̇_{n-1}) / 2,   A_{n+1} = A_n exp(h ω̄_n / 2) exp(h ω̄_{n+1} / 2)
-///     (3.37, 3.38) Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0
+///     ω̄_{n+1} = ω̄_n + h (3 ω̄̇_n - ω̄̇_{n-1}) / 2                                                (3.37)
+///     A_{n+1} = A_n exp(h ω̄_n / 2) exp(h ω̄_{n+1} / 2)                                        (3.38)
+///     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0                                                       (3.41)
 ///
 /// With the unknowns z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n) and the constraint rows doubled, the Newton
 /// matrix 3.51 is K itself. r̈_{-1} = r̈_0, ω̄̇_{-1} = ω̄̇_0 from the consistent start. The multipliers carry an
@@ -43,8 +44,9 @@ public:
                 return done(k);
             }
         }
+        const State last = x;
         x = x_n;
-        no_convergence("rA-half-2", correction);
+        no_convergence("rA-half-2", correction, last);
     }
 
     bool lags() const override { return true; }
@@ -112,7 +114,7 @@ private:
     }
 
     std::vector<Mat3> A_hat;  ///< A_n exp(½h ω̄_n) Eq. 3.44
-    double half_h = 0, correction = 0;
+    double half_h = 0;
 };
 
 const bool enrolled = enrol<HalfImplicit2>({.name = "rA-half-2",

@@ -52,8 +52,8 @@ std::string model()
                  phi = 0.222668390165885885, delta = 0.487364979543842550, Omega = -0.222668390165885885,
                  epsilon = 1.23054744454982119;
     const double d = 28e-3, da = 115e-4, e = 2e-2, ea = 1421e-5, fa = 1421e-5, rr = 7e-3, ra = 92e-5,
-                 sa = 1874e-5, sb = 1043e-5, sc = 18e-3, sd = 2e-2, ta = 2308e-5, tb = 916e-5,
-                 u = 4e-2, ua = 1228e-5, ub = 449e-5, zf = 2e-2, zt = 4e-2;
+                 sa = 1874e-5, sb = 1043e-5, sc = 18e-3, sd = 2e-2, ta = 2308e-5, tb = 916e-5, u = 4e-2,
+                 ua = 1228e-5, ub = 449e-5, zf = 2e-2, zt = 4e-2;
     const Point O{0, 0}, A{-0.06934, -0.00227}, B{-0.03635, 0.03273}, C{0.014, 0.072};
 
     const Point crank_pin = turned(beta, {rr, 0});

@@ -196,6 +196,16 @@ TEST_CASE("a joint given twice is dropped", "[dae][overconstrained]")
     CHECK((reactions(model, x)[0].F - reactions(once, y)[0].F).norm() < 1e-13);
 }
 
+TEST_CASE("contradictory velocities are seen beside large accelerations", "[dae][overconstrained]")
+{
+    Model model;
+    State x;
+    hinged_bar(model, x);
+    model.constrain("motor", hinge_driver(ground, X, 0, X, Driver("50000*t^2"), x));
+    model.constrain("other motor", hinge_driver(ground, X, 0, X, Driver("50000*t^2 + 0.01*t"), x));
+    CHECK_THROWS_AS(dae::start(model, x, {.fix_initial = true}), ConstraintError);
+}
+
 TEST_CASE("a hinge driven twice is refused unless both drive it alike", "[dae][overconstrained]")
 {
     struct Case {

@@ -42,7 +42,7 @@ public:
     const System& system() const override { return model; }
     Statistics statistics() const override
     {
-        return {steps, steps, K.factorizations(), K.refactorizations()};
+        return {steps, steps, K.factorizations(), K.refactorizations(), 0};
     }
 
 private:

@@ -23,9 +23,9 @@ Checkpoint some_checkpoint()
     c.number = 100;
     c.iterations = 3;
     c.pivots = c.node;
-    c.statistics = {100, 250, 3, 97};
-    c.invariants = {11, 1.5, 1.25, 0.25, 1e-12, 1e-15};
-    c.last_step = {1, 2000};
+    c.statistics = {100, 250, 3, 97, 0};
+    c.invariants = {100, 11, 1.5, 1.25, 0.25, 1e-12, 1e-15};
+    c.last_step = {1, 2000, 3e-11};
     c.trajectory_bytes = 12345;
     c.steps_bytes = 678;
     c.wall_seconds = 0.5;
@@ -46,6 +46,8 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.number == c.number);
     CHECK(back.statistics.refactorizations == c.statistics.refactorizations);
     CHECK(back.invariants.energy_drift == c.invariants.energy_drift);
+    CHECK(back.invariants.nodes == c.invariants.nodes);
+    CHECK(back.last_step.correction == c.last_step.correction);
     CHECK(back.trajectory_bytes == c.trajectory_bytes);
     CHECK(back.wall_seconds == c.wall_seconds);
 }

@@ -181,6 +181,48 @@ TEST_CASE("a dropped row that stops being redundant ends the run", "[studies][ru
     const ordered_json summary = summary_in(in / "a");
     CHECK(summary["status"] == "constraint_drift");
     CHECK(summary["model"]["dropped_rows"].size() == 1);
+    // nor does a study take the motion of the other rows for the truth, and rows far apart hide nothing
+    CHECK(call(in, {"study", "convergence", "--problem", "bar.json", "--steps", "1e-2", "--no-plot"}).code ==
+          4);
+    CHECK(call(in, {"run", "bar.json", "--every", "1", "--output", "b"}).code == 4);
+}
+
+TEST_CASE("what a run reports as largest is so over every node, for any output interval", "[studies][run]")
+{
+    const Scratch in;
+    const auto largest = [&](const std::string& every) {
+        const Ended ended = call(
+            in, {"run", "slider_crank", "--end", "0.5", "--every", every, "--output", "e" + every, "--json"});
+        return ordered_json::parse(ended.out)["invariants"];
+    };
+    const ordered_json dense = largest("0.001"), sparse = largest("0.5");
+    for (const char* key : {"energy_drift", "constraint_norm", "orthogonality"}) {
+        INFO(key);
+        REQUIRE(dense.contains(key));
+        CHECK(dense[key] == sparse[key]);
+    }
+}
+
+TEST_CASE("a model written over a link or into a device goes where it points", "[studies][models]")
+{
+    const Scratch in;
+    write(in / "real.json", "old");
+    fs::create_symlink("real.json", in / "link.json");
+    CHECK(call(in, {"models", "heavy_top", "--write", "link.json"}).code == 0);
+    CHECK(fs::is_symlink(in / "link.json"));
+    CHECK_THAT(read(in / "real.json"), Contains("hilda_model"));
+    CHECK(call(in, {"models", "heavy_top", "--write", "/dev/null"}).code == 0);
+    CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("a study refuses steps, keys and names that do not fit before it computes",
+          "[studies][convergence]")
+{
+    const Scratch in;
+    CHECK(call(in, {"study", "convergence", "--problem", "double_pendulum", "--steps", "7e-3"}).code == 2);
+    CHECK(call(in, {"study", "convergence", "--expect", "ordr=2"}).code == 2);
+    CHECK(call(in, {"study", "convergence", "--problem", "double_pendulum,double_pendulum"}).code == 2);
+    CHECK(call(in, {"study", "convergence", "--problem", "nowhere.json"}).code == 3);
 }
 
 TEST_CASE("a full disk exits with 5 and names the file", "[studies][run]")

@@ -9,6 +9,13 @@
 
 namespace hilda::tests {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HILDA_SANITIZED
+inline constexpr bool counts_allocations = false;  ///< a sanitizer owns the heap
+#else
+inline constexpr bool counts_allocations = true;
+#endif
+
 inline std::atomic<long> allocations{0};
 
 /// Allocations while f runs
@@ -22,17 +29,7 @@ long allocations_during(F&& f)
 
 }  // namespace hilda::tests
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-// A sanitizer owns malloc; what goes through operator new is counted all the same.
-void* operator new(std::size_t size)
-{
-    ++hilda::tests::allocations;
-    if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-#else
+#ifndef HILDA_SANITIZED
 extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* __libc_realloc(void*, std::size_t);
 extern "C" void* __libc_calloc(std::size_t, std::size_t);

@@ -81,7 +81,7 @@ void print(const Result& r, std::ostream& out)
                               per_step(r.statistics), count(r.statistics.factorizations, "factorization"),
                               count(r.statistics.refactorizations, "refactorization")));
     line("energy",
-         fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest drift {:.1e} J",
+         fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest change {:.1e} J",
                      r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
     line("constraints", fmt::format("{:.1e} m or rad, largest residual", r.invariants.constraint_norm));
     line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));

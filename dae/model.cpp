@@ -107,6 +107,7 @@ void Model::prepare(State& x)
             r.complement = dp1->complement(bi, bj, x.t);
         if (r.complement) r.branch = memory++;
     }
+    dropped.clear();
     active.resize(row.size());
     std::iota(active.begin(), active.end(), 0);
     set_pattern();  // the complements may enter where their blocks do not
@@ -120,17 +121,10 @@ void Model::prepare(State& x)
     accepted(x, x);  // a driver may start near its singular point
 }
 
-std::vector<int> Model::dropped_rows() const
-{
-    std::vector<int> dropped;
-    for (int k = 0; k < static_cast<int>(row.size()); ++k)
-        if (!std::binary_search(active.begin(), active.end(), k)) dropped.push_back(k);
-    return dropped;
-}
-
 void Model::drop(int k)
 {
     std::erase(active, k);
+    dropped.insert(std::lower_bound(dropped.begin(), dropped.end(), k), k);
     set_pattern();
 }
 

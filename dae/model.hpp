@@ -70,7 +70,7 @@ public:
     };
     const std::vector<Row>& all_rows() const { return row; }
     const std::vector<int>& active_rows() const { return active; }  ///< numbers of the rows in the equations
-    std::vector<int> dropped_rows() const;
+    const std::vector<int>& dropped_rows() const { return dropped; }
     void drop(int row);  ///< takes a row out of the equations
     const std::string& constraint_name(int constraint) const { return constraint_names[constraint]; }
     int constraints() const { return static_cast<int>(constraint_names.size()); }
@@ -113,7 +113,7 @@ private:
     std::vector<std::string> constraint_names;
     std::unordered_set<std::string> names_taken;  ///< of constraints
     std::vector<Row> row;
-    std::vector<int> active;
+    std::vector<int> active, dropped;  ///< ascending
     std::vector<std::unique_ptr<Force>> force;
     int memory = 0;
 

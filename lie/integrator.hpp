@@ -7,11 +7,24 @@
 
 namespace hilda::lie {
 
-struct Newton {
+/// How the saddle system is solved in a step.
+enum class LinearSolver {
+    automatic,  ///< condensed where it takes fewer operations than klu
+    klu,        ///< the whole of K by KLU
+    condensed   ///< the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
+};
+
+/// What a scheme is told; each takes from it what concerns it.
+struct Settings {
     /// Stop when the correction is shorter than this. Half-implicit schemes measure (Δr, Δθ̄, Δλ̂) in m, rad
     /// and kg m, fully implicit ones h² (Δr̈, Δω̄̇, Δλ): the same lengths. See correction_norm for the norm.
     double tolerance = 1e-10;
     int max_iterations = 30;
+    LinearSolver linear_solver = LinearSolver::automatic;
+    double rho_infinity = 0.8;   ///< generalised-α: spectral radius for infinite frequency, 0 … 1
+    bool reparametrise = false;  ///< Euler angles: turn to another body frame near the singular set
+    double rtol = 1e-10;         ///< adaptive schemes: relative error of a step
+    double atol = 0;             ///< the same, absolute [m, m/s; 1, 1/s]; 0: as rtol
 };
 
 /// What a run has cost so far.
@@ -57,7 +70,10 @@ struct Scheme {
     std::string formulation;  ///< rA, rp, reps
     std::string unknowns;     ///< of the Newton iteration
     std::string source;
-    std::unique_ptr<Integrator> (*make)(const System&, const Newton&) = nullptr;
+    /// Chooses its own steps inside the step it is asked for, by rtol and atol. It remembers past steps
+    /// outside the state, so its runs do not resume.
+    bool adaptive = false;
+    std::unique_ptr<Integrator> (*make)(const System&, const Settings&) = nullptr;
 };
 
 /// All schemes, by name.
@@ -72,8 +88,8 @@ bool enrol(Scheme scheme);
 template <class Method>
 bool enrol(Scheme scheme)
 {
-    scheme.make = [](const System& system, const Newton& newton) -> std::unique_ptr<Integrator> {
-        return std::make_unique<Method>(system, newton);
+    scheme.make = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
+        return std::make_unique<Method>(system, settings);
     };
     return enrol(std::move(scheme));
 }

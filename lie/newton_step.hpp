@@ -12,8 +12,9 @@ namespace hilda::lie {
 
 class NewtonStep : public Integrator {
 public:
-    NewtonStep(const System& model, const Newton& newton)
-        : model(model), newton(newton), K(model), loads(model.bodies()), z(K.size()), b(K.size()), e(K.size())
+    NewtonStep(const System& model, const Settings& settings)
+        : model(model), settings(settings), K(model), loads(model.bodies()), z(K.size()), b(K.size()),
+          e(K.size())
     {
         for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
     }
@@ -62,9 +63,9 @@ protected:
     {
         std::ostringstream what;
         what.precision(2);
-        what << scheme << ": correction " << correction << " after " << newton.max_iterations
+        what << scheme << ": correction " << correction << " after " << settings.max_iterations
              << " iterations";
-        NoConvergence failure(what.str(), correction, newton.max_iterations);
+        NoConvergence failure(what.str(), correction, settings.max_iterations);
         if (model.rows() > 0) {
             Eigen::VectorXd Phi(model.rows());
             model.phi(x, Phi);
@@ -76,7 +77,7 @@ protected:
     }
 
     const System& model;
-    const Newton newton;
+    const Settings settings;
     Saddle K;
     Loads loads;
     State x_n;

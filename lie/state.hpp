@@ -22,8 +22,10 @@ struct State {
     double t = 0;  ///< [s]
     std::vector<Motion> body;
     Eigen::VectorXd lambda;  ///< multiplier of each constraint row
-    std::vector<int>
-        memory;  ///< whole numbers a system remembers from step to step: the branch of a driver, turns
+    /// Whole numbers that a system remembers from step to step: the branch of a driver, turns
+    std::vector<int> memory;
+    /// What a scheme carries from step to step: half-step velocities, earlier increments. Empty at a start.
+    Eigen::VectorXd history;
 };
 
 /// The rotation nearest to an A that rounding has moved off SO(3), to first order in AᵀA - I (one Newton step

@@ -67,15 +67,6 @@ struct Rows {
                    entry[n].pi.dot(q.template segment<3>(6 * entry[n].body + 3));
         return sum;
     }
-
-    /// Euclidean length of row k, the scale in which its residual is judged.
-    double norm(int k) const
-    {
-        double sum = 0;
-        for (int n = start[k]; n < start[k + 1]; ++n)
-            sum += entry[n].r.squaredNorm() + entry[n].pi.squaredNorm();
-        return std::sqrt(sum);
-    }
 };
 
 /// A system is constant while it is stepped; all that changes is in State.

@@ -49,6 +49,29 @@ double nonnegative_number(const std::string& option, const std::string& text)
     return value;
 }
 
+double fraction(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 0 && value <= 1)) refuse(option, "must be a number from 0 to 1", text);
+    return value;
+}
+
+double relative_tolerance(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 1e-14 && value < 1))
+        refuse(option, "must be a number from 1e-14, which double precision can just keep, to below 1", text);
+    return value;
+}
+
+lie::LinearSolver linear_solver(const std::string& option, const std::string& text)
+{
+    if (text == "auto") return lie::LinearSolver::automatic;
+    if (text == "klu") return lie::LinearSolver::klu;
+    if (text == "condensed") return lie::LinearSolver::condensed;
+    refuse(option, "must be auto, klu or condensed", text);
+}
+
 int positive_count(const std::string& option, const std::string& text)
 {
     int value = 0;

@@ -18,6 +18,12 @@ double number(const std::string& option, const std::string& text);
 /// The same, larger than zero, or at least zero
 double positive_number(const std::string& option, const std::string& text);
 double nonnegative_number(const std::string& option, const std::string& text);
+/// From 0 to 1
+double fraction(const std::string& option, const std::string& text);
+/// A relative tolerance that double precision can keep: from 1e-14 to below 1
+double relative_tolerance(const std::string& option, const std::string& text);
+/// auto, klu or condensed
+lie::LinearSolver linear_solver(const std::string& option, const std::string& text);
 /// A whole number, at least 1
 int positive_count(const std::string& option, const std::string& text);
 

@@ -150,6 +150,26 @@ private:
         return text;
     }
 
+    /// What the schemes are told, the same for every command that runs them
+    static void add_settings(CLI::App* c, lie::Settings& s)
+    {
+        value(c, "--tolerance", "EPS",
+              "Newton's method stops at corrections below, by default 1e-10 in m, rad, kg m",
+              assign(s.tolerance, positive_number));
+        value(c, "--linear-solver", "auto|klu|condensed",
+              "of the saddle system; by default the one with fewer operations",
+              assign(s.linear_solver, linear_solver));
+        value(c, "--rho-infinity", "RHO",
+              "damping of rA-genalpha, from 0, the most, to 1, none; by default 0.8",
+              assign(s.rho_infinity, fraction));
+        c->add_flag("--reparametrise", s.reparametrise,
+                    "Euler angles turn to another body frame near their singular set, instead of stopping");
+        value(c, "--rtol", "RTOL", "relative error of a step of ida-rp, by default 1e-10",
+              assign(s.rtol, relative_tolerance));
+        value(c, "--atol", "ATOL", "the same, absolute, by default as --rtol",
+              assign(s.atol, positive_number));
+    }
+
     void add_run()
     {
         RunOptions& o = run;
@@ -168,9 +188,7 @@ private:
         value(c, "--end", "T", "end in s, by default the model's", assign(o.end, nonnegative_number));
         value(c, "--every", "DT", "s between output rows, by default end/1000; 0: every step",
               assign(o.every, nonnegative_number));
-        value(c, "--tolerance", "EPS",
-              "Newton's method stops at corrections below, by default 1e-10 in m, rad, kg m",
-              assign(o.newton.tolerance, positive_number));
+        add_settings(c, o.settings);
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
         c->add_flag("--fix-initial", o.fix_initial, "project initial data that violate the constraints");
@@ -238,8 +256,7 @@ private:
         value(c, "--end", "T", "end in s, by default the model's", assign(o.end, positive_number));
         values(c, "--set", "/json/pointer=VALUE", "change one entry of each model; repeatable",
                append(o.set, one_setting));
-        value(c, "--tolerance", "EPS", "Newton's method stops at corrections below, by default 1e-10",
-              assign(o.newton.tolerance, positive_number));
+        add_settings(c, o.settings);
         value(c, "--output", "DIR", "by default out/KIND", assign(o.output, path));
         c->add_flag("--force", force, "write into a directory that is not empty");
         value(c, "--jobs", "N", "runs side by side, by default one for each core",

@@ -97,12 +97,12 @@ void add_truth(Case& c, const StudyOptions& options)
 class AtInstants final : public lie::Observer {
 public:
     AtInstants(const dae::Model& model, const Instants& instants, double h)
-        : model(model), instants(instants), h(h), has_dropped_rows(!model.dropped_rows().empty())
+        : model(model), instants(instants), h(h)
     {}
 
     void accepted(const lie::State& x, long n, int) override
     {
-        if (has_dropped_rows) dae::check_dropped_rows(model, x);
+        dae::check_dropped_rows(model, x);
         const double k = static_cast<double>(n) * h / instants.dt;
         const long nearest = std::lround(k);
         if (nearest > instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;
@@ -121,7 +121,6 @@ private:
     const dae::Model& model;
     const Instants& instants;
     const double h;
-    const bool has_dropped_rows;
 };
 
 struct Run {
@@ -138,12 +137,12 @@ struct Run {
 };
 
 /// One integration; errors, cost and invariants into `run`
-void integrate(Run& run, const StudyOptions& options, const lie::Newton& newton)
+void integrate(Run& run, const StudyOptions& options, const lie::Settings& settings)
 {
     const Instants& instants = run.c->instants;
     const double t_end = instants.dt * static_cast<double>(instants.count);
     const dae::Description d = ready(run.c->problem, options);
-    const auto integrator = run.scheme->make(*d.model, newton);
+    const auto integrator = run.scheme->make(*d.model, settings);
     AtInstants nodes(*d.model, instants, run.h);
     lie::Observer* observers[] = {&nodes};
     const double begin = thread_seconds();
@@ -161,7 +160,7 @@ void integrate(Run& run, const StudyOptions& options, const lie::Newton& newton)
 void compute(Run& run, const StudyOptions& options)
 {
     try {
-        integrate(run, options, options.newton);
+        integrate(run, options, options.settings);
     } catch (const lie::NumericalFailure& failure) {
         run.status = failure.status;
         run.message = failure.what();
@@ -170,9 +169,9 @@ void compute(Run& run, const StudyOptions& options)
     }
     Run tighter = run;
     try {
-        lie::Newton newton = options.newton;
-        newton.tolerance /= 100;
-        integrate(tighter, options, newton);
+        lie::Settings settings = options.settings;
+        settings.tolerance /= 100;
+        integrate(tighter, options, settings);
     } catch (const lie::NumericalFailure&) {
         return;  // below rounding already; no floor to see
     }
@@ -273,7 +272,7 @@ ordered_json number(double value)
 ordered_json as_json(const std::vector<Series>& all, const StudyOptions& options)
 {
     ordered_json out = {{"study", "convergence"},
-                        {"tolerance", options.newton.tolerance},
+                        {"tolerance", options.settings.tolerance},
                         {"set", options.set},
                         {"provenance", provenance(options.command_line, options.jobs)},
                         {"series", ordered_json::array()}};

@@ -11,8 +11,7 @@ namespace hilda::studies {
 
 TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file,
                              bool with_reactions)
-    : model(model), grid(grid), file(file), with_reactions(with_reactions), dropped(model.dropped_rows()),
-      C(model.pattern())
+    : model(model), grid(grid), file(file), with_reactions(with_reactions), C(model.pattern())
 {}
 
 void TrajectoryCsv::write_header()
@@ -46,10 +45,7 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
 {
     const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
     note(x, energy, constraint_norm);
-    if (!grid.is_row(n)) {
-        if (!dropped.empty()) dae::check_dropped_rows(model, x);
-        return;
-    }
+    if (!grid.is_row(n)) return dae::check_dropped_rows(model, x);
     ++invariants.rows;
     std::string& row = file.buffer;
     append_number(row, x.t);
@@ -76,7 +72,7 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
     row += '\n';
     file.flush_when_full();
 
-    if (!dropped.empty()) dae::check_dropped_rows(model, x);
+    dae::check_dropped_rows(model, x);
 }
 
 void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_norm)

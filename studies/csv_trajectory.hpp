@@ -36,7 +36,6 @@ private:
     const lie::Grid& grid;
     OutputFile& file;
     const bool with_reactions;
-    const std::vector<int> dropped;
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };

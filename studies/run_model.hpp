@@ -16,7 +16,7 @@ struct RunOptions {
     std::vector<std::string> integrators{"rA-half-1"};
     double step = 1e-3;                ///< [s]
     std::optional<double> end, every;  ///< [s]; the model's end, a thousandth of the end
-    lie::Newton newton;
+    lie::Settings settings;
     std::vector<std::string> set;  ///< /json/pointer=VALUE
     bool fix_initial = false;
 

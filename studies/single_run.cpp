@@ -49,7 +49,7 @@ Result SingleRun::go()
 {
     begin = Clock::now();
     read();
-    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, options.newton);
+    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, options.settings);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
@@ -83,7 +83,7 @@ void SingleRun::read()
     result.integrator = scheme.name;
     result.step = grid.h;
     result.every = static_cast<double>(grid.every) * grid.h;
-    result.tolerance = options.newton.tolerance;
+    result.tolerance = options.settings.tolerance;
     result.bodies = description.model->bodies();
     result.constraints = description.model->constraints();
     result.warnings = description.warnings;
@@ -93,11 +93,14 @@ void SingleRun::read()
     result.directory = directory;
     result.files = {"model.json", "trajectory.csv"};
     if (options.log_steps) result.files.emplace_back("steps.csv");
-    settings =
-        fmt::format("model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}{}{}{}",
-                    hash(description.text), scheme.name, grid.h, result.end, result.every,
-                    options.newton.tolerance, options.fix_initial ? ", --fix-initial" : "",
-                    options.reactions ? ", --reactions" : "", options.log_steps ? ", --log-steps" : "");
+    settings = fmt::format(
+        "model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}, linear solver {}, rho "
+        "{}{}{}{}{}",
+        hash(description.text), scheme.name, grid.h, result.end, result.every, options.settings.tolerance,
+        static_cast<int>(options.settings.linear_solver), options.settings.rho_infinity,
+        options.settings.reparametrise ? ", --reparametrise" : "",
+        options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
+        options.log_steps ? ", --log-steps" : "");
 }
 
 std::optional<Checkpoint> SingleRun::load_checkpoint() const

@@ -25,7 +25,7 @@ struct StudyOptions {
     std::vector<double> steps;     ///< [s], descending
     std::optional<double> end;     ///< [s]
     std::vector<std::string> set;  ///< /json/pointer=VALUE
-    lie::Newton newton;
+    lie::Settings settings;
     std::string output;  ///< directory, already made and empty; "" with --json and no --output
     int jobs = 1;        ///< runs side by side
     bool plot = true, quiet = false, json = false;

@@ -15,7 +15,8 @@ namespace {
 
 class FullyImplicit1 final : public NewtonStep {
 public:
-    FullyImplicit1(const System& model, const Newton& newton) : NewtonStep(model, newton), C(model.pattern())
+    FullyImplicit1(const System& model, const Settings& settings)
+        : NewtonStep(model, settings), C(model.pattern())
     {}
 
     int step(State& x, double h) override
@@ -24,13 +25,13 @@ public:
         K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eq. 3.23)
         predict();
         x.t = x_n.t + h;
-        for (int k = 1; k <= newton.max_iterations; ++k) {
+        for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x, h);
             set_residual(x, h);
             K.solve(e);
             z -= e;
             correction = h * h * correction_norm(e.squaredNorm());
-            if (correction < newton.tolerance) {
+            if (correction < settings.tolerance) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 return done(k);

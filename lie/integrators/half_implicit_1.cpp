@@ -28,7 +28,7 @@ public:
         set_known_part(h);
         predict(h);
         x.t = x_n.t + h;
-        for (int k = 1; k <= newton.max_iterations; ++k) {
+        for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             K.multiply(z, e);
             e = b - e;  // -e₁, -e₂ of Eq. 3.31
@@ -37,7 +37,7 @@ public:
             K.solve(e);
             z += e;
             correction = correction_norm(e.squaredNorm());
-            if (correction < newton.tolerance) {
+            if (correction < settings.tolerance) {
                 accept(x, h);
                 return done(k);
             }

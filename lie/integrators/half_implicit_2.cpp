@@ -19,8 +19,8 @@ namespace {
 
 class HalfImplicit2 final : public NewtonStep {
 public:
-    HalfImplicit2(const System& model, const Newton& newton)
-        : NewtonStep(model, newton), A_hat(model.bodies())
+    HalfImplicit2(const System& model, const Settings& settings)
+        : NewtonStep(model, settings), A_hat(model.bodies())
     {}
 
     int step(State& x, double h) override
@@ -30,7 +30,7 @@ public:
         set_known_part(h);
         predict(h);
         x.t = x_n.t + h;
-        for (int k = 1; k <= newton.max_iterations; ++k) {
+        for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             K.multiply(z, e);
             e = b - e;
@@ -39,7 +39,7 @@ public:
             K.solve(e);
             z += e;
             correction = printed_norm();
-            if (correction < newton.tolerance) {
+            if (correction < settings.tolerance) {
                 accept(x, h);
                 return done(k);
             }

@@ -12,6 +12,7 @@ namespace hilda::dae {
 using lie::Mat3;
 using lie::Motion;
 using lie::State;
+using lie::tilde;
 using lie::Vec3;
 
 /// The fixed body at the origin. Constraints and forces may name it; it has no equations.

@@ -6,6 +6,8 @@
 #include "dae/body.hpp"
 #include "lie/system.hpp"
 
+#include <array>
+
 namespace hilda::dae {
 
 class Force {
@@ -23,6 +25,10 @@ public:
     virtual int memory() const { return 0; }
     virtual void remember(State& /*x*/) const {}
     int first_memory = 0;  ///< set by the model
+
+    /// The bodies whose motion it depends on, and on which alone it acts; `ground` for none. A force that says
+    /// so is differentiated where a scheme wants its stiffness.
+    virtual std::array<int, 2> bodies() const { return {ground, ground}; }
 
     /// Highest body number it acts on, and a name for messages
     virtual int last_body() const = 0;

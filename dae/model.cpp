@@ -250,6 +250,89 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     }
 }
 
+void Model::second_variation(const State& x, lie::SecondVariation& out) const
+{
+    for (size_t n = 0; n < active.size(); ++n) {
+        const Block& block = row[active[n]].in_force(x);
+        const Mat12 H = block.second_variation(motion(x, block.i), motion(x, block.j), x.t);
+        const int k = static_cast<int>(n), i = 0, j = block.i != ground ? 1 : 0;  // entries of the row
+        if (block.i != ground) out.at(k, i, i) = H.topLeftCorner<6, 6>();
+        if (block.j != ground) out.at(k, j, j) = H.bottomRightCorner<6, 6>();
+        if (block.i == ground || block.j == ground) continue;
+        out.at(k, i, j) = H.topRightCorner<6, 6>();
+        out.at(k, j, i) = H.bottomLeftCorner<6, 6>();
+    }
+}
+
+void Model::nu_variation(const State& x, lie::Rows& out) const
+{
+    lie::Rows::Entry* entry = out.entry.data();
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        const Variation v = block.nu_variation(motion(x, block.i), motion(x, block.j), x.t);
+        if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
+        if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
+    }
+}
+
+void Model::gamma_variation(const State& x, lie::GammaVariation& out) const
+{
+    lie::GammaVariation::Entry* entry = out.entry.data();
+    for (const int k : active) {
+        const Block& block = row[k].in_force(x);
+        const GammaChange g = block.gamma_variation(motion(x, block.i), motion(x, block.j), x.t);
+        if (block.i != ground) *entry++ = {g.i.r, g.i.theta, g.i.rdot, g.i.omega};
+        if (block.j != ground) *entry++ = {g.j.r, g.j.theta, g.j.rdot, g.j.omega};
+    }
+}
+
+lie::LoadVariation Model::load_pattern() const
+{
+    lie::LoadVariation out;
+    for (const auto& f : force)
+        for (const int by : f->bodies())
+            for (const int on : f->bodies())
+                if (on != ground && by != ground) out.block.push_back({.on = on, .by = by});
+    out.plus = out.minus = lie::Loads(bodies());
+    return out;
+}
+
+void Model::load_variation(const State& x, lie::LoadVariation& out) const
+{
+    if (out.block.empty()) return;
+    constexpr double h = 6e-6;  // truncation h² and rounding 1e-16/h balance here
+    out.x = x;
+    size_t first = 0;
+    for (const auto& f : force) {
+        size_t blocks = 0;
+        for (const int by : f->bodies()) {
+            if (by == ground) continue;
+            Motion& moved = out.x.body[by];
+            for (int c = 0; c < 12; ++c) {
+                const auto evaluate = [&](double step, lie::Loads& loads) {
+                    Vec3* const part[] = {&moved.r, nullptr, &moved.rdot, &moved.omega_bar};
+                    if (c / 3 == 1)
+                        moved.A = moved.A * lie::exp(step * Vec3::Unit(c - 3));
+                    else
+                        (*part[c / 3])[c % 3] += step;
+                    loads.set_zero();
+                    f->add(out.x, loads);
+                    moved = x.body[by];
+                };
+                evaluate(h, out.plus);
+                evaluate(-h, out.minus);
+                size_t at = first + blocks;
+                for (const int on : f->bodies())
+                    if (on != ground)
+                        out.block[at++].d.col(c) << (out.plus.F[on] - out.minus.F[on]) / (2 * h),
+                            (out.plus.n_bar[on] - out.minus.n_bar[on]) / (2 * h);
+            }
+            for (const int on : f->bodies()) blocks += on != ground;
+        }
+        first += blocks;
+    }
+}
+
 double Model::potential_energy(const State& x) const
 {
     double e = 0;

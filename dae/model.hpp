@@ -96,6 +96,12 @@ public:
     void variation(const State& x, lie::Rows& out) const override;
     void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
     void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
+    void second_variation(const State& x, lie::SecondVariation& out) const override;
+    void nu_variation(const State& x, lie::Rows& out) const override;
+    void gamma_variation(const State& x, lie::GammaVariation& out) const override;
+    /// Of the forces that say which bodies they act on; by differences
+    lie::LoadVariation load_pattern() const override;
+    void load_variation(const State& x, lie::LoadVariation& out) const override;
     double potential_energy(const State& x) const override;
     /// Swaps DP1 drivers that come near |f| = 1 for their complement, with the multiplier that gives the same
     /// torque, and lets forces remember.

@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/saddle.hpp"
 
-#include <klu.h>
-
 namespace hilda::lie {
-
-namespace {
-
-// Below this the last digits of a solution are noise; KLU itself reports success.
-constexpr double singular = 1e-14;
-// Pivots are chosen anew when the old ones have lost this much of the condition they were chosen for.
-constexpr double worn_out = 1e-3;
-
-}  // namespace
-
-struct Saddle::Klu {
-    klu_common common{};
-    klu_symbolic* symbolic = nullptr;
-    klu_numeric* numeric = nullptr;
-
-    Klu()
-    {
-        klu_defaults(&common);
-        common.ordering = 0;  // AMD: K is symmetric in pattern
-        common.btf = 0;       // and one block
-        common.scale = -1;    // scaled by us
-    }
-    ~Klu()
-    {
-        klu_free_numeric(&numeric, &common);
-        klu_free_symbolic(&symbolic, &common);
-    }
-    Klu(const Klu&) = delete;
-    Klu& operator=(const Klu&) = delete;
-};
 
 Saddle::Saddle(const System& system, Metric metric)
     : system(system), metric(metric), bodies(system.bodies()), m(system.rows()), C(system.pattern()),
-      klu(std::make_unique<Klu>()), scale(Eigen::VectorXd::Ones(size())), work(size()), residual(size()),
-      right_side(size())
+      scale(Eigen::VectorXd::Ones(size())), work(size()), residual(size()), right_side(size())
 {
     analyse();
 }
-
-Saddle::~Saddle() = default;
 
 void Saddle::analyse()
 {
@@ -58,7 +23,7 @@ void Saddle::analyse()
                     slot.push_back({0, 0, 1});
                 }
 
-    column_start.assign(1, 0);
+    std::vector<int> column_start(1, 0), row_index;
     for (int b = 0; b < bodies; ++b)
         for (int c = 0; c < 6; ++c) {
             const int first = c < 3 ? c : 3, last = c < 3 ? c : 5;
@@ -81,14 +46,7 @@ void Saddle::analyse()
                 }
         column_start.push_back(static_cast<int>(row_index.size()));
     }
-    value.assign(row_index.size(), 0);
-
-    klu->symbolic = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
-    if (klu->symbolic == nullptr)
-        throw SingularMatrix(
-            "the pattern of the saddle matrix is singular: more constraint rows than motions, or a row "
-            "that no body enters",
-            0);
+    klu.analyse(std::move(column_start), std::move(row_index));
 }
 
 // S = diag(M, J̄)^(-1/2) on the bodies, and on row k what brings (Φ_r, Π̄) S to length one. Then K is about as
@@ -124,7 +82,7 @@ void Saddle::scale_rows()
                 if (metric == Metric::mass)
                     entry = (c < 3 ? system.mass().m[b] : system.mass().J_bar[b](d - 3, c - 3)) *
                             scale[6 * b + c] * scale[6 * b + d];
-                value[mass_slot[s++]] = entry;
+                klu.value[mass_slot[s++]] = entry;
             }
     scaled = true;
 }
@@ -135,39 +93,10 @@ void Saddle::fill()
     for (const Rows::Entry& entry : C.entry)
         for (int c = 0; c < 6; ++c)
             if (entry.nonzero >> c & 1) {
-                value[s->upper] = value[s->lower] = s->factor * (c < 3 ? entry.r[c] : entry.pi[c - 3]);
+                klu.value[s->upper] = klu.value[s->lower] =
+                    s->factor * (c < 3 ? entry.r[c] : entry.pi[c - 3]);
                 ++s;
             }
-}
-
-bool Saddle::refactor()
-{
-    if (!have_pivots || klu_refactor(column_start.data(), row_index.data(), value.data(), klu->symbolic,
-                                     klu->numeric, &klu->common) == 0)
-        return false;
-    ++again;
-    klu_rcond(klu->symbolic, klu->numeric, &klu->common);
-    rcond = klu->common.rcond;
-    return klu->common.status == KLU_OK && rcond > worn_out * rcond_of_full;  // false for NaN
-}
-
-void Saddle::factor()
-{
-    for (const double v : value)
-        if (!std::isfinite(v)) throw NonFinite("a derivative of the constraints is not finite");
-    klu_free_numeric(&klu->numeric, &klu->common);
-    klu->numeric =
-        klu_factor(column_start.data(), row_index.data(), value.data(), klu->symbolic, &klu->common);
-    ++full;
-    rcond = 0;
-    if (klu->numeric != nullptr && klu->common.status == KLU_OK) {
-        klu_rcond(klu->symbolic, klu->numeric, &klu->common);
-        rcond = klu->common.rcond;
-    }
-    have_pivots = rcond > singular;
-    if (!have_pivots)
-        throw SingularMatrix("the saddle matrix is singular: redundant or singular constraints?", rcond);
-    rcond_of_full = rcond;
 }
 
 void Saddle::assemble(const State& x)
@@ -175,17 +104,17 @@ void Saddle::assemble(const State& x)
     system.variation(x, C);
     if (!scaled) scale_rows();
     fill();
-    if (!refactor()) {
+    if (!klu.refactor()) {
         scale_rows();
         fill();
-        factor();
+        klu.factor("the saddle matrix");
     }
 }
 
 void Saddle::solve(Eigen::VectorXd& b)
 {
     b.array() *= scale.array();
-    klu_solve(klu->symbolic, klu->numeric, size(), 1, b.data(), &klu->common);
+    klu.solve(b.data());
     b.array() *= scale.array();
     if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
 }

@@ -12,9 +12,8 @@
 #pragma once
 
 #include "lie/check.hpp"
+#include "lie/klu.hpp"
 #include "lie/system.hpp"
-
-#include <memory>
 
 namespace hilda::lie {
 
@@ -28,7 +27,6 @@ class Saddle {
 public:
     /// Analyses the pattern once. The system must outlive the saddle matrix.
     explicit Saddle(const System& system, Metric metric = Metric::mass);
-    ~Saddle();
 
     /// Evaluates the rows in the state x and factors K there. The pivot order of the last full factorisation
     /// is kept while it serves (klu_refactor); when the reciprocal condition says that it no longer does,
@@ -48,29 +46,24 @@ public:
     int size() const { return 6 * bodies + m; }
     Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const { return z.tail(m); }
 
-    double reciprocal_condition() const { return rcond; }  ///< KLU's estimate for the scaled matrix
-    long factorizations() const { return full; }           ///< with new pivots
-    long refactorizations() const { return again; }        ///< with the pivots of the last full one
+    /// KLU's estimate for the scaled matrix
+    double reciprocal_condition() const { return klu.reciprocal_condition(); }
+    long factorizations() const { return klu.factorizations(); }  ///< with new pivots
+    /// With the pivots of the last full one
+    long refactorizations() const { return klu.refactorizations(); }
 
 private:
-    struct Klu;
-
     void analyse();
     void scale_rows();
     void fill();
-    bool refactor();
-    void factor();
 
     const System& system;
     const Metric metric;
     int bodies, m;
     Rows C;
-    std::unique_ptr<Klu> klu;
 
-    // K as compressed columns, scaled to S K S with S chosen so that the diagonal blocks and the rows have
-    // length one
-    std::vector<int> column_start, row_index;
-    std::vector<double> value;
+    // K scaled to S K S with S chosen so that the diagonal blocks and the rows have length one
+    Klu klu{Klu::Scaling::none};
     Eigen::VectorXd scale;
     struct Slot {
         int upper, lower;  ///< where a derivative stands in Φ_rᵀ or Π̄ᵀ, and in Φ_r or Π̄
@@ -80,9 +73,7 @@ private:
     std::vector<int> mass_slot;
     Eigen::VectorXd work, residual, right_side;
 
-    double rcond = 1, rcond_of_full = 1;
-    long full = 0, again = 0;
-    bool scaled = false, have_pivots = false;
+    bool scaled = false;
 };
 
 }  // namespace hilda::lie

@@ -69,6 +69,51 @@ struct Rows {
     }
 };
 
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// The second variation of all rows: how the blocks (Φ_rᵀ, Π̄ᵀ) of row k that belong to one of its bodies change
+/// with the position of another. at(k, a, b) is ∂(r, pi of entry a)/∂(δr, δθ of entry b), entries counted
+/// from start[k] of the pattern, A ← A exp(δθ̃).
+struct SecondVariation {
+    explicit SecondVariation(const Rows& pattern)
+    {
+        for (int k = 0; k < pattern.rows(); ++k) {
+            first.push_back(static_cast<int>(block.size()));
+            entries.push_back(pattern.start[k + 1] - pattern.start[k]);
+            block.resize(block.size() + entries[k] * entries[k], Mat6::Zero());
+        }
+    }
+
+    Mat6& at(int k, int a, int b) { return block[first[k] + a * entries[k] + b]; }
+    const Mat6& at(int k, int a, int b) const { return block[first[k] + a * entries[k] + b]; }
+
+    std::vector<int> first, entries;
+    std::vector<Mat6> block;
+};
+
+/// How γ of each row changes, by the entries of the pattern: γ' = r · δr + theta · δθ + rdot · δṙ + omega · δω̄
+struct GammaVariation {
+    struct Entry {
+        Vec3 r = Vec3::Zero(), theta = Vec3::Zero(), rdot = Vec3::Zero(), omega = Vec3::Zero();
+    };
+    explicit GammaVariation(const Rows& pattern) : entry(pattern.entry.size()) {}
+
+    std::vector<Entry> entry;
+};
+
+/// How the loads (F, n̄) on one body change with the motion (δr, δθ, δṙ, δω̄) of another, or of itself
+struct LoadVariation {
+    struct Block {
+        int on = 0, by = 0;
+        Eigen::Matrix<double, 6, 12> d = Eigen::Matrix<double, 6, 12>::Zero();
+    };
+    std::vector<Block> block;
+
+    // room for whoever finds it by differences
+    State x;
+    Loads plus{0}, minus{0};
+};
+
 /// A system is constant while it is stepped; all that changes is in State.
 class System {
 public:
@@ -94,6 +139,16 @@ public:
     virtual void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
     /// γ: the rows of Φ_r r̈ + Π̄ ω̄̇ = γ                                                                 Eq. 2.9
     virtual void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
+
+    /// What the exact Newton matrices are made of; schemes with a frozen matrix do without. As they stand here
+    /// they are found by differences, good to about 1e-9 of the size of what is differentiated and not fast.
+    virtual void second_variation(const State& x, SecondVariation& out) const;
+    /// ∂ν/∂(δr, δθ), into a copy of pattern()
+    virtual void nu_variation(const State& x, Rows& out) const;
+    virtual void gamma_variation(const State& x, GammaVariation& out) const;
+    /// The blocks of the loads' variation, values not used. As it stands here: loads that change with nothing.
+    virtual LoadVariation load_pattern() const { return {}; }
+    virtual void load_variation(const State& /*x*/, LoadVariation& /*out*/) const {}
 
     /// Potential energy of the loads that have one [J]
     virtual double potential_energy(const State&) const { return 0; }

@@ -39,6 +39,24 @@ public:
         return f.fddot(t) - c.dot(s_j.centripetal - s_i.centripetal);
     }
 
+    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        Mat12 H = Mat12::Zero();
+        H.block<3, 3>(3, 3) = -tilde(s_bar_i) * tilde(bi.A.transpose() * c);
+        H.block<3, 3>(9, 9) = tilde(s_bar_j) * tilde(bj.A.transpose() * c);
+        return H;
+    }
+
+    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+
+    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        GammaChange g;
+        Pull(bi, g.i).centripetal(s_bar_i, c);
+        Pull(bj, g.j).centripetal(s_bar_j, -c);
+        return g;
+    }
+
     unsigned nonzero() const override
     {
         unsigned axes = 0;

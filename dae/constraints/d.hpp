@@ -46,6 +46,36 @@ public:
         return f.fddot(t) - 2 * d_ijdot.squaredNorm() - 2 * d_ij.dot(s_j.centripetal - s_i.centripetal);
     }
 
+    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        const Mat3 si = tilde(s_bar_i), sj = tilde(s_bar_j), A_si = bi.A * si, A_sj = bj.A * sj;
+        Mat12 H;
+        // clang-format off
+        H <<  Mat3::Identity(),                                       -A_si, -Mat3::Identity(),                                         A_sj,
+             -A_si.transpose(), -si * (tilde(bi.A.transpose() * d_ij) + si),  A_si.transpose(),                     -A_si.transpose() * A_sj,
+             -Mat3::Identity(),                                        A_si,  Mat3::Identity(),                                        -A_sj,
+              A_sj.transpose(),                    -A_sj.transpose() * A_si, -A_sj.transpose(), sj * (tilde(bj.A.transpose() * d_ij) - sj);
+        // clang-format on
+        return 2 * H;
+    }
+
+    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+
+    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
+        GammaChange g;
+        Pull to_i(bi, g.i), to_j(bj, g.j);
+        g.j.r = -2 * (s_j.centripetal - s_i.centripetal), g.i.r = -g.j.r;
+        to_j.a(s_bar_j, g.j.r), to_i.a(s_bar_i, g.i.r);
+        g.j.rdot = -4 * (bj.rdot + s_j.vdot - bi.rdot - s_i.vdot), g.i.rdot = -g.j.rdot;
+        to_j.adot(s_bar_j, g.j.rdot), to_i.adot(s_bar_i, g.i.rdot);
+        to_j.centripetal(s_bar_j, -2 * d_ij), to_i.centripetal(s_bar_i, 2 * d_ij);
+        return g;
+    }
+
     unsigned nonzero() const override
     {
         return 0b111 | crossed(s_bar_i) << 3 | 0b111 << 6 | crossed(s_bar_j) << 9;

@@ -46,6 +46,33 @@ public:
                2 * a_i.vdot.dot(a_j.vdot);
     }
 
+    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Mat3 ai = tilde(a_bar_i), aj = tilde(a_bar_j), A_ij = bi.A.transpose() * bj.A;
+        Mat12 H = Mat12::Zero();
+        H.block<3, 3>(3, 3) = ai * tilde(A_ij * a_bar_j);
+        H.block<3, 3>(3, 9) = -ai * A_ij * aj;
+        H.block<3, 3>(9, 3) = H.block<3, 3>(3, 9).transpose();
+        H.block<3, 3>(9, 9) = aj * tilde(A_ij.transpose() * a_bar_i);
+        return H;
+    }
+
+    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+
+    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Carried a_i(bi, a_bar_i), a_j(bj, a_bar_j);
+        GammaChange g;
+        const auto pull = [](Pull to, const Vec3& a_bar, const Carried& other) {
+            to.centripetal(a_bar, -other.v);
+            to.a(a_bar, -other.centripetal);
+            to.adot(a_bar, -2 * other.vdot);
+        };
+        pull(Pull(bi, g.i), a_bar_i, a_j);
+        pull(Pull(bj, g.j), a_bar_j, a_i);
+        return g;
+    }
+
     unsigned nonzero() const override { return crossed(a_bar_i) << 3 | crossed(a_bar_j) << 9; }
 
     std::string objection(const Motion&, const Motion&, double t) const override

@@ -45,6 +45,42 @@ public:
                a_i.v.dot(s_j.centripetal - s_i.centripetal);
     }
 
+    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        const Mat3 ai = tilde(a_bar_i), sj = tilde(s_bar_j), A_ai = bi.A * ai;
+        Mat12 H = Mat12::Zero();
+        H.block<3, 3>(0, 3) = A_ai;
+        H.block<3, 3>(6, 3) = -A_ai;
+        H.block<3, 3>(3, 0) = A_ai.transpose();
+        H.block<3, 3>(3, 6) = -A_ai.transpose();
+        H.block<3, 3>(3, 3) = ai * (tilde(bi.A.transpose() * d_ij) + tilde(s_bar_i));
+        H.block<3, 3>(3, 9) = A_ai.transpose() * bj.A * sj;
+        H.block<3, 3>(9, 3) = H.block<3, 3>(3, 9).transpose();
+        H.block<3, 3>(9, 9) = sj * tilde(bj.A.transpose() * (bi.A * a_bar_i));
+        return H;
+    }
+
+    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+
+    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    {
+        const Carried a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
+        const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
+        GammaChange g;
+        Pull to_i(bi, g.i), to_j(bj, g.j);
+        to_i.centripetal(a_bar_i, -d_ij);
+        to_i.adot(a_bar_i, -2 * d_ijdot);
+        to_i.a(a_bar_i, s_i.centripetal - s_j.centripetal);
+        g.j.r = -a_i.centripetal, g.i.r = -g.j.r;
+        to_j.a(s_bar_j, g.j.r), to_i.a(s_bar_i, g.i.r);
+        g.j.rdot = -2 * a_i.vdot, g.i.rdot = -g.j.rdot;
+        to_j.adot(s_bar_j, g.j.rdot), to_i.adot(s_bar_i, g.i.rdot);
+        to_j.centripetal(s_bar_j, -a_i.v), to_i.centripetal(s_bar_i, a_i.v);
+        return g;
+    }
+
     unsigned nonzero() const override
     {
         return 0b111 | crossed(a_bar_i) << 3 | 0b111 << 6 | crossed(s_bar_j) << 9;

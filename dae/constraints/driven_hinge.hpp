@@ -51,6 +51,46 @@ public:
         return -bddot.dot(w.v) - 2 * bdot.dot(w.vdot) - (bi.A * b.b).dot(w.centripetal);
     }
 
+    Mat12 second_variation(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Vec3 b = b_bar(t).b;
+        const Mat3 b_tilde = tilde(b), w_tilde = tilde(w_bar), A_ij = bi.A.transpose() * bj.A;
+        Mat12 H = Mat12::Zero();
+        H.block<3, 3>(3, 3) = b_tilde * tilde(A_ij * w_bar);
+        H.block<3, 3>(3, 9) = -b_tilde * A_ij * w_tilde;
+        H.block<3, 3>(9, 3) = H.block<3, 3>(3, 9).transpose();
+        H.block<3, 3>(9, 9) = w_tilde * tilde(A_ij.transpose() * b);
+        return H;
+    }
+
+    Variation nu_variation(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Vec3 bdot = b_bar(t).bdot;
+        return {.r_i = Vec3::Zero(),
+                .pi_i = -bdot.cross(bi.A.transpose() * (bj.A * w_bar)),
+                .r_j = Vec3::Zero(),
+                .pi_j = -w_bar.cross(bj.A.transpose() * (bi.A * bdot))};
+    }
+
+    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double t) const override
+    {
+        const Turning b = b_bar(t);
+        const Carried w(bj, w_bar);
+        const Vec3& omega_bar = bi.omega_bar;
+        const Vec3 first = omega_bar.cross(b.b) + b.bdot, inner = omega_bar.cross(b.b) + 2 * b.bdot,
+                   second = omega_bar.cross(inner) + b.bddot;
+        GammaChange g;
+        const Vec3 g_0 = bi.A.transpose() * -w.centripetal, g_1 = bi.A.transpose() * (-2 * w.vdot),
+                   g_2 = bi.A.transpose() * -w.v;
+        g.i.theta = b.b.cross(g_0) + first.cross(g_1) + second.cross(g_2);
+        g.i.omega = b.b.cross(g_1) + inner.cross(g_2) + b.b.cross(g_2.cross(omega_bar));
+        Pull to_j(bj, g.j);
+        to_j.a(w_bar, -(bi.A * second));
+        to_j.adot(w_bar, -2 * (bi.A * first));
+        to_j.centripetal(w_bar, -(bi.A * b.b));
+        return g;
+    }
+
     unsigned nonzero() const override
     {
         return (crossed(u_bar) | crossed(u_bar_prime)) << 3 | crossed(w_bar) << 9;

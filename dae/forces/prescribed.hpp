@@ -32,6 +32,7 @@ public:
         push(body, frame == Frame::global ? F : Vec3(x.body[body].A * F), point_bar, x, out);
     }
 
+    std::array<int, 2> bodies() const override { return {body, ground}; }
     int last_body() const override { return body; }
 };
 
@@ -54,6 +55,7 @@ public:
         out.n_bar[body] += frame == Frame::body ? n : Vec3(x.body[body].A.transpose() * n);
     }
 
+    std::array<int, 2> bodies() const override { return {body, ground}; }
     int last_body() const override { return body; }
 };
 

@@ -56,6 +56,7 @@ public:
         return 0.5 * stiffness * stretch * stretch;
     }
 
+    std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 };
 

@@ -31,6 +31,7 @@ public:
 
     int memory() const override { return 1; }
     void remember(State& x) const override;
+    std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 
     /// theta [rad], nearest to the quarter turns remembered in x

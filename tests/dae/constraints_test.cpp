@@ -127,6 +127,73 @@ TEST_CASE("nu and gamma are what is missing in the time derivatives of phi", "[d
     }
 }
 
+TEST_CASE("the second variation of a block is the derivative of its variation", "[dae][constraints]")
+{
+    Random random(GENERATE(range(51u, 61u)));
+    const Pair pair(GENERATE(0, 1, 2), random);
+    const double t = random.number(0, 2);
+    for (const Named& n : blocks(pair.i, pair.j, random)) {
+        const Mat12 exact = n.block->second_variation(pair.bi, pair.bj, t);
+        const Vec12 nu = row(n.block->nu_variation(pair.bi, pair.bj, t));
+        for (int c = 0; c < 12; ++c) {
+            const auto moved = [&](auto f) {
+                return tests::derivative([&](double s) {
+                    const Vec12 delta = s * Vec12::Unit(c);
+                    return f(tests::displaced(pair.bi, delta.head<6>()),
+                             tests::displaced(pair.bj, delta.tail<6>()));
+                });
+            };
+            const Vec12 column =
+                moved([&](const Motion& a, const Motion& b) { return row(n.block->variation(a, b, t)); });
+            INFO(n.name << ", component " << c);
+            CHECK((exact.col(c) - column).cwiseAbs().maxCoeff() < 1e-9);
+            CHECK(nu[c] == Approx(moved([&](const Motion& a, const Motion& b) {
+                               return n.block->nu(a, b, t);
+                           })).margin(1e-9));
+        }
+        // Off the diagonal it is symmetric; within a body it lacks symmetry by tilde(pi).
+        const Variation v = n.block->variation(pair.bi, pair.bj, t);
+        Mat12 lack = exact - exact.transpose();
+        lack.block<3, 3>(3, 3) -= tilde(v.pi_i);
+        lack.block<3, 3>(9, 9) -= tilde(v.pi_j);
+        CHECK(lack.cwiseAbs().maxCoeff() < 1e-13);
+        CHECK((exact - n.block->Block::second_variation(pair.bi, pair.bj, t)).cwiseAbs().maxCoeff() < 1e-8);
+    }
+}
+
+TEST_CASE("the variation of gamma is its derivative", "[dae][constraints]")
+{
+    Random random(GENERATE(range(61u, 71u)));
+    const Pair pair(GENERATE(0, 1, 2), random);
+    const double t = random.number(0, 2);
+    using Vec24 = Eigen::Matrix<double, 24, 1>;
+    const auto all = [](const GammaChange& g) {
+        Vec24 out;
+        out << g.i.r, g.i.theta, g.i.rdot, g.i.omega, g.j.r, g.j.theta, g.j.rdot, g.j.omega;
+        return out;
+    };
+    for (const Named& n : blocks(pair.i, pair.j, random)) {
+        const Vec24 exact = all(n.block->gamma_variation(pair.bi, pair.bj, t));
+        for (int c = 0; c < 24; ++c) {
+            const auto gamma = [&](double s) {
+                Motion b[] = {pair.bi, pair.bj};
+                Motion& moved = b[c / 12];
+                Eigen::Matrix<double, 6, 1> pose = Eigen::Matrix<double, 6, 1>::Zero();
+                if (c % 12 < 6)
+                    pose[c % 12] = s;
+                else
+                    (c % 12 < 9 ? moved.rdot : moved.omega_bar)[c % 3] += s;
+                moved = tests::displaced(moved, pose);
+                return n.block->gamma(b[0], b[1], t);
+            };
+            INFO(n.name << ", component " << c);
+            CHECK(exact[c] == Approx(tests::derivative(gamma)).margin(1e-9));
+        }
+        CHECK((exact - all(n.block->Block::gamma_variation(pair.bi, pair.bj, t))).cwiseAbs().maxCoeff() <
+              1e-7);
+    }
+}
+
 TEST_CASE("the pattern of a block hides no derivative and holds no needless one", "[dae][constraints]")
 {
     Random random(GENERATE(range(21u, 26u)));

@@ -49,6 +49,12 @@ public:
         const Vec3& omega_bar = x.body[0].omega_bar;
         if (!free) out = -x.body[0].A * omega_bar.cross(omega_bar.cross(s_bar));
     }
+    void second_variation(const lie::State& x, lie::SecondVariation& out) const override
+    {
+        for (int k = 0; k < (free ? 0 : 3); ++k)
+            out.at(k, 0, 0).bottomRightCorner<3, 3>() =
+                lie::tilde(s_bar) * lie::tilde(x.body[0].A.transpose() * Vec3::Unit(k));
+    }
     double potential_energy(const lie::State& x) const override
     {
         return free ? 0 : 2.0 * 9.81 * x.body[0].r.z();

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The variations of a whole model: what it puts together from its blocks and forces, against the differences
+/// that any system falls back on.
+
+#include "dae/forces/prescribed.hpp"
+#include "dae/forces/spring_damper.hpp"
+#include "dae/forces/torsion_spring.hpp"
+#include "dae/start.hpp"
+#include "tests/support/finite_difference.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/random_motion.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::dae;
+
+namespace {
+
+/// A model that keeps its own variations to itself: System's differences stand in
+class Differences final : public lie::System {
+public:
+    explicit Differences(const Model& model) : model(model) {}
+
+    const lie::Mass& mass() const override { return model.mass(); }
+    const lie::Rows& pattern() const override { return model.pattern(); }
+    void loads(const State& x, lie::Loads& out) const override { model.loads(x, out); }
+    void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { model.phi(x, out); }
+    void variation(const State& x, lie::Rows& out) const override { model.variation(x, out); }
+    void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { model.nu(x, out); }
+    void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { model.gamma(x, out); }
+
+    const Model& model;
+};
+
+}  // namespace
+
+TEST_CASE("a model puts the variations of its blocks in their places", "[dae][variations]")
+{
+    Model model;
+    State x;
+    GENERATE(0, 1) == 0 ? tests::slider_crank(model, x) : tests::four_link(model, x);
+    start(model, x);
+    tests::Random random(3);
+    for (Motion& body : x.body) body.rdot = random.vector(2), body.omega_bar = random.vector(2);
+    const Differences by_differences(model);
+
+    lie::SecondVariation H(model.pattern()), H_differences(model.pattern());
+    model.second_variation(x, H);
+    by_differences.second_variation(x, H_differences);
+    REQUIRE(H.block.size() == H_differences.block.size());
+    for (size_t k = 0; k < H.block.size(); ++k)
+        CHECK((H.block[k] - H_differences.block[k]).cwiseAbs().maxCoeff() < 1e-8);
+
+    lie::Rows nu = model.pattern(), nu_differences = model.pattern();
+    model.nu_variation(x, nu);
+    by_differences.nu_variation(x, nu_differences);
+    lie::GammaVariation gamma(model.pattern()), gamma_differences(model.pattern());
+    model.gamma_variation(x, gamma);
+    by_differences.gamma_variation(x, gamma_differences);
+    for (size_t n = 0; n < nu.entry.size(); ++n) {
+        CHECK((nu.entry[n].r - nu_differences.entry[n].r).norm() < 1e-8);
+        CHECK((nu.entry[n].pi - nu_differences.entry[n].pi).norm() < 1e-8);
+        const auto &a = gamma.entry[n], &b = gamma_differences.entry[n];
+        CHECK((a.r - b.r).norm() < 1e-6);  // differences of numbers that reach 1e3
+        CHECK((a.theta - b.theta).norm() < 1e-6);
+        CHECK((a.rdot - b.rdot).norm() < 1e-6);
+        CHECK((a.omega - b.omega).norm() < 1e-6);
+    }
+}
+
+TEST_CASE("the variation of the loads is their derivative", "[dae][variations]")
+{
+    tests::Random random(GENERATE(range(1u, 4u)));
+    Model model;
+    State x = random.state(3);
+    for (const char* name : {"one", "two", "three"})
+        model.add({.name = name, .m = 2, .J_bar = Vec3(1, 1.2, 0.9).asDiagonal()});
+    model.load(SpringDamper(0, random.vector(), 2, random.vector(), 30, 4, 0.2));
+    model.load(SpringDamper(1, random.vector(), ground, random.vector(), 12, 0.5, 0.1));
+    const Vec3 axis = random.unit();
+    State aligned = x;
+    aligned.body[1].A = aligned.body[0].A;
+    model.load(TorsionSpring(0, axis, 1, axis, 7, 0.3, 0.1, aligned));
+    model.load(PrescribedForce(2, random.vector(), Frame::body,
+                               {Expression("2", {"t"}), Expression("t", {"t"}), Expression("1", {"t"})}));
+    model.prepare(x);
+
+    lie::LoadVariation change = model.load_pattern();
+    model.load_variation(x, change);
+    using Vec6 = Eigen::Matrix<double, 6, 1>;
+    for (int by = 0; by < 3; ++by)
+        for (int c = 0; c < 12; ++c)
+            for (int on = 0; on < 3; ++on) {
+                const auto loads = [&](double s) {
+                    State y = x;
+                    Vec6 pose = Vec6::Zero();
+                    if (c < 6)
+                        pose[c] = s;
+                    else
+                        (c < 9 ? y.body[by].rdot : y.body[by].omega_bar)[c % 3] += s;
+                    y.body[by] = tests::displaced(y.body[by], pose);
+                    lie::Loads out(3);
+                    model.loads(y, out);
+                    Vec6 both;
+                    both << out.F[on], out.n_bar[on];
+                    return both;
+                };
+                Vec6 sum = Vec6::Zero();
+                for (const auto& block : change.block)
+                    if (block.on == on && block.by == by) sum += block.d.col(c);
+                CHECK((sum - tests::derivative(loads)).cwiseAbs().maxCoeff() < 1e-6);
+            }
+}

@@ -26,6 +26,24 @@ public:
     }
 
 protected:
+    /// While a step is tried: unless it is accepted, x is put back to what it was, whatever was thrown.
+    class Attempt {
+    public:
+        Attempt(State& x, const State& x_n) : x(x), x_n(x_n) {}
+        ~Attempt()
+        {
+            if (!accepted) x = x_n;
+        }
+        Attempt(const Attempt&) = delete;
+        Attempt& operator=(const Attempt&) = delete;
+
+        bool accepted = false;
+
+    private:
+        State& x;
+        const State& x_n;
+    };
+
     /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i Eq. 3.4b
     Vec3 tau_bar(int i, const Motion& body) const
     {
@@ -51,8 +69,9 @@ protected:
     }
 
     /// Book-keeping of an accepted step; returns its iterations.
-    int done(int k)
+    int done(Attempt& attempt, int k)
     {
+        attempt.accepted = true;
         ++steps;
         iterations += k;
         return k;

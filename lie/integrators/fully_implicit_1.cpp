@@ -22,6 +22,7 @@ public:
     int step(State& x, double h) override
     {
         x_n = x;
+        Attempt attempt(x, x_n);
         K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eq. 3.23)
         predict();
         x.t = x_n.t + h;
@@ -34,12 +35,10 @@ public:
             if (correction < settings.tolerance) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
-                return done(k);
+                return done(attempt, k);
             }
         }
-        const State last = x;
-        x = x_n;
-        no_convergence("rA-full-1", correction, last);
+        no_convergence("rA-full-1", correction, x);
     }
 
 private:

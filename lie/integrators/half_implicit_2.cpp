@@ -26,6 +26,7 @@ public:
     int step(State& x, double h) override
     {
         x_n = x;
+        Attempt attempt(x, x_n);
         K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eq. 3.51)
         set_known_part(h);
         predict(h);
@@ -41,12 +42,10 @@ public:
             correction = printed_norm();
             if (correction < settings.tolerance) {
                 accept(x, h);
-                return done(k);
+                return done(attempt, k);
             }
         }
-        const State last = x;
-        x = x_n;
-        no_convergence("rA-half-2", correction, last);
+        no_convergence("rA-half-2", correction, x);
     }
 
     bool lags() const override { return true; }

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// RATTLE on the Lie group: variational, second order, no drift of energy.
+///
+///     ½-step    M ṙ_{n+½} + ½h Φ_rᵀ λ⁺ = M ṙ_n + ½h F_n
+///               J_r(θ)⁻¹ J̄ ω̄_{n+½} + ½h Π̄ᵀ λ⁺ = J̄ ω̄_n + ½h n̄_n,     θ = h ω̄_{n+½}
+///     node      r_{n+1} = r_n + h ṙ_{n+½},   A_{n+1} = A_n exp(θ),   Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0
+///     ½-step    M ṙ_{n+1} + ½h Φ_rᵀ λ⁻ = M ṙ_{n+½} + ½h F_{n+1}
+///               J̄ ω̄_{n+1} + ½h Π̄ᵀ λ⁻ = J_r(θ)⁻ᵀ J̄ ω̄_{n+½} + ½h n̄_{n+1},   Φ_r ṙ_{n+1} + Π̄ ω̄_{n+1} = ν
+///
+/// Hante, Arnold (2021), J. Comput. Appl. Math. 387, 112492, with the discrete Lagrangian h T(log(A_nᵀ A_{n+1})/h): its two
+/// Legendre transforms J_r(θ)⁻¹ J̄ ω̄_{n+½} and J_r(θ)⁻ᵀ J̄ ω̄_{n+½} hold the gyroscopic torque, so that for loads with a
+/// potential the step is symplectic and keeps momentum exactly. Loads that depend on velocity see ṙ_n, ω̄_n in the first half
+/// and 2 ṙ_{n+½} - ṙ_n in the second.
+///
+/// Positions are found by Newton's method with K at t_n, velocities by one solve with K at t_{n+1}; so are the
+/// accelerations and multipliers reported, from the equations of motion at the node.
+
+#include "lie/node_step.hpp"
+
+namespace hilda::lie {
+namespace {
+
+class Rattle final : public NodeStep {
+public:
+    using NodeStep::NodeStep;
+
+    int step(State& x, double h) override
+    {
+        x_n = x;
+        Attempt attempt(x, x_n);
+        assemble_once(x_n);
+        set_known_part(h);
+        predict(h);
+        x.t = x_n.t + h;
+        for (int k = 1; k <= settings.max_iterations; ++k) {
+            place(x);
+            K.multiply(z, e);
+            e = b - e;
+            for (int i = 0; i < model.bodies(); ++i) {
+                const Vec3 theta = z.segment<3>(6 * i + 3), J_theta = model.mass().J_bar[i] * theta;
+                e.segment<3>(6 * i + 3) -= right_jacobian_inverse(theta) * J_theta - J_theta;
+            }
+            model.phi(x, K.constraint_part(e));
+            K.constraint_part(e) *= -1;
+            K.solve(e);
+            z += e;
+            correction = correction_norm(e.squaredNorm());
+            if (correction < settings.tolerance) {
+                place(x);
+                for (Motion& body : x.body) body.A = orthonormalised(body.A);
+                set_velocities(x, h);
+                set_accelerations(x);
+                return done(attempt, k);
+            }
+        }
+        no_convergence("rA-rattle", correction, x);
+    }
+
+private:
+    /// h M ṙ_n + ½h² F_n and h J̄ ω̄_n + ½h² n̄_n
+    void set_known_part(double h)
+    {
+        model.loads(x_n, loads);
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Motion& body = x_n.body[i];
+            b.segment<3>(6 * i) = h * model.mass().m[i] * body.rdot + 0.5 * h * h * loads.F[i];
+            b.segment<3>(6 * i + 3) =
+                h * (model.mass().J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
+        }
+        K.constraint_part(b).setZero();
+    }
+
+    void predict(double h)
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Motion& body = x_n.body[i];
+            z.segment<3>(6 * i) = h * body.rdot + 0.5 * h * h * body.rddot;
+            z.segment<3>(6 * i + 3) = h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
+        }
+        K.constraint_part(z) = 0.5 * h * h * x_n.lambda;
+    }
+
+    void place(State& x) const
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
+            x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
+        }
+    }
+
+    void set_velocities(State& x, double h)
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            x.body[i].rdot = 2 / h * z.segment<3>(6 * i) - x_n.body[i].rdot;
+            x.body[i].omega_bar = 2 / h * z.segment<3>(6 * i + 3) - x_n.body[i].omega_bar;
+        }
+        model.loads(x, loads);
+        for (int i = 0; i < model.bodies(); ++i) {
+            const Vec3 theta = z.segment<3>(6 * i + 3);
+            e.segment<3>(6 * i) = model.mass().m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
+            e.segment<3>(6 * i + 3) = right_jacobian_inverse(-theta) * (model.mass().J_bar[i] * theta) / h +
+                                      0.5 * h * loads.n_bar[i];
+        }
+        assemble_once(x);
+        model.nu(x, K.constraint_part(e));
+        K.solve(e);
+        for (int i = 0; i < model.bodies(); ++i) {
+            x.body[i].rdot = e.segment<3>(6 * i);
+            x.body[i].omega_bar = e.segment<3>(6 * i + 3);
+        }
+    }
+};
+
+const bool enrolled = enrol<Rattle>({.name = "rA-rattle",
+                                     .order = 2,
+                                     .order_lambda = 2,
+                                     .formulation = "rA",
+                                     .unknowns = "r, h omega, h^2 lambda / 2",
+                                     .source = "Hante, Arnold (2021)"});
+
+}  // namespace
+}  // namespace hilda::lie

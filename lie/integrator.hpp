@@ -7,13 +7,6 @@
 
 namespace hilda::lie {
 
-/// How the saddle system is solved in a step.
-enum class LinearSolver {
-    automatic,  ///< condensed where it takes fewer operations than klu
-    klu,        ///< the whole of K by KLU
-    condensed   ///< the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
-};
-
 /// What a scheme is told; each takes from it what concerns it.
 struct Settings {
     /// Stop when the correction is shorter than this. Half-implicit schemes measure (Δr, Δθ̄, Δλ̂) in m, rad

@@ -13,8 +13,8 @@ namespace hilda::lie {
 class NewtonStep : public Integrator {
 public:
     NewtonStep(const System& model, const Settings& settings)
-        : model(model), settings(settings), K(model), loads(model.bodies()), z(K.size()), b(K.size()),
-          e(K.size())
+        : model(model), settings(settings), K(model, Metric::mass, settings.linear_solver),
+          loads(model.bodies()), z(K.size()), b(K.size()), e(K.size())
     {
         for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
     }

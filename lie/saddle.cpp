@@ -3,11 +3,17 @@
 
 namespace hilda::lie {
 
-Saddle::Saddle(const System& system, Metric metric)
+Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
     : system(system), metric(metric), bodies(system.bodies()), m(system.rows()), C(system.pattern()),
       scale(Eigen::VectorXd::Ones(size())), work(size()), residual(size()), right_side(size())
 {
     analyse();
+    if (solver == LinearSolver::klu) return;
+    Mass unit;
+    unit.m.assign(bodies, 1);
+    unit.J_bar.assign(bodies, Mat3::Identity());
+    condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, C);
+    if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
 }
 
 void Saddle::analyse()
@@ -102,6 +108,11 @@ void Saddle::fill()
 void Saddle::assemble(const State& x)
 {
     system.variation(x, C);
+    by_condensed = condensed != nullptr && condensed->factor(C);
+    if (by_condensed) {
+        ++by_blocks;
+        return;
+    }
     if (!scaled) scale_rows();
     fill();
     if (!klu.refactor()) {
@@ -113,9 +124,13 @@ void Saddle::assemble(const State& x)
 
 void Saddle::solve(Eigen::VectorXd& b)
 {
-    b.array() *= scale.array();
-    klu.solve(b.data());
-    b.array() *= scale.array();
+    if (by_condensed) {
+        condensed->solve(C, b);
+    } else {
+        b.array() *= scale.array();
+        klu.solve(b.data());
+        b.array() *= scale.array();
+    }
     if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
 }
 

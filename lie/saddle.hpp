@@ -12,8 +12,10 @@
 #pragma once
 
 #include "lie/check.hpp"
+#include "lie/condensed.hpp"
 #include "lie/klu.hpp"
-#include "lie/system.hpp"
+
+#include <memory>
 
 namespace hilda::lie {
 
@@ -23,12 +25,22 @@ enum class Metric {
     unit   ///< the identity: least-squares problems in the constraint rows alone
 };
 
+/// How K z = b is solved.
+enum class LinearSolver {
+    automatic,  ///< condensed where it takes fewer operations than klu
+    klu,        ///< the whole of K by KLU
+    condensed   ///< the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
+};
+
 class Saddle {
 public:
     /// Analyses the pattern once. The system must outlive the saddle matrix.
-    explicit Saddle(const System& system, Metric metric = Metric::mass);
+    explicit Saddle(const System& system, Metric metric = Metric::mass,
+                    LinearSolver solver = LinearSolver::klu);
 
-    /// Evaluates the rows in the state x and factors K there. The pivot order of the last full factorisation
+    /// Evaluates the rows in the state x and factors K there. Where K is condensed, that is the Schur
+    /// complement; should the rows be too near to dependence for it, KLU takes over until they no longer are.
+    /// With KLU the pivot order of the last full factorisation
     /// is kept while it serves (klu_refactor); when the reciprocal condition says that it no longer does,
     /// pivots are chosen anew. Throws SingularMatrix when that does not help, NonFinite when the rows are not
     /// finite.
@@ -46,11 +58,15 @@ public:
     int size() const { return 6 * bodies + m; }
     Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const { return z.tail(m); }
 
-    /// KLU's estimate for the scaled matrix
-    double reciprocal_condition() const { return klu.reciprocal_condition(); }
+    /// KLU's estimate for the scaled matrix; of the condensed one its smallest pivot
+    double reciprocal_condition() const
+    {
+        return by_condensed ? condensed->smallest_pivot() : klu.reciprocal_condition();
+    }
     long factorizations() const { return klu.factorizations(); }  ///< with new pivots
-    /// With the pivots of the last full one
-    long refactorizations() const { return klu.refactorizations(); }
+    /// In a fixed order: with the pivots of the last full one, or condensed
+    long refactorizations() const { return klu.refactorizations() + by_blocks; }
+    bool is_condensed() const { return condensed != nullptr; }
 
 private:
     void analyse();
@@ -61,6 +77,10 @@ private:
     const Metric metric;
     int bodies, m;
     Rows C;
+
+    std::unique_ptr<Condensed> condensed;
+    bool by_condensed = false;  ///< the factors in use
+    long by_blocks = 0;
 
     // K scaled to S K S with S chosen so that the diagonal blocks and the rows have length one
     Klu klu{Klu::Scaling::none};

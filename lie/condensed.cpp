@@ -68,6 +68,45 @@ void divide(double* B, const double* L, int columns, int n)
     }
 }
 
+/// y += sign A x, A m × n
+template <int fixed>
+void add_times(double* y, const double* A, const double* x, int rows, int n, double sign)
+{
+    const int m = fixed != 0 ? fixed : rows;
+    for (int c = 0; c < n; ++c) {
+        const double factor = sign * x[c];
+        for (int r = 0; r < m; ++r) y[r] += A[c * m + r] * factor;
+    }
+}
+
+void add_times(double* y, const double* A, const double* x, int m, int n, double sign)
+{
+    if (m == 3)
+        add_times<3>(y, A, x, 3, n, sign);
+    else
+        add_times<0>(y, A, x, m, n, sign);
+}
+
+/// y -= Aᵀ x, A m × n
+template <int fixed>
+void subtract_transposed_times(double* y, const double* A, const double* x, int rows, int n)
+{
+    const int m = fixed != 0 ? fixed : rows;
+    for (int c = 0; c < n; ++c) {
+        double sum = 0;
+        for (int r = 0; r < m; ++r) sum += A[c * m + r] * x[r];
+        y[c] -= sum;
+    }
+}
+
+void subtract_transposed_times(double* y, const double* A, const double* x, int m, int n)
+{
+    if (m == 3)
+        subtract_transposed_times<3>(y, A, x, 3, n);
+    else
+        subtract_transposed_times<0>(y, A, x, m, n);
+}
+
 }  // namespace
 
 Condensed::Condensed(const Mass& mass, const Rows& pattern) : diagonal(pattern.rows()), y(pattern.rows())
@@ -88,8 +127,13 @@ void Condensed::find_groups(const Rows& pattern)
     int w = 0;
     for (int k = 0; k < pattern.rows(); ++k) {
         const std::vector<int> mine = bodies(k);
-        if (group.empty() || bodies(group.back().first) != mine)
-            group.push_back({.first = k, .rows = 0, .bodies = static_cast<int>(mine.size())});
+        if (group.empty() || bodies(group.back().first) != mine) {
+            group.push_back({.first = k,
+                             .rows = 0,
+                             .bodies = static_cast<int>(mine.size()),
+                             .body = static_cast<int>(body_of.size())});
+            body_of.insert(body_of.end(), mine.begin(), mine.end());
+        }
         ++group.back().rows;
     }
     for (Group& g : group) {
@@ -223,24 +267,32 @@ bool Condensed::factor(const Rows& C)
     return true;
 }
 
-void Condensed::solve(const Rows& C, Eigen::VectorXd& b)
+void Condensed::solve(Eigen::VectorXd& b)
 {
-    const int bodies = static_cast<int>(by_sqrt_m.size());
     // f ← L⁻¹ f,   y = W f - g
-    for (int i = 0; i < bodies; ++i) {
-        b.segment<3>(6 * i) *= by_sqrt_m[i];
-        b.segment<3>(6 * i + 3) = (L_inverse[i] * b.segment<3>(6 * i + 3)).eval();
+    for (size_t i = 0; i < by_sqrt_m.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(6 * i);
+        b.segment<3>(at) *= by_sqrt_m[i];
+        b.segment<3>(at + 3) = (L_inverse[i] * b.segment<3>(at + 3)).eval();
     }
     y = -b.tail(y.size());
-    for (const Group& g : group) {
-        const Rows::Entry* entry = &C.entry[C.start[g.first]];
-        for (int s = 0; s < g.bodies; ++s) {
-            const double *w = &W[g.w + 6 * g.rows * s], *f = &b[6 * entry[s].body];
-            for (int d = 0; d < 6; ++d)
-                for (int k = 0; k < g.rows; ++k) y[g.first + k] += w[d * g.rows + k] * f[d];
-        }
-    }
-    // S λ = y by its factors
+    for (const Group& g : group)
+        for (int s = 0; s < g.bodies; ++s)
+            add_times(&y[g.first], &W[g.w + 6 * g.rows * s], &b[6 * body_of[g.body + s]], g.rows, 6, 1);
+    solve_multipliers();
+    finish(b);
+}
+
+void Condensed::solve_constraints(Eigen::VectorXd& b)
+{
+    y = -b.tail(y.size());
+    solve_multipliers();
+    b.setZero();
+    finish(b);
+}
+
+void Condensed::solve_multipliers()
+{
     for (size_t p = 0; p < order.size(); ++p) {
         const Group& g = group[order[p]];
         double *own = &y[g.first], *L = &value[g.diagonal];
@@ -250,9 +302,7 @@ void Condensed::solve(const Rows& C, Eigen::VectorXd& b)
         }
         for (int n = column[p]; n < column[p + 1]; ++n) {
             const Group& h = group[block[n].of];
-            const double* B = &value[block[n].at];
-            for (int k = 0; k < g.rows; ++k)
-                for (int r = 0; r < h.rows; ++r) y[h.first + r] -= B[k * h.rows + r] * own[k];
+            add_times(&y[h.first], &value[block[n].at], own, h.rows, g.rows, -1);
         }
     }
     for (size_t p = order.size(); p-- > 0;) {
@@ -260,28 +310,25 @@ void Condensed::solve(const Rows& C, Eigen::VectorXd& b)
         double *own = &y[g.first], *L = &value[g.diagonal];
         for (int n = column[p]; n < column[p + 1]; ++n) {
             const Group& h = group[block[n].of];
-            const double* B = &value[block[n].at];
-            for (int k = 0; k < g.rows; ++k)
-                for (int r = 0; r < h.rows; ++r) own[k] -= B[k * h.rows + r] * y[h.first + r];
+            subtract_transposed_times(own, &value[block[n].at], &y[h.first], h.rows, g.rows);
         }
         for (int k = g.rows - 1; k >= 0; --k) {
             for (int r = k + 1; r < g.rows; ++r) own[k] -= L[k * g.rows + r] * own[r];
             own[k] *= L[k * g.rows + k];
         }
     }
-    // x = L⁻ᵀ (f - Wᵀ λ)
-    for (const Group& g : group) {
-        const Rows::Entry* entry = &C.entry[C.start[g.first]];
-        for (int s = 0; s < g.bodies; ++s) {
-            const double* w = &W[g.w + 6 * g.rows * s];
-            double* f = &b[6 * entry[s].body];
-            for (int d = 0; d < 6; ++d)
-                for (int k = 0; k < g.rows; ++k) f[d] -= w[d * g.rows + k] * y[g.first + k];
-        }
-    }
-    for (int i = 0; i < bodies; ++i) {
-        b.segment<3>(6 * i) *= by_sqrt_m[i];
-        b.segment<3>(6 * i + 3) = (L_inverse[i].transpose() * b.segment<3>(6 * i + 3)).eval();
+}
+
+void Condensed::finish(Eigen::VectorXd& b) const
+{
+    for (const Group& g : group)
+        for (int s = 0; s < g.bodies; ++s)
+            subtract_transposed_times(&b[6 * body_of[g.body + s]], &W[g.w + 6 * g.rows * s], &y[g.first],
+                                      g.rows, 6);
+    for (size_t i = 0; i < by_sqrt_m.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(6 * i);
+        b.segment<3>(at) *= by_sqrt_m[i];
+        b.segment<3>(at + 3) = (L_inverse[i].transpose() * b.segment<3>(at + 3)).eval();
     }
     b.tail(y.size()) = y;
 }

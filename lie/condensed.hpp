@@ -25,7 +25,9 @@ public:
     bool factor(const Rows& C);
 
     /// In place: b holds f and g, then x and λ
-    void solve(const Rows& C, Eigen::VectorXd& b);
+    void solve(Eigen::VectorXd& b);
+    /// The same for f = 0, whatever b holds there
+    void solve_constraints(Eigen::VectorXd& b);
 
     /// Smallest part of a diagonal entry of S that elimination left
     double smallest_pivot() const { return smallest; }
@@ -38,6 +40,7 @@ private:
     /// Rows first … first + rows - 1, all with entries for the same bodies in the same order
     struct Group {
         int first = 0, rows = 0, bodies = 0;
+        int body = 0;      ///< where its bodies begin in `body_of`
         int w = 0;         ///< where its part of W begins: for each body 6 columns of `rows` numbers
         int diagonal = 0;  ///< where its diagonal block stands in `value`
     };
@@ -54,12 +57,16 @@ private:
         int of, by, at_of, at_by, to;
     };
 
+    void solve_multipliers();               ///< S y = y
+    void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (f - Wᵀ y), λ = y, with f where x will be
+
     void find_groups(const Rows& pattern);
     void analyse(const Rows& pattern);
 
     std::vector<double> by_sqrt_m;  ///< 1/√m of each body
     std::vector<Mat3> L_inverse;    ///< L⁻¹ of J̄ = L Lᵀ
     std::vector<Group> group;
+    std::vector<int> body_of;
     std::vector<int> order;                 ///< groups as they are eliminated
     std::vector<Term> term;                 ///< of S
     std::vector<int> column, update_start;  ///< by position in `order`, into `block` and `update`

@@ -50,6 +50,26 @@ protected:
         return loads.n_bar[i] - body.omega_bar.cross(model.mass().J_bar[i] * body.omega_bar);
     }
 
+    /// The k-th correction e of z in K z = b, Φ(x(z)) = 0, into e:
+    ///
+    ///     K e = (b - K z, -factor Φ)                                       Fang (2022), Eqs. 3.30, 3.31
+    ///
+    /// The rows of the bodies are linear in z: from the second correction on they hold, and only Φ is left.
+    void correct(int k, const State& x, double factor)
+    {
+        if (k == 1) {
+            K.multiply(z, e);
+            e = b - e;
+        }
+        model.phi(x, K.constraint_part(e));
+        K.constraint_part(e) *= -factor;
+        if (k == 1)
+            K.solve(e);
+        else
+            K.solve_constraints(e);
+        z += e;
+    }
+
     /// Length of a correction: Euclidean over all unknowns, as in Fang (2022), for a mechanism; beyond four
     /// bodies the root mean square over groups of four, so that a chain of a thousand stops at the same
     /// accuracy of each body and not below rounding.

@@ -125,13 +125,24 @@ void Saddle::assemble(const State& x)
 void Saddle::solve(Eigen::VectorXd& b)
 {
     if (by_condensed) {
-        condensed->solve(C, b);
+        condensed->solve(b);
     } else {
         b.array() *= scale.array();
         klu.solve(b.data());
         b.array() *= scale.array();
     }
     if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
+}
+
+void Saddle::solve_constraints(Eigen::VectorXd& b)
+{
+    if (by_condensed) {
+        condensed->solve_constraints(b);
+        if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
+    } else {
+        b.head(6 * bodies).setZero();
+        solve(b);
+    }
 }
 
 void Saddle::solve_refined(Eigen::VectorXd& b)

@@ -48,7 +48,9 @@ public:
 
     /// Solves K z = b in place; b has size() numbers. Throws NonFinite when z is not finite.
     void solve(Eigen::VectorXd& b);
-    /// The same with one step of iterative refinement: for starts and kinematics, where digits count.
+    /// Solves K z = (0, g): of b only the constraint part is read.
+    void solve_constraints(Eigen::VectorXd& b);
+    /// The same as solve() with one step of iterative refinement: for starts and kinematics, where digits count.
     void solve_refined(Eigen::VectorXd& b);
 
     /// out = K z

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
 
 namespace hilda::lie {
@@ -39,8 +40,10 @@ struct RotationCoefficients {
     explicit RotationCoefficients(double x2)
     {
         if (x2 < 0.25) {
-            cosc = series(x2, 2) / 2;
-            sincc = series(x2, 3) / 6;
+            cosc = series(
+                x2, {1. / 2, 1. / 24, 1. / 720, 1. / 40320, 1. / 3628800, 1. / 479001600, 1. / 87178291200});
+            sincc = series(x2, {1. / 6, 1. / 120, 1. / 5040, 1. / 362880, 1. / 39916800, 1. / 6227020800,
+                                1. / 1307674368000});
             sinc = 1 - x2 * sincc;
         } else {
             const double x = std::sqrt(x2), s = std::sin(x), half = std::sin(x / 2);
@@ -51,12 +54,10 @@ struct RotationCoefficients {
     }
 
 private:
-    /// 1 - x²/((k+1)(k+2)) (1 - x²/((k+3)(k+4)) (1 - ...)), by Horner's rule
-    static double series(double x2, int k)
+    /// Σ (-x²)ⁿ aₙ
+    static constexpr double series(double x2, const std::array<double, 7>& a)
     {
-        double sum = 1;
-        for (int n = k + 13; n > k; n -= 2) sum = 1 - x2 / (n * (n + 1.0)) * sum;
-        return sum;
+        return a[0] - x2 * (a[1] - x2 * (a[2] - x2 * (a[3] - x2 * (a[4] - x2 * (a[5] - x2 * a[6])))));
     }
 };
 

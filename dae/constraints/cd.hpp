@@ -15,20 +15,17 @@ namespace hilda::dae {
 class CD final : public Block {
 public:
     CD(const Vec3& c, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f = {})
-        : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f))
+        : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f)), axis(along_axis(c))
     {}
 
     double phi(const Motion& bi, const Motion& bj, double t) const override
     {
-        return c.dot(bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i) - f.f(t);
+        return c.dot(bj.r - bi.r) + in_body(bj).dot(s_bar_j) - in_body(bi).dot(s_bar_i) - f.f(t);
     }
 
     Variation variation(const Motion& bi, const Motion& bj, double) const override
     {
-        return {.r_i = -c,
-                .pi_i = -s_bar_i.cross(bi.A.transpose() * c),
-                .r_j = c,
-                .pi_j = s_bar_j.cross(bj.A.transpose() * c)};
+        return {.r_i = -c, .pi_i = in_body(bi).cross(s_bar_i), .r_j = c, .pi_j = s_bar_j.cross(in_body(bj))};
     }
 
     double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
@@ -42,8 +39,8 @@ public:
     Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
     {
         Mat12 H = Mat12::Zero();
-        H.block<3, 3>(3, 3) = -tilde(s_bar_i) * tilde(bi.A.transpose() * c);
-        H.block<3, 3>(9, 9) = tilde(s_bar_j) * tilde(bj.A.transpose() * c);
+        H.block<3, 3>(3, 3) = -tilde(s_bar_i) * tilde(in_body(bi));
+        H.block<3, 3>(9, 9) = tilde(s_bar_j) * tilde(in_body(bj));
         return H;
     }
 
@@ -72,6 +69,23 @@ public:
 
     const Vec3 c, s_bar_i, s_bar_j;
     const Driver f;
+
+private:
+    static int along_axis(const Vec3& c)
+    {
+        for (int k = 0; k < 3; ++k)
+            if (c == c[k] * Vec3::Unit(k)) return k;
+        return -1;
+    }
+
+    /// Aᵀ c: where c lies along a global axis, as in a joint, a row of A
+    Vec3 in_body(const Motion& body) const
+    {
+        if (axis >= 0) return c[axis] * body.A.row(axis).transpose();
+        return body.A.transpose() * c;
+    }
+
+    const int axis;
 };
 
 }  // namespace hilda::dae

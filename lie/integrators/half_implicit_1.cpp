@@ -31,12 +31,7 @@ public:
         x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
-            K.multiply(z, e);
-            e = b - e;  // -e₁, -e₂ of Eq. 3.31
-            model.phi(x, K.constraint_part(e));
-            K.constraint_part(e) *= -1;
-            K.solve(e);
-            z += e;
+            correct(k, x, 1);
             correction = correction_norm(e.squaredNorm());
             if (correction < settings.tolerance) {
                 accept(x, h);

@@ -33,12 +33,7 @@ public:
         x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
-            K.multiply(z, e);
-            e = b - e;
-            model.phi(x, K.constraint_part(e));
-            K.constraint_part(e) *= -2;
-            K.solve(e);
-            z += e;
+            correct(k, x, 2);
             correction = printed_norm();
             if (correction < settings.tolerance) {
                 accept(x, h);

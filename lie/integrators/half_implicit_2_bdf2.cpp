@@ -35,12 +35,7 @@ public:
         x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
-            K.multiply(z, e);
-            e = b - e;
-            model.phi(x, K.constraint_part(e));
-            K.constraint_part(e) *= -1.5;
-            K.solve(e);
-            z += e;
+            correct(k, x, 1.5);
             correction = length();
             if (correction < settings.tolerance) {
                 accept(x, h);

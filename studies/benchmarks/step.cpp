@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Time of a whole step (loads, constraints, factorization, Newton, update) of the N-bar pendulum, over N.
+/// Time of a whole step (loads, constraints, factorization, Newton, update) of the N-bar pendulum, over N, for every
+/// scheme and both linear solvers, at h = 1e-3 s.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
-///     build/native/studies/hilda_benchmarks
+///     build/native/studies/hilda_benchmarks --benchmark_filter='step/rA-half-1/'
 
 #include "lie/integrator.hpp"
-#include "studies/problem.hpp"
+#include "studies/benchmarks/chain.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -13,12 +14,10 @@ namespace {
 
 using namespace hilda;
 
-void step(benchmark::State& timer, const char* scheme)
+void step(benchmark::State& timer, const lie::Scheme& scheme, lie::LinearSolver solver)
 {
-    dae::Description d =
-        dae::read_model(studies::problem("n_pendulum_" + std::to_string(timer.range(0))).model, "n_pendulum");
-    dae::start(d);
-    const auto integrator = lie::scheme(scheme).make(*d.model, {});
+    const dae::Description& d = studies::chain(timer.range(0));
+    const auto integrator = scheme.make(*d.model, {.linear_solver = solver});
     lie::State x = d.x;
     for (auto _ : timer) {
         integrator->step(x, 1e-3);
@@ -28,28 +27,26 @@ void step(benchmark::State& timer, const char* scheme)
             timer.ResumeTiming();
         }
     }
-    const lie::Statistics statistics = integrator->statistics();
-    timer.counters["iterations_per_step"] =
-        static_cast<double>(statistics.iterations) / static_cast<double>(statistics.steps);
+    timer.counters["iterations_per_step"] = integrator->statistics().iterations_per_step();
+    timer.SetComplexityN(timer.range(0));
 }
 
-BENCHMARK_CAPTURE(step, half_1, "rA-half-1")
-    ->Arg(2)
-    ->Arg(8)
-    ->Arg(32)
-    ->Arg(128)
-    ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, half_2, "rA-half-2")
-    ->Arg(2)
-    ->Arg(8)
-    ->Arg(32)
-    ->Arg(128)
-    ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, full_1, "rA-full-1")
-    ->Arg(2)
-    ->Arg(8)
-    ->Arg(32)
-    ->Arg(128)
-    ->Unit(benchmark::kMicrosecond);
+const bool registered = [] {
+    for (const lie::Scheme& scheme : lie::schemes()) {
+        if (scheme.adaptive) continue;
+        const bool saddle = scheme.formulation == "rA";
+        for (const auto& [name, solver] : {std::pair{"klu", lie::LinearSolver::klu},
+                                           std::pair{"condensed", lie::LinearSolver::condensed}}) {
+            if (!saddle && solver == lie::LinearSolver::condensed) continue;
+            auto* b = benchmark::RegisterBenchmark(("step/" + scheme.name + "/" + name).c_str(), step, scheme,
+                                                   solver);
+            for (const int bars : {2, 8, 64, 128, 256, 1024}) b->Arg(bars);
+            b->Unit(benchmark::kMicrosecond)->Complexity([](benchmark::IterationCount n) {
+                return static_cast<double>(n);
+            });
+        }
+    }
+    return true;
+}();
 
 }  // namespace

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The N-bar pendulum, ready to be stepped: what the benchmarks run.
+
+#pragma once
+
+#include "dae/model_file.hpp"
+#include "studies/problem.hpp"
+
+#include <map>
+
+namespace hilda::studies {
+
+/// Made once for each N
+inline const dae::Description& chain(long bars)
+{
+    static std::map<long, dae::Description> made;
+    if (!made.count(bars)) {
+        const std::string name = "n_pendulum_" + std::to_string(bars);
+        dae::Description d = dae::read_model(problem(name).model, name);
+        dae::start(d);
+        made.emplace(bars, std::move(d));
+    }
+    return made.at(bars);
+}
+
+}  // namespace hilda::studies

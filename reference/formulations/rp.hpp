@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The rp formulation: a body turned by its Euler parameters p.                   Fang (2022), Sec. 2.1.6
+
+#pragma once
+
+#include "lie/euler_parameters.hpp"
+
+namespace hilda::reference {
+
+/// Q(w) with G(p)ᵀ w = Q(w) p: how Gᵀ w changes with p. Skew-symmetric.
+inline Eigen::Matrix4d Q(const lie::Vec3& w)
+{
+    Eigen::Matrix4d Q;
+    Q << 0, -w.transpose(), w, -lie::tilde(w);
+    return Q;
+}
+
+/// p of one body as coordinates: δπ̄ = 2G δp, ω̄ = 2G ṗ, ω̄̇ = 2G p̈ (since Ġ ṗ = 0), and |p| = 1.
+/// G(a) b = -G(b) a.                                                                 Eqs. 2.20 to 2.22
+///
+/// A(p) is the rotation of p/|p|, so that it is one for every p of an iteration, and its variation is exactly
+/// δπ̄ = 2G δp / |p|².
+struct EulerParameters {
+    static constexpr int size = 4;
+    static constexpr bool unit_length = true;  ///< one more constraint a body, (pᵀp - 1)/2 = 0
+    static constexpr bool singular_somewhere = false;
+
+    lie::Vec4 q;
+
+    EulerParameters() = default;
+    explicit EulerParameters(const lie::Mat3& A) : q(lie::euler_parameters(A)) {}
+
+    lie::Mat3 A() const { return lie::rotation(lie::Vec4(q.normalized())); }
+    /// T with δπ̄ = T δq and ω̄ = T q̇
+    lie::Mat34 T() const { return 2 * lie::G(q); }
+    lie::Vec3 Tdot_qdot(const lie::Vec4&) const { return lie::Vec3::Zero(); }
+
+    /// ṗ of an angular velocity
+    lie::Vec4 qdot(const lie::Vec3& omega_bar) const { return 0.5 * lie::G(q).transpose() * omega_bar; }
+    /// p̈ of an angular acceleration, on the unit sphere: pᵀp̈ = -ṗᵀṗ
+    lie::Vec4 qddot(const lie::Vec4& qdot, const lie::Vec3& omegadot_bar) const
+    {
+        return 0.5 * lie::G(q).transpose() * omegadot_bar - qdot.squaredNorm() * q;
+    }
+    /// The square of the angle that a small change of p turns the body by
+    double turn2(const lie::Vec4& dq) const { return 4 * dq.squaredNorm(); }
+    /// What rounding and the tolerance have left of |p| - 1 goes
+    void settle() { q.normalize(); }
+};
+
+}  // namespace hilda::reference

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Second-order backward differences on Euler parameters, fully implicit.          Fang (2022), Sec. 2.1.7
+///
+///     q̇_{n+1} = (4 q̇_n - q̇_{n-1})/3 + (2h/3) q̈_{n+1},    q_{n+1} = (4 q_n - q_{n-1})/3 + (2h/3) q̇_{n+1}
+///
+/// with the equations of motion, constraints and norms at t_{n+1} (2.30), and the whole of the Newton matrix
+/// 2.32. See formulations/rp_equations.hpp.
+///
+/// The first step takes the acceleration as linear in time,
+///
+///     q̇_1 = q̇_0 + (h/2)(q̈_0 + q̈_1),    q_1 = q_0 + h q̇_0 + h² (q̈_0/3 + q̈_1/6),
+///
+/// whose q_1 is right to O(h⁴): the constraints fix the normal part of q̈_1 out of q_1/h², so λ_1 is right to
+/// O(h²). A step of backward Euler, or of the trapezoid rule, would do for r, p and their velocities, but leaves
+/// errors O(1), or O(h), in the first multipliers. Where h changes, the run starts again with that step.
+
+#include "reference/formulations/rp_implicit.hpp"
+
+namespace hilda::reference {
+namespace {
+
+class RpBdf2 final : public RpImplicit {
+public:
+    RpBdf2(const lie::System& model, const lie::Settings& settings)
+        : RpImplicit(model, settings, "rp-bdf2"), qddot(q_n.size())
+    {}
+
+private:
+    int half() const { return static_cast<int>(q_n.size()); }
+    int more() const override { return 1 + 2 * half(); }  // h, q_{n-1}, q̇_{n-1}
+
+    void set_formula(const lie::State& x, double h, bool at_start) override
+    {
+        if (at_start || x.history[x.history.size() - more()] != h) {
+            set_starting_formula(x, h);
+            return;
+        }
+        const auto before = x.history.tail(2 * half());
+        formula.qdot = (4 * qdot_n - before.tail(half())) / 3;
+        formula.q = (4 * q_n - before.head(half())) / 3 + 2 * h / 3 * formula.qdot;
+        formula.g_v = 2 * h / 3, formula.g_q = formula.g_v * formula.g_v;
+    }
+
+    void set_starting_formula(const lie::State& x, double h)
+    {
+        for (int i = 0; i < model.bodies(); ++i) {
+            EulerParameters coordinates;
+            coordinates.q = q_n.segment<4>(7 * i + 3);
+            qddot.segment<7>(7 * i) << x.body[i].rddot,
+                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x.body[i].omegadot_bar);
+        }
+        formula.qdot = qdot_n + h / 2 * qddot;
+        formula.q = q_n + h * qdot_n + h * h / 3 * qddot;
+        formula.g_v = h / 2, formula.g_q = h * h / 6;
+    }
+
+    void remember_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }
+
+    Eigen::VectorXd qddot;  ///< of the start
+};
+
+const bool enrolled = lie::enrol<RpBdf2>({.name = "rp-bdf2",
+                                          .order = 2,
+                                          .order_lambda = 2,
+                                          .formulation = "rp",
+                                          .unknowns = "r'', p'', lambda, lambda_P",
+                                          .source = "Fang (2022), Sec. 2.1.7, with BDF2"});
+
+}  // namespace
+}  // namespace hilda::reference

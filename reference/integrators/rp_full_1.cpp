@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Backward Euler on Euler parameters, fully implicit.                             Fang (2022), Sec. 2.1.7
+///
+///     q̇_{n+1} = q̇_n + h q̈_{n+1},    q_{n+1} = q_n + h q̇_{n+1}                                  (2.28, 2.29)
+///
+/// with the equations of motion, constraints and norms at t_{n+1} (2.30), and the whole of the Newton matrix
+/// 2.32. See formulations/rp_equations.hpp.
+
+#include "reference/formulations/rp_implicit.hpp"
+
+namespace hilda::reference {
+namespace {
+
+class RpFull1 final : public RpImplicit {
+public:
+    RpFull1(const lie::System& model, const lie::Settings& settings)
+        : RpImplicit(model, settings, "rp-full-1")
+    {}
+
+private:
+    void set_formula(const lie::State&, double h, bool) override
+    {
+        formula.qdot = qdot_n;
+        formula.q = q_n + h * qdot_n;
+        formula.g_v = h, formula.g_q = h * h;
+    }
+};
+
+const bool enrolled = lie::enrol<RpFull1>({.name = "rp-full-1",
+                                           .order = 1,
+                                           .order_lambda = 1,
+                                           .formulation = "rp",
+                                           .unknowns = "r'', p'', lambda, lambda_P",
+                                           .source = "Fang (2022), Sec. 2.1.7"});
+
+}  // namespace
+}  // namespace hilda::reference

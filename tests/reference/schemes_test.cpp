@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What every scheme in the list must show, here with those on Euler parameters and Euler angles.
+
+#include "lie/trajectory.hpp"
+#include "tests/support/no_allocation.hpp"
+#include "tests/support/spinning_top.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using lie::Vec3;
+
+namespace {
+
+std::vector<const lie::Scheme*> classical()
+{
+    std::vector<const lie::Scheme*> all;
+    for (const lie::Scheme& s : lie::schemes())
+        if (!s.adaptive && (s.formulation == "rp" || s.formulation == "reps")) all.push_back(&s);
+    return all;
+}
+
+lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const lie::State& start, double h)
+{
+    const auto integrator = scheme.make(system, {.tolerance = 1e-13});
+    return lie::march(start, *integrator, lie::Grid::over(0.4, h, 0.4)).row.back();
+}
+
+/// Everything of order `order`: r, A, ṙ, ω̄
+Eigen::VectorXd motion(const lie::State& x)
+{
+    Eigen::VectorXd q(18);
+    const lie::Motion& body = x.body[0];
+    q << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar;
+    return q;
+}
+
+/// What complete() hands over
+Eigen::VectorXd accelerations(const lie::State& x)
+{
+    Eigen::VectorXd q(6);
+    q << x.body[0].rddot, x.body[0].omegadot_bar;
+    return q;
+}
+
+double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const Eigen::VectorXd& fine)
+{
+    return std::log2((coarse - middle).norm() / (middle - fine).norm());
+}
+
+}  // namespace
+
+TEST_CASE("the schemes on Euler parameters and Euler angles are in the list", "[reference][rp][reps]")
+{
+    for (const char* name :
+         {"rp-full-1", "rp-bdf2", "rp-half-1", "rp-half-1-kick", "reps-half-1", "reps-half-1-kick"})
+        CHECK(lie::scheme(name).name == name);
+}
+
+TEST_CASE("on classical coordinates too the declared order is the measured order", "[reference][order]")
+{
+    const bool free = GENERATE(false, true);
+    const tests::SpinningTop top(free);
+    const lie::State start = top.start();
+    for (const lie::Scheme* s : classical()) {
+        const double h = 2e-4;
+        const lie::State a = at_end(*s, top, start, 4 * h), b = at_end(*s, top, start, 2 * h),
+                         c = at_end(*s, top, start, h);
+        const double of_motion = order(motion(a), motion(b), motion(c)),
+                     of_accelerations = order(accelerations(a), accelerations(b), accelerations(c));
+        INFO(s->name << (free ? ", free, " : ", ") << "declares " << s->order << " and " << s->order_lambda
+                     << " for lambda, shows " << of_motion << ", accelerations " << of_accelerations);
+        CHECK(of_motion == Approx(s->order).margin(0.15));
+        if (free) continue;
+        const double of_lambda = order(a.lambda, b.lambda, c.lambda);
+        INFO("lambda " << of_lambda);
+        CHECK(of_lambda == Approx(s->order_lambda).margin(0.25));
+        CHECK(of_accelerations == Approx(s->order_lambda).margin(0.25));
+    }
+}
+
+TEST_CASE("a step on classical coordinates takes nothing from the heap", "[reference][allocation]")
+{
+    if (!tests::counts_allocations) {
+        WARN("not counted: a sanitizer owns the heap");
+        return;
+    }
+    const tests::SpinningTop top;
+    for (const lie::Scheme* s : classical()) {
+        const auto integrator = s->make(top, {.reparametrise = true});
+        lie::State x = top.start();
+        for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);  // pivots, and buffers that keep their size
+        const long taken = tests::allocations_during([&] {
+            for (int n = 0; n < 100; ++n) integrator->step(x, 1e-3);
+        });
+        INFO(s->name);
+        CHECK(taken == 0);
+    }
+}
+
+TEST_CASE("a step on classical coordinates that fails leaves the state as it was", "[reference][newton]")
+{
+    const tests::SpinningTop top;
+    for (const lie::Scheme* s : classical()) {
+        const auto good = s->make(top, {});
+        const auto hopeless = s->make(top, {.tolerance = 1e-300, .max_iterations = 2});
+        lie::State x = top.start();
+        for (int n = 0; n < 2; ++n) {  // at the start, and with a history
+            const lie::State before = x;
+            CHECK_THROWS_AS(hopeless->step(x, 1e-2), lie::NoConvergence);
+            CHECK(x.t == before.t);
+            CHECK(x.body[0].r == before.body[0].r);
+            CHECK(x.body[0].A == before.body[0].A);
+            CHECK(x.body[0].omega_bar == before.body[0].omega_bar);
+            CHECK(x.lambda == before.lambda);
+            CHECK(x.history.size() == before.history.size());
+            CHECK((x.history - before.history).norm() == 0);
+            good->step(x, 1e-2);
+        }
+    }
+}
+
+TEST_CASE("what a classical scheme remembers lies in the state", "[reference][schemes]")
+{
+    const tests::SpinningTop top;
+    for (const lie::Scheme* s : classical()) {
+        const auto one = s->make(top, {.reparametrise = true}), other = s->make(top, {.reparametrise = true});
+        lie::State x = top.start();
+        for (int n = 0; n < 10; ++n) one->step(x, 1e-3);
+        lie::State y = x;
+        one->step(x, 1e-3);
+        other->step(y, 1e-3);
+        INFO(s->name);
+        CHECK((motion(x) - motion(y)).norm() < 1e-14);  // pivots may differ
+        CHECK((x.lambda - y.lambda).norm() < 1e-12 * x.lambda.norm());
+    }
+}
+
+TEST_CASE("constraints hold and A stays a rotation on classical coordinates", "[reference][invariants]")
+{
+    const tests::SpinningTop top;
+    for (const lie::Scheme* s : classical()) {
+        const auto integrator = s->make(top, {.reparametrise = true});
+        lie::State x = top.start();
+        Eigen::VectorXd Phi(3);
+        double phi = 0, orthogonality = 0, p = 0;
+        for (int n = 0; n < 1000; ++n) {
+            integrator->step(x, 1e-3);
+            top.phi(x, Phi);
+            phi = std::max(phi, Phi.norm());
+            orthogonality = std::max(orthogonality, lie::orthogonality_error(x.body[0].A));
+            if (s->formulation != "rp") continue;
+            const int at = s->name.find("half") != std::string::npos ? 9 : 0;  // where p stands
+            p = std::max(p, std::abs(x.history.segment<4>(at).norm() - 1));
+        }
+        INFO(s->name << " residual " << phi << ", orthogonality " << orthogonality << ", |p| - 1 " << p);
+        CHECK(phi < 1e-12);
+        CHECK(orthogonality < 2e-15 * 5);
+        CHECK(p < 1e-15 * 4);
+    }
+}

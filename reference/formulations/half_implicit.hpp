@@ -76,25 +76,25 @@ public:
 
     int step(lie::State& x, double h) override
     {
-        recall(x, h);
-        assemble(x);  // frozen at t_n
-        set_known_part(x, h);
-        predict(x, h);
-        next = x;
-        next.t = x.t + h;
+        x_n = x;
+        Attempt attempt(x, x_n);
+        recall(h);
+        assemble();  // frozen at t_n
+        set_known_part(h);
+        predict(h);
+        x.t = x_n.t + h;
         for (int iteration = 1; iteration <= settings.max_iterations; ++iteration) {
             place(x);
-            set_residual();
+            set_residual(x);
             N.solve(e);
             z += e;
             correction = correction_norm(squared_length(e));
             if (correction < settings.tolerance) {
                 accept(x, h);
-                std::swap(x, next);
-                return done(iteration);
+                return done(attempt, iteration);
             }
         }
-        no_convergence(name, correction, next);
+        no_convergence(name, correction, x);
     }
 
     lie::Statistics statistics() const override
@@ -141,16 +141,16 @@ private:
     // ṙ_{n-1/2}; q_n, its frame where it has one, and q̇_{n-1/2}. Carrying q keeps p from changing its sign.
     static constexpr int stride = 6 + 3 + k + 1 + k;
 
-    void recall(const lie::State& x, double h)
+    void recall(double h)
     {
-        const bool at_start = x.history.size() != stride * model.bodies();
+        const bool at_start = x_n.history.size() != stride * model.bodies();
         for (int i = 0; i < model.bodies(); ++i) {
             Part& p = part[i];
-            const lie::Motion& body = x.body[i];
+            const lie::Motion& body = x_n.body[i];
             if (at_start)
                 p.at = Coordinates(body.A);
             else {
-                const auto carried = x.history.template segment<stride>(stride * i);
+                const auto carried = x_n.history.template segment<stride>(stride * i);
                 p.rdot = carried.template segment<3>(6);
                 p.at.q = carried.template segment<k>(9);
                 if constexpr (Coordinates::singular_somewhere) p.at.frame = static_cast<int>(carried[9 + k]);
@@ -197,9 +197,9 @@ private:
         throw SingularParametrisation(text.str(), phi);
     }
 
-    void assemble(const lie::State& x)
+    void assemble()
     {
-        model.variation(x, C);
+        model.variation(x_n, C);
         N.set_zero();
         for (int i = 0; i < model.bodies(); ++i) {
             Part& p = part[i];
@@ -219,45 +219,45 @@ private:
     }
 
     /// What does not change in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} + h² Tᵀ(τ̄ - J̄ Ṫq̇)
-    void set_known_part(const lie::State& x, double h)
+    void set_known_part(double h)
     {
-        model.loads(x, loads);
+        model.loads(x_n, loads);
         b.setZero();
         for (int i = 0; i < model.bodies(); ++i) {
             const Part& p = part[i];
-            const Vec3 Tdot_qdot = p.at.Tdot_qdot(p.at.qdot(x.body[i].omega_bar));
+            const Vec3 Tdot_qdot = p.at.Tdot_qdot(p.at.qdot(x_n.body[i].omega_bar));
             b.segment<3>(at_r(i)) = h * model.mass().m[i] * p.rdot + h * h * loads.F[i];
             b.segment<k>(at_q(i)) =
                 h * (p.mass * p.qdot) +
-                h * h * (p.T.transpose() * (tau_bar(i, x.body[i]) - model.mass().J_bar[i] * Tdot_qdot));
+                h * h * (p.T.transpose() * (tau_bar(i, x_n.body[i]) - model.mass().J_bar[i] * Tdot_qdot));
         }
     }
 
     /// Guess with the accelerations and multipliers of the step before                               Eq. 3.34
-    void predict(const lie::State& x, double h)
+    void predict(double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
             const Part& p = part[i];
-            z.segment<3>(at_r(i)) = h * p.rdot + h * h * x.body[i].rddot;
-            z.segment<k>(at_q(i)) = h * p.qdot + h * h * p.at.qddot(p.qdot, x.body[i].omegadot_bar);
+            z.segment<3>(at_r(i)) = h * p.rdot + h * h * x_n.body[i].rddot;
+            z.segment<k>(at_q(i)) = h * p.qdot + h * h * p.at.qddot(p.qdot, x_n.body[i].omegadot_bar);
             if (Coordinates::unit_length) z[at_norm(i)] = 0;
         }
-        z.segment(at_lambda(), model.rows()) = h * h * x.lambda;
+        z.segment(at_lambda(), model.rows()) = h * h * x_n.lambda;
     }
 
-    void place(const lie::State& x)
+    void place(lie::State& x)
     {
         for (int i = 0; i < model.bodies(); ++i) {
             Part& p = part[i];
             p.after = p.at;
             p.after.q += z.segment<k>(at_q(i));
-            next.body[i].r = x.body[i].r + z.segment<3>(at_r(i));
-            next.body[i].A = p.after.A();
+            x.body[i].r = x_n.body[i].r + z.segment<3>(at_r(i));
+            x.body[i].A = p.after.A();
         }
     }
 
     /// Minus the residual, into e
-    void set_residual()
+    void set_residual(const lie::State& x)
     {
         Ct_lambda.setZero();
         C.add_transpose(1, z.segment(at_lambda(), model.rows()), Ct_lambda);
@@ -272,7 +272,7 @@ private:
                 e[at_norm(i)] = -0.5 * (p.after.q.squaredNorm() - 1);
             }
         }
-        model.phi(next, e.segment(at_lambda(), model.rows()));
+        model.phi(x, e.segment(at_lambda(), model.rows()));
         e.segment(at_lambda(), model.rows()) *= -1;
     }
 
@@ -285,24 +285,24 @@ private:
         return sum;
     }
 
-    void accept(const lie::State& x, double h)
+    void accept(lie::State& x, double h)
     {
         place(x);
-        next.lambda = z.segment(at_lambda(), model.rows()) / (h * h);
-        next.history.resize(stride * model.bodies());
+        x.lambda = z.segment(at_lambda(), model.rows()) / (h * h);
+        x.history.resize(stride * model.bodies());
         Ct_lambda.setZero();
-        C.add_transpose(1, next.lambda, Ct_lambda);
+        C.add_transpose(1, x.lambda, Ct_lambda);
         for (int i = 0; i < model.bodies(); ++i) {
             Part& p = part[i];
             if constexpr (Coordinates::singular_somewhere)
                 if (p.after.crossed_singular_set())
                     singular(i, p.after.q[1], "has gone over a singular value");
             p.after.settle();
-            lie::Motion& body = next.body[i];
+            lie::Motion& body = x.body[i];
             body.A = p.after.A();
             body.rddot = (loads.F[i] - Ct_lambda.segment<3>(6 * i)) / model.mass().m[i];  // (a)
             body.omegadot_bar =
-                J_bar_inverse[i] * (tau_bar(i, x.body[i]) - Ct_lambda.segment<3>(6 * i + 3));  // (b)
+                J_bar_inverse[i] * (tau_bar(i, x_n.body[i]) - Ct_lambda.segment<3>(6 * i + 3));  // (b)
 
             const Vec3 rdot = z.segment<3>(at_r(i)) / h;
             const Vector qdot = z.segment<k>(at_q(i)) / h;
@@ -310,7 +310,7 @@ private:
             body.rdot = rdot + ahead * (rdot - p.rdot);
             body.omega_bar = p.after.T() * (qdot + ahead * (qdot - p.qdot));
 
-            auto carried = next.history.template segment<stride>(stride * i);
+            auto carried = x.history.template segment<stride>(stride * i);
             carried.template head<3>() = 0.5 * (p.rdot + rdot);
             carried.template segment<3>(3) = 0.5 * (p.T * (p.qdot + qdot));
             carried.template segment<3>(6) = rdot;
@@ -328,7 +328,6 @@ private:
     std::vector<Part> part;
     std::vector<int> upper, lower;
     Eigen::VectorXd Ct_lambda;
-    lie::State next;
 };
 
 }  // namespace hilda::reference

@@ -23,28 +23,28 @@ public:
 
     int step(lie::State& x, double h) override
     {
-        const bool at_start = x.history.size() == 0;
-        recall(x, at_start);
-        set_formula(x, h, at_start);
-        predict(x);
-        next = x;
-        next.t = x.t + h;
+        x_n = x;
+        Attempt attempt(x, x_n);
+        const bool at_start = x_n.history.size() == 0;
+        recall(at_start);
+        set_formula(h, at_start);
+        predict();
+        x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
-            equations.place(formula, z, next);
-            equations.residual(formula, z, next, e);
-            equations.assemble(formula, z, next);
+            equations.place(formula, z, x);
+            equations.residual(formula, z, x, e);
+            equations.assemble(formula, z, x);
             equations.N.factor();
             equations.N.solve(e);
             z -= e;
             correction = h * h * correction_norm(squared_length(e));
             if (correction < settings.tolerance) {
-                equations.place(formula, z, next);
-                remember(h);
-                std::swap(x, next);
-                return done(k);
+                equations.place(formula, z, x);
+                remember(x, h);
+                return done(attempt, k);
             }
         }
-        no_convergence(name, correction, next);
+        no_convergence(name, correction, x);
     }
 
     lie::Statistics statistics() const override
@@ -56,8 +56,8 @@ public:
     }
 
 protected:
-    /// q*, q̇*, g_q, g_v out of q_n, q̇_n and what the scheme has added to the history of x
-    virtual void set_formula(const lie::State& x, double h, bool at_start) = 0;
+    /// q*, q̇*, g_q, g_v out of q_n, q̇_n and what the scheme has added to the history of x_n
+    virtual void set_formula(double h, bool at_start) = 0;
     /// What is carried besides p_n, ṗ_n, after them: its length, and its values after an accepted step from
     /// q_n, q̇_n
     virtual int more() const { return 0; }
@@ -69,32 +69,32 @@ protected:
     Eigen::VectorXd q_n, qdot_n;  ///< (r, p) and (ṙ, ṗ) of the node the step leaves
 
 private:
-    void recall(const lie::State& x, bool at_start)
+    void recall(bool at_start)
     {
         for (int i = 0; i < model.bodies(); ++i) {
-            const lie::Motion& body = x.body[i];
+            const lie::Motion& body = x_n.body[i];
             lie::Vec4 p, pdot;
             if (at_start) {
                 const EulerParameters coordinates(body.A);
                 p = coordinates.q, pdot = coordinates.qdot(body.omega_bar);
             } else
-                p = x.history.segment<4>(8 * i), pdot = x.history.segment<4>(8 * i + 4);
+                p = x_n.history.segment<4>(8 * i), pdot = x_n.history.segment<4>(8 * i + 4);
             q_n.segment<7>(7 * i) << body.r, p;
             qdot_n.segment<7>(7 * i) << body.rdot, pdot;
         }
     }
 
     /// Guess with the accelerations and multipliers of t_n, those of p turned from the node's
-    void predict(const lie::State& x)
+    void predict()
     {
         for (int i = 0; i < model.bodies(); ++i) {
             EulerParameters coordinates;
             coordinates.q = q_n.segment<4>(7 * i + 3);
-            z.segment<7>(7 * i) << x.body[i].rddot,
-                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x.body[i].omegadot_bar);
+            z.segment<7>(7 * i) << x_n.body[i].rddot,
+                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x_n.body[i].omegadot_bar);
             z[equations.at_norm() + i] = 0;
         }
-        z.segment(equations.at_lambda(), model.rows()) = x.lambda;
+        z.segment(equations.at_lambda(), model.rows()) = x_n.lambda;
     }
 
     /// Of a correction: p̈ counts twice, as the angular acceleration that it is
@@ -105,16 +105,14 @@ private:
         return sum;
     }
 
-    void remember(double h)
+    void remember(lie::State& x, double h)
     {
         const int bodies = model.bodies();
-        next.history.resize(8 * bodies + more());
+        x.history.resize(8 * bodies + more());
         for (int i = 0; i < bodies; ++i)
-            next.history.segment<8>(8 * i) << equations.p(i).normalized(), equations.pdot(i);
-        remember_more(h, next.history.tail(more()));
+            x.history.segment<8>(8 * i) << equations.p(i).normalized(), equations.pdot(i);
+        remember_more(h, x.history.tail(more()));
     }
-
-    lie::State next;
 };
 
 }  // namespace hilda::reference

@@ -29,25 +29,25 @@ private:
     int half() const { return static_cast<int>(q_n.size()); }
     int more() const override { return 1 + 2 * half(); }  // h, q_{n-1}, q̇_{n-1}
 
-    void set_formula(const lie::State& x, double h, bool at_start) override
+    void set_formula(double h, bool at_start) override
     {
-        if (at_start || x.history[x.history.size() - more()] != h) {
-            set_starting_formula(x, h);
+        if (at_start || x_n.history[x_n.history.size() - more()] != h) {
+            set_starting_formula(h);
             return;
         }
-        const auto before = x.history.tail(2 * half());
+        const auto before = x_n.history.tail(2 * half());
         formula.qdot = (4 * qdot_n - before.tail(half())) / 3;
         formula.q = (4 * q_n - before.head(half())) / 3 + 2 * h / 3 * formula.qdot;
         formula.g_v = 2 * h / 3, formula.g_q = formula.g_v * formula.g_v;
     }
 
-    void set_starting_formula(const lie::State& x, double h)
+    void set_starting_formula(double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
             EulerParameters coordinates;
             coordinates.q = q_n.segment<4>(7 * i + 3);
-            qddot.segment<7>(7 * i) << x.body[i].rddot,
-                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x.body[i].omegadot_bar);
+            qddot.segment<7>(7 * i) << x_n.body[i].rddot,
+                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x_n.body[i].omegadot_bar);
         }
         formula.qdot = qdot_n + h / 2 * qddot;
         formula.q = q_n + h * qdot_n + h * h / 3 * qddot;

@@ -5,6 +5,9 @@
 ///
 /// with the equations of motion, constraints and norms at t_{n+1} (2.30), and the whole of the Newton matrix
 /// 2.32. See formulations/rp_equations.hpp.
+///
+/// A steady rotation, which rA-full-1 keeps, is an oscillation of p with the frequency ω/2 and is damped: from
+/// 2 sin a_{n+1} = sin(a_{n+1} + a_n) for the half angles a of the steps, ω' = -h ω³/4.
 
 #include "reference/formulations/rp_implicit.hpp"
 
@@ -18,7 +21,7 @@ public:
     {}
 
 private:
-    void set_formula(const lie::State&, double h, bool) override
+    void set_formula(double h, bool) override
     {
         formula.qdot = qdot_n;
         formula.q = q_n + h * qdot_n;

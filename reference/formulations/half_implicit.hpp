@@ -171,7 +171,8 @@ private:
     /// truncation error is that of a step 1/δ times as long. Without another frame the run may come as near
     /// as 0.1: a step that turns the body by 0.01 rad then turns the angles by 0.1, and beyond that neither
     /// Newton's method with a frozen B nor the order can be relied on. With one there is no reason to wait;
-    /// at 0.5 the new frame is nearly twice as far from its own set, so the angles do not flutter between two.
+    /// at 0.5 the
+    /// new frame is nearly twice as far from its own set, so the angles do not flutter between two.
     void keep_off_singular_set(int i, double h, bool at_start)
     {
         Part& p = part[i];
@@ -191,8 +192,8 @@ private:
     {
         std::ostringstream text;
         text.precision(4);
-        text << name << ": body '" << model.body_name(i) << "': the Euler angle phi = " << phi << " rad "
-             << what << " (0 or pi); " << (settings.reparametrise ? "a smaller step" : "--reparametrise")
+        text << "body '" << model.body_name(i) << "': the Euler angle phi = " << phi << " rad " << what
+             << " (0 or pi); " << (settings.reparametrise ? "a smaller step" : "--reparametrise")
              << " or an rA scheme goes through";
         throw SingularParametrisation(text.str(), phi);
     }

@@ -25,7 +25,7 @@ public:
     {
         x_n = x;
         Attempt attempt(x, x_n);
-        const bool at_start = x_n.history.size() == 0;
+        const bool at_start = x_n.history.size() != 8 * model.bodies() + more();
         recall(at_start);
         set_formula(h, at_start);
         predict();

@@ -32,7 +32,8 @@ public:
         : std::runtime_error(what), status(std::move(status))
     {}
 
-    std::string status;  ///< newton_diverged, singular_matrix, nonfinite, constraint_drift
+    std::string
+        status;  ///< newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ...
 };
 
 /// Newton's method did not reach its tolerance.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What the steps of the rA schemes share: the frozen matrix, the work vectors, the loads, the norm, the
-/// failure.
+/// What steps share that solve by Newton's method: the loads, the norm, the failure, the book-keeping; and,
+/// in SaddleStep, the saddle matrix frozen at t_n as the Newton matrix of the rA schemes.
 
 #pragma once
 
@@ -13,17 +13,12 @@ namespace hilda::lie {
 class NewtonStep : public Integrator {
 public:
     NewtonStep(const System& model, const Settings& settings)
-        : model(model), settings(settings), K(model, Metric::mass, settings.linear_solver),
-          loads(model.bodies()), z(K.size()), b(K.size()), e(K.size())
+        : model(model), settings(settings), loads(model.bodies())
     {
         for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
     }
 
     const System& system() const override { return model; }
-    Statistics statistics() const override
-    {
-        return {steps, iterations, K.factorizations(), K.refactorizations(), correction};
-    }
 
 protected:
     /// While a step is tried: unless it is accepted, x is put back to what it was, whatever was thrown.
@@ -48,26 +43,6 @@ protected:
     Vec3 tau_bar(int i, const Motion& body) const
     {
         return loads.n_bar[i] - body.omega_bar.cross(model.mass().J_bar[i] * body.omega_bar);
-    }
-
-    /// The k-th correction e of z in K z = b, Φ(x(z)) = 0, into e:
-    ///
-    ///     K e = (b - K z, -factor Φ)                                       Fang (2022), Eqs. 3.30, 3.31
-    ///
-    /// The rows of the bodies are linear in z: from the second correction on they hold, and only Φ is left.
-    void correct(int k, const State& x, double factor)
-    {
-        if (k == 1) {
-            K.multiply(z, e);
-            e = b - e;
-        }
-        model.phi(x, K.constraint_part(e));
-        K.constraint_part(e) *= -factor;
-        if (k == 1)
-            K.solve(e);
-        else
-            K.solve_constraints(e);
-        z += e;
     }
 
     /// Length of a correction: Euclidean over all unknowns, as in Fang (2022), for a mechanism; beyond four
@@ -115,17 +90,59 @@ protected:
         throw failure;
     }
 
+    /// So far, with the factorisations of the matrix that the scheme solves with
+    template <class Matrix>
+    Statistics statistics_with(const Matrix& N) const
+    {
+        return {steps, iterations, N.factorizations(), N.refactorizations(), correction};
+    }
+
     const System& model;
     const Settings settings;
-    Saddle K;
     Loads loads;
     State x_n;
-    Eigen::VectorXd z, b, e;
+    Eigen::VectorXd z, e;   ///< the unknowns and their correction
     double correction = 0;  ///< norm of the last one
     std::vector<Mat3> J_bar_inverse;
 
 private:
     long steps = 0, iterations = 0;
+};
+
+class SaddleStep : public NewtonStep {
+public:
+    SaddleStep(const System& model, const Settings& settings)
+        : NewtonStep(model, settings), K(model, Metric::mass, settings.linear_solver), b(K.size())
+    {
+        z.resize(K.size());
+        e.resize(K.size());
+    }
+
+    Statistics statistics() const override { return statistics_with(K); }
+
+protected:
+    /// The k-th correction e of z in K z = b, Φ(x(z)) = 0, into e:
+    ///
+    ///     K e = (b - K z, -factor Φ)                                       Fang (2022), Eqs. 3.30, 3.31
+    ///
+    /// The rows of the bodies are linear in z: from the second correction on they hold, and only Φ is left.
+    void correct(int k, const State& x, double factor)
+    {
+        if (k == 1) {
+            K.multiply(z, e);
+            e = b - e;
+        }
+        model.phi(x, K.constraint_part(e));
+        K.constraint_part(e) *= -factor;
+        if (k == 1)
+            K.solve(e);
+        else
+            K.solve_constraints(e);
+        z += e;
+    }
+
+    Saddle K;
+    Eigen::VectorXd b;
 };
 
 }  // namespace hilda::lie

@@ -10,9 +10,9 @@
 
 namespace hilda::lie {
 
-class NodeStep : public NewtonStep {
+class NodeStep : public SaddleStep {
 public:
-    using NewtonStep::NewtonStep;
+    using SaddleStep::SaddleStep;
 
 protected:
     /// K of this state, unless it is the one that K already holds

@@ -13,10 +13,10 @@
 namespace hilda::lie {
 namespace {
 
-class FullyImplicit1 final : public NewtonStep {
+class FullyImplicit1 final : public SaddleStep {
 public:
     FullyImplicit1(const System& model, const Settings& settings)
-        : NewtonStep(model, settings), C(model.pattern())
+        : SaddleStep(model, settings), C(model.pattern())
     {}
 
     int step(State& x, double h) override

@@ -37,15 +37,12 @@ public:
             }
         for (const LoadVariation::Block& block : dF.block)
             load_at.push_back(N.declare(6 * block.on, 6 * block.by, 6, 6));
-        N.analyse(K.size());
+        N.analyse(m + model.rows());
+        z.resize(m + model.rows());
+        e.resize(z.size());
     }
 
-    Statistics statistics() const override
-    {
-        Statistics s = NewtonStep::statistics();
-        s.factorizations = N.factorizations(), s.refactorizations = N.refactorizations();
-        return s;
-    }
+    Statistics statistics() const override { return statistics_with(N); }
 
     int step(State& x, double h) override
     {
@@ -77,7 +74,7 @@ private:
             z.segment<3>(6 * i) = x_n.body[i].rddot;
             z.segment<3>(6 * i + 3) = x_n.body[i].omegadot_bar;
         }
-        K.constraint_part(z) = x_n.lambda;
+        z.tail(model.rows()) = x_n.lambda;
     }
 
     /// Eq. 3.19
@@ -93,7 +90,7 @@ private:
             body.r = from.r + h * body.rdot;
             body.A = from.A * exp(h * body.omega_bar);
         }
-        x.lambda = K.constraint_part(z);
+        x.lambda = z.tail(model.rows());
     }
 
     /// Eq. 3.20
@@ -107,8 +104,8 @@ private:
             e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
         }
         C.add_transpose(1, x.lambda, e);
-        model.phi(x, K.constraint_part(e));
-        K.constraint_part(e) /= h * h;
+        model.phi(x, e.tail(model.rows()));
+        e.tail(model.rows()) /= h * h;
     }
 
     void assemble(const State& x, double h)

@@ -19,10 +19,10 @@
 namespace hilda::lie {
 namespace {
 
-class GeneralisedAlpha final : public NewtonStep {
+class GeneralisedAlpha final : public SaddleStep {
 public:
     GeneralisedAlpha(const System& model, const Settings& settings)
-        : NewtonStep(model, settings), C(model.pattern())
+        : SaddleStep(model, settings), C(model.pattern())
     {
         const double rho = settings.rho_infinity;
         if (!(rho >= 0 && rho <= 1)) reject("rA-genalpha", "rho_infinity must be from 0 to 1", rho);

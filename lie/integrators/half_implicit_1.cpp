@@ -17,9 +17,9 @@
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit1 final : public NewtonStep {
+class HalfImplicit1 final : public SaddleStep {
 public:
-    using NewtonStep::NewtonStep;
+    using SaddleStep::SaddleStep;
 
     int step(State& x, double h) override
     {

@@ -19,9 +19,9 @@
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit1Kick final : public NewtonStep {
+class HalfImplicit1Kick final : public SaddleStep {
 public:
-    using NewtonStep::NewtonStep;
+    using SaddleStep::SaddleStep;
 
     int step(State& x, double h) override
     {

@@ -17,10 +17,10 @@
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit2 final : public NewtonStep {
+class HalfImplicit2 final : public SaddleStep {
 public:
     HalfImplicit2(const System& model, const Settings& settings)
-        : NewtonStep(model, settings), A_hat(model.bodies())
+        : SaddleStep(model, settings), A_hat(model.bodies())
     {}
 
     int step(State& x, double h) override

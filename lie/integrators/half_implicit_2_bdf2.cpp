@@ -20,9 +20,9 @@
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit2Bdf2 final : public NewtonStep {
+class HalfImplicit2Bdf2 final : public SaddleStep {
 public:
-    using NewtonStep::NewtonStep;
+    using SaddleStep::SaddleStep;
 
     int step(State& x, double h) override
     {

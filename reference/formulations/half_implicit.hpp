@@ -97,13 +97,7 @@ public:
         no_convergence(name, correction, x);
     }
 
-    lie::Statistics statistics() const override
-    {
-        lie::Statistics s = NewtonStep::statistics();
-        s.factorizations = N.factorizations();
-        s.refactorizations = N.refactorizations();
-        return s;
-    }
+    lie::Statistics statistics() const override { return statistics_with(N); }
 
     bool lags() const override { return true; }
     void complete(lie::State& node, const lie::State& after) const override
@@ -328,7 +322,7 @@ private:
     lie::Rows C;  ///< Φ_r, Π̄ at t_n
     std::vector<Part> part;
     std::vector<int> upper, lower;
-    Eigen::VectorXd Ct_lambda;
+    Eigen::VectorXd b, Ct_lambda;
 };
 
 }  // namespace hilda::reference

@@ -47,13 +47,7 @@ public:
         no_convergence(name, correction, x);
     }
 
-    lie::Statistics statistics() const override
-    {
-        lie::Statistics s = NewtonStep::statistics();
-        s.factorizations = equations.N.factorizations();
-        s.refactorizations = equations.N.refactorizations();
-        return s;
-    }
+    lie::Statistics statistics() const override { return statistics_with(equations.N); }
 
 protected:
     /// q*, q̇*, g_q, g_v out of q_n, q̇_n and what the scheme has added to the history of x_n

@@ -10,7 +10,7 @@ namespace hilda::lie {
 /// What a scheme is told; each takes from it what concerns it.
 struct Settings {
     /// Stop when the correction is shorter than this. Half-implicit schemes measure (Δr, Δθ̄, Δλ̂) in m, rad
-    /// and kg m, fully implicit ones h² (Δr̈, Δω̄̇, Δλ): the same lengths. See correction_norm for the norm.
+    /// and kg m, fully implicit ones h² (Δr̈, Δω̄̇, Δλ): the same lengths. See NewtonStep::converged for the norm.
     double tolerance = 1e-10;
     int max_iterations = 30;
     LinearSolver linear_solver = LinearSolver::automatic;

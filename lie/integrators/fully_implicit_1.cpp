@@ -31,8 +31,7 @@ public:
             set_residual(x, h);
             K.solve(e);
             z -= e;
-            correction = h * h * correction_norm(e.squaredNorm());
-            if (correction < settings.tolerance) {
+            if (converged(k, h * h * e.norm())) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 return done(attempt, k);

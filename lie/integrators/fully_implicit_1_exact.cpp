@@ -57,8 +57,7 @@ public:
             N.factor();
             N.solve(e);
             z -= e;
-            correction = h * h * correction_norm(e.squaredNorm());
-            if (correction < settings.tolerance) {
+            if (converged(k, h * h * e.norm())) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 return done(attempt, k);

@@ -49,8 +49,7 @@ public:
             set_residual(x);
             K.solve(e);
             z -= e;
-            correction = correction_norm(e.squaredNorm());
-            if (correction < settings.tolerance) {
+            if (converged(k, e.norm())) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 x.history = a_next;

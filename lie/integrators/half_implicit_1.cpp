@@ -32,8 +32,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 1);
-            correction = correction_norm(e.squaredNorm());
-            if (correction < settings.tolerance) {
+            if (converged(k, e.norm())) {
                 accept(x, h);
                 return done(attempt, k);
             }

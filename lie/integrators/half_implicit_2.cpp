@@ -34,8 +34,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 2);
-            correction = printed_norm();
-            if (correction < settings.tolerance) {
+            if (converged(k, printed_norm())) {
                 accept(x, h);
                 return done(attempt, k);
             }
@@ -88,7 +87,7 @@ private:
         double sum = K.constraint_part(e).squaredNorm() / 2.25;
         for (int i = 0; i < model.bodies(); ++i)
             sum += 0.25 * e.segment<3>(6 * i).squaredNorm() + e.segment<3>(6 * i + 3).squaredNorm();
-        return correction_norm(sum);
+        return std::sqrt(sum);
     }
 
     void accept(State& x, double h)

@@ -36,8 +36,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 1.5);
-            correction = length();
-            if (correction < settings.tolerance) {
+            if (converged(k, length())) {
                 accept(x, h);
                 return done(attempt, k);
             }
@@ -108,7 +107,7 @@ private:
         double sum = K.constraint_part(e).squaredNorm() / 2.25;
         for (int i = 0; i < model.bodies(); ++i)
             sum += e.segment<3>(6 * i).squaredNorm() / 2.25 + e.segment<3>(6 * i + 3).squaredNorm();
-        return correction_norm(sum);
+        return std::sqrt(sum);
     }
 
     void accept(State& x, double h)

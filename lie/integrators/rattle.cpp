@@ -44,8 +44,7 @@ public:
             K.constraint_part(e) *= -1;
             K.solve(e);
             z += e;
-            correction = correction_norm(e.squaredNorm());
-            if (correction < settings.tolerance) {
+            if (converged(k, e.norm())) {
                 place(x);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 set_velocities(x, h);

@@ -87,8 +87,7 @@ private:
                 x.body[i].r += e.segment<3>(6 * i);
                 x.body[i].A = orthonormalised(x.body[i].A * exp(e.segment<3>(6 * i + 3)));
             }
-            correction = correction_norm(e.head(6 * model.bodies()).squaredNorm());
-            if (correction < settings.tolerance) return k;
+            if (converged(k, e.head(6 * model.bodies()).norm())) return k;
         }
         no_convergence("rA-rkmk-4", correction, x);
     }

@@ -88,8 +88,7 @@ public:
             set_residual(x);
             N.solve(e);
             z += e;
-            correction = correction_norm(squared_length(e));
-            if (correction < settings.tolerance) {
+            if (converged(iteration, std::sqrt(squared_length(e)))) {
                 accept(x, h);
                 return done(attempt, iteration);
             }

@@ -37,8 +37,7 @@ public:
             equations.N.factor();
             equations.N.solve(e);
             z -= e;
-            correction = h * h * correction_norm(squared_length(e));
-            if (correction < settings.tolerance) {
+            if (converged(k, h * h * std::sqrt(squared_length(e)))) {
                 equations.place(formula, z, x);
                 remember(x, h);
                 return done(attempt, k);

@@ -160,6 +160,7 @@ nlohmann::ordered_json provenance(const std::string& command_line, int threads)
           {"KLU", version::klu},
           {"SPQR", version::spqr},
           {"GSL", version::gsl},
+          {"SUNDIALS", version::sundials},
           {"CLI11", CLI11_VERSION},
           {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
           {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,

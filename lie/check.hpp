@@ -33,7 +33,7 @@ public:
     {}
 
     std::string
-        status;  ///< newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ...
+        status;  ///< newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ida_failed, ...
 };
 
 /// Newton's method did not reach its tolerance.

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "lie/newton_step.hpp"
-#include "reference/formulations/rp_equations.hpp"
+#include "reference/formulations/rp_step_equations.hpp"
 
 namespace hilda::reference {
 
@@ -57,7 +57,7 @@ protected:
     virtual void remember_more(double /*h*/, Eigen::Ref<Eigen::VectorXd> /*out*/) const {}
 
     const std::string name;
-    RpEquations equations;
+    RpStepEquations equations;
     RpFormula formula;
     Eigen::VectorXd q_n, qdot_n;  ///< (r, p) and (ṙ, ṗ) of the node the step leaves
 

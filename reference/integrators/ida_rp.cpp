@@ -1,19 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// SUNDIALS IDA on the rp equations as integrators, one for each way to ask for the constraints.  See ida_solver.hpp
 #include "reference/ida_solver.hpp"
 
 namespace hilda::reference {
-
 namespace {
 
-[[maybe_unused]] const bool enrolled =
-    lie::enrol<IdaSolver>({.name = "ida-rp",
-                           .order = 5,
-                           .order_lambda = 5,
-                           .formulation = "rp",
-                           .unknowns = "r, p, r', p', lambda, mu",
-                           .source = "SUNDIALS IDA, GGL index 2; Fang (2022), Eq. 2.23",
-                           .adaptive = true});
+template <RpForm form>
+class Ida final : public lie::Integrator {
+public:
+    Ida(const lie::System& system, const lie::Settings& settings) : solver(system, settings, form) {}
+
+    int step(lie::State& x, double h) override { return solver.step(x, h); }
+    const lie::System& system() const override { return solver.system(); }
+    lie::Statistics statistics() const override { return solver.statistics(); }
+
+private:
+    IdaSolver solver;
+};
+
+template <RpForm form>
+bool enrol_ida(const std::string& name, const std::string& unknowns, const std::string& how)
+{
+    return lie::enrol<Ida<form>>({.name = name,
+                                  .order = 5,
+                                  .order_lambda = 5,
+                                  .formulation = "rp",
+                                  .unknowns = unknowns,
+                                  .source = "SUNDIALS IDA, " + how + "; Fang (2022), Eq. 2.23",
+                                  .adaptive = true});
+}
+
+const bool ggl = enrol_ida<RpForm::ggl>("ida-rp", "r, p, r', p', lambda, mu", "GGL index 2");
+const bool baumgarte =
+    enrol_ida<RpForm::baumgarte>("ida-rp-baumgarte", "r, p, r', p', lambda", "Baumgarte, 20/s");
+const bool index1 = enrol_ida<RpForm::index1>("ida-rp-index1", "r, p, r', p', lambda", "index 1, drifts");
 
 }  // namespace
-
 }  // namespace hilda::reference

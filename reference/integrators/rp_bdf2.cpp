@@ -4,7 +4,7 @@
 ///     q̇_{n+1} = (4 q̇_n - q̇_{n-1})/3 + (2h/3) q̈_{n+1},    q_{n+1} = (4 q_n - q_{n-1})/3 + (2h/3) q̇_{n+1}
 ///
 /// with the equations of motion, constraints and norms at t_{n+1} (2.30), and the whole of the Newton matrix
-/// 2.32. See formulations/rp_equations.hpp.
+/// 2.32. See formulations/rp_step_equations.hpp.
 ///
 /// The first step takes the acceleration as linear in time,
 ///

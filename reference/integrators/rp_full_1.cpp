@@ -4,7 +4,7 @@
 ///     q̇_{n+1} = q̇_n + h q̈_{n+1},    q_{n+1} = q_n + h q̇_{n+1}                                  (2.28, 2.29)
 ///
 /// with the equations of motion, constraints and norms at t_{n+1} (2.30), and the whole of the Newton matrix
-/// 2.32. See formulations/rp_equations.hpp.
+/// 2.32. See formulations/rp_step_equations.hpp.
 ///
 /// A steady rotation, which rA-full-1 keeps, is an oscillation of p with the frequency ω/2 and is damped: from
 /// 2 sin a_{n+1} = sin(a_{n+1} + a_n) for the half angles a of the steps, ω' = -h ω³/4.

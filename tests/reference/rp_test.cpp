@@ -5,7 +5,7 @@
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "reference/formulations/reps.hpp"
-#include "reference/formulations/rp_equations.hpp"
+#include "reference/formulations/rp_step_equations.hpp"
 #include "reference/index1.hpp"
 #include "tests/reference/classical_models.hpp"
 #include "tests/support/finite_difference.hpp"
@@ -16,10 +16,10 @@ using namespace hilda::reference;
 
 namespace {
 
-/// N as RpEquations assembles it, and by differences of the residual
+/// N as RpStepEquations assembles it, and by differences of the residual
 void check_newton_matrix(const lie::System& model, lie::State x, tests::Random& random)
 {
-    RpEquations equations(model);
+    RpStepEquations equations(model);
     const int bodies = model.bodies();
     RpFormula formula{
         .q = Eigen::VectorXd(7 * bodies), .qdot = Eigen::VectorXd(7 * bodies), .g_q = 0.02, .g_v = 0.1};

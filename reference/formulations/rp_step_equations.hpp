@@ -36,9 +36,9 @@ struct RpFormula {
     double g_q = 0, g_v = 0;  ///< [s²], [s]
 };
 
-class RpEquations {
+class RpStepEquations {
 public:
-    explicit RpEquations(const lie::System& model)
+    explicit RpStepEquations(const lie::System& model)
         : model(model), bodies(model.bodies()), rows(model.rows()), C(model.pattern()), H(model.pattern()),
           D(model.load_pattern()), loads(bodies), w(bodies), q(7 * bodies), qdot(7 * bodies),
           Ct_lambda(6 * bodies), V(bodies)

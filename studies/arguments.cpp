@@ -3,10 +3,12 @@
 
 #include "dae/nearest.hpp"
 #include "studies/exit_codes.hpp"
+#include "studies/problems/n_pendulum.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace hilda::studies {
 
@@ -24,6 +26,26 @@ double parse(std::string_view text)
     const char* const end = text.data() + text.size();
     const auto [at, error] = std::from_chars(text.data(), end, value);
     return error == std::errc() && at == end && std::isfinite(value) ? value : std::nan("");
+}
+
+/// The whole number that is all of the text
+template <class Number>
+std::optional<Number> whole(std::string_view text)
+{
+    Number value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
+}
+
+std::vector<double> descending(const std::string& option, const std::string& text,
+                               double (*read)(const std::string&, const std::string&), const char* once)
+{
+    std::vector<double> all;
+    for (const std::string& part : list(option, text)) all.push_back(read(option, part));
+    std::sort(all.rbegin(), all.rend());
+    if (std::adjacent_find(all.begin(), all.end()) != all.end()) refuse(option, once, text);
+    return all;
 }
 
 }  // namespace
@@ -74,12 +96,16 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
 
 int positive_count(const std::string& option, const std::string& text)
 {
-    int value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || at != end || value < 1)
-        refuse(option, "must be a whole number, at least 1", text);
-    return value;
+    const std::optional<int> value = whole<int>(text);
+    if (!value || *value < 1) refuse(option, "must be a whole number, at least 1", text);
+    return *value;
+}
+
+std::uint64_t seed(const std::string& option, const std::string& text)
+{
+    const std::optional<std::uint64_t> value = whole<std::uint64_t>(text);
+    if (!value) refuse(option, "must be a whole number from 0 to 2^64 - 1", text);
+    return *value;
 }
 
 std::vector<std::string> list(const std::string& option, const std::string& text)
@@ -96,11 +122,26 @@ std::vector<std::string> list(const std::string& option, const std::string& text
 
 std::vector<double> steps(const std::string& option, const std::string& text)
 {
-    std::vector<double> h;
-    for (const std::string& part : list(option, text)) h.push_back(positive_number(option, part));
-    std::sort(h.rbegin(), h.rend());
-    if (std::adjacent_find(h.begin(), h.end()) != h.end()) refuse(option, "must name each step once", text);
-    return h;
+    return descending(option, text, positive_number, "must name each step once");
+}
+
+std::vector<double> relative_tolerances(const std::string& option, const std::string& text)
+{
+    return descending(option, text, relative_tolerance, "must name each tolerance once");
+}
+
+std::vector<int> bars(const std::string& option, const std::string& text)
+{
+    std::vector<int> N;
+    for (const std::string& part : list(option, text)) {
+        const std::optional<int> n = whole<int>(part);
+        if (!n || *n < 1 || *n > most_bars)
+            refuse(option, "N must be a whole number from 1 to " + std::to_string(most_bars), part);
+        N.push_back(*n);
+    }
+    std::sort(N.begin(), N.end());
+    if (std::adjacent_find(N.begin(), N.end()) != N.end()) refuse(option, "must name each N once", text);
+    return N;
 }
 
 std::string setting(const std::string& option, const std::string& text)
@@ -142,6 +183,13 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
             refuse(option, "must name each integrator once", text);
     }
     return chosen;
+}
+
+std::string integrator(const std::string& option, const std::string& text)
+{
+    const std::vector<std::string> named = integrators(option, text);
+    if (named.size() != 1) refuse(option, "must be one integrator", text);
+    return named.front();
 }
 
 }  // namespace hilda::studies

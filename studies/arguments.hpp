@@ -27,10 +27,17 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
 /// A whole number, at least 1
 int positive_count(const std::string& option, const std::string& text);
 
+/// A whole number from 0, of 64 bits
+std::uint64_t seed(const std::string& option, const std::string& text);
+
 /// A,B,C: no part empty
 std::vector<std::string> list(const std::string& option, const std::string& text);
 /// Step sizes H1,H2,...: positive, the largest first
 std::vector<double> steps(const std::string& option, const std::string& text);
+/// Relative tolerances R1,R2,...: each as relative_tolerance(), the largest first
+std::vector<double> relative_tolerances(const std::string& option, const std::string& text);
+/// Numbers of bars N1,N2,...: whole numbers from 1 to most_bars, the smallest first
+std::vector<int> bars(const std::string& option, const std::string& text);
 
 /// /json/pointer=VALUE, as it is
 std::string setting(const std::string& option, const std::string& text);
@@ -42,5 +49,7 @@ std::string with_nearest(const std::string& word, std::span<const std::string> k
 
 /// The integrators named; UsageError for one that is not there.
 std::vector<std::string> integrators(const std::string& option, const std::string& text);
+/// The same of one name
+std::string integrator(const std::string& option, const std::string& text);
 
 }  // namespace hilda::studies

@@ -17,7 +17,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <thread>
 
 namespace hilda::studies {
 
@@ -243,23 +242,35 @@ private:
     void add_study()
     {
         StudyOptions& o = study;
-        o.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
         CLI::App* c =
             add("study", "an experiment: its table, CSV and figures; without KIND, the list of them", [this] {
                 study.command_line = typed;
-                return kind.empty() ? list_studies(study.json) : run_study(kind, study, force);
+                return kind.empty() ? list_studies(study.json) : run_study(kind, study);
             });
         c->add_option("KIND", kind, "which one")->type_name("");
         values(c, "--problem", "NAME[,NAME...]", "built-in models or model files", append(o.problems, list));
         values(c, "--integrator", "NAME[,NAME...]", "by default all", append(o.integrators, integrators));
         value(c, "--steps", "H1,H2,...", "step sizes in s", assign(o.steps, steps));
+        value(c, "--rtols", "R1,R2,...", "tolerances of integrators that choose their own steps",
+              assign(o.rtols, relative_tolerances));
+        value(c, "--bars", "N1,N2,...", "lengths of the chain of scaling, by default 1,2,4,...,1024",
+              assign(o.bars, bars));
         value(c, "--end", "T", "end in s, by default the model's", assign(o.end, positive_number));
         values(c, "--set", "/json/pointer=VALUE", "change one entry of each model; repeatable",
                append(o.set, one_setting));
         add_settings(c, o.settings);
         value(c, "--output", "DIR", "by default out/KIND", assign(o.output, path));
-        c->add_flag("--force", force, "write into a directory that is not empty");
-        value(c, "--jobs", "N", "runs side by side, by default one for each core",
+        value(c, "--reference", "NAME", "the integrator to judge by, by default the truth of each problem",
+              assign(o.reference, integrator));
+        value(c, "--reference-step", "H", "its step in s, by default a tenth of the smallest one judged",
+              assign(o.reference_step, positive_number));
+        value(c, "--reference-rtol", "R", "its tolerance where it chooses its own steps, by default 1e-12",
+              assign(o.reference_rtol, relative_tolerance));
+        value(c, "--repeats", "N", "of what is timed, by default 5", assign(o.repeats, positive_count));
+        value(c, "--seed", "N", "of random starts, by default 0", assign(o.seed, seed));
+        c->add_flag("--force", o.force,
+                    "write into a directory that is not empty; take a reference coarser than what it judges");
+        value(c, "--jobs", "N", "runs side by side, by default one for each core; one where time is measured",
               assign(o.jobs, positive_count));
         values(c, "--expect", "KEY=VALUE[+-TOL]", "exit with 6 when this does not come out; repeatable",
                append(o.expect, [](const std::string& option, const std::string& text) {
@@ -350,7 +361,7 @@ private:
     StudyOptions study;
     std::vector<std::string> chosen_integrators;
     std::string name, write_to, kind, directory;
-    bool json = false, force = false, verbose = false;
+    bool json = false, verbose = false;
 };
 
 }  // namespace

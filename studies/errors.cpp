@@ -7,13 +7,6 @@ namespace {
 
 using lie::State;
 
-double component(const State& x, int body, const std::string& name)
-{
-    const lie::Motion& b = x.body[body];
-    const lie::Vec3& vector = name[0] == 'r' ? b.r : name[0] == 'v' ? b.rdot : b.omega_bar;
-    return vector[name[1] - 'x'];
-}
-
 int watched_body(const dae::Model& model, const Watched& watched)
 {
     if (watched.component.size() != 2 || std::string("rvw").find(watched.component[0]) == std::string::npos ||
@@ -56,6 +49,19 @@ double load_error(const dae::Model& model, const State& x, const State& truth)
 }
 
 }  // namespace
+
+double component(const State& x, int body, const std::string& name)
+{
+    const lie::Motion& b = x.body[body];
+    const lie::Vec3& vector = name[0] == 'r' ? b.r : name[0] == 'v' ? b.rdot : b.omega_bar;
+    return vector[name[1] - 'x'];
+}
+
+Difference difference(const State& x, const State& truth)
+{
+    const Squares all(x, &truth, 0, static_cast<int>(x.body.size()) - 1);
+    return {std::sqrt(all.r), std::sqrt(all.A), std::sqrt(all.v), std::sqrt(all.omega)};
+}
 
 Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::vector<long>& at,
               const lie::Trajectory& truth, const Instants& instants, const Watched& watch)

@@ -33,6 +33,15 @@ struct Errors {
     int instants = 0;  ///< at which r, A, v, omega were compared
 };
 
+/// How far one state is from another: stacked, as above
+struct Difference {
+    double r = 0, A = 0, v = 0, omega = 0;
+};
+Difference difference(const lie::State& x, const lie::State& truth);
+
+/// A component rx … wz of a body
+double component(const lie::State& x, int body, const std::string& name);
+
 /// What the rms norms are compared at: every `stride`-th of the truth's rows after the first.
 struct Instants {
     double dt = 0.01;  ///< between rows of the truth [s]

@@ -10,7 +10,7 @@
 namespace hilda::studies {
 
 /// Runs the study of that kind; returns its exit code. Its directory is out/KIND, or options.output, and must
-/// be empty unless `force`. With options.json and no output it writes no files.
-int run_study(const std::string& kind, StudyOptions options, bool force);
+/// be empty unless options.force. With options.json and no output it writes no files.
+int run_study(const std::string& kind, StudyOptions options);
 
 }  // namespace hilda::studies

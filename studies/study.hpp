@@ -5,6 +5,7 @@
 
 #include "lie/integrator.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,19 +24,34 @@ struct StudyOptions {
     std::vector<std::string> problems;  ///< names or paths of model files
     std::vector<std::string> integrators;
     std::vector<double> steps;     ///< [s], descending
+    std::vector<double> rtols;     ///< of adaptive integrators, descending
+    std::vector<int> bars;         ///< of the chains of scaling, ascending
     std::optional<double> end;     ///< [s]
     std::vector<std::string> set;  ///< /json/pointer=VALUE
     lie::Settings settings;
+
+    std::string reference;                                 ///< an integrator; "": the truth of each problem
+    std::optional<double> reference_step, reference_rtol;  ///< [s], 1
+    int repeats = 0;  ///< of what is timed; 0: the default of studies that time
+    std::uint64_t seed = 0;
+
     std::string output;  ///< directory, already made and empty; "" with --json and no --output
-    int jobs = 1;        ///< runs side by side
+    int jobs = 0;        ///< runs side by side; 0: one for each core, or one where time is measured
+    bool force = false;  ///< take a directory that is not empty, and a reference that is too coarse
     bool plot = true, quiet = false, json = false;
     std::vector<Expectation> expect;
     std::string command_line;  ///< for the record
 };
 
+/// Options that only some studies take
+namespace takes {
+enum : unsigned { reference = 1, rtols = 2, repeats = 4, bars = 8 };
+}  // namespace takes
+
 struct Study {
     std::string kind;
     std::string answers;                        ///< the figure or table it answers, one line
+    unsigned also = 0;                          ///< of what is in takes
     int (*run)(const StudyOptions&) = nullptr;  ///< returns the exit code; writes into output
 };
 

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the figures of the studies share: reading a table, and one colour and marker for a scheme in all of them."""
+import csv
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.lines import Line2D
+
+# told apart by people who do not see red and green
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6bb1"]
+MARKERS = "osD^vP*X"
+STYLES = {
+    "rA-full-1": ("#d55e00", "s"), "rA-full-1-exact": ("#f4a582", "D"),
+    "rA-half-1": ("#0072b2", "o"), "rA-half-1-kick": ("#56b4e9", "^"),
+    "rA-half-2": ("#009e73", "v"), "rA-half-2-bdf2": ("#66c2a5", "<"),
+    "rA-genalpha": ("#cc79a7", "P"), "rA-rattle": ("#8c6bb1", "X"), "rA-rkmk-4": ("#e69f00", "*"),
+    "ida-rp": ("#000000", "h"),
+    "rp-full-1": ("#a6611a", "s"), "rp-bdf2": ("#dfc27d", "D"),
+    "rp-half-1": ("#7f7f7f", "o"), "rp-half-1-kick": ("#b0b0b0", "^"),
+    "reps-half-1": ("#4d4d4d", "p"), "reps-half-1-kick": ("#969696", ">"),
+}
+
+
+def style(scheme, others=()):
+    """Colour and marker of a scheme; one that has none of its own gets them by its place among the others."""
+    if scheme in STYLES:
+        return STYLES[scheme]
+    unknown = [name for name in others if name not in STYLES]
+    k = unknown.index(scheme) if scheme in unknown else 0
+    return COLOURS[-1 - k % len(COLOURS)], MARKERS[-1 - k % len(MARKERS)]
+
+
+def directory():
+    """The one argument of a script"""
+    if len(sys.argv) != 2:
+        sys.exit(sys.modules["__main__"].__doc__)
+    return sys.argv[1]
+
+
+def read(*path):
+    """The rows of a table, as dictionaries of texts"""
+    with open(os.path.join(*path), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def distinct(rows, column):
+    """The values of a column, in the order in which they come"""
+    return list(dict.fromkeys(row[column] for row in rows))
+
+
+def where(rows, **values):
+    return [row for row in rows if all(row[column] == value for column, value in values.items())]
+
+
+def number(text):
+    return float(text) if text else float("nan")
+
+
+def numbers(rows, column):
+    return [number(row[column]) for row in rows]
+
+
+def grid(axes):
+    axes.grid(True, which="major", color="0.92")
+    axes.set_axisbelow(True)
+
+
+def legend(figure, schemes, markers=True, more=(), columns=8):
+    """One legend below the whole figure"""
+    handles = [Line2D([], [], color=style(s, schemes)[0], marker=style(s, schemes)[1] if markers else None, label=s)
+               for s in schemes] + list(more)
+    columns = min(len(handles), columns)
+    lines = -(-len(handles) // columns)
+    figure.legend(handles=handles, loc="lower center", ncol=columns, frameon=False, fontsize=9)
+    return 0.26 * lines / figure.get_figheight() + 0.01
+
+
+def save(figure, folder, name, below=0.0, top=0.97):
+    figure.tight_layout(rect=(0, below, 1, top))
+    figure.savefig(os.path.join(folder, name), dpi=110)
+    plt.close(figure)

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Change of the energy over time, one figure for each problem.                               Fang (2022), Fig. 3.5
+
+    energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
+"""
+from drawing import Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+
+DASHES = ["-", "--", ":", "-."]
+
+
+def draw(folder, problem, rows, runs):
+    schemes, steps = distinct(rows, "integrator"), distinct(rows, "h")
+    figure, (plain, log) = plt.subplots(1, 2, figsize=(13, 5.2), sharex=True)
+    for scheme in schemes:
+        colour, _ = style(scheme, schemes)
+        for h in steps:
+            mine = where(rows, integrator=scheme, h=h)
+            t, drift = numbers(mine, "t"), numbers(mine, "drift")
+            dash = DASHES[steps.index(h) % len(DASHES)]
+            plain.plot(t, drift, dash, color=colour, lw=1.4)
+            log.plot(t[1:], [max(abs(d), 1e-16) for d in drift[1:]], dash, color=colour, lw=1)
+    log.set_yscale("log")
+    for axes, label in ((plain, "$E - E_0$ [J]"), (log, "$|E - E_0|$ [J]")):
+        axes.set_xlabel("$t$ [s]")
+        axes.set_ylabel(label)
+        grid(axes)
+    kinetic = max(number(run["max_kinetic"]) for run in runs if run["status"] == "ok") if any(
+        run["status"] == "ok" for run in runs) else float("nan")
+    which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: h"
+    figure.suptitle(f"{problem}: change of the total energy, {which}; largest kinetic energy {kinetic:.4g} J", fontsize=11)
+    more = [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"h = {float(h):g} s")
+            for k, h in enumerate(steps)] if len(steps) > 1 else []
+    save(figure, folder, f"energy-{problem}.png", legend(figure, schemes, markers=False, more=more))
+
+
+def main():
+    folder = directory()
+    rows, runs = read(folder, "energy.csv"), read(folder, "study.csv")
+    for problem in distinct(runs, "problem"):
+        draw(folder, problem, where(rows, problem=problem), where(runs, problem=problem))
+
+
+if __name__ == "__main__":
+    main()

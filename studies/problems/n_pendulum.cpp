@@ -5,6 +5,9 @@
 #include "studies/problems/n_pendulum.hpp"
 
 #include "reference/trusted.hpp"
+#include "studies/table.hpp"
+
+#include <random>
 
 namespace hilda::studies {
 
@@ -68,6 +71,29 @@ Problem n_pendulum(int N, const std::string& name)
                  "bars of 2 m, section 0.05 m, 7800 kg/m3; gravity of the published code; at rest, as its "
                  "unseeded spins violate the joints",
                  bodies, constraints);
+}
+
+std::vector<double> spins(int N, std::uint64_t seed)
+{
+    std::mt19937_64 bits(seed);
+    std::vector<double> rate(N);
+    // Its 53 highest bits as a double in [0, 1): std::uniform_real_distribution is another one on every platform.
+    for (double& w : rate) w = 10 * (2 * (static_cast<double>(bits() >> 11) * 0x1p-53) - 1);
+    return rate;
+}
+
+Problem spinning_n_pendulum(int N, std::uint64_t seed)
+{
+    const std::string name = "n_pendulum_" + std::to_string(N);
+    const std::vector<double> spin = spins(N, seed);
+    std::string bodies, constraints;
+    for (int i = 1; i <= N; ++i) {
+        const char* before = i == 1 ? "" : ",\n";
+        bodies += before + bar(i, R"(, "omega": [)" + shortest(spin[i - 1]) + ", 0, 0]");
+        constraints += before + ball(i);
+    }
+    return chain(name, "chain of " + std::to_string(N) + " spinning bars",
+                 "each bar spins about its long axis, seed " + std::to_string(seed), bodies, constraints);
 }
 
 namespace {

@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Error against CPU time, one figure for each problem: left is cheaper, lower more accurate.
+
+    work-precision.py DIR       reads DIR/study.csv, writes DIR/work-precision-PROBLEM.png
+"""
+from drawing import directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+
+PANELS = [("r", "position $r$, rms [m]"), ("v", "velocity $\\dot r$, rms [m/s]"), ("Q", "joint loads, rms, relative")]
+
+
+def draw(folder, problem, rows):
+    schemes = distinct(rows, "integrator")
+    figure, panels = plt.subplots(1, 3, figsize=(15.5, 5.4), sharex=True)
+    for (norm, title), axes in zip(PANELS, panels):
+        for scheme in schemes:
+            colour, marker = style(scheme, schemes)
+            mine = [row for row in where(rows, integrator=scheme) if row["status"] == "ok" and number(row[norm]) > 0]
+            axes.loglog([1e3 * t for t in numbers(mine, "cpu_seconds")], numbers(mine, norm), "-", marker=marker,
+                        color=colour, lw=1.2, ms=5)
+        axes.set_xlabel("thread CPU time of the run [ms]")
+        axes.set_title(title, fontsize=10)
+        grid(axes)
+    panels[0].axhline(1e-3, color="0.6", lw=1, ls="--", zorder=0)
+    panels[0].set_ylabel("error")
+    figure.suptitle(f"{problem}, over {number(rows[0]['end']):g} s: error against CPU time; reference: {rows[0]['reference']}",
+                    fontsize=11)
+    save(figure, folder, f"work-precision-{problem}.png", legend(figure, schemes))
+
+
+def main():
+    folder = directory()
+    rows = read(folder, "study.csv")
+    for problem in distinct(rows, "problem"):
+        draw(folder, problem, where(rows, problem=problem))
+
+
+if __name__ == "__main__":
+    main()

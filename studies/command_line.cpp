@@ -183,7 +183,8 @@ private:
             ->type_name("");
         values(c, "--integrator", "NAME[,NAME...]", "one run each, by default rA-half-1",
                append(chosen_integrators, integrators));
-        value(c, "--step", "H", "step size in s, by default 1e-3", assign(o.step, positive_number));
+        value(c, "--step", "H", "step size in s, by default 1e-3; not for ida-rp, which chooses its own",
+              assign(o.step, positive_number));
         value(c, "--end", "T", "end in s, by default the model's", assign(o.end, nonnegative_number));
         value(c, "--every", "DT", "s between output rows, by default end/1000; 0: every step",
               assign(o.every, nonnegative_number));

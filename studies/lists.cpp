@@ -74,6 +74,7 @@ int list_integrators(bool json)
             all.push_back({{"name", s.name},
                            {"order", s.order},
                            {"order_lambda", s.order_lambda},
+                           {"adaptive", s.adaptive},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"source", s.source}});
@@ -82,8 +83,9 @@ int list_integrators(bool json)
     }
     std::vector<Line> lines = {{"name", "order", "of lambda", "formulation", "unknowns", "source"}};
     for (const lie::Scheme& s : lie::schemes())
-        lines.push_back({s.name, std::to_string(s.order), std::to_string(s.order_lambda), s.formulation,
-                         s.unknowns, s.source});
+        lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
+                         s.adaptive ? "-" : std::to_string(s.order_lambda), s.formulation, s.unknowns,
+                         s.source});
     print_aligned(lines);
     return exit_code::done;
 }

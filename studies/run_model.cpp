@@ -30,10 +30,28 @@ std::vector<std::string> directories(const RunOptions& options)
     return all;
 }
 
+/// What an integrator that chooses its own steps has no use for
+void refuse_for_adaptive(const RunOptions& options)
+{
+    for (const std::string& name : options.integrators) {
+        if (!lie::scheme(name).adaptive) continue;
+        const auto refuse = [&](const std::string& why) { throw UsageError("run: " + name + " " + why); };
+        if (options.step)
+            refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
+        if (options.resume || options.checkpoint > 0)
+            refuse(
+                "remembers past steps outside the state; --checkpoint and --resume are for fixed-step "
+                "schemes");
+        if (options.every && *options.every == 0)
+            refuse("chooses its own steps; --every must be positive, got 0");
+    }
+}
+
 }  // namespace
 
 int run_model(const RunOptions& options)
 {
+    refuse_for_adaptive(options);
     const std::vector<std::string> directory = directories(options);
     const Interrupt interrupt;
     int code = exit_code::done;

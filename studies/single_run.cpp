@@ -21,10 +21,15 @@ namespace {
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-lie::Grid grid_of(const RunOptions& options, double end)
+constexpr double usual_step = 1e-3;  // [s]
+
+/// Of a scheme that chooses its own steps the nodes are the rows.
+lie::Grid grid_of(const RunOptions& options, double end, bool adaptive)
 {
+    const double every = options.every.value_or(end / 1000);
     try {
-        return lie::Grid::over(end, options.step, options.every.value_or(end / 1000));
+        if (adaptive) return lie::Grid::over(end, every > 0 ? every : usual_step);
+        return lie::Grid::over(end, options.step.value_or(usual_step), every);
     } catch (const lie::InvalidInput& error) {
         throw UsageError(error.what());
     }
@@ -63,12 +68,12 @@ void SingleRun::read()
     description = named_model(options.model, options.set);
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(description.end);
-    grid = grid_of(options, result.end);
+    grid = grid_of(options, result.end, scheme.adaptive);
     const double reached = static_cast<double>(grid.steps) * grid.h,
                  between = static_cast<double>(grid.every) * grid.h;
     if (reached > result.end * (1 + 1e-9))
-        warn(fmt::format("the end {} s is no multiple of the step: the run ends at {:.12g} s", result.end,
-                         reached));
+        warn(fmt::format("the end {} s is no multiple of {}: the run ends at {:.12g} s", result.end,
+                         scheme.adaptive ? "--every" : "the step", reached));
     if (options.every && *options.every > 0 && between > *options.every * (1 + 1e-9))
         warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.every,
                          between));
@@ -84,6 +89,10 @@ void SingleRun::read()
     result.step = grid.h;
     result.every = static_cast<double>(grid.every) * grid.h;
     result.tolerance = options.settings.tolerance;
+    if (scheme.adaptive) {
+        result.rtol = options.settings.rtol;
+        result.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
+    }
     result.bodies = description.model->bodies();
     result.constraints = description.model->constraints();
     result.warnings = description.warnings;
@@ -166,9 +175,11 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         if (march.number() == grid.steps) return march.finish(observers);
         result.status = "interrupted";
         result.exit_code = exit_code::signal + Interrupt::caught();
-        save_checkpoint(march, recorder);
+        if (!scheme.adaptive) save_checkpoint(march, recorder);
         if (!options.quiet)
-            message("hilda: interrupted; --resume goes on from the checkpoint in " + directory + '\n');
+            message(scheme.adaptive
+                        ? "hilda: interrupted\n"
+                        : "hilda: interrupted; --resume goes on from the checkpoint in " + directory + '\n');
     } catch (const lie::NumericalFailure& failure) {
         count(march, recorder);
         line.clear();
@@ -209,7 +220,7 @@ void SingleRun::finish()
 {
     result.files.emplace_back("summary.json");
     if (result.status == "ok") remove_checkpoints(directory);
-    if (result.status == "interrupted") result.files.emplace_back("checkpoint");
+    if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
     write_file(path("summary.json"), as_text(summary(result)));
 }

@@ -39,11 +39,12 @@ nlohmann::ordered_json summary(const Result& r)
                     {"initial_projected", r.start.projected},
                     {"set", r.set},
                     {"warnings", r.warnings}};
-    out["integrator"] = {{"name", r.integrator},
-                         {"step", r.step},
-                         {"end", r.end},
-                         {"every", r.every},
-                         {"tolerance", r.tolerance}};
+    out["integrator"] = {{"name", r.integrator}};
+    if (r.rtol > 0)
+        out["integrator"].update({{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"every", r.every}});
+    else
+        out["integrator"].update(
+            {{"step", r.step}, {"end", r.end}, {"every", r.every}, {"tolerance", r.tolerance}});
     out["counters"] = {{"steps", r.statistics.steps},
                        {"newton_iterations", r.statistics.iterations},
                        {"factorizations", r.statistics.factorizations},
@@ -75,7 +76,10 @@ void print(const Result& r, std::ostream& out)
          fmt::format("{}: {}, {}, {}", r.model, r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
                      count(r.start.rows, "constraint row"),
                      fmt::format("{} of freedom", count(r.start.degrees_of_freedom, "degree"))));
-    line("integrator", fmt::format("{}, step {} s, end {:g} s", r.integrator, step_text(r.step), r.end));
+    const std::string grain = r.rtol > 0
+                                  ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
+                                  : fmt::format("step {} s", step_text(r.step));
+    line("integrator", fmt::format("{}, {}, end {:g} s", r.integrator, grain, r.end));
     if (r.status != "ok") line("status", fmt::format("{} at t = {:g} s", r.status, r.t));
     line("steps", fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps,
                               per_step(r.statistics), count(r.statistics.factorizations, "factorization"),

@@ -20,7 +20,9 @@ struct Result {
 
     std::string model, integrator;
     double step = 0, end = 0, every = 0, tolerance = 0;  ///< every: between rows as they lie on the grid
-    double t = 0;                                        ///< reached [s]
+    double rtol = 0,
+           atol = 0;  ///< of a scheme that chooses its own steps: it has no step, and a row is a node
+    double t = 0;     ///< reached [s]
 
     int bodies = 0, constraints = 0;
     dae::StartReport start;

@@ -4,7 +4,7 @@
 
     compare.py DIR      reads DIR/study.csv and DIR/compare.csv, writes DIR/compare.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, numbers, plt, read, save, style
+from drawing import Line2D, directory, distinct, grid, legend, numbers, plt, read, save, style, width
 
 PANELS = [("diff_r", "$r$ [m]"), ("diff_A", "$A$"), ("diff_v", "$\\dot r$ [m/s]"),
           ("diff_omega", "$\\bar\\omega$ [rad/s]")]
@@ -20,7 +20,8 @@ def main():
     watched = figure.add_subplot(layout[0, :])
     watched.plot(t, numbers(rows, "reference.watched"), color="0.75", lw=5, zorder=1)
     for scheme in schemes:
-        watched.plot(t, numbers(rows, scheme + ".watched"), color=style(scheme, schemes)[0], lw=1.2, zorder=2)
+        watched.plot(t, numbers(rows, scheme + ".watched"), color=style(scheme, schemes)[0],
+                     lw=width(scheme, schemes, 1, 2.5), zorder=2)
     body, component = runs[0]["watched_scalar"].rsplit(".", 1)
     unit = {"r": "m", "v": "m/s", "w": "rad/s"}[component[0]]
     watched.set_ylabel(f"${component[0]}_{component[1]}$ of {body} [{unit}]")

@@ -64,6 +64,13 @@ def numbers(rows, column):
     return [number(row[column]) for row in rows]
 
 
+def width(scheme, schemes, thinnest=1.0, thickest=3.2):
+    """Line widths: the first scheme the thickest, so that it shows below those that lie on it"""
+    if len(schemes) < 2:
+        return thinnest
+    return thickest - (thickest - thinnest) * schemes.index(scheme) / (len(schemes) - 1)
+
+
 def grid(axes):
     axes.grid(True, which="major", color="0.92")
     axes.set_axisbelow(True)
@@ -73,8 +80,8 @@ def legend(figure, schemes, markers=True, more=(), columns=8):
     """One legend below the whole figure"""
     handles = [Line2D([], [], color=style(s, schemes)[0], marker=style(s, schemes)[1] if markers else None, label=s)
                for s in schemes] + list(more)
-    columns = min(len(handles), columns)
     lines = -(-len(handles) // columns)
+    columns = -(-len(handles) // lines)
     figure.legend(handles=handles, loc="lower center", ncol=columns, frameon=False, fontsize=9)
     return 0.26 * lines / figure.get_figheight() + 0.01
 

@@ -4,7 +4,7 @@
 
     energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where, width
 
 DASHES = ["-", "--", ":", "-."]
 
@@ -18,7 +18,7 @@ def draw(folder, problem, rows, runs):
             mine = where(rows, integrator=scheme, h=h)
             t, drift = numbers(mine, "t"), numbers(mine, "drift")
             dash = DASHES[steps.index(h) % len(DASHES)]
-            plain.plot(t, drift, dash, color=colour, lw=1.4)
+            plain.plot(t, drift, dash, color=colour, lw=width(scheme, schemes))
             log.plot(t[1:], [max(abs(d), 1e-16) for d in drift[1:]], dash, color=colour, lw=1)
     log.set_yscale("log")
     for axes, label in ((plain, "$E - E_0$ [J]"), (log, "$|E - E_0|$ [J]")):

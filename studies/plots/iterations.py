@@ -5,7 +5,7 @@
 
     iterations.py DIR       reads DIR/study.csv and DIR/iterations.csv, writes DIR/iterations-PROBLEM.png
 """
-from drawing import directory, distinct, grid, legend, numbers, plt, read, save, style, where
+from drawing import directory, distinct, grid, legend, numbers, plt, read, save, style, where, width
 
 MOST_STEPS = 3  # panels over time
 
@@ -22,9 +22,9 @@ def draw(folder, problem, runs, bins):
                       ms=6)
         for axes, h in zip(over_time, steps):
             part = where(bins, integrator=scheme, h=h)
-            axes.plot(numbers(part, "t"), numbers(part, "mean"), color=colour, lw=1)
+            axes.plot(numbers(part, "t"), numbers(part, "mean"), color=colour, lw=width(scheme, schemes))
     mean.set_xlabel("step $h$ [s]")
-    mean.set_ylabel("Newton iterations of a step, mean over the run")
+    mean.set_ylabel("iterations of a step, mean over the run")
     mean.set_ylim(bottom=0)
     grid(mean)
     for axes, h in zip(over_time, steps):

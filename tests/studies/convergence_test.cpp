@@ -26,6 +26,11 @@ json hilda(const std::string& arguments)
     return json::parse(text);
 }
 
+// Every scheme is held to its order in the tests of lie. Here it is the study that is tested, on those that the
+// prototypes have.
+const std::string three = " --integrator rA-full-1,rA-half-1,rA-half-2",
+                  five = three + ",rA-half-1-kick,rA-half-2-bdf2";
+
 /// The series of one scheme, by name
 std::map<std::string, json> by_scheme(const json& study)
 {
@@ -48,30 +53,35 @@ double at(const json& series, double h, const char* key)
 TEST_CASE("the double pendulum shows the prototype's errors, orders and iterations", "[studies][convergence]")
 {
 #ifdef NDEBUG
-    const json study = hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3,4e-4,1e-4");
+    const json study =
+        hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3,4e-4,1e-4" + five);
 #else
-    const json study = hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3");
+    const json study = hilda("study convergence --problem double_pendulum --steps 1e-2,1e-3" + five);
 #endif
     const auto series = by_scheme(study);
     struct Expected {
         const char* scheme;
-        double h, r, Q, iterations;  // Q 0: not known
+        double h, r, Q, iterations;  // 0: not known
     };
     const Expected all[] = {
-        {"rA-full-1", 1e-2, 7.31e-1, 0, 6.21},       {"rA-full-1", 1e-3, 1.00e-1, 0, 3.27},
-        {"rA-full-1", 1e-4, 1.04e-2, 0, 2.00},       {"rA-half-1", 1e-2, 3.56e-2, 2.47e-2, 5.28},
-        {"rA-half-1", 1e-3, 3.51e-3, 2.39e-3, 2.98}, {"rA-half-1", 1e-4, 3.50e-4, 2.38e-4, 2.00},
-        {"rA-half-2", 1e-2, 5.32e-3, 3.73e-3, 5.29}, {"rA-half-2", 1e-3, 7.28e-5, 4.46e-5, 2.98},
-        {"rA-half-2", 1e-4, 7.51e-7, 0, 2.00},
+        {"rA-full-1", 1e-2, 7.31e-1, 0, 6.21},         {"rA-full-1", 1e-3, 1.00e-1, 0, 3.27},
+        {"rA-full-1", 1e-4, 1.04e-2, 0, 2.00},         {"rA-half-1", 1e-2, 3.56e-2, 2.47e-2, 5.28},
+        {"rA-half-1", 1e-3, 3.51e-3, 2.39e-3, 2.98},   {"rA-half-1", 1e-4, 3.50e-4, 2.38e-4, 2.00},
+        {"rA-half-2", 1e-2, 5.32e-3, 3.73e-3, 5.29},   {"rA-half-2", 1e-3, 7.28e-5, 4.46e-5, 2.98},
+        {"rA-half-2", 1e-4, 7.51e-7, 0, 2.00},         {"rA-half-1-kick", 1e-2, 1.78e-3, 1.14e-3, 0},
+        {"rA-half-1-kick", 1e-3, 1.78e-5, 1.14e-5, 0}, {"rA-half-1-kick", 1e-4, 1.77e-7, 0, 0},
     };
     for (const Expected& e : all) {
 #ifndef NDEBUG
         if (e.h < 1e-3) continue;
 #endif
         INFO(e.scheme << " at h = " << e.h);
-        CHECK(at(series.at(e.scheme), e.h, "r") == Approx(e.r).epsilon(0.02));
+        // the prototype left out the last instant of the kicked scheme
+        const double close = e.iterations > 0 ? 0.02 : 0.07;
+        CHECK(at(series.at(e.scheme), e.h, "r") == Approx(e.r).epsilon(close));
         if (e.Q > 0) CHECK(at(series.at(e.scheme), e.h, "Q") == Approx(e.Q).epsilon(0.02));
-        CHECK(at(series.at(e.scheme), e.h, "iterations_per_step") == Approx(e.iterations).epsilon(0.05));
+        if (e.iterations > 0)
+            CHECK(at(series.at(e.scheme), e.h, "iterations_per_step") == Approx(e.iterations).epsilon(0.05));
     }
 #ifdef NDEBUG
     for (const auto& [name, one] : series) {
@@ -89,7 +99,7 @@ TEST_CASE("driven mechanisms show the order in their velocities, and that lambda
           "[studies][convergence]")
 {
     const json study =
-        hilda("study convergence --problem slider_crank,four_link --steps 1e-3,8e-4,4e-4,2e-4,1e-4");
+        hilda("study convergence --problem slider_crank,four_link --steps 1e-3,8e-4,4e-4,2e-4,1e-4" + three);
     for (const json& one : study["series"]) {
         INFO(one["integrator"] << " on " << one["problem"]);
         const double declared = one["declared_order"];
@@ -102,15 +112,16 @@ TEST_CASE("driven mechanisms show the order in their velocities, and that lambda
         {"slider_crank", {{"rA-full-1", 1.92}, {"rA-half-1", 1.92}, {"rA-half-2", 1.95}}},
         {"four_link", {{"rA-full-1", 2.00}, {"rA-half-1", 2.00}, {"rA-half-2", 2.00}}}};
     for (const json& one : study["series"])
-        CHECK(at(one, 1e-4, "iterations_per_step") ==
-              Approx(iterations.at(one["problem"]).at(one["integrator"])).epsilon(0.05));
+        if (iterations.at(one["problem"]).contains(one["integrator"]))
+            CHECK(at(one, 1e-4, "iterations_per_step") ==
+                  Approx(iterations.at(one["problem"]).at(one["integrator"])).epsilon(0.05));
 }
 
 TEST_CASE("moving and spatial starts show the declared order, and rA-half-2 order 1 in lambda",
           "[studies][convergence]")
 {
-    const json study =
-        hilda("study convergence --problem double_pendulum_moving,n_pendulum_2_spin --steps 4e-4,2e-4,1e-4");
+    const json study = hilda(
+        "study convergence --problem double_pendulum_moving,n_pendulum_2_spin --steps 4e-4,2e-4,1e-4" + five);
     for (const json& one : study["series"])
         for (const char* quantity : {"r", "A", "v", "omega"}) {
             // of the finest pair: rA-full-1 is off by 24 % at 1e-3 s on the spinning bars, too far for a fit

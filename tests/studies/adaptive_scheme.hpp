@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A scheme that chooses its own steps, not in the list of schemes.
+
+#pragma once
+
+#include "lie/integrator.hpp"
+
+namespace hilda::tests {
+
+/// Steps of rA-half-2, the smaller the smaller rtol is
+class InnerSteps final : public lie::Integrator {
+public:
+    InnerSteps(const lie::System& model, const lie::Settings& settings)
+        : inner(lie::scheme("rA-half-2").make(model, settings)), most(std::sqrt(settings.rtol))
+    {}
+
+    int step(lie::State& x, double h) override
+    {
+        const long steps = std::max(1L, std::lround(std::ceil(h / most)));
+        int iterations = 0;
+        for (long k = 0; k < steps; ++k) iterations += inner->step(x, h / static_cast<double>(steps));
+        return iterations;
+    }
+    bool lags() const override { return inner->lags(); }
+    void complete(lie::State& node, const lie::State& after) const override { inner->complete(node, after); }
+    const lie::System& system() const override { return inner->system(); }
+    lie::Statistics statistics() const override { return inner->statistics(); }
+
+private:
+    std::unique_ptr<lie::Integrator> inner;
+    const double most;  ///< [s]
+};
+
+inline const lie::Scheme inner_steps = {
+    .name = "inner-steps",
+    .order = 2,
+    .order_lambda = 2,
+    .formulation = "rA",
+    .unknowns = "",
+    .source = "",
+    .adaptive = true,
+    .make = [](const lie::System& s, const lie::Settings& settings) -> std::unique_ptr<lie::Integrator> {
+        return std::make_unique<InnerSteps>(s, settings);
+    }};
+
+/// Schemes of the list that choose their own steps
+inline std::vector<std::string> adaptive_schemes()
+{
+    std::vector<std::string> names;
+    for (const lie::Scheme& s : lie::schemes())
+        if (s.adaptive) names.push_back(s.name);
+    return names;
+}
+
+}  // namespace hilda::tests

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Reads the tables that studies write.
+
+#pragma once
+
+#include "tests/studies/program.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace hilda::tests {
+
+/// A row, by column; all names of columns are there.
+using CsvRow = std::map<std::string, std::string>;
+
+inline std::vector<std::string> fields(const std::string& line)
+{
+    std::vector<std::string> out(1);
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"')
+            quoted = !quoted;
+        else if (c == ',' && !quoted)
+            out.emplace_back();
+        else
+            out.back() += c;
+    }
+    return out;
+}
+
+/// A table, no field of which has quotes or line breaks inside; one that is not there has no rows.
+inline std::vector<CsvRow> csv(const fs::path& file)
+{
+    std::istringstream in(read(file));
+    std::string line;
+    std::getline(in, line);
+    const std::vector<std::string> names = fields(line);
+    std::vector<CsvRow> rows;
+    while (std::getline(in, line)) {
+        const std::vector<std::string> values = fields(line);
+        if (values.size() != names.size())
+            throw std::runtime_error("a row has another number of fields: " + line);
+        rows.emplace_back();
+        for (size_t k = 0; k < names.size(); ++k) rows.back()[names[k]] = values[k];
+    }
+    return rows;
+}
+
+/// NaN for an empty field; throws where there is no such column.
+inline double number(const CsvRow& row, const std::string& column)
+{
+    const std::string& text = row.at(column);
+    return text.empty() ? std::nan("") : std::stod(text);
+}
+
+}  // namespace hilda::tests

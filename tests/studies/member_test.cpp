@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Runs that fail, and options that a study does not take
+#include "lie/integrator.hpp"
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+// A step of 0.25 s is too long for the Newton iteration of rA-full-1, and for no other here.
+const std::vector<std::string> mixed = {"--problem",    "double_pendulum",     "--steps", "0.25,5e-3",
+                                        "--integrator", "rA-full-1,rA-half-1", "--end",   "0.5",
+                                        "--no-plot"};
+const std::vector<std::string> hopeless = {
+    "--problem", "double_pendulum", "--steps", "1e-2",     "--integrator", "rA-half-1,rA-full-1", "--end",
+    "0.5",       "--tolerance",     "1e-25",   "--no-plot"};
+
+Ended study(const Scratch& in, const std::string& kind, std::vector<std::string> arguments,
+            const std::vector<std::string>& more = {})
+{
+    arguments.insert(arguments.begin(), {"study", kind});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return call(in, arguments);
+}
+
+}  // namespace
+
+TEST_CASE("a member that fails keeps its row and the others go on", "[studies][member]")
+{
+    const std::string kind = GENERATE("energy", "iterations", "timing");
+    const Scratch in;
+    const Ended ended = study(in, kind, mixed);
+    CAPTURE(kind, ended.out, ended.err);
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("newton_diverged") && Contains("\nfailed:\n"));
+    const auto rows = csv(in / "out" / kind / "study.csv");
+    CHECK(rows.size() == 4);
+    for (const CsvRow& row : rows) {
+        CAPTURE(row.at("integrator"));
+        const bool fails = row.at("h") == "0.25" && row.at("integrator") == "rA-full-1";
+        CHECK(row.at("status") == (fails ? "newton_diverged" : "ok"));
+    }
+}
+
+TEST_CASE("a study fails with 4 only when all of its members fail", "[studies][member]")
+{
+    const std::string kind =
+        GENERATE("convergence", "compare", "energy", "iterations", "timing", "work-precision");
+    const Scratch in;
+    const Ended ended = study(in, kind, hopeless);
+    CAPTURE(kind, ended.err);
+    CHECK(ended.code == 4);
+    CHECK_THAT(ended.err, StartsWith("hilda: error[newton_diverged]: study " + kind + ": all 2 runs failed"));
+    const auto rows = csv(in / "out" / kind / "study.csv");
+    CHECK(rows.size() == 2);
+    for (const CsvRow& row : rows) CHECK(row.at("status") == "newton_diverged");
+}
+
+TEST_CASE("convergence and work-precision keep the rows of members that fail", "[studies][member]")
+{
+    const std::string kind = GENERATE("convergence", "work-precision");
+    const Scratch in;
+    std::vector<std::string> arguments = {"--problem",    "double_pendulum", "--steps",  "0.1,2e-2",
+                                          "--integrator", "rA-full-1",       "--no-plot"};
+    if (kind == "work-precision") arguments.insert(arguments.end(), {"--repeats", "1"});
+    const Ended ended = study(in, kind, arguments);
+    CAPTURE(kind, ended.out, ended.err);
+    CHECK(ended.code == 0);
+    const auto rows = csv(in / "out" / kind / "study.csv");
+    REQUIRE(rows.size() == 2);
+    CHECK(rows[0].at("status") == "newton_diverged");
+    CHECK(std::isnan(number(rows[0], "r")));
+    CHECK(rows[1].at("status") == "ok");
+    CHECK(number(rows[1], "r") > 0);
+}
+
+TEST_CASE("an option that a study would not look at is refused", "[studies][member]")
+{
+    const Scratch in;
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(says));
+        CHECK(ended.err.find('\n') == ended.err.size() - 1);
+    };
+    refused({"study", "energy", "--bars", "4"}, "study energy: --bars is for scaling");
+    refused({"study", "energy", "--rtols", "1e-4"}, "--rtols is for work-precision");
+    refused({"study", "convergence", "--repeats", "3"}, "--repeats is for scaling, timing, work-precision");
+    refused({"study", "timing", "--reference", "rA-half-2"}, "--reference is for compare, convergence");
+    refused({"study", "timings"}, "unknown study 'timings'; did you mean 'timing'?");
+    refused({"study", "scaling", "--bars", "4,0"},
+            "--bars: N must be a whole number from 1 to 100000, got '0'");
+    refused({"study", "scaling", "--bars", "-1"}, "--bars");
+    refused({"study", "scaling", "--bars", "2.5"}, "got '2.5'");
+    refused({"study", "scaling", "--bars", "100001"}, "got '100001'");
+    refused({"study", "scaling", "--bars", "2,2"}, "each N once");
+    refused({"study", "scaling", "--problem", "four_link"}, "N-bar pendulum");
+    refused({"study", "scaling", "--seed", "-1"}, "--seed: must be a whole number");
+    refused({"study", "timing", "--repeats", "0"}, "--repeats: must be a whole number, at least 1");
+    refused({"study", "work-precision", "--rtols", "1e-4,0"}, "--rtols: must be a number from 1e-14");
+    refused({"study", "work-precision", "--rtols", "9e-15"}, "got '9e-15'");
+    refused({"study", "work-precision", "--rtols", "1e-4,1e-4"}, "each tolerance once");
+    refused({"study", "work-precision", "--integrator", "rA-half-3"},
+            "unknown integrator 'rA-half-3'; did you mean");
+    refused({"study", "energy", "--steps", "7e-3"},
+            "must divide the end of double_pendulum, 30 s, got 0.007");
+    CHECK_FALSE(fs::exists(in / "out/scaling"));
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What judges, and what it may judge
+#include "studies/exit_codes.hpp"
+#include "studies/judged_run.hpp"
+#include "studies/truth.hpp"
+#include "tests/studies/adaptive_scheme.hpp"
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+Ended study(const Scratch& in, const std::vector<std::string>& more)
+{
+    std::vector<std::string> arguments = {"study",   "convergence", "--problem",    "double_pendulum",
+                                          "--end",   "0.3",         "--integrator", "rA-half-1",
+                                          "--steps", "1e-2,5e-3",   "--no-plot"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return call(in, arguments);
+}
+
+}  // namespace
+
+TEST_CASE("a fine run of another integrator judges like the truth", "[studies][reference]")
+{
+    const Scratch in;
+    REQUIRE(study(in, {"--quiet", "--output", "truth"}).code == 0);
+    const Ended ended = study(in, {"--reference", "rA-half-2", "--reference-step", "1e-4", "--output", "a"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("truth: rA-half-2 at h = 0.0001 s"));
+    REQUIRE(study(in, {"--reference", "rA-half-2", "--quiet", "--output", "b"}).code == 0);
+    const auto truth = csv(in / "truth/study.csv"), fine = csv(in / "a/study.csv"),
+               usual = csv(in / "b/study.csv");
+    REQUIRE(truth.size() == 2);
+    for (size_t k = 0; k < 2; ++k)
+        for (const char* norm : {"r", "A", "Q"}) {
+            CAPTURE(k, norm);
+            CHECK(number(fine[k], norm) == Approx(number(truth[k], norm)).epsilon(0.01));
+            CHECK(number(usual[k], norm) == Approx(number(truth[k], norm)).epsilon(0.05));
+        }
+}
+
+TEST_CASE("a reference that is coarser than what it judges is refused unless it is forced",
+          "[studies][reference]")
+{
+    const Scratch in;
+    for (const char* step : {"5e-3", "1e-2"}) {
+        const Ended refused = study(in, {"--reference", "rA-half-2", "--reference-step", step});
+        CAPTURE(refused.err);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err,
+                   StartsWith("hilda: error: study convergence: the reference rA-half-2 at h = ") &&
+                       Contains("coarser") && Contains("5e-3"));
+        CHECK(refused.err.find('\n') == refused.err.size() - 1);
+        CHECK_FALSE(fs::exists(in / "out/convergence"));
+    }
+    const Ended forced =
+        study(in, {"--reference", "rA-half-2", "--reference-step", "1e-3", "--steps", "1e-3", "--force"});
+    CHECK(forced.code != 0);  // --steps is given twice
+    CHECK(call(in, {"study", "compare", "--end", "0.1", "--steps", "1e-3", "--integrator", "rA-half-1",
+                    "--reference", "rA-half-2", "--reference-step", "1e-3", "--no-plot", "--quiet"})
+              .code == 2);
+    CHECK(
+        call(in, {"study", "compare", "--end", "0.1", "--steps", "1e-3", "--integrator", "rA-half-1",
+                  "--reference", "rA-half-2", "--reference-step", "1e-3", "--no-plot", "--quiet", "--force"})
+            .code == 0);
+}
+
+TEST_CASE("what is wrong about a reference is said in one line", "[studies][reference]")
+{
+    const Scratch in;
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
+        const Ended ended = study(in, more);
+        CAPTURE(more, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(says));
+        CHECK(ended.err.find('\n') == ended.err.size() - 1);
+    };
+    refused({"--reference", "rA-half2"},
+            "--reference: unknown integrator 'rA-half2'; did you mean 'rA-half-2'?");
+    refused({"--reference", "rA-half-1,rA-half-2"}, "must be one integrator");
+    refused({"--reference-step", "1e-4"}, "--reference NAME");
+    refused({"--reference", "rA-half-2", "--reference-step", "0"}, "--reference-step: must be a positive");
+    refused({"--reference", "rA-half-2", "--reference-step", "3e-4"}, "must divide");
+    refused({"--reference", "rA-half-2", "--reference-rtol", "1e-12"}, "has a fixed step");
+    refused({"--reference", "rA-half-2", "--reference-rtol", "1e-15"}, "--reference-rtol");
+    for (const std::string& name : adaptive_schemes())
+        refused({"--reference", name, "--reference-step", "1e-4"}, "chooses its own steps");
+}
+
+TEST_CASE("schemes that choose their own steps judge and are judged by their tolerance",
+          "[studies][reference]")
+{
+    studies::StudyOptions options;
+    options.quiet = true;
+    options.end = 0.3;
+    options.jobs = 1;
+    std::vector<studies::Case> all = studies::cases("test", options, {"double_pendulum"});
+    studies::Reference("test", options, {}).judge(all);
+
+    studies::JudgedRun coarse, fine;
+    for (studies::JudgedRun* run : {&coarse, &fine}) {
+        run->c = &all.front(), run->scheme = &inner_steps;
+        run->h = all.front().instants.dt * all.front().instants.stride;
+    }
+    coarse.rtol = 1e-4, fine.rtol = 1e-6;
+    judge(coarse, options.settings);
+    judge(fine, options.settings);
+    CHECK(coarse.status == "ok");
+    CHECK(coarse.errors.instants == 30);
+    CHECK(fine.statistics.steps > 5 * coarse.statistics.steps);
+    CHECK(fine.errors.value[studies::norm::r] < 0.05 * coarse.errors.value[studies::norm::r]);
+    CHECK(fine.name() == "inner-steps on double_pendulum at rtol = 1e-6");
+
+    for (const std::string& name : adaptive_schemes()) {
+        options.reference = name;
+        CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 1e-11}));
+        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 9e-12}),
+                        studies::UsageError);
+        options.reference_rtol = 1e-8;
+        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_rtol = 5e-8}), studies::UsageError);
+        CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4}));
+        options.reference_rtol.reset();
+    }
+}
+
+TEST_CASE("adaptive schemes judge on the command line and have no place in studies of steps",
+          "[studies][reference]")
+{
+    const Scratch in;
+    for (const std::string& name : adaptive_schemes()) {
+        CAPTURE(name);
+        const Ended judged = study(in, {"--reference", name, "--output", "a-" + name});
+        CAPTURE(judged.err);
+        CHECK(judged.code == 0);
+        CHECK_THAT(judged.out, Contains("truth: " + name + " at rtol 1e-12"));
+        for (const char* kind : {"convergence", "energy", "iterations", "timing", "scaling"}) {
+            const Ended refused = call(in, {"study", kind, "--integrator", name});
+            CHECK(refused.code == 2);
+            CHECK_THAT(refused.err, Contains("work-precision"));
+        }
+    }
+}

@@ -118,12 +118,14 @@ void print(const std::vector<Run>& runs, const StudyOptions& options, std::ostre
                  {"max", "{:.2f}"},
                  {"us/step/N", "{:.3f}"},
                  {"iter", "{:.2f}"},
+                 {"tolerance", "{:.1e}"},
                  {"over " + compared_with, "{:.3f}"},
                  {"status"}});
     for (const Run& run : runs)
         table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
                    run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
-                   run.statistics.iterations_per_step(), run.ratio, run.status});
+                   run.statistics.iterations_per_step(), tolerance_for(run.N, options.settings.tolerance),
+                   run.ratio, run.status});
     const Run& first = runs.front();
     out << fmt::format("\nN-bar pendulum, h = {:g} s, over {:g} s, seed {}: thread CPU time of a step\n",
                        first.h, first.c->end, options.seed);

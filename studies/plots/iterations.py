@@ -28,8 +28,8 @@ def draw(folder, problem, runs, bins):
     mean.set_ylim(bottom=0)
     grid(mean)
     for axes, h in zip(over_time, steps):
-        width = len(distinct(where(bins, h=h), "t"))
-        axes.set_title(f"h = {float(h):g} s, means over {width} stretches", fontsize=9)
+        stretches = len(distinct(where(bins, h=h), "t"))
+        axes.set_title(f"h = {float(h):g} s, means over {stretches} stretches", fontsize=9)
         axes.set_xlabel("$t$ [s]")
         axes.set_ylim(bottom=0)
         grid(axes)

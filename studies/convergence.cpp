@@ -9,6 +9,7 @@
 #include "studies/convergence.hpp"
 
 #include "studies/chosen.hpp"
+#include "studies/diagnosis.hpp"
 #include "studies/judged_run.hpp"
 #include "studies/pool.hpp"
 #include "studies/study_output.hpp"
@@ -27,11 +28,10 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "convergence";
-constexpr double rounding = 1e-12;  // of the size of a quantity: errors below are rounding
+constexpr double rounding = 1e-11;  // of the size of a quantity: what a truth computed to 1e-13 is good for
 constexpr double floor_change =
     0.05;  // an error that changes by more with a tighter tolerance is at its floor
-constexpr double asymptotic_step =
-    1e-3;  // a line is fitted through steps up to this where there are three of them [s]
+constexpr double asymptotic_step = 1e-3;  // a line is fitted through steps up to this [s]
 
 struct Run : JudgedRun {
     std::array<bool, norm::count> at_floor{};
@@ -57,16 +57,21 @@ void compute(Run& run, const StudyOptions& options)
 /// The rows of one scheme on one problem, from the largest step down
 using Series = std::vector<const Run*>;
 
+/// Slope through the clean rows with steps up to asymptotic_step; where there are fewer than three of these, as of a
+/// scheme of high order, which is at rounding there, through the three smallest.
 double fit(const Series& series, int n)
 {
-    std::vector<double> h, e, h_small, e_small;
+    std::vector<double> h, e;
+    size_t asymptotic = 0;
     for (const Run* run : series) {
         if (run->failed() || run->at_floor[n]) continue;
         h.push_back(run->h), e.push_back(run->errors.value[n]);
-        if (run->h <= asymptotic_step * (1 + 1e-9))
-            h_small.push_back(run->h), e_small.push_back(run->errors.value[n]);
+        asymptotic += run->h <= asymptotic_step * (1 + 1e-9);
     }
-    return h_small.size() >= 3 ? fitted_order(h_small, e_small) : fitted_order(h, e);
+    const size_t left_out = h.size() - std::min(h.size(), std::max<size_t>(3, asymptotic));
+    h.erase(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(left_out));
+    e.erase(e.begin(), e.begin() + static_cast<std::ptrdiff_t>(left_out));
+    return fitted_order(h, e);
 }
 
 void print(const Series& series, std::ostream& out)
@@ -103,6 +108,35 @@ void print(const Series& series, std::ostream& out)
     }
     fits.resize(columns.size(), std::string());
     table.add(fits);
+    table.print(out);
+}
+
+/// Fitted orders of all schemes on one problem, side by side
+void print_fits(const std::vector<Series>& all, const Case& c, std::ostream& out)
+{
+    Table table({{c.problem.name},
+                 {"declared"},
+                 {"r", "{:.2f}"},
+                 {"A", "{:.2f}"},
+                 {"v", "{:.2f}"},
+                 {"omega", "{:.2f}"},
+                 {"Q", "{:.2f}"},
+                 {"r [m] at " + step_text(all.front().back()->h) + " s"},
+                 {"status"}});
+    for (const Series& series : all) {
+        const Run& first = *series.front();
+        if (first.c != &c) continue;
+        std::vector<Table::Cell> row = {
+            first.scheme->name, fmt::format("{}, {}", first.scheme->order, first.scheme->order_lambda)};
+        for (int n = norm::r; n <= norm::Q; ++n) row.emplace_back(fit(series, n));
+        row.emplace_back(series.back()->errors.value[norm::r]);
+        const auto failed =
+            std::find_if(series.begin(), series.end(), [](const Run* r) { return r->failed(); });
+        row.emplace_back(failed == series.end() ? "ok"
+                                                : (*failed)->status + " at " + step_text((*failed)->h));
+        table.add(row);
+    }
+    out << '\n';
     table.print(out);
 }
 
@@ -237,7 +271,8 @@ int convergence(const StudyOptions& options)
     for (const Series& series : all) print(series, output.text);
     output.text
         << "\n* at rounding, or at the floor that the Newton tolerance sets: not in the fit, which takes "
-           "steps up to 1e-3 s\n";
+           "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of lambda\n";
+    for (const Case& c : all_cases) print_fits(all, c, output.text);
     for (const Case& c : all_cases) output.figures.push_back("convergence-" + c.problem.name + ".png");
     std::vector<Measured> came;
     for (const Series& series : all) came.push_back(measured(series));

@@ -26,21 +26,6 @@ const std::string kind = "scaling";
 const std::string compared_with = "rA-full-1";
 constexpr int many = 64;  // bars, from which the exponent is taken: below, what does not grow with N shows
 
-/// Newton's tolerance for N bars. Rounding alone leaves corrections that grow faster than N²: positions are global
-/// and the chain is 2N m long, and a residual of one ulp of it asks for a multiplier that moves many bars. With 1e-10 they
-/// are above the tolerance from N = 256 on, and no iteration ends. From N = 64 on it grows as N².
-double tolerance_for(int N, double tolerance)
-{
-    return tolerance * std::max(1., std::pow(static_cast<double>(N) / many, 2));
-}
-
-lie::Settings settings_for(int N, const StudyOptions& options)
-{
-    lie::Settings settings = options.settings;
-    settings.tolerance = tolerance_for(N, settings.tolerance);
-    return settings;
-}
-
 struct Run : TimedRun {
     int N = 0;
     double start_seconds = 0;     ///< wall time of reading the model and starting it
@@ -82,13 +67,12 @@ Exponent exponent_of(const std::vector<Run>& runs, const lie::Scheme* scheme)
     return exponent(N, seconds);
 }
 
-Table as_table(const std::vector<Run>& runs, const StudyOptions& options)
+Table as_table(const std::vector<Run>& runs)
 {
     Table table({{"problem"},
                  {"bars"},
                  {"integrator"},
                  {"h"},
-                 {"tolerance"},
                  {"steps"},
                  {"iterations_per_step"},
                  {"factorizations"},
@@ -100,12 +84,12 @@ Table as_table(const std::vector<Run>& runs, const StudyOptions& options)
                  {"start_seconds"},
                  {"status"}});
     for (const Run& run : runs)
-        table.add(
-            {run.c->problem.name, static_cast<double>(run.N), run.scheme->name, run.h,
-             tolerance_for(run.N, options.settings.tolerance), static_cast<double>(run.statistics.steps),
-             run.statistics.iterations_per_step(), static_cast<double>(run.statistics.factorizations),
-             static_cast<double>(run.statistics.refactorizations), run.microseconds().median,
-             run.microseconds().least, run.microseconds().most, run.ratio, run.start_seconds, run.status});
+        table.add({run.c->problem.name, static_cast<double>(run.N), run.scheme->name, run.h,
+                   static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
+                   static_cast<double>(run.statistics.factorizations),
+                   static_cast<double>(run.statistics.refactorizations), run.microseconds().median,
+                   run.microseconds().least, run.microseconds().most, run.ratio, run.start_seconds,
+                   run.status});
     return table;
 }
 
@@ -118,14 +102,12 @@ void print(const std::vector<Run>& runs, const StudyOptions& options, std::ostre
                  {"max", "{:.2f}"},
                  {"us/step/N", "{:.3f}"},
                  {"iter", "{:.2f}"},
-                 {"tolerance", "{:.1e}"},
                  {"over " + compared_with, "{:.3f}"},
                  {"status"}});
     for (const Run& run : runs)
         table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
                    run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
-                   run.statistics.iterations_per_step(), tolerance_for(run.N, options.settings.tolerance),
-                   run.ratio, run.status});
+                   run.statistics.iterations_per_step(), run.ratio, run.status});
     const Run& first = runs.front();
     out << fmt::format("\nN-bar pendulum, h = {:g} s, over {:g} s, seed {}: thread CPU time of a step\n",
                        first.h, first.c->end, options.seed);
@@ -188,16 +170,16 @@ int scaling(const StudyOptions& options)
         }
     }
     Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
-        .run([&](long k) { march(runs[k], settings_for(runs[k].N, options)); });
+        .run([&](long k) { march(runs[k], options.settings); });
     std::vector<TimedRun*> timed;
     for (Run& run : runs) timed.push_back(&run);
-    time_in_turn(kind, options, timed, [&](long k) { return settings_for(runs[k].N, options); });
+    time_in_turn(kind, options, timed, [&](long) { return options.settings; });
     for (Run& run : runs)
         for (const Run& full : runs)
             if (full.N == run.N && full.scheme->name == compared_with) run.ratio = studies::ratio(run, full);
 
     StudyOutput output{
-        .kind = kind, .table = as_table(runs, options).csv(), .json = {{"runs", as_json(runs)}}};
+        .kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.figures = {"scaling.png"};
     print(runs, options, output.text);
     print_fits(runs, schemes, output.text);

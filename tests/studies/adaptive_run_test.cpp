@@ -56,7 +56,8 @@ TEST_CASE("an adaptive integrator takes no step and no checkpoint", "[studies][r
         refused({"--checkpoint", "1"}, "remembers past steps");
         refused({"--resume"}, "remembers past steps");
         refused({"--every", "0"}, "chooses its own steps; --every");
-        CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--integrator", name}).code == 0);
+        CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--integrator", name, "--output", name})
+                  .code == 0);
         CHECK_THAT(call(in, {"integrators"}).out, Contains("adaptive"));
     }
 }

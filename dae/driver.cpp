@@ -19,9 +19,15 @@ std::string shortest(double c)
 
 Driver::Driver(double constant) : Driver(shortest(constant)) {}
 
+Driver::Driver(std::string_view text) : expression(std::make_shared<const Expression>(text))
+{
+    constant = expression->is_constant();
+    if (constant) value = expression->value(0);
+}
+
 std::optional<Driver> Driver::complement() const
 {
-    const std::string_view outer = expression.outermost();
+    const std::string_view outer = expression->outermost();
     if (outer != "cos" && outer != "sin") return std::nullopt;
     // Only blanks, '(' and '+' can stand before the outermost function.
     std::string swapped = text();

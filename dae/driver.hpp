@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,15 +18,15 @@ namespace hilda::dae {
 class Driver {
 public:
     Driver(double constant = 0);
-    Driver(std::string_view text) : expression(text) {}
+    Driver(std::string_view text);
 
-    double f(double t) const { return expression.value(t); }
-    double fdot(double t) const { return expression.jet(t).fdot; }
-    double fddot(double t) const { return expression.jet(t).fddot; }
-    Jet jet(double t) const { return expression.jet(t); }
+    double f(double t) const { return constant ? value : expression->value(t); }
+    double fdot(double t) const { return constant ? 0 : expression->jet(t).fdot; }
+    double fddot(double t) const { return constant ? 0 : expression->jet(t).fddot; }
+    Jet jet(double t) const { return expression->jet(t); }
 
-    bool is_constant() const { return expression.is_constant(); }
-    const std::string& text() const { return expression.text(); }
+    bool is_constant() const { return constant; }
+    const std::string& text() const { return expression->text(); }
 
     /// sin(g) for f = cos(g), and cos(g) for f = sin(g), where g is not constant; otherwise nothing.
     ///
@@ -34,7 +35,10 @@ public:
     std::optional<Driver> complement() const;
 
 private:
-    Expression expression;
+    // Most drivers are constant, and are asked for at every iteration: then the expression is not looked at.
+    bool constant;
+    double value = 0;
+    std::shared_ptr<const Expression> expression;
 };
 
 }  // namespace hilda::dae

@@ -139,6 +139,8 @@ public:
     }
 
     Statistics statistics() const override { return statistics_with(K); }
+    const State* pivots() const override { return &K.pivots(); }
+    void choose_pivots(const State& x) override { K.choose_pivots(x); }
 
 protected:
     /// The k-th correction e of z in K z = b, Φ(x(z)) = 0, into e:

@@ -14,6 +14,12 @@ class NodeStep : public SaddleStep {
 public:
     using SaddleStep::SaddleStep;
 
+    void choose_pivots(const State& x) override
+    {
+        K.choose_pivots(x);
+        at = x;
+    }
+
 protected:
     /// K of this state, unless it is the one that K already holds
     void assemble_once(const State& x)

@@ -115,11 +115,22 @@ void Saddle::assemble(const State& x)
     }
     if (!scaled) scale_rows();
     fill();
-    if (!klu.refactor()) {
-        scale_rows();
-        fill();
-        klu.factor("the saddle matrix");
-    }
+    if (!klu.refactor()) factor(x);
+}
+
+void Saddle::choose_pivots(const State& x)
+{
+    system.variation(x, C);
+    by_condensed = false;
+    factor(x);
+}
+
+void Saddle::factor(const State& x)
+{
+    scale_rows();
+    fill();
+    klu.factor("the saddle matrix");
+    pivot_state = x;
 }
 
 void Saddle::solve(Eigen::VectorXd& b)

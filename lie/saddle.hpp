@@ -46,6 +46,11 @@ public:
     /// finite.
     void assemble(const State& x);
 
+    /// The state at which KLU's pivots in use were chosen; without bodies where there are none.
+    const State& pivots() const { return pivot_state; }
+    /// Has KLU choose them at x, as if the old ones had worn out there.
+    void choose_pivots(const State& x);
+
     /// Solves K z = b in place; b has size() numbers. Throws NonFinite when z is not finite.
     void solve(Eigen::VectorXd& b);
     /// Solves K z = (0, g): of b only the constraint part is read.
@@ -74,6 +79,7 @@ private:
     void analyse();
     void scale_rows();
     void fill();
+    void factor(const State& x);
 
     const System& system;
     const Metric metric;
@@ -95,6 +101,7 @@ private:
     std::vector<int> mass_slot;
     Eigen::VectorXd work, residual, right_side;
 
+    State pivot_state;
     bool scaled = false;
 };
 

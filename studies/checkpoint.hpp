@@ -17,7 +17,7 @@ struct Checkpoint {
     lie::State node;       ///< on which the march stands
     long number = 0;       ///< of that node
     int iterations = 0;    ///< of the step that led to it
-    lie::State pivots;     ///< the node at which the saddle matrix got its pivots; no bodies: none so far
+    lie::State pivots;     ///< see PivotNode; no bodies: none so far
     lie::Statistics statistics;
     Invariants invariants;
     StepsCsv::Cost last_step;

@@ -28,7 +28,7 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "convergence";
-constexpr double rounding = 1e-11;  // of the size of a quantity: what a truth computed to 1e-13 is good for
+constexpr double rounding = 2e-12;  // of the size of a quantity: what a truth computed to 1e-13 is good for
 constexpr double floor_change =
     0.05;  // an error that changes by more with a tighter tolerance is at its floor
 constexpr double asymptotic_step = 1e-3;  // a line is fitted through steps up to this [s]

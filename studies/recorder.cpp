@@ -18,16 +18,20 @@ void PivotNode::accepted(const lie::State& x, long, int)
     const long factorizations = integrator.statistics().factorizations;
     if (factorizations == seen) return;
     seen = factorizations;
-    node = x;
+    node = integrator.pivots() != nullptr ? *integrator.pivots() : x;
 }
 
 void PivotNode::restore(const lie::State& from, double h)
 {
     node = from;
     if (node.body.empty()) return;
-    lie::State thrown_away = node;
     try {
-        integrator.step(thrown_away, h);
+        if (integrator.pivots() != nullptr) {
+            integrator.choose_pivots(node);
+        } else {
+            lie::State thrown_away = node;
+            integrator.step(thrown_away, h);
+        }
     } catch (const lie::NumericalFailure&) {
         // the pivots are chosen first, and it is only for them
     }

@@ -13,15 +13,15 @@
 
 namespace hilda::studies {
 
-/// The node at which the integrator last chose pivots. A new integrator that takes a step from there has the
-/// pivots of the old one and gives the same digits from then on: pivots are all that an integrator remembers
-/// outside the state.
+/// Where the integrator last chose pivots: the state, or, of a scheme that does not tell it, the node before the
+/// step in which it did. A new integrator brought there has the pivots of the old one and gives the same digits
+/// from then on: pivots are all that an integrator remembers outside the state.
 class PivotNode final : public lie::Observer {
 public:
     explicit PivotNode(lie::Integrator& integrator) : integrator(integrator) {}
 
     void accepted(const lie::State& x, long n, int iterations) override;
-    /// Brings a new integrator to the pivots that another got at this node.
+    /// Brings a new integrator to the pivots that another got there.
     void restore(const lie::State& from, double h);
 
     lie::State node;

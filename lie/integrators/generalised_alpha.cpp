@@ -22,7 +22,7 @@ namespace {
 class GeneralisedAlpha final : public SaddleStep {
 public:
     GeneralisedAlpha(const System& model, const Settings& settings)
-        : SaddleStep(model, settings), C(model.pattern())
+        : SaddleStep(model, settings), C(model.pattern()), a_n(6 * model.bodies()), a_next(a_n)
     {
         const double rho = settings.rho_infinity;
         if (!(rho >= 0 && rho <= 1)) reject("rA-genalpha", "rho_infinity must be from 0 to 1", rho);
@@ -63,8 +63,6 @@ private:
     /// a_0 = v̇_0 + (α_m - α_f) h v̈_0, with v̈_0 from the accelerations a step ahead
     void start(double h)
     {
-        a_n.resize(6 * model.bodies());
-        a_next.resize(6 * model.bodies());
         State ahead = x_n;
         ahead.t += h;
         for (Motion& body : ahead.body) {

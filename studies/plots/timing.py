@@ -23,9 +23,12 @@ def main():
             ratio.plot(h, numbers(mine, "ratio_to_full"), "-", marker=marker, color=colour, lw=1.2, ms=6)
         time.set_xscale("log")
         time.set_title(problem, fontsize=10)
-        time.set_ylim(bottom=0)
         ratio.axhline(1, color="0.6", lw=1, zorder=0)
-        ratio.set_ylim(bottom=0)
+        for axes in (time, ratio):
+            if len(schemes) > 5:  # from one to ten times the time of the fastest
+                axes.set_yscale("log")
+            else:
+                axes.set_ylim(bottom=0)
         ratio.set_xlabel("step $h$ [s]")
         for axes in (time, ratio):
             grid(axes)

@@ -176,9 +176,9 @@ int work_precision(const StudyOptions& options)
     check_keys(kind, options, std::vector<std::string>{"cpu_seconds_needed"});
     const Schemes schemes = any_schemes(options);
     const std::vector<double> steps = steps_or(options, {1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
-    const std::vector<double> rtols = options.rtols.empty()
-                                          ? std::vector<double>{1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
-                                          : options.rtols;
+    const std::vector<double> rtols =
+        options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
+                              : options.rtols;
     Judged judged;
     for (const lie::Scheme* s : schemes)
         if (s->adaptive)

@@ -178,8 +178,7 @@ int scaling(const StudyOptions& options)
         for (const Run& full : runs)
             if (full.N == run.N && full.scheme->name == compared_with) run.ratio = studies::ratio(run, full);
 
-    StudyOutput output{
-        .kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
+    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.figures = {"scaling.png"};
     print(runs, options, output.text);
     print_fits(runs, schemes, output.text);

@@ -10,7 +10,8 @@ namespace {
 
 class DemoKick final : public Integrator {
 public:
-    DemoKick(const System& model, const Settings&) : model(model), K(model), loads(model.bodies()), a(K.size())
+    DemoKick(const System& model, const Settings&)
+        : model(model), K(model), loads(model.bodies()), a(K.size())
     {}
 
     int step(State& x, double h) override

@@ -89,8 +89,8 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
     return dependent;
 }
 
-/// A row dropped from the equations, in position, velocity and acceleration, each relative to what moves there; all three
-/// vanish when it says nothing new.
+/// A row dropped from the equations, in position, velocity and acceleration, each relative to what moves there;
+/// all three vanish when it says nothing new.
 void check_agreement(const Model& model, const Model::Row& row, const State& x)
 {
     double velocity_scale = 1, acceleration_scale = 1;

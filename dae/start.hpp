@@ -39,8 +39,8 @@ struct StartReport {
 /// off the constraints and for rows that contradict the others in position, velocity or acceleration.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
 
-/// Throws lie::NumericalFailure "constraint_drift" when a row that was dropped as redundant is off by more than 1e-6 m or
-/// rad in x: then it says something that the others do not, and the motion is not that of the model.
+/// Throws lie::NumericalFailure "constraint_drift" when a row that was dropped as redundant is off by more than
+/// 1e-6 m or rad in x: then it says something that the others do not, and the motion is not that of the model.
 void check_dropped_rows(const Model& model, const State& x);
 
 }  // namespace hilda::dae

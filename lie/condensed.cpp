@@ -12,8 +12,8 @@ namespace {
 // A pivot below this part of its diagonal entry has lost eleven digits; KLU, which pivots, does better.
 constexpr double worst_pivot = 1e-11;
 
-// Small products with sizes known to the compiler where they are three, the rows of a ball joint; else as they come.
-// All blocks are stored by columns.
+// Small products with sizes known to the compiler where they are three, the rows of a ball joint; else as they
+// come. All blocks are stored by columns.
 
 /// S (m × n) += A Bᵀ over `inner` columns, A m × inner, B n × inner
 template <int fixed>
@@ -37,8 +37,8 @@ void add_product(double* S, const double* A, const double* B, int m, int n, int 
         add_product<0>(S, A, B, m, n, inner, sign);
 }
 
-/// Cholesky factor in the lower triangle of D, with the reciprocals of its diagonal on the diagonal. The smallest pivot
-/// as a part of `original`; negative or NaN where there is none.
+/// Cholesky factor in the lower triangle of D, with the reciprocals of its diagonal on the diagonal. The
+/// smallest pivot as a part of `original`; negative or NaN where there is none.
 template <int fixed>
 double cholesky(double* D, int rows, const double* original)
 {

@@ -4,10 +4,10 @@
 ///     | M  Cᵀ | | x |   | f |        S λ = C M⁻¹ f - g,   x = M⁻¹ (f - Cᵀ λ),        S = C M⁻¹ Cᵀ,  C = (Φ_r, Π̄)
 ///     | C  0  | | λ | = | g |
 ///
-/// M is block diagonal and never changes, so it is factored once and for all, M = L Lᵀ, and S = W Wᵀ with W = C L⁻ᵀ.
-/// Rows between the same bodies form a group; S is a matrix of blocks, one for each pair of groups that share a body, and
-/// its Cholesky factors are found by blocks in an order of minimum degree that is fixed with the pattern.
-/// For a chain or a tree of joints nothing fills in: a chain is block tridiagonal.
+/// M is block diagonal and never changes, so it is factored once and for all, M = L Lᵀ, and S = W Wᵀ with W = C
+/// L⁻ᵀ. Rows between the same bodies form a group; S is a matrix of blocks, one for each pair of groups that
+/// share a body, and its Cholesky factors are found by blocks in an order of minimum degree that is fixed with
+/// the pattern. For a chain or a tree of joints nothing fills in: a chain is block tridiagonal.
 
 #pragma once
 
@@ -20,8 +20,8 @@ public:
     /// Analyses the pattern. `mass` with unit metric gives the least-squares problem in the rows alone.
     Condensed(const Mass& mass, const Rows& pattern);
 
-    /// Factors S of these rows. False when a pivot has lost so many digits that the factors would not be worth having:
-    /// rows that are nearly dependent, or not finite.
+    /// Factors S of these rows. False when a pivot has lost so many digits that the factors would not be worth
+    /// having: rows that are nearly dependent, or not finite.
     bool factor(const Rows& C);
 
     /// In place: b holds f and g, then x and λ

@@ -51,9 +51,9 @@ public:
     virtual bool lags() const { return false; }
     virtual void complete(State& /*node*/, const State& /*after*/) const {}
 
-    /// Pivots are all that a scheme may remember outside the state, and they decide on last digits. The state at which
-    /// those in use were chosen, and how a new integrator gets them there; none for a scheme that finds them
-    /// again by a step from the node where it chose them.
+    /// Pivots are all that a scheme may remember outside the state, and they decide on last digits. The state
+    /// at which those in use were chosen, and how a new integrator gets them there; none for a scheme that
+    /// finds them again by a step from the node where it chose them.
     virtual const State* pivots() const { return nullptr; }
     virtual void choose_pivots(const State& /*x*/) {}
 

@@ -48,9 +48,10 @@ protected:
 
     /// Whether the k-th correction, of this length over all unknowns, ends the iteration.
     ///
-    /// The length is Euclidean, as in Fang (2022), for a mechanism; beyond four bodies it is the root mean square
-    /// over groups of four, so that a chain of a thousand stops at the same accuracy of each body. It ends below
-    /// the tolerance, or below what rounding leaves, or where it has stopped to shrink not far above that.
+    /// The length is Euclidean, as in Fang (2022), for a mechanism; beyond four bodies it is the root mean
+    /// square over groups of four, so that a chain of a thousand stops at the same accuracy of each body. It
+    /// ends below the tolerance, or below what rounding leaves, or where it has stopped to shrink not far above
+    /// that.
     bool converged(int k, double length)
     {
         const double before = correction;
@@ -61,8 +62,9 @@ protected:
     }
 
     /// What the rounding of Φ, about ε max|r| a row, leaves of a correction: positions move by as much, and a
-    /// multiplier by that times the masses that hang on it. A twentieth of the product, by experience with chains:
-    /// 1e-9 for 256 bars of 2 m and 39 kg, which is above the usual tolerance; 2e-14 for a double pendulum.
+    /// multiplier by that times the masses that hang on it. A twentieth of the product, by experience with
+    /// chains: 1e-9 for 256 bars of 2 m and 39 kg, which is above the usual tolerance; 2e-14 for a double
+    /// pendulum.
     double rounding() const
     {
         double size = 0, mass = 0;

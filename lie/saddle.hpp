@@ -55,7 +55,8 @@ public:
     void solve(Eigen::VectorXd& b);
     /// Solves K z = (0, g): of b only the constraint part is read.
     void solve_constraints(Eigen::VectorXd& b);
-    /// The same as solve() with one step of iterative refinement: for starts and kinematics, where digits count.
+    /// The same as solve() with one step of iterative refinement: for starts and kinematics, where digits
+    /// count.
     void solve_refined(Eigen::VectorXd& b);
 
     /// out = K z

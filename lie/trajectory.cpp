@@ -24,8 +24,8 @@ March::March(State x, Integrator& integrator, double h, long n, int iterations)
       t_0(n == 0 ? this->x.t : this->x.t - time(n)), n(n), iterations(iterations)
 {}
 
-// Not a sum of h, which would drift; and where a second holds a whole number of steps the quotient, which is the double
-// nearest to a decimal like 0.009 where the product is not.
+// Not a sum of h, which would drift; and where a second holds a whole number of steps the quotient, which is
+// the double nearest to a decimal like 0.009 where the product is not.
 double March::time(long node) const
 {
     const double per_second = std::round(1 / h);

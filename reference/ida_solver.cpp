@@ -19,17 +19,17 @@ namespace hilda::reference {
 
 namespace {
 
-// A run that needs more steps than this between two nodes does not get anywhere; nor does one that comes less far than
-// this part of the way in so many steps.
+// A run that needs more steps than this between two nodes does not get anywhere; nor does one that comes less
+// far than this part of the way in so many steps.
 constexpr long most_steps = 5'000'000, some_steps = 1000;
 constexpr double crawl = 1e-9;
 
-// IDA bounds the error of a step, and a run adds up thousands of them: a step gets a tenth of what is asked for. Below the
-// least, rounding decides on the steps: ten times as many, and no digit won.
+// IDA bounds the error of a step, and a run adds up thousands of them: a step gets a tenth of what is asked
+// for. Below the least, rounding decides on the steps: ten times as many, and no digit won.
 constexpr double part_of_step = 0.1, least = 2e-14;
 
-// What Newton's method may leave, as a part of what a step may be off by. IDA's own 0.33 disturbs its estimates of the
-// error, on which it decides: twice the steps at 1e-12, and a larger error. But never below rounding.
+// What Newton's method may leave, as a part of what a step may be off by. IDA's own 0.33 disturbs its estimates
+// of the error, on which it decides: twice the steps at 1e-12, and a larger error. But never below rounding.
 constexpr double newton_part = 0.01, rounding = 3e-15;
 
 template <auto destroy>
@@ -155,8 +155,8 @@ private:
     Vector new_vector() const { return Vector(some(N_VNew_Serial(equations.size(), context.get()))); }
     sunindextype entries() const { return static_cast<sunindextype>(equations.pattern().value.size()); }
 
-    /// Whether x is the state that the last call left. Its multipliers may have been changed for another branch of a
-    /// driver, and its time been rounded.
+    /// Whether x is the state that the last call left. Its multipliers may have been changed for another branch
+    /// of a driver, and its time been rounded.
     bool is_left(const lie::State& x) const
     {
         if (std::abs(x.t - left.t) > 1e-13 * std::max(1.0, std::abs(x.t)) || x.memory != left.memory ||
@@ -233,8 +233,8 @@ private:
         if (SUNLinSol_KLUSetOrdering(linear.get(), amd) != 0) throw std::bad_alloc();
     }
 
-    /// With which the first step, an implicit Euler step, is off by about the tolerance. IDA's own choice moves by half
-    /// the tolerance, which at 1e-12 is a step of 1e-14 s: its multipliers drown in rounding.
+    /// With which the first step, an implicit Euler step, is off by about the tolerance. IDA's own choice moves
+    /// by half the tolerance, which at 1e-12 is a step of 1e-14 s: its multipliers drown in rounding.
     double first_step(double h) const
     {
         const auto at_start = map(y.get()), rate = map(ydot.get());

@@ -8,17 +8,17 @@
 
 namespace hilda::reference {
 
-/// An integrator that chooses its own steps, by rtol and atol: the error of each is below a tenth of rtol |y| + atol, so
-/// that a run of some seconds ends within about 100 rtol. Below rtol = 2e-13 nothing more is won.
+/// An integrator that chooses its own steps, by rtol and atol: the error of each is below a tenth of rtol |y| +
+/// atol, so that a run of some seconds ends within about 100 rtol. Below rtol = 2e-13 nothing more is won.
 ///
-/// IDA goes past the nodes it is asked for and interpolates there; positions and velocities of a node are IDA's own,
-/// with the drift that its tolerances leave, accelerations and multipliers are solved for from them (Eq. 2.17): those
-/// that IDA carries are not controlled. What the system remembers is updated after each of IDA's steps, on a copy
-/// that lies on the constraints. Where that changes the equations (a driver is swapped), and where the state given is
-/// not the one that was left, IDA starts anew.
+/// IDA goes past the nodes it is asked for and interpolates there; positions and velocities of a node are IDA's
+/// own, with the drift that its tolerances leave, accelerations and multipliers are solved for from them (Eq.
+/// 2.17): those that IDA carries are not controlled. What the system remembers is updated after each of IDA's
+/// steps, on a copy that lies on the constraints. Where that changes the equations (a driver is swapped), and
+/// where the state given is not the one that was left, IDA starts anew.
 ///
-/// Throws lie::InvalidInput for rtol below 1e-14, lie::NumericalFailure "ida_failed" with IDA's own words when it gives
-/// up, lie::NonFinite naming the equation, and whatever the system throws.
+/// Throws lie::InvalidInput for rtol below 1e-14, lie::NumericalFailure "ida_failed" with IDA's own words when
+/// it gives up, lie::NonFinite naming the equation, and whatever the system throws.
 class IdaSolver final : public lie::Integrator {
 public:
     /// Takes rtol and atol from the settings. The system must outlive the solver.
@@ -43,8 +43,8 @@ private:
     std::unique_ptr<Ida> ida;  ///< made for the first state
 };
 
-/// States at these instants [s], ascending, none before x.t, with accelerations and multipliers; x is a state that
-/// dae::start() has readied. Unlike index1() it also takes a system whose every motion is driven.
+/// States at these instants [s], ascending, none before x.t, with accelerations and multipliers; x is a state
+/// that dae::start() has readied. Unlike index1() it also takes a system whose every motion is driven.
 lie::Trajectory ida(const lie::System& system, const lie::State& x, const std::vector<double>& instants,
                     double rtol = 1e-12, double atol = 0);
 

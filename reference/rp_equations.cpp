@@ -284,8 +284,8 @@ void RpEquations::find_pairs()
                 pair_of.push_back(static_cast<int>(found - pair.begin()));
             }
 
-    // What is exactly zero in two arbitrary states is taken for zero in all. Where that is wrong, Newton's method is
-    // slower, no more.
+    // What is exactly zero in two arbitrary states is taken for zero in all. Where that is wrong, Newton's
+    // method is slower, no more.
     std::mt19937 engine(1);
     std::normal_distribution<> normal;
     lie::State arbitrary = x;

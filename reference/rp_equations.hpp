@@ -28,9 +28,9 @@ enum class RpForm {
 ///     ṙ - v + Φ_rᵀ μ = 0,   ṗ - u + Φ_pᵀ μ + p μ_P = 0             (v, u for ṙ, ṗ as unknowns; μ only with GGL)
 ///     M v̇ + Φ_rᵀ λ - F = 0,   Tᵀ (J̄ T u̇ + Π̄ᵀ λ - n̄ + ω̄ × J̄ ω̄) + p λ_P = 0
 ///
-/// and the constraints by RpForm. The rotational one is 2.23's, 4 Gᵀ J̄ G p̈ - 8 Ġᵀ J̄ Ġ p + ..., up to a multiple of
-/// p, which here makes λ_P zero. A(p/|p|) turns as Tṗ also where |p| is not one, so the Jacobian is exact off the
-/// constraints too.
+/// and the constraints by RpForm. The rotational one is 2.23's, 4 Gᵀ J̄ G p̈ - 8 Ġᵀ J̄ Ġ p + ..., up to a multiple
+/// of p, which here makes λ_P zero. A(p/|p|) turns as Tṗ also where |p| is not one, so the Jacobian is exact
+/// off the constraints too.
 class RpEquations {
 public:
     /// Takes from `start` what the system remembers. `alpha` [1/s] is Baumgarte's. The system must outlive the
@@ -45,14 +45,14 @@ public:
     /// r, A, ṙ, ω̄ at t; the rest of x stays.
     void read(double t, const ConstVectorRef& y, lie::State& x) const;
 
-    /// Takes over what the system remembers, and says whether the equations at y go on as they were: a driver that is
-    /// swapped ends them, a turn that is counted does not.
+    /// Takes over what the system remembers, and says whether the equations at y go on as they were: a driver
+    /// that is swapped ends them, a turn that is counted does not.
     bool remember(const std::vector<int>& memory, double t, const ConstVectorRef& y,
                   const ConstVectorRef& ydot);
 
     void residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
-    /// ∂F/∂y + c_j ∂F/∂ẏ, in compressed columns of a fixed pattern, for μ = 0: they are zero but for what a step is
-    /// off by, and what they add would fill the factors.
+    /// ∂F/∂y + c_j ∂F/∂ẏ, in compressed columns of a fixed pattern, for μ = 0: they are zero but for what a
+    /// step is off by, and what they add would fill the factors.
     const lie::Klu& jacobian(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, double c_j);
     const lie::Klu& pattern() const { return J.compressed(); }
 

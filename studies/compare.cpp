@@ -2,8 +2,8 @@
 /// One model, several integrators: their trajectories side by side, and how far each is from the reference.
 ///
 /// compare.csv has, at every row time, the watched scalar and the position of the watched body of the reference
-/// and of each integrator, and the differences in r, A, velocity and ω̄: Euclidean norms over all bodies, A by its
-/// Frobenius norm. The table has the largest and the last of them.
+/// and of each integrator, and the differences in r, A, velocity and ω̄: Euclidean norms over all bodies, A by
+/// its Frobenius norm. The table has the largest and the last of them.
 
 #include "studies/chosen.hpp"
 #include "studies/csv.hpp"

@@ -57,8 +57,8 @@ void compute(Run& run, const StudyOptions& options)
 /// The rows of one scheme on one problem, from the largest step down
 using Series = std::vector<const Run*>;
 
-/// Slope through the clean rows with steps up to asymptotic_step; where there are fewer than three of these, as of a
-/// scheme of high order, which is at rounding there, through the three smallest.
+/// Slope through the clean rows with steps up to asymptotic_step; where there are fewer than three of these, as
+/// of a scheme of high order, which is at rounding there, through the three smallest.
 double fit(const Series& series, int n)
 {
     std::vector<double> h, e;

@@ -2,8 +2,8 @@
 /// Energy of undamped systems over time (Fang 2022, Fig. 3.5).
 ///
 /// For each problem, scheme and step: E(t) - E(0) at every node, E the kinetic and potential energy of the node
-/// with all of its velocities at its own time. The table gives the change at the end and the largest on the way,
-/// in J and over the largest kinetic energy of the run; energy.csv has the curves.
+/// with all of its velocities at its own time. The table gives the change at the end and the largest on the
+/// way, in J and over the largest kinetic energy of the run; energy.csv has the curves.
 
 #include "studies/chosen.hpp"
 #include "studies/csv.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Newton iterations of a step (Fang 2022, Figs. 3.9, 3.11, 3.12, 3.13).
 ///
-/// For each problem, scheme and step: the mean and the most iterations of a step, all schemes at the same Newton
-/// tolerance in the same lengths; iterations.csv has mean and most over short stretches of time. A scheme that
-/// solves without iterating counts none.
+/// For each problem, scheme and step: the mean and the most iterations of a step, all schemes at the same
+/// Newton tolerance in the same lengths; iterations.csv has mean and most over short stretches of time. A
+/// scheme that solves without iterating counts none.
 
 #include "studies/chosen.hpp"
 #include "studies/csv.hpp"

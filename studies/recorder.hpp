@@ -13,9 +13,9 @@
 
 namespace hilda::studies {
 
-/// Where the integrator last chose pivots: the state, or, of a scheme that does not tell it, the node before the
-/// step in which it did. A new integrator brought there has the pivots of the old one and gives the same digits
-/// from then on: pivots are all that an integrator remembers outside the state.
+/// Where the integrator last chose pivots: the state, or, of a scheme that does not tell it, the node before
+/// the step in which it did. A new integrator brought there has the pivots of the old one and gives the same
+/// digits from then on: pivots are all that an integrator remembers outside the state.
 class PivotNode final : public lie::Observer {
 public:
     explicit PivotNode(lie::Integrator& integrator) : integrator(integrator) {}

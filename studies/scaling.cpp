@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// CPU time of a step of the N-bar pendulum over N (Fang 2022, Figs. 3.14, 3.15).
 ///
-/// Bars on ball joints fall from rest under gravity in a slanting direction, each spinning about its own long axis
-/// at a rate from --seed. For each N and scheme: thread CPU time of a step, the median of the repeats, its ratio to
-/// rA-full-1, and the exponent p of time ~ N^p over N >= 64.
+/// Bars on ball joints fall from rest under gravity in a slanting direction, each spinning about its own long
+/// axis at a rate from --seed. For each N and scheme: thread CPU time of a step, the median of the repeats, its
+/// ratio to rA-full-1, and the exponent p of time ~ N^p over N >= 64.
 
 #include "studies/chosen.hpp"
 #include "studies/exit_codes.hpp"

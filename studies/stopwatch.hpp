@@ -23,8 +23,8 @@ struct TimedRun : Member {
     Spread microseconds() const;
 };
 
-/// Time of a over that of b: the median over the repeats of the ratio within each, which a slow moment of the machine
-/// does not move. NaN where one of them failed.
+/// Time of a over that of b: the median over the repeats of the ratio within each, which a slow moment of the
+/// machine does not move. NaN where one of them failed.
 double ratio(const TimedRun& a, const TimedRun& b);
 
 /// Thread CPU seconds of the march of a member with nothing observing it. Where it is over sooner than 20 ms it

@@ -2,8 +2,8 @@
 /// CPU time of a step (Fang 2022, Fig. 3.10).
 ///
 /// For each problem, step and scheme: thread CPU time over the whole run, divided by its steps; the median of
-/// the repeats, the least and the most. Nothing is observed or written while the clock runs. The ratio is that to
-/// rA-full-1 on the same problem at the same step: below 1 is faster.
+/// the repeats, the least and the most. Nothing is observed or written while the clock runs. The ratio is that
+/// to rA-full-1 on the same problem at the same step: below 1 is faster.
 
 #include "studies/chosen.hpp"
 #include "studies/pool.hpp"

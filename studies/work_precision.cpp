@@ -2,9 +2,9 @@
 /// Error against CPU time: what each integrator asks for an accuracy.
 ///
 /// Schemes with a fixed step go through --steps, those that choose their own through --rtols. For each run: the
-/// errors of errors.hpp, and the thread CPU time of the march, the median of the repeats, with nothing observed or
-/// written while the clock runs. For each problem a table says what each needs for an rms error of 1e-3 m in r,
-/// interpolated between its neighbouring runs on logarithmic axes.
+/// errors of errors.hpp, and the thread CPU time of the march, the median of the repeats, with nothing observed
+/// or written while the clock runs. For each problem a table says what each needs for an rms error of 1e-3 m in
+/// r, interpolated between its neighbouring runs on logarithmic axes.
 
 #include "studies/chosen.hpp"
 #include "studies/judged_run.hpp"
@@ -40,8 +40,8 @@ void compute(Run& run, const StudyOptions& options)
     run.errors = judged.errors;
 }
 
-/// Chains of many bars are chaotic: after a second or two the errors of all but the smallest steps are as large as the
-/// motion, and their order cannot be seen. 1.2 s, so that steps like 4e-3 s meet all the instants.
+/// Chains of many bars are chaotic: after a second or two the errors of all but the smallest steps are as large
+/// as the motion, and their order cannot be seen. 1.2 s, so that steps like 4e-3 s meet all the instants.
 double end_of(const dae::Description& d)
 {
     return d.name.starts_with("n_pendulum") && d.model->bodies() > 2 ? std::min(d.end, 1.2) : d.end;

@@ -7,9 +7,10 @@
 ///     | h² K_θr - ∂n̄         J̄ + h (ω̄̃ J̄ - (J̄ω̄)~) + h² K_θθ J_r - ∂n̄       Π̄ᵀ   |      J_r = J_r(h ω̄)
 ///     | Φ_r                  Π̄ J_r                                         0    |
 ///
-/// K is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k / ∂(δr, δθ), and ∂F of the loads is h² ∂F/∂(δr, δθ) J + h ∂F/∂(δṙ, δω̄).
-/// (3.21-3.23) drop K, J_r and the loads' part: that costs about twice the iterations, but each of these here
-/// takes a factorisation. Dropping J_r alone would already lose quadratic convergence in spatial motion.
+/// K is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k / ∂(δr, δθ), and ∂F of the loads is h² ∂F/∂(δr, δθ) J + h
+/// ∂F/∂(δṙ, δω̄). (3.21-3.23) drop K, J_r and the loads' part: that costs about twice the iterations, but each
+/// of these here takes a factorisation. Dropping J_r alone would already lose quadratic convergence in spatial
+/// motion.
 
 #include "lie/newton_matrix.hpp"
 #include "lie/newton_step.hpp"

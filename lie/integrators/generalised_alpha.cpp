@@ -8,11 +8,11 @@
 ///
 /// Brüls, Cardona, Arnold (2012), Mech. Mach. Theory 48, 121-137; coefficients from ρ∞ by Chung and Hulbert
 /// (1993). a_0 = v̇(t_0 + (α_m - α_f) h), as Arnold, Brüls, Cardona (2015), Numer. Math. 129, 149-179 ask for:
-/// a_0 = v̇_0 would put an error of O(h) into the first multipliers. ρ∞ = 1 damps nothing, and then an error of the
-/// start stays in λ.
+/// a_0 = v̇_0 would put an error of O(h) into the first multipliers. ρ∞ = 1 damps nothing, and then an error of
+/// the start stays in λ.
 ///
-/// The unknowns are (x, κ λ) with κ = β h² (1 - α_f) / (1 - α_m), so that the Newton matrix without gyroscopic and
-/// curvature terms is K at t_n. The state carries a_n of each body.
+/// The unknowns are (x, κ λ) with κ = β h² (1 - α_f) / (1 - α_m), so that the Newton matrix without gyroscopic
+/// and curvature terms is K at t_n. The state carries a_n of each body.
 
 #include "lie/newton_step.hpp"
 

@@ -11,9 +11,9 @@
 /// carries an alternating error of O(h). BDF2 damps it by a third in each step. The two rules share the factor
 /// 3E - 1, so that translation is Störmer-Verlet but for transients (1/3)ⁿ: no oscillation grows.
 ///
-/// With the unknowns z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n) and the constraint rows times 1.5, the Newton matrix
-/// is K. Start: r̈_{-1} = r̈_0, r_0 - r_{-1} = h ṙ_0 - ½h² r̈_0, ψ_0 = h ω̄_0 - ½h² ω̄̇_0. The state carries r_n - r_{n-1}
-/// and ψ_n of each body.
+/// With the unknowns z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n) and the constraint rows times 1.5, the Newton
+/// matrix is K. Start: r̈_{-1} = r̈_0, r_0 - r_{-1} = h ṙ_0 - ½h² r̈_0, ψ_0 = h ω̄_0 - ½h² ω̄̇_0. The state carries
+/// r_n - r_{n-1} and ψ_n of each body.
 
 #include "lie/newton_step.hpp"
 

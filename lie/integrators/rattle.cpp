@@ -7,10 +7,10 @@
 ///     ½-step    M ṙ_{n+1} + ½h Φ_rᵀ λ⁻ = M ṙ_{n+½} + ½h F_{n+1}
 ///               J̄ ω̄_{n+1} + ½h Π̄ᵀ λ⁻ = J_r(θ)⁻ᵀ J̄ ω̄_{n+½} + ½h n̄_{n+1},   Φ_r ṙ_{n+1} + Π̄ ω̄_{n+1} = ν
 ///
-/// Hante, Arnold (2021), J. Comput. Appl. Math. 387, 112492, with the discrete Lagrangian h T(log(A_nᵀ A_{n+1})/h): its two
-/// Legendre transforms J_r(θ)⁻¹ J̄ ω̄_{n+½} and J_r(θ)⁻ᵀ J̄ ω̄_{n+½} hold the gyroscopic torque, so that for loads with a
-/// potential the step is symplectic and keeps momentum exactly. Loads that depend on velocity see ṙ_n, ω̄_n in the first half
-/// and 2 ṙ_{n+½} - ṙ_n in the second.
+/// Hante, Arnold (2021), J. Comput. Appl. Math. 387, 112492, with the discrete Lagrangian h T(log(A_nᵀ
+/// A_{n+1})/h): its two Legendre transforms J_r(θ)⁻¹ J̄ ω̄_{n+½} and J_r(θ)⁻ᵀ J̄ ω̄_{n+½} hold the gyroscopic
+/// torque, so that for loads with a potential the step is symplectic and keeps momentum exactly. Loads that
+/// depend on velocity see ṙ_n, ω̄_n in the first half and 2 ṙ_{n+½} - ṙ_n in the second.
 ///
 /// Positions are found by Newton's method with K at t_n, velocities by one solve with K at t_{n+1}; so are the
 /// accelerations and multipliers reported, from the equations of motion at the node.

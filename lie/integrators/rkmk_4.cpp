@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Runge-Kutta-Munthe-Kaas of fourth order on the index-1 equations, with positions and velocities put back onto
-/// their constraints after each step.
+/// Runge-Kutta-Munthe-Kaas of fourth order on the index-1 equations, with positions and velocities put back
+/// onto their constraints after each step.
 ///
 ///     A = A_n exp(θ),   θ̇ = J_r(θ)⁻¹ ω̄,   (r̈, ω̄̇, λ) from K (r̈, ω̄̇, λ) = (F, τ̄, γ)
 ///
@@ -8,8 +8,8 @@
 ///
 /// The projection is the shortest in the metric of the mass, as dae::project_positions. It moves a state by no
 /// more than the step's own error, so that the order stays (Hairer, Lubich, Wanner 2006, Sec. IV.4), and a node
-/// satisfies Φ and its derivative to rounding. Iterations counted are those of the projection of positions, which uses K as it
-/// stands at the last stage.
+/// satisfies Φ and its derivative to rounding. Iterations counted are those of the projection of positions,
+/// which uses K as it stands at the last stage.
 
 #include "lie/node_step.hpp"
 

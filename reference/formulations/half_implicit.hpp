@@ -18,8 +18,8 @@
 ///
 /// Plain start: ṙ_{-1/2} = ṙ_0; the half-step velocities are reported as those of the node that follows and
 /// stand in its loads. Order 1. With a kick: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0; node velocities are the means of the
-/// two half steps beside them, and what the loads see of them, one step early, is 1.5 ṙ_{n-1/2} - 0.5 ṙ_{n-3/2}.
-/// Order 2 in everything.
+/// two half steps beside them, and what the loads see of them, one step early, is 1.5 ṙ_{n-1/2} - 0.5
+/// ṙ_{n-3/2}. Order 2 in everything.
 ///
 /// On p the scheme is rA-half-1 with another retraction: since G(a) b = -G(b) a, the body vector
 /// ω̄_{n+1/2} = 2G(p_n) ṗ_{n+1/2} = 2G(p_{n+1}) ṗ_{n+1/2}, (b) times ½G reads J̄ (ω̄_{n+1/2} - ω̄_{n-1/2})/h +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// SUNDIALS IDA on the rp equations as integrators, one for each way to ask for the constraints.  See ida_solver.hpp
+/// SUNDIALS IDA on the rp equations as integrators, one for each way to ask for the constraints. See
+/// ida_solver.hpp
 #include "reference/ida_solver.hpp"
 
 namespace hilda::reference {

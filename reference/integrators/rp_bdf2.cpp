@@ -11,8 +11,8 @@
 ///     q̇_1 = q̇_0 + (h/2)(q̈_0 + q̈_1),    q_1 = q_0 + h q̇_0 + h² (q̈_0/3 + q̈_1/6),
 ///
 /// whose q_1 is right to O(h⁴): the constraints fix the normal part of q̈_1 out of q_1/h², so λ_1 is right to
-/// O(h²). A step of backward Euler, or of the trapezoid rule, would do for r, p and their velocities, but leaves
-/// errors O(1), or O(h), in the first multipliers. Where h changes, the run starts again with that step.
+/// O(h²). A step of backward Euler, or of the trapezoid rule, would do for r, p and their velocities, but
+/// leaves errors O(1), or O(h), in the first multipliers. Where h changes, the run starts again with that step.
 
 #include "reference/formulations/rp_implicit.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Half-implicit schemes on Euler parameters, plain and with a half-step kick.  See formulations/half_implicit.hpp
+/// Half-implicit schemes on Euler parameters, plain and with a half-step kick. See
+/// formulations/half_implicit.hpp
 #include "reference/formulations/half_implicit.hpp"
 #include "reference/formulations/rp.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Time of a whole step (loads, constraints, factorization, Newton, update) of the N-bar pendulum, over N, for every
-/// scheme and both linear solvers, at h = 1e-3 s.
+/// Time of a whole step (loads, constraints, factorization, Newton, update) of the N-bar pendulum, over N, for
+/// every scheme and both linear solvers, at h = 1e-3 s.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter='step/rA-half-1/'

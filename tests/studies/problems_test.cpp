@@ -186,7 +186,8 @@ TEST_CASE("problems are found by name, and a slip is answered with the name that
 
 TEST_CASE("Andrews' squeezer ends where Hairer and Wanner have it", "[studies][problems]")
 {
-    // The reference solution of the problem at 0.03 s: Solving ODEs II, Sec. VII.7. Body k's angle is the turn of its frame.
+    // The reference solution of the problem at 0.03 s: Solving ODEs II, Sec. VII.7. Body k's angle is the turn
+    // of its frame.
     dae::Description d = started(studies::problem("andrews_squeezer"));
     CHECK(d.model->dropped_rows().size() == 9);  // three loops of revolute joints in space
     const lie::State x = studies::problem("andrews_squeezer").truth(d, {0.0, 0.03}).row.back();

@@ -26,7 +26,8 @@ bool same(const lie::State& a, const lie::State& b)
 
 }  // namespace
 
-// The driver of the slider-crank passes two singular points in half a turn, so pivots are chosen anew on the way.
+// The driver of the slider-crank passes two singular points in half a turn, so pivots are chosen anew on the
+// way.
 TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studies][resume]")
 {
     const std::string name = GENERATE("slider_crank", "n_pendulum_2_spin");

@@ -131,11 +131,11 @@ hilda_configure() { # PRESET [CMAKE_ARGUMENT...]
     hilda_end "done ($((SECONDS - hilda_since)) s)"
 }
 
-hilda_build() { # PRESET [TARGET]
-    local preset=$1 target=()
-    if (($# > 1)); then target=(--target "$2"); fi
+hilda_build() { # PRESET [TARGET...]
+    local preset=$1 targets=()
+    if (($# > 1)); then targets=(--target "${@:2}"); fi
     hilda_begin "build $preset"
     hilda_logged "build-$preset.log" \
-        cmake --build "$hilda_root/build/$preset" --parallel "$hilda_jobs" "${target[@]}" || exit 1
+        cmake --build "$hilda_root/build/$preset" --parallel "$hilda_jobs" "${targets[@]}" || exit 1
     hilda_end "done ($((SECONDS - hilda_since)) s)"
 }

@@ -60,6 +60,12 @@ public:
     double reciprocal_condition;
 };
 
+/// Settings::stop said so.
+class Interrupted : public NumericalFailure {
+public:
+    Interrupted() : NumericalFailure("interrupted", "interrupted inside a step") {}
+};
+
 /// A number that is not finite came out of the model or the solver.
 class NonFinite : public NumericalFailure {
 public:

@@ -18,6 +18,8 @@ struct Settings {
     bool reparametrise = false;  ///< Euler angles: turn to another body frame near the singular set
     double rtol = 1e-10;         ///< adaptive schemes: relative error of a step
     double atol = 0;             ///< the same, absolute [m, m/s; 1, 1/s]; 0: as rtol
+    /// Asked between the inner steps of adaptive schemes: whether to give up, with Interrupted
+    bool (*stop)() = nullptr;
 };
 
 /// What a run has cost so far.
@@ -42,7 +44,8 @@ public:
     virtual ~Integrator() = default;
 
     /// Takes x from t_n to t_n + h and returns the number of Newton iterations. On a NumericalFailure x is as
-    /// it was.
+    /// it was. What a multi-step scheme keeps in x.history belongs to it and to this h: with another scheme or step,
+    /// begin with an empty one.
     virtual int step(State& x, double h) = 0;
 
     /// Half-implicit schemes find λ_n, r̈_n, ω̄̇_n in the step that leaves t_n, so a node is known in full one

@@ -11,8 +11,9 @@ namespace hilda::lie {
 
 namespace {
 
-// Below this the last digits of a solution are noise; KLU itself reports success.
-constexpr double singular = 1e-14;
+// Below this the last digits of a solution are noise; KLU itself reports success. Only a matrix that has been
+// scaled on both sides is judged by it: with columns of other units than the rows any number is healthy.
+constexpr double singular_when_scaled = 1e-14;
 // Pivots are chosen anew when the old ones have lost this much of the condition they were chosen for.
 constexpr double worn_out = 1e-3;
 
@@ -86,7 +87,7 @@ void Klu::factor(const char* what)
         klu_rcond(klu->symbolic, klu->numeric, &klu->common);
         rcond = klu->common.rcond;
     }
-    have_pivots = rcond > singular;
+    have_pivots = rcond > (klu->common.scale < 0 ? singular_when_scaled : 0);
     if (!have_pivots)
         throw SingularMatrix(std::string(what) + " is singular: redundant or singular constraints?", rcond);
     rcond_of_full = rcond;

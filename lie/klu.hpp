@@ -12,7 +12,8 @@ namespace hilda::lie {
 
 class Klu {
 public:
-    /// Whether rows are scaled inside KLU. Whoever has scaled the matrix already saves the time.
+    /// Whether rows are scaled inside KLU. Whoever has scaled the matrix on both sides saves the time, and is told
+    /// where it is singular to working precision, not only where it is singular.
     enum class Scaling { none, rows };
 
     explicit Klu(Scaling scaling);

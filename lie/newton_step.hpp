@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace hilda::lie {
 
@@ -17,6 +18,7 @@ public:
         : model(model), settings(settings), loads(model.bodies())
     {
         for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
+        weigh_rows();
     }
 
     const System& system() const override { return model; }
@@ -46,33 +48,31 @@ protected:
         return loads.n_bar[i] - body.omega_bar.cross(model.mass().J_bar[i] * body.omega_bar);
     }
 
-    /// Whether the k-th correction, of this length over all unknowns, ends the iteration.
+    /// Whether the k-th correction ends the iteration: `motion` is its length in (Δr, Δθ) over all bodies, and
+    /// `factor` times `multipliers` is Δλ̂.
     ///
-    /// The length is Euclidean, as in Fang (2022), for a mechanism; beyond four bodies it is the root mean
-    /// square over groups of four, so that a chain of a thousand stops at the same accuracy of each body. It
-    /// ends below the tolerance, or below what rounding leaves, or where it has stopped to shrink not far above
-    /// that.
-    bool converged(int k, double length)
+    /// The length of both together is Euclidean, as in Fang (2022), for a mechanism; beyond four bodies it is the
+    /// root mean square over groups of four, so that a chain of a thousand stops at the same accuracy of each body.
+    /// A multiplier that moves by less than what rounding makes of it does not count, nor does a motion by less than
+    /// four ulp of the largest coordinate: a heavy body or a far one then does not keep the others from ending, and
+    /// what is light and near still has to.
+    template <class Multipliers>
+    bool converged(int k, double motion, const Multipliers& multipliers, double factor)
     {
-        const double before = correction;
-        correction = length / std::sqrt(std::max(1.0, model.bodies() / 4.0));
-        if (correction < settings.tolerance) return true;
-        const double rest = rounding();
-        return correction < rest || (k > 1 && correction > 0.5 * before && correction < 30 * rest);
-    }
-
-    /// What the rounding of Φ, about ε max|r| a row, leaves of a correction: positions move by as much, and a
-    /// multiplier by that times the masses that hang on it. A twentieth of the product, by experience with
-    /// chains: 1e-9 for 256 bars of 2 m and 39 kg, which is above the usual tolerance; 2e-14 for a double
-    /// pendulum.
-    double rounding() const
-    {
-        double size = 0, mass = 0;
-        for (int i = 0; i < model.bodies(); ++i) {
-            size = std::max(size, x_n.body[i].r.cwiseAbs().maxCoeff());
-            mass += model.mass().m[i];
+        if (k == 1) {
+            ulp = 0;
+            for (const Motion& body : x_n.body) ulp = std::max(ulp, body.r.cwiseAbs().maxCoeff());
+            ulp *= std::numeric_limits<double>::epsilon();
         }
-        return 0.05 * std::numeric_limits<double>::epsilon() * size * std::sqrt(model.bodies()) * mass;
+        double sum = motion * motion;
+        for (Eigen::Index row = 0; row < multipliers.size(); ++row) {
+            const double change = factor * multipliers[row];
+            if (!(std::abs(change) < ulp * hanging[row])) sum += change * change;
+        }
+        const double before = correction;
+        correction = std::sqrt(sum / std::max(1.0, model.bodies() / 4.0));
+        if (correction < std::max(settings.tolerance, 4 * ulp)) return true;
+        return k > 2 && correction > 0.5 * before && correction < 1e3 * ulp;  // no longer shrinks
     }
 
     /// λ, r̈, ω̄̇ of a node, out of the step that leaves it: complete() of the half-implicit schemes
@@ -83,6 +83,21 @@ protected:
             node.body[i].rddot = after.body[i].rddot;
             node.body[i].omegadot_bar = after.body[i].omegadot_bar;
         }
+    }
+
+    /// Implicit schemes have roots that differ by whole turns. One that turns a body by half a turn or more in a step is
+    /// none that was looked for.
+    void refuse_whole_turns(const State& x, double h, const std::string& scheme) const
+    {
+        constexpr double half_turn = 3.14159265358979323846;
+        for (int i = 0; i < model.bodies(); ++i)
+            if (const double turn = h * x.body[i].omega_bar.norm(); !(turn < half_turn)) {
+                std::ostringstream what;
+                what.precision(3);
+                what << scheme << ": " << model.body_name(i) << " turns by " << turn
+                     << " rad in a step, half a turn or more: a smaller step is needed";
+                throw NumericalFailure("newton_diverged", what.str());
+            }
     }
 
     /// Book-keeping of an accepted step; returns its iterations.
@@ -128,7 +143,29 @@ protected:
     std::vector<Mat3> J_bar_inverse;
 
 private:
+    /// What an ulp or two of Φ can make of a multiplier: as much times the masses that hang together with its row.
+    void weigh_rows()
+    {
+        const Rows& C = model.pattern();
+        std::vector<int> group(model.bodies());  // of bodies that rows join, by its first body
+        std::iota(group.begin(), group.end(), 0);
+        const auto first = [&](int b) {
+            while (group[b] != b) b = group[b] = group[group[b]];
+            return b;
+        };
+        for (int k = 0; k < C.rows(); ++k)
+            for (int n = C.start[k] + 1; n < C.start[k + 1]; ++n)
+                group[first(C.entry[n].body)] = first(C.entry[n - 1].body);
+        std::vector<double> mass(model.bodies());
+        for (int b = 0; b < model.bodies(); ++b) mass[first(b)] += model.mass().m[b];
+        hanging.setZero(C.rows());
+        for (int k = 0; k < C.rows(); ++k)
+            if (C.start[k] < C.start[k + 1]) hanging[k] = 4 * mass[first(C.entry[C.start[k]].body)];
+    }
+
     long steps = 0, iterations = 0;
+    Eigen::VectorXd hanging;  ///< see weigh_rows
+    double ulp = 0;           ///< of the largest coordinate
 };
 
 class SaddleStep : public NewtonStep {
@@ -164,6 +201,9 @@ protected:
             K.solve_constraints(e);
         z += e;
     }
+
+    /// (Δr, Δθ) of a correction
+    auto motion_part(const Eigen::VectorXd& z) const { return z.head(6 * model.bodies()); }
 
     Saddle K;
     Eigen::VectorXd b;

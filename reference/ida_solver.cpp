@@ -86,7 +86,7 @@ const lie::Settings& checked(const lie::Settings& settings)
 class IdaSolver::Ida {
 public:
     Ida(const lie::System& system, const lie::State& start, const lie::Settings& settings, RpForm form)
-        : equations(system, start, form), system(system), K(system),
+        : equations(system, start, form), system(system), K(system), stop(settings.stop),
           rtol(std::max(least, part_of_step * settings.rtol)),
           atol(settings.atol > 0 ? std::max(least, part_of_step * settings.atol) : rtol),
           context(new_context()), y(new_vector()), ydot(new_vector()), tolerance(new_vector()),
@@ -109,6 +109,7 @@ public:
         if (!goes_on) start(x, t_end);
         double mark = t;
         for (long n = 1; t < t_end; ++n) {
+            if (stop != nullptr && stop()) throw lie::Interrupted();
             if (to_restart) start(inner, t_end);
             inner_step(t_end);
             if (n % some_steps != 0) continue;
@@ -266,7 +267,7 @@ private:
     {
         if (!nonfinite.empty()) throw lie::NonFinite(nonfinite);
         throw lie::NumericalFailure("ida_failed",
-                                    "ida-rp: IDA does not get on: after " + std::to_string(steps) +
+                                    "IDA does not get on: after " + std::to_string(steps) +
                                         " steps from one node to the next it is at t = " + number(t) +
                                         " s, with a step of " + number(last_step()) + " s");
     }
@@ -285,7 +286,7 @@ private:
             return;
         }
         const std::unique_ptr<char, Destroy<std::free>> name(IDAGetReturnFlagName(code));
-        std::string text = std::string("ida-rp: IDA gave up at t = ") + number(t) + " s with step " +
+        std::string text = std::string("IDA gave up at t = ") + number(t) + " s with step " +
                            number(last_step()) + " s: " + name.get() + " in " + function;
         if (!complaint.empty()) text += ": " + std::exchange(complaint, {});
         throw lie::NumericalFailure("ida_failed", text);
@@ -339,6 +340,7 @@ private:
     }
 
     lie::Saddle K;
+    bool (*const stop)();
     const double rtol, atol;
 
     Owned<SUNContext, free_context> context;

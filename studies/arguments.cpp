@@ -86,6 +86,13 @@ double relative_tolerance(const std::string& option, const std::string& text)
     return value;
 }
 
+double absolute_tolerance(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 1e-14)) refuse(option, "must be a finite number, at least 1e-14", text);
+    return value;
+}
+
 lie::LinearSolver linear_solver(const std::string& option, const std::string& text)
 {
     if (text == "auto") return lie::LinearSolver::automatic;

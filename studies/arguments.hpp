@@ -22,6 +22,8 @@ double nonnegative_number(const std::string& option, const std::string& text);
 double fraction(const std::string& option, const std::string& text);
 /// A relative tolerance that double precision can keep: from 1e-14 to below 1
 double relative_tolerance(const std::string& option, const std::string& text);
+/// The same for the absolute one, which has no upper bound
+double absolute_tolerance(const std::string& option, const std::string& text);
 /// auto, klu or condensed
 lie::LinearSolver linear_solver(const std::string& option, const std::string& text);
 /// A whole number, at least 1

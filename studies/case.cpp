@@ -51,7 +51,11 @@ std::vector<Case> cases(const std::string& kind, const StudyOptions& options,
 
 namespace {
 
-bool divides(double h, double end) { return std::abs(end / h - std::round(end / h)) <= 1e-6; }
+bool divides(double h, double end)
+{
+    const double steps = std::round(end / h);
+    return steps >= 1 && std::abs(end / h - steps) <= 1e-6;
+}
 
 }  // namespace
 

@@ -166,7 +166,7 @@ private:
         value(c, "--rtol", "RTOL", "relative error of a step of ida-rp, by default 1e-10",
               assign(s.rtol, relative_tolerance));
         value(c, "--atol", "ATOL", "the same, absolute, by default as --rtol",
-              assign(s.atol, positive_number));
+              assign(s.atol, absolute_tolerance));
     }
 
     void add_run()

@@ -172,7 +172,10 @@ int compare(const StudyOptions& options)
     const Schemes schemes = any_schemes(options, {"rA-half-1", "rA-half-2", "rA-full-1"});
     Judged judged;
     for (const lie::Scheme* s : schemes)
-        (s->adaptive ? judged.smallest_rtol : judged.smallest_step) = s->adaptive ? options.settings.rtol : h;
+        if (s->adaptive)
+            judged.smallest_rtol = options.settings.rtol;
+        else
+            judged.smallest_step = h, judged.highest_order = std::max(judged.highest_order, s->order);
     const Reference reference(kind, options, judged);
     if (options.problems.size() > 1) throw UsageError("study compare: takes one problem, --problem NAME");
     std::vector<Case> all = cases(kind, options, {"double_pendulum"});

@@ -234,7 +234,9 @@ int convergence(const StudyOptions& options)
     check_keys(kind, options, keys());
     const std::vector<double> steps = steps_or(options, default_steps());
     const Schemes schemes = fixed_step_schemes(kind, options);
-    const Reference reference(kind, options, {.smallest_step = steps.back()});
+    Judged judged{.smallest_step = steps.back()};
+    for (const lie::Scheme* s : schemes) judged.highest_order = std::max(judged.highest_order, s->order);
+    const Reference reference(kind, options, judged);
     std::vector<Case> all_cases = cases(kind, options, default_problems());
     for (const Case& c : all_cases) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
     reference.judge(all_cases);

@@ -17,7 +17,11 @@ std::string not_finite(const dae::Model& model, const lie::State& x)
 {
     for (const auto& force : model.forces()) {
         lie::Loads loads(model.bodies());
-        force->add(x, loads);
+        try {
+            force->add(x, loads);
+        } catch (const lie::NumericalFailure&) {
+            return fmt::format("force '{}'", force->name);
+        }
         for (int b = 0; b < model.bodies(); ++b)
             if (!loads.F[b].allFinite() || !loads.n_bar[b].allFinite())
                 return fmt::format("force '{}' on body '{}'", force->name, model.body_name(b));

@@ -72,8 +72,9 @@ int list_integrators(bool json)
         nlohmann::ordered_json all = nlohmann::ordered_json::array();
         for (const lie::Scheme& s : lie::schemes())
             all.push_back({{"name", s.name},
-                           {"order", s.order},
-                           {"order_lambda", s.order_lambda},
+                           {"order", s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order)},
+                           {"order_lambda",
+                            s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
                            {"adaptive", s.adaptive},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},

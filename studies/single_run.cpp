@@ -54,7 +54,9 @@ Result SingleRun::go()
 {
     begin = Clock::now();
     read();
-    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, options.settings);
+    lie::Settings told = options.settings;
+    told.stop = [] { return Interrupt::caught() != 0; };
+    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, told);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
@@ -159,9 +161,16 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
     Progress line(options.quiet, result.end, grid.steps, march.number());
     const bool watch_clock = line.shown() || options.checkpoint > 0;
     Clock::time_point saved = Clock::now();
-    try {
-        while (march.number() < grid.steps && Interrupt::caught() == 0) {
+    const auto advance_once = [&] {
+        try {
             march.advance(observers);
+            return true;
+        } catch (const lie::Interrupted&) {  // in the middle of a step; the march stands where it was
+            return false;
+        }
+    };
+    try {
+        while (march.number() < grid.steps && Interrupt::caught() == 0 && advance_once()) {
             if (!watch_clock) continue;
             const Clock::time_point now = Clock::now();
             line.update(now, march.node().t, march.number(), integrator.statistics());

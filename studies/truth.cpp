@@ -11,9 +11,10 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr double finer = 10;        // an rtol must be this many times smaller than those it judges
-constexpr double own_rtol = 1e-12;  // of a reference that chooses its own steps
-constexpr double slack = 1 + 1e-9;  // 1e-11 is ten times smaller than 1e-10
+constexpr double finer = 10;            // an rtol must be this many times smaller than those it judges
+constexpr double coarsest_rtol = 1e-8;  // of a reference for integrators with a fixed step
+constexpr double own_rtol = 1e-12;      // of a reference that chooses its own steps
+constexpr double slack = 1 + 1e-9;      // 1e-11 is ten times smaller than 1e-10
 
 }  // namespace
 
@@ -37,11 +38,24 @@ Reference::Reference(const std::string& kind, const StudyOptions& options, const
                 fmt::format("{}the reference {} at rtol {} is coarser than what it judges, which goes "
                             "down to rtol {}: it must be {} times smaller, or --force given",
                             study, scheme->name, step_text(rtol), step_text(judged.smallest_rtol), finer));
+        if (!options.force && judged.smallest_step > 0 && rtol > coarsest_rtol * slack)
+            throw UsageError(
+                fmt::format("{}the reference {} at rtol {} is coarser than {}, at which it may judge "
+                            "integrators with a fixed step: make it smaller, or give --force",
+                            study, scheme->name, step_text(rtol), step_text(coarsest_rtol)));
         return;
     }
     if (options.reference_rtol)
         throw UsageError(study + "the reference " + scheme->name +
                          " has a fixed step: --reference-step, not --reference-rtol");
+    if (!options.reference_step && !(judged.smallest_step > 0))
+        throw UsageError(study + "the reference " + scheme->name +
+                         " needs --reference-step: nothing that it judges has a fixed step");
+    if (!options.force && scheme->order < judged.highest_order)
+        throw UsageError(
+            fmt::format("{}the reference {} is of order {}, lower than the {} of what it judges: choose "
+                        "another, or give --force",
+                        study, scheme->name, scheme->order, judged.highest_order));
     h = options.reference_step.value_or(judged.smallest_step / 10);
     if (!options.force && judged.smallest_step > 0 && !(h * slack < judged.smallest_step))
         throw UsageError(
@@ -86,6 +100,7 @@ double Reference::step(const Case& c) const
 lie::Trajectory Reference::by_integrator(const Case& c) const
 {
     lie::Settings settings = options.settings;
+    settings.tolerance = std::min(settings.tolerance, 1e-12);  // finer than theirs, whatever theirs is
     lie::Grid grid{.h = c.instants.dt, .steps = c.instants.count};
     if (scheme->adaptive) {
         settings.rtol = rtol;

@@ -11,12 +11,13 @@ namespace hilda::studies {
 struct Judged {
     double smallest_step = 0;  ///< of the integrators with a fixed step [s]; 0: there are none
     double smallest_rtol = 0;  ///< of those that choose their own; 0: there are none
+    int highest_order = 0;     ///< of those with a fixed step
 };
 
 class Reference {
 public:
     /// UsageError for a reference that is coarser than what it judges, unless --force is given: its step must
-    /// be smaller than theirs, its rtol ten times smaller.
+    /// be smaller than theirs and its order not lower, its rtol ten times smaller, and at most 1e-8.
     Reference(const std::string& kind, const StudyOptions& options, const Judged& judged);
 
     /// Gives each case its truth at its instants, a row for each from t = 0 on, side by side.

@@ -184,7 +184,8 @@ int work_precision(const StudyOptions& options)
         if (s->adaptive)
             judged.smallest_rtol = rtols.back();
         else
-            judged.smallest_step = steps.back();
+            judged.smallest_step = steps.back(),
+            judged.highest_order = std::max(judged.highest_order, s->order);
     const Reference reference(kind, options, judged);
     std::vector<Case> all =
         cases(kind, options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);

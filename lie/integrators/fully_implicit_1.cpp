@@ -31,8 +31,9 @@ public:
             set_residual(x, h);
             K.solve(e);
             z -= e;
-            if (converged(k, h * h * e.norm())) {
+            if (converged(k, h * h * motion_part(e).norm(), K.constraint_part(e), h * h)) {
                 place(x, h);
+                refuse_whole_turns(x, h, "rA-full-1");
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 return done(attempt, k);
             }

@@ -58,8 +58,9 @@ public:
             N.factor();
             N.solve(e);
             z -= e;
-            if (converged(k, h * h * e.norm())) {
+            if (converged(k, h * h * e.head(6 * model.bodies()).norm(), e.tail(model.rows()), h * h)) {
                 place(x, h);
+                refuse_whole_turns(x, h, "rA-full-1-exact");
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 return done(attempt, k);
             }

@@ -49,9 +49,10 @@ public:
             set_residual(x);
             K.solve(e);
             z -= e;
-            if (converged(k, e.norm())) {
+            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 1)) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
+                refuse_whole_turns(x, h, "rA-genalpha");
                 x.history = a_next;
                 return done(attempt, k);
             }

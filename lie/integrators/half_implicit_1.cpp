@@ -32,7 +32,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 1);
-            if (converged(k, e.norm())) {
+            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 1)) {
                 accept(x, h);
                 return done(attempt, k);
             }

@@ -34,7 +34,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 2);
-            if (converged(k, printed_norm())) {
+            if (converged(k, length_of_motion(), K.constraint_part(e), 1 / 1.5)) {
                 accept(x, h);
                 return done(attempt, k);
             }
@@ -81,10 +81,10 @@ private:
         }
     }
 
-    /// Length of the correction in (r, θ̄, λ̂), the unknowns of Eq. 3.43
-    double printed_norm()
+    /// Length of the correction in r and θ̄, the unknowns of Eq. 3.43
+    double length_of_motion() const
     {
-        double sum = K.constraint_part(e).squaredNorm() / 2.25;
+        double sum = 0;
         for (int i = 0; i < model.bodies(); ++i)
             sum += 0.25 * e.segment<3>(6 * i).squaredNorm() + e.segment<3>(6 * i + 3).squaredNorm();
         return std::sqrt(sum);

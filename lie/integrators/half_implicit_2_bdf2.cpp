@@ -28,7 +28,10 @@ public:
     {
         x_n = x;
         Attempt attempt(x, x_n);
-        if (x.history.size() == 0) start(h);
+        if (x_n.history.size() == 0)
+            start(h);
+        else
+            increments = x_n.history;
         K.assemble(x_n);  // the Newton matrix, frozen at t_n
         set_known_part(h);
         predict(h);
@@ -36,7 +39,7 @@ public:
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             correct(k, x, 1.5);
-            if (converged(k, length())) {
+            if (converged(k, length_of_motion(), K.constraint_part(e), 1 / 1.5)) {
                 accept(x, h);
                 return done(attempt, k);
             }
@@ -48,15 +51,12 @@ public:
     void complete(State& node, const State& after) const override { take_loads(node, after); }
 
 private:
-    /// r_n - r_{n-1} and ψ_n of body i
-    auto increment(const State& x, int i) const { return x.history.segment<6>(6 * i); }
-
     void start(double h)
     {
-        x_n.history.resize(6 * model.bodies());
+        increments.resize(6 * model.bodies());
         for (int i = 0; i < model.bodies(); ++i) {
             const Motion& body = x_n.body[i];
-            x_n.history.segment<6>(6 * i) << h * body.rdot - 0.5 * h * h * body.rddot,
+            increments.segment<6>(6 * i) << h * body.rdot - 0.5 * h * h * body.rddot,
                 h * body.omega_bar - 0.5 * h * h * body.omegadot_bar;
         }
     }
@@ -89,7 +89,7 @@ private:
     /// r_{n+1} - r_n and ψ_{n+1} of body i
     Eigen::Matrix<double, 6, 1> advance(int i) const
     {
-        return increment(x_n, i) / 3 + z.segment<6>(6 * i) * (2.0 / 3);
+        return increments.segment<6>(6 * i) / 3 + z.segment<6>(6 * i) * (2.0 / 3);
     }
 
     void place(State& x) const
@@ -101,10 +101,10 @@ private:
         }
     }
 
-    /// Length of the correction in (r, θ̄, λ̂), as for rA-half-2
-    double length()
+    /// Length of the correction in r and θ̄, as for rA-half-2
+    double length_of_motion() const
     {
-        double sum = K.constraint_part(e).squaredNorm() / 2.25;
+        double sum = 0;
         for (int i = 0; i < model.bodies(); ++i)
             sum += e.segment<3>(6 * i).squaredNorm() / 2.25 + e.segment<3>(6 * i + 3).squaredNorm();
         return std::sqrt(sum);
@@ -116,9 +116,8 @@ private:
         x.lambda = K.constraint_part(z) / (1.5 * h * h);
         b.setZero();
         K.rows().add_transpose(1, x.lambda, b);
-        x.history.resize(6 * model.bodies());
         for (int i = 0; i < model.bodies(); ++i) {
-            x.history.segment<6>(6 * i) = advance(i);
+            increments.segment<6>(6 * i) = advance(i);
             Motion& body = x.body[i];
             body.A = orthonormalised(body.A);
             body.rdot = z.segment<3>(6 * i) / h;
@@ -126,7 +125,10 @@ private:
             body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / model.mass().m[i];
             body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, x_n.body[i]) - b.segment<3>(6 * i + 3));
         }
+        x.history = increments;
     }
+
+    Eigen::VectorXd increments;  ///< r_n - r_{n-1} and ψ_n of each body
 };
 
 const bool enrolled = enrol<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",

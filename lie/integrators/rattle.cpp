@@ -44,7 +44,7 @@ public:
             K.constraint_part(e) *= -1;
             K.solve(e);
             z += e;
-            if (converged(k, e.norm())) {
+            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 1)) {
                 place(x);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 set_velocities(x, h);

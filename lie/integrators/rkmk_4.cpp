@@ -87,7 +87,7 @@ private:
                 x.body[i].r += e.segment<3>(6 * i);
                 x.body[i].A = orthonormalised(x.body[i].A * exp(e.segment<3>(6 * i + 3)));
             }
-            if (converged(k, e.head(6 * model.bodies()).norm())) return k;
+            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 0)) return k;
         }
         no_convergence("rA-rkmk-4", correction, x);
     }

@@ -88,7 +88,7 @@ public:
             set_residual(x);
             N.solve(e);
             z += e;
-            if (converged(iteration, std::sqrt(squared_length(e)))) {
+            if (converged(iteration, length_of_motion(e), e.segment(at_lambda(), model.rows()), 1)) {
                 accept(x, h);
                 return done(attempt, iteration);
             }
@@ -271,12 +271,12 @@ private:
     }
 
     /// Of a correction: rotations count by the angle that the body turns, for p that is 2 |δp|
-    double squared_length(const Eigen::VectorXd& dz) const
+    double length_of_motion(const Eigen::VectorXd& dz) const
     {
-        double sum = dz.tail(dz.size() - at_lambda()).squaredNorm();
+        double sum = 0;
         for (int i = 0; i < model.bodies(); ++i)
             sum += dz.segment<3>(at_r(i)).squaredNorm() + part[i].at.turn2(dz.segment<k>(at_q(i)));
-        return sum;
+        return std::sqrt(sum);
     }
 
     void accept(lie::State& x, double h)

@@ -37,7 +37,8 @@ public:
             equations.N.factor();
             equations.N.solve(e);
             z -= e;
-            if (converged(k, h * h * std::sqrt(squared_length(e)))) {
+            if (converged(k, h * h * length_of_motion(e), e.segment(equations.at_lambda(), model.rows()),
+                          h * h)) {
                 equations.place(formula, z, x);
                 remember(x, h);
                 return done(attempt, k);
@@ -91,11 +92,11 @@ private:
     }
 
     /// Of a correction: p̈ counts twice, as the angular acceleration that it is
-    double squared_length(const Eigen::VectorXd& dz) const
+    double length_of_motion(const Eigen::VectorXd& dz) const
     {
-        double sum = dz.squaredNorm();
+        double sum = dz.head(7 * model.bodies()).squaredNorm();
         for (int i = 0; i < model.bodies(); ++i) sum += 3 * dz.segment<4>(7 * i + 3).squaredNorm();
-        return sum;
+        return std::sqrt(sum);
     }
 
     void remember(lie::State& x, double h)

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A smooth surface G(ᾱ) = 0: three formulas, and the geometry that follows from them.
+
+#pragma once
+
+#include "lie/so3.hpp"
+
+namespace hilda::contact {
+
+using lie::Mat3;
+using lie::Vec3;
+
+/// The boundary of a body, in a frame of its own [m]. Derive with G, ∇G and ∇²G; they must be good in a
+/// neighbourhood of the surface. Everything else follows:
+///
+///     g = |∇G|,  u = ∇G / g,  n = σ u            unit normal, out of the body
+///     ∂n/∂ᾱ = σ (I - u uᵀ) ∇²G / g               not symmetric
+///     K = (I - n nᵀ) (σ ∇²G / g) (I - n nᵀ)      shape operator, symmetric, K n = 0
+///
+/// A curvature is positive where the body is convex: 1/R on a ball, 0 on a plane, -1/R in a bowl. Principal
+/// directions are not used: they are undefined at umbilics, and Fang (2022), A.4 has them only where a = b.
+class Surface {
+public:
+    virtual ~Surface() = default;
+
+    virtual double value(const Vec3& a) const = 0;   ///< G
+    virtual Vec3 gradient(const Vec3& a) const = 0;  ///< ∇G
+    virtual Mat3 hessian(const Vec3& a) const = 0;   ///< ∇²G
+    /// σ: 1 where ∇G points out of the body, -1 for a hollow such as a bowl
+    virtual double sigma() const { return 1; }
+
+    /// n. lie::NumericalFailure where ∇G vanishes: an apex, a centre.
+    Vec3 normal(const Vec3& a) const;
+    /// ∂n/∂ᾱ [1/m]
+    Mat3 normal_derivative(const Vec3& a) const;
+    /// K [1/m]
+    Mat3 shape_operator(const Vec3& a) const;
+    /// tᵀ K t of a unit tangent t [1/m]: Euler's formula
+    double normal_curvature(const Vec3& a, const Vec3& t) const { return t.dot(shape_operator(a) * t); }
+    /// Half the trace of K [1/m]
+    double mean_curvature(const Vec3& a) const { return 0.5 * shape_operator(a).trace(); }
+
+    /// The point of the surface nearest to a: Newton's method on ᾱ + s ∇G = a, G = 0, from a point near the
+    /// surface. lie::NumericalFailure "contact_not_converged" where it finds none.
+    virtual Vec3 project(const Vec3& a) const;
+
+    /// A length that tells the size of the surface [m], by which tolerances are scaled
+    virtual double size() const = 0;
+
+    /// Length along the surface between two of its points that are `chord` apart, where that is a function of
+    /// the chord; else the chord, which is shorter by a part (chord κ)²/24.
+    virtual double arc(double chord) const { return chord; }
+};
+
+}  // namespace hilda::contact

@@ -5,6 +5,9 @@
 
 #include "lie/so3.hpp"
 
+#include <optional>
+#include <string>
+
 namespace hilda::contact {
 
 using lie::Mat3;
@@ -23,6 +26,8 @@ class Surface {
 public:
     virtual ~Surface() = default;
 
+    virtual std::string name() const { return "surface"; }  ///< in messages and in the model file
+
     virtual double value(const Vec3& a) const = 0;   ///< G
     virtual Vec3 gradient(const Vec3& a) const = 0;  ///< ∇G
     virtual Mat3 hessian(const Vec3& a) const = 0;   ///< ∇²G
@@ -40,11 +45,15 @@ public:
     /// Half the trace of K [1/m]
     double mean_curvature(const Vec3& a) const { return 0.5 * shape_operator(a).trace(); }
 
+    /// The point with ∇G along the unit vector u, where that is a closed form: of all points the furthest along
+    /// u. Nothing where it is not; lie::NumericalFailure where the furthest points are many.
+    virtual std::optional<Vec3> support(const Vec3&) const { return {}; }
+
     /// The point of the surface nearest to a: Newton's method on ᾱ + s ∇G = a, G = 0, from a point near the
     /// surface. lie::NumericalFailure "contact_not_converged" where it finds none.
     virtual Vec3 project(const Vec3& a) const;
 
-    /// A length that tells the size of the surface [m], by which tolerances are scaled
+    /// A length that tells the size of the surface [m], by which tolerances are scaled; 0 for a plane, which has none
     virtual double size() const = 0;
 
     /// Length along the surface between two of its points that are `chord` apart, where that is a function of

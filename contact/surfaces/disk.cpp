@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/disk.hpp"
+
+#include "contact/surfaces/positive.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+Disk::Disk(double R) : R(positive("contact::Disk", "the radius of a disk", R)) {}
+
+double Disk::value(const Vec3& a) const { return (a.head<2>().squaredNorm() - R * R) / (2 * R); }
+
+Vec3 Disk::project(const Vec3& a) const
+{
+    const double distance = a.head<2>().norm();
+    if (!(distance > 0))
+        throw lie::NumericalFailure("contact_not_converged", "the axis of a disk has no nearest point");
+    return R / distance * Vec3(a.x(), a.y(), 0);
+}
+
+double Disk::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
+
+}  // namespace hilda::contact

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/ellipsoid.hpp"
+
+#include "contact/surfaces/positive.hpp"
+
+namespace hilda::contact {
+
+namespace {
+
+const Vec3& positive_axes(const Vec3& semi_axes)
+{
+    for (double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()})
+        positive("contact::Ellipsoid", "a semi-axis of an ellipsoid", a);
+    return semi_axes;
+}
+
+}  // namespace
+
+Ellipsoid::Ellipsoid(const Vec3& semi_axes, bool concave)
+    : semi_axes(positive_axes(semi_axes)), concave(concave), L(std::cbrt(semi_axes.prod())),
+      curvature(L * semi_axes.cwiseAbs2().cwiseInverse())
+{}
+
+std::optional<Vec3> Ellipsoid::support(const Vec3& u) const
+{
+    const Vec3 Du = semi_axes.cwiseProduct(u);
+    return Vec3(semi_axes.cwiseProduct(Du) / Du.norm());
+}
+
+/// The nearest point is x_k = s_k² a_k / (s_k² + t) with the largest root t of Σ (s_k a_k / (s_k² + t))² = 1.
+/// That sum falls and is convex for t above -s², with s the shortest semi-axis, so Newton's method rises to
+/// the root from any t on its left. Counted from -s² the root keeps its digits in the middle of the ellipsoid,
+/// where it comes near to -s²; where there is none above, the nearest points are two, and one is returned.
+Vec3 Ellipsoid::project(const Vec3& a) const
+{
+    int shortest = 0;
+    const double s = semi_axes.minCoeff(&shortest);
+    const Vec3 above = (semi_axes.array() - s) * (semi_axes.array() + s);
+    const Vec3 sa = semi_axes.cwiseProduct(a.cwiseAbs());
+    double tau = std::max((sa - above).maxCoeff(), 0.0);  // t + s²
+
+    constexpr int most = 100;
+    for (int k = 0; k < most; ++k) {
+        double sum = -1, slope = 0;
+        for (int m = 0; m < 3; ++m) {
+            if (sa[m] == 0) continue;
+            const double ratio = sa[m] / (above[m] + tau);
+            sum += ratio * ratio;
+            slope -= 2 * ratio * ratio / (above[m] + tau);
+        }
+        if (!(sum > 0)) break;
+        const double before = tau;
+        tau -= sum / slope;
+        if (!(tau > before)) break;
+    }
+
+    Vec3 x = Vec3::Zero();
+    for (int m = 0; m < 3; ++m)
+        if (sa[m] != 0) x[m] = semi_axes[m] * semi_axes[m] * a[m] / (above[m] + tau);
+    if (tau == 0) x[shortest] = s * std::sqrt(std::max(0.0, 1 - x.cwiseQuotient(semi_axes).squaredNorm()));
+    return x;
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/sphere.hpp"
+
+#include "contact/surfaces/positive.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+Sphere::Sphere(double R, bool concave)
+    : R(positive("contact::Sphere", "the radius of a sphere", R)), concave(concave)
+{}
+
+Vec3 Sphere::project(const Vec3& a) const
+{
+    const double distance = a.norm();
+    if (!(distance > 0))
+        throw lie::NumericalFailure("contact_not_converged", "the centre of a sphere has no nearest point");
+    return R / distance * a;
+}
+
+double Sphere::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
+
+}  // namespace hilda::contact

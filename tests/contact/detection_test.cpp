@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Contact points against closed forms, brute force, and what cannot matter: the order of the bodies, and where
+/// they are in space.
+
+#include "contact/detection.hpp"
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "lie/check.hpp"
+#include "tests/support/no_allocation.hpp"
+#include "tests/support/random_motion.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::contact;
+using tests::Random;
+
+namespace {
+
+template <class S, class... Args>
+Shape shape(Args&&... args)
+{
+    return {.surface = std::make_shared<S>(std::forward<Args>(args)...)};
+}
+
+Shape placed(Shape s, Random& random)
+{
+    s.position = random.vector(0.3), s.orientation = random.rotation();
+    return s;
+}
+
+struct Pair {
+    std::string name;
+    Shape i, j;
+    double distance;  ///< between the origins, at which they are near to touch
+};
+
+/// Every kind of pair; add the next one here.
+std::vector<Pair> pairs()
+{
+    return {
+        {"sphere plane", shape<Sphere>(0.3), shape<Plane>(), 0.3},
+        {"sphere sphere", shape<Sphere>(0.3), shape<Sphere>(0.2), 0.5},
+        {"sphere in a bowl", shape<Sphere>(0.3), shape<Sphere>(1.0, true), 0.7},
+        {"foot plane", shape<Foot>(), shape<Plane>(), 0.1},
+        {"disk plane", shape<Disk>(0.4), shape<Plane>(), 0.3},
+        {"ellipsoid plane", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Plane>(), 0.3},
+    };
+}
+
+/// The shapes of a pair placed at random on two bodies, so that i lies in the direction +z or so of j, at its
+/// distance and up to a fifth of it more or less
+struct Scene {
+    Shape i, j;
+    Motion bi, bj;
+
+    Scene(const Pair& pair, Random& random) : i(placed(pair.i, random)), j(placed(pair.j, random))
+    {
+        bi.A = random.rotation(), bj.A = random.rotation();
+        bj.r = random.vector();
+        const Vec3 d = (Vec3::UnitZ() + random.vector(0.3)).normalized();
+        bi.r = bj.r + bj.A * (j.position + pair.distance * random.number(0.8, 1.2) * (j.orientation * d)) -
+               bi.A * i.position;
+    }
+    Touch touch() const { return make_detector(i, j)->detect(bi, bj, nullptr); }
+};
+
+Motion moved(const Motion& m, const Vec3& r, const Mat3& A)
+{
+    Motion at;
+    at.r = r + A * m.r, at.A = A * m.A;
+    return at;
+}
+
+constexpr double eps = 2.3e-16;
+
+}  // namespace
+
+TEST_CASE("the contact points lie on their surfaces along opposite normals", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 20u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch();
+        const Vec3 a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r));
+        const Vec3 a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r));
+        CHECK(std::abs(s.j.surface->value(a_j)) < 40 * eps);
+        CHECK((s.bj.A * s.j.orientation * s.j.surface->normal(a_j) - t.n).norm() < 40 * eps);
+        CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 20 * eps);
+        CHECK(t.n.norm() == Approx(1).epsilon(10 * eps));
+        CHECK((t.C() - 0.5 * (t.C_i + t.C_j)).norm() == 0);
+        for (const Mat3& K : {t.K_i, t.K_j}) {
+            CHECK((K - K.transpose()).norm() < 100 * eps);
+            CHECK((K * t.n).norm() < 100 * eps);
+        }
+        if (pair.name.starts_with("foot")) {
+            CHECK(a_i.norm() < 20 * eps);
+        } else {
+            CHECK(std::abs(s.i.surface->value(a_i)) < 40 * eps);
+        }
+        if (pair.name.starts_with("foot") || pair.name.starts_with("disk")) continue;
+        CHECK((s.bi.A * s.i.orientation * s.i.surface->normal(a_i) + t.n).norm() < 100 * eps);
+        const Mat3 axes_i = s.bi.A * s.i.orientation, axes_j = s.bj.A * s.j.orientation;
+        CHECK((t.K_i - axes_i * s.i.surface->shape_operator(a_i) * axes_i.transpose()).norm() < 1e-13);
+        CHECK((t.K_j - axes_j * s.j.surface->shape_operator(a_j) * axes_j.transpose()).norm() < 1e-13);
+    }
+}
+
+TEST_CASE("exchanging the bodies exchanges the points and turns the normal", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch(), e = make_detector(s.j, s.i)->detect(s.bj, s.bi, nullptr);
+        CHECK(e.gap == t.gap);
+        CHECK(e.n == -t.n);
+        CHECK(e.C_i == t.C_j);
+        CHECK(e.C_j == t.C_i);
+        CHECK(e.K_i == t.K_j);
+        CHECK(e.K_j == t.K_i);
+    }
+}
+
+TEST_CASE("a touch moves with its bodies", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Vec3 r = random.vector();
+        const Mat3 A = random.rotation();
+        const Touch t = s.touch();
+        const Touch m = make_detector(s.i, s.j)->detect(moved(s.bi, r, A), moved(s.bj, r, A), nullptr);
+        CHECK(std::abs(m.gap - t.gap) < 1e-13);
+        CHECK((m.n - A * t.n).norm() < 1e-13);
+        CHECK((m.C_i - r - A * t.C_i).norm() < 1e-13);
+        CHECK((m.C_j - r - A * t.C_j).norm() < 1e-13);
+        CHECK((m.K_i - A * t.K_i * A.transpose()).norm() < 1e-12);
+        CHECK((m.K_j - A * t.K_j * A.transpose()).norm() < 1e-12);
+    }
+}
+
+TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocation]")
+{
+    Random random(3);
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const auto detector = make_detector(s.i, s.j);
+        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        double gap = 0;
+        const long taken = tests::allocations_during([&] {
+            gap = detector->detect(s.bi, s.bj, nullptr).gap + detector->detect(s.bi, s.bj, &from).gap;
+        });
+        CHECK(taken == 0);
+        CHECK(gap == Approx(2 * t.gap).margin(1e-14));
+    }
+}
+
+TEST_CASE("a ball above a plane and sunk into it", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Plane>());
+    Motion ball, ground;
+    for (double z : {0.75, 0.5, 0.25}) {
+        ball.r = {1, 2, z};
+        const Touch t = detector->detect(ball, ground, nullptr);
+        CHECK(t.gap == z - 0.5);
+        CHECK(t.n == Vec3::UnitZ());
+        CHECK(t.C_i == Vec3(1, 2, z - 0.5));
+        CHECK(t.C_j == Vec3(1, 2, 0));
+        CHECK(t.K_i == Mat3(Vec3(2, 2, 0).asDiagonal()));
+    }
+}
+
+TEST_CASE("a ball in a bowl touches the nearest wall", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
+    Motion ball, ground;
+    ball.r = {0, 0, -1.25};
+    const Touch t = detector->detect(ball, ground, nullptr);
+    CHECK(t.gap == 0.25);
+    CHECK(t.n == Vec3::UnitZ());
+    CHECK(t.C_i == Vec3(0, 0, -1.75));
+    CHECK(t.C_j == Vec3(0, 0, -2));
+    CHECK(t.K_i == Mat3(Vec3(2, 2, 0).asDiagonal()));
+    CHECK(t.K_j == Mat3(Vec3(-0.5, -0.5, 0).asDiagonal()));
+}
+
+TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    const Vec3 D(0.3, 0.2, 0.5);
+    const auto detector = make_detector(shape<Ellipsoid>(D), shape<Plane>());
+    Motion body = random.motion(), ground;
+    const Touch t = detector->detect(body, ground, nullptr);
+    CHECK(t.gap == Approx(body.r.z() - D.cwiseProduct(body.A.row(2).transpose()).norm()).margin(1e-15));
+}
+
+TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Disk>(0.5), shape<Plane>());
+    Motion disk, ground;
+    for (double lean : {0.0, 0.3, 1.2, -0.7}) {
+        disk.A = lie::exp(Vec3(lean + std::acos(0.0), 0, 0));
+        disk.r = {0, 0, 1};
+        const Touch t = detector->detect(disk, ground, nullptr);
+        CHECK(t.gap == Approx(1 - 0.5 * std::cos(lean)));
+        CHECK((t.K_i - Vec3(std::cos(lean) / 0.5, 0, 0).asDiagonal().toDenseMatrix()).norm() < 1e-15);
+    }
+    disk.A.setIdentity();
+    CHECK_THROWS_AS(detector->detect(disk, ground, nullptr), lie::NumericalFailure);
+}
+
+TEST_CASE("pairs without a single touch are refused", "[contact][detection]")
+{
+    const Shape plane = shape<Plane>(), foot = shape<Foot>(), disk = shape<Disk>(1.0),
+                ball = shape<Sphere>(1.0), bowl = shape<Sphere>(1.0, true);
+    const auto refusal = [](const Shape& i, const Shape& j) {
+        try {
+            make_detector(i, j);
+        } catch (const lie::InvalidInput& e) {
+            return std::string(e.what());
+        }
+        return std::string("accepted");
+    };
+    const std::string where = "contact::make_detector: ";
+    CHECK(refusal(plane, plane) ==
+          where + "a pair of surfaces must touch in a single point, got plane and plane");
+    CHECK(refusal(foot, foot) == where + "a foot touches planes only, got foot and foot");
+    CHECK(refusal(ball, foot) == where + "a foot touches planes only, got sphere and foot");
+    CHECK(refusal(disk, ball) == where + "a disk touches planes only, got disk and sphere");
+    CHECK(refusal(plane, bowl) ==
+          where + "a concave surface can be touched from inside only, got plane and concave sphere");
+    CHECK(refusal(bowl, bowl) ==
+          where + "a concave surface can be touched from inside only, got concave sphere and concave sphere");
+    CHECK(refusal(ball, bowl) ==
+          where +
+              "a ball must be smaller than the bowl it touches, got a ball of radius 1 in a bowl of "
+              "radius 1");
+    CHECK(refusal(ball, {}) == where + "a shape must have a surface, got none");
+
+    Shape turned = ball;
+    turned.orientation *= 2;
+    CHECK(refusal(turned, plane).starts_with(where + "the orientation of a surface must be a rotation"));
+    turned.orientation = -Mat3::Identity();
+    CHECK(refusal(plane, turned) ==
+          where + "the orientation of a surface must be a rotation, got a reflection");
+    Shape lost = ball;
+    lost.position.x() = std::nan("");
+    CHECK(refusal(lost, plane) == where + "the position of a surface must be finite, got nan   0   0");
+}
+
+TEST_CASE("concentric spheres have no contact normal", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
+    CHECK_THROWS_AS(detector->detect({}, {}, nullptr), lie::NumericalFailure);
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/contact.hpp"
+
+#include "lie/check.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace hilda::contact {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double deepest = 0.1;         // overlap at a start, over a radius of curvature
+constexpr double no_curvature = 1e-12;  // over the size of the curvatures: rounding
+
+double reduced(double a, double b)
+{
+    if (!std::isfinite(a)) return b;
+    if (!std::isfinite(b)) return a;
+    return a * b / (a + b);
+}
+
+Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
+
+/// nᵀ J n and the mean over the tangents
+struct Moments {
+    double normal, tangential;
+};
+Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
+{
+    if (!body.turns()) return {infinite, infinite};
+    const Vec3 n_bar = A.transpose() * n;
+    const double normal = n_bar.dot(body.J_bar * n_bar);
+    return {normal, 0.5 * (body.J_bar.trace() - normal)};
+}
+
+std::string with_value(const std::string& what, double value)
+{
+    std::ostringstream text;
+    text.precision(6);
+    text << what << ", got " << value;
+    return text.str();
+}
+
+}  // namespace
+
+Mat3 Inertia::J_bar_inverse() const { return turns() ? Mat3(J_bar.inverse()) : Mat3(Mat3::Zero()); }
+
+Contact::Contact(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
+                 std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction)
+    : name(std::move(name)), i(std::move(i)), j(std::move(j)), of_i(std::move(of_i)), of_j(std::move(of_j)),
+      law(std::move(law)), friction(std::move(friction)), detector(make_detector(this->i, this->j)),
+      m(this->friction->fictitious(this->of_i.m, this->of_j.m)), m_normal(reduced(this->of_i.m, this->of_j.m))
+{}
+
+Pressing Contact::pressing(const Touch& touch, const Motion& bi, const Motion& bj) const
+{
+    const Vec3 C = touch.C();
+    return {.overlap = -touch.gap,
+            .overlap_rate = touch.n.dot(velocity(bj, C) - velocity(bi, C)),
+            .curvature = 0.5 * (touch.K_i.trace() + touch.K_j.trace()),
+            .m = m_normal};
+}
+
+Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) const
+{
+    Meeting now;
+    try {
+        const Points last{memory.track.c_i, memory.track.c_j};
+        now.touch = detector->detect(bi, bj, memory.found ? &last : nullptr);
+        const Pressing p = pressing(now.touch, bi, bj);
+        now.N = law->force(p);
+        now.overlap_rate = p.overlap_rate;
+        if (!(now.N > 0)) return now;
+        now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())
+                                   : no_slip(now.touch, now.touch.n.unitOrthogonal());
+    } catch (const lie::NumericalFailure& e) {
+        throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
+    }
+    now.m = m;
+    const Moments a = moments(of_i, bi.A, now.touch.n), b = moments(of_j, bj.A, now.touch.n);
+    now.I_roll = friction->fictitious(a.tangential, b.tangential);
+    now.I_spin = friction->fictitious(a.normal, b.normal);
+    return now;
+}
+
+void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory,
+                      const Vec3* u) const
+{
+    memory.found = true;
+    if (!(now.N > 0)) {
+        memory.touching = false;
+        memory.history = {};
+        memory.track = contact::track(now.touch, now.touch.n.unitOrthogonal(), bi, bj);
+        return;
+    }
+    if (memory.touching) friction->advance(now, memory.history);
+    memory.track = contact::track(now.touch, !memory.touching && u != nullptr ? *u : now.slip.u, bi, bj);
+    memory.touching = true;
+}
+
+std::string Contact::objection(const Motion& bi, const Motion& bj) const
+{
+    const Touch touch = detector->detect(bi, bj, nullptr);
+    // eigenvalues of K_i + K_j: one belongs to n and is zero
+    const Vec3 u = touch.n.unitOrthogonal(), w = touch.n.cross(u);
+    const Mat3 K = touch.K_i + touch.K_j;
+    const double a = u.dot(K * u), b = u.dot(K * w), d = w.dot(K * w);
+    const double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
+    const double size = touch.K_i.norm() + touch.K_j.norm();
+    if (least < -no_curvature * size)
+        return with_value("the surfaces do not fit: the sum of their curvatures must not be negative", least);
+    double largest = 0;
+    for (const Mat3* one : {&touch.K_i, &touch.K_j})
+        largest = std::max(largest, std::abs(0.5 * one->trace()));
+    if (-touch.gap * largest > deepest)
+        return with_value(with_value("the surfaces must not overlap by more than a tenth of a radius of "
+                                     "curvature: 1/R",
+                                     largest) +
+                              " 1/m, and an overlap",
+                          -touch.gap);
+    const Memory fresh;
+    const Springs springs = friction->springs(meet(bi, bj, fresh));
+    if (!std::isfinite(springs.K_roll + springs.K_spin))
+        return with_value("rolling and spinning friction need curvature: kappa_i + kappa_j", least);
+    return {};
+}
+
+double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& bj) const
+{
+    using Mat6 = Eigen::Matrix<double, 6, 6>;
+    using Rows = Eigen::Matrix<double, 6, 3>;
+    const Springs springs = friction->springs(now);
+    const Pressing p = pressing(now.touch, bi, bj);
+    const Vec3 n = now.touch.n, u = n.unitOrthogonal(), w = n.cross(u), C = now.touch.C();
+
+    // Rows: sliding along u and w, pressing along n, rolling about u and w, spinning about n
+    Rows linear = Rows::Zero();
+    linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
+    Mat6 W = Mat6::Zero();
+    for (const auto& [body, motion] : {std::pair(&of_i, &bi), std::pair(&of_j, &bj)}) {
+        if (!body->moves()) continue;
+        const Vec3 s = C - motion->r;
+        Rows angular = Rows::Zero();
+        angular << s.cross(u).transpose(), s.cross(w).transpose(), s.cross(n).transpose(), u.transpose(),
+            w.transpose(), n.transpose();
+        const Rows in_body = angular * motion->A;
+        W += linear * linear.transpose() / body->m + in_body * body->J_bar_inverse() * in_body.transpose();
+    }
+    Eigen::Matrix<double, 6, 1> K, D;
+    K << springs.K_slide, springs.K_slide, law->stiffness(p), springs.K_roll, springs.K_roll, springs.K_spin;
+    D << springs.D_slide, springs.D_slide, p.overlap > 0 ? law->damping(p) : 0, springs.D_roll,
+        springs.D_roll, springs.D_spin;
+    const auto stable = [&](double h) {
+        const Eigen::Matrix<double, 6, 1> root = (2 * h * D + h * h * K).cwiseSqrt();
+        const Mat6 scaled = root.asDiagonal() * W * root.asDiagonal();
+        return Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
+               4;
+    };
+    double lower = 1e-15, upper = 1e6;  // [s]
+    if (stable(upper)) return std::numeric_limits<double>::infinity();
+    while (upper > lower * (1 + 1e-12)) {
+        const double middle = std::sqrt(lower * upper);
+        (stable(middle) ? lower : upper) = middle;
+    }
+    return lower;
+}
+
+}  // namespace hilda::contact

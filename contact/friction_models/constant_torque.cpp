@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Sliding as in Sec. 4.3.1; rolling by a torque of constant size against the rolling velocity.
+///
+///     T_i = -μ_r R N ω_t / |ω_t|,   T_j = -T_i                                         Fang (2022), Eq. 2.48
+///
+/// ω_t is the part of ω_i - ω_j in the tangent plane, 1/R = κ_i + κ_j. It has no history, so a body at rest trembles:
+/// where the speed should be zero, rounding gives the torque its direction.
+
+#include "contact/friction_models/spring.hpp"
+
+namespace hilda::contact {
+namespace {
+
+class ConstantTorque final : public FrictionModel {
+public:
+    explicit ConstantTorque(const FrictionParameters& p) : sliding(p) {}
+
+    Tracking tracking() const override { return sliding.p.tracking; }
+    void advance(const Meeting& now, History& h) const override { sliding.advance(now, h); }
+
+    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    {
+        Wrench out;
+        sliding.add(now, rates, h, out);
+        const Vec3 q = now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j;  // (ω_i - ω_j) × n
+        const double speed = q.norm(), kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        if (!(speed > 0) || !(kappa > 0)) return out;
+        out.T_roll_E = sliding.p.mu_r * now.N / (kappa * speed) * q.cross(now.slip.n);
+        out.T_roll_E_j = -out.T_roll_E;
+        out.T_i = out.T_roll_E;
+        out.T_j = -out.T_roll_E;
+        return out;
+    }
+
+    Springs springs(const Meeting& now) const override
+    {
+        return {.K_slide = sliding.p.K_E, .D_slide = sliding.D(now)};
+    }
+
+private:
+    const Sliding sliding;
+};
+
+const bool enrolled = enrol<ConstantTorque>(
+    {.name = "constant-torque", .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)"});
+
+}  // namespace
+}  // namespace hilda::contact

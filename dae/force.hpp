@@ -7,6 +7,8 @@
 #include "lie/system.hpp"
 
 #include <array>
+#include <limits>
+#include <string>
 
 namespace hilda::dae {
 
@@ -20,11 +22,22 @@ public:
     /// Potential energy [J] where the force has one
     virtual double potential_energy(const State&) const { return 0; }
 
-    /// Whole numbers this force keeps in State::memory from step to step (turns of a torsion spring), and
-    /// where they start.
+    /// Why the force cannot be used from the start x; empty when it can. Asked before anything else, when x
+    /// does not have its memory yet, and before positions and velocities are put on the constraints.
+    virtual std::string objection(const State& /*x*/) const { return {}; }
+
+    /// How many whole numbers this force keeps in State::memory from step to step (turns of a torsion spring),
+    /// and how many real ones in State::remembered (a contact point, the stretch of a bristle).
     virtual int memory() const { return 0; }
+    virtual int remembered() const { return 0; }
+    /// Brings both up to date: at a start, where all are zero, and once per accepted step, for the state after
+    /// it, which comes with what was remembered in the state before. Allocates nothing.
     virtual void remember(State& /*x*/) const {}
-    int first_memory = 0;  ///< set by the model
+    int first_memory = 0, first_remembered = 0;  ///< where they begin; set by the model
+
+    /// The largest step [s] with which a scheme that takes this force as it is at the beginning of the step is
+    /// stable
+    virtual double stable_step(const State& /*x*/) const { return std::numeric_limits<double>::infinity(); }
 
     /// The bodies whose motion it depends on, and on which alone it acts; `ground` for none. A force that says
     /// so is differentiated where a scheme wants its stiffness.
@@ -33,6 +46,8 @@ public:
     /// Highest body number it acts on, and a name for messages
     virtual int last_body() const = 0;
     std::string name;
+    /// What messages call it
+    virtual std::string in_words() const { return "force '" + name + "'"; }
 
 protected:
     /// The ground stands still at the origin.

@@ -82,7 +82,7 @@ void Model::constrain(const std::string& name, Blocks rows)
 void Model::load(std::unique_ptr<Force> f)
 {
     if (f->last_body() >= static_cast<int>(body.size()))
-        lie::reject("force '" + f->name + "'", "no body has this number", f->last_body());
+        lie::reject(f->in_words(), "no body has this number", f->last_body());
     force.push_back(std::move(f));
 }
 
@@ -96,7 +96,10 @@ void Model::prepare(State& x)
         if (!(lie::orthogonality_error(A) < not_a_rotation) || A.determinant() < 0)
             lie::reject("body '" + body[b].name + "'", "the orientation must be a rotation matrix", A);
     }
-    memory = 0;
+    for (size_t k = 0; k < force.size(); ++k)
+        if (const std::string why = force[k]->objection(x); !why.empty())
+            throw ForceError(force[k]->in_words() + ": " + why, static_cast<int>(k));
+    memory = remembered = 0;
     for (Row& r : row) {
         const Motion &bi = motion(x, r.block->i), &bj = motion(x, r.block->j);
         if (const std::string why = r.block->objection(bi, bj, x.t); !why.empty())
@@ -114,11 +117,28 @@ void Model::prepare(State& x)
     for (const auto& f : force) {
         f->first_memory = memory;
         memory += f->memory();
+        f->first_remembered = remembered;
+        remembered += f->remembered();
     }
     x.memory.assign(memory, 0);
     x.lambda = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+    swap_drivers(x);  // one may start near its singular point
+    remember_start(x);
+}
+
+void Model::remember_start(State& x) const
+{
+    for (const auto& f : force) std::fill_n(x.memory.begin() + f->first_memory, f->memory(), 0);
+    x.remembered.assign(remembered, 0);
     for (const auto& f : force) f->remember(x);
-    accepted(x, x);  // a driver may start near its singular point
+}
+
+Model::StableStep Model::stable_step(const State& x) const
+{
+    StableStep smallest;
+    for (size_t k = 0; k < force.size(); ++k)
+        if (const double h = force[k]->stable_step(x); h < smallest.h) smallest = {h, static_cast<int>(k)};
+    return smallest;
 }
 
 void Model::drop(int k)
@@ -343,21 +363,26 @@ double Model::potential_energy(const State& x) const
 
 void Model::accepted(const State&, State& after) const
 {
+    swap_drivers(after);
+    for (const auto& f : force) f->remember(after);
+}
+
+void Model::swap_drivers(State& x) const
+{
     for (size_t n = 0; n < active.size(); ++n) {
         const Row& r = row[active[n]];
         if (!r.complement) continue;
-        const auto& in_force = static_cast<const DP1&>(r.in_force(after));
-        if (in_force.alignment(after.t) <= swap_above) continue;
-        const Motion &bi = motion(after, in_force.i), &bj = motion(after, in_force.j);
+        const auto& in_force = static_cast<const DP1&>(r.in_force(x));
+        if (in_force.alignment(x.t) <= swap_above) continue;
+        const Motion &bi = motion(x, in_force.i), &bj = motion(x, in_force.j);
         const Block& other = &in_force == r.block.get() ? *r.complement : *r.block;
-        if (std::abs(other.phi(bi, bj, after.t)) > swap_mismatch) continue;
-        const Variation from = in_force.variation(bi, bj, after.t);
-        after.memory[r.branch] ^= 1;
-        const Variation to = r.in_force(after).variation(bi, bj, after.t);
-        after.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
-                                                      (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());
+        if (std::abs(other.phi(bi, bj, x.t)) > swap_mismatch) continue;
+        const Variation from = in_force.variation(bi, bj, x.t);
+        x.memory[r.branch] ^= 1;
+        const Variation to = r.in_force(x).variation(bi, bj, x.t);
+        x.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
+                                                  (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());
     }
-    for (const auto& f : force) f->remember(after);
 }
 
 void reactions(const lie::System& system, const State& x, lie::Rows& C, std::vector<Reaction>& out)

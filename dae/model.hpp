@@ -22,6 +22,14 @@ public:
     int constraint;  ///< its number in the model, from 0
 };
 
+/// Input that one force cannot work with. what() names it.
+class ForceError : public lie::InvalidInput {
+public:
+    ForceError(const std::string& what, int force) : InvalidInput(what), force(force) {}
+
+    int force;  ///< its number in the model, from 0
+};
+
 class Model final : public lie::System {
 public:
     Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global
@@ -50,10 +58,21 @@ public:
     void load(F force) { load(std::make_unique<F>(std::move(force))); }
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
 
-    /// Readies the model for a run from x: puts dropped rows back, asks every block whether it can be used
-    /// there (InvalidInput names the constraint) and every body whether its orientation is one, gives DP1
-    /// drivers their complement, and sets x.memory and the size of x.lambda. Called by start().
+    /// Readies the model for a run from x: puts dropped rows back, asks every body whether its orientation is
+    /// one and every block and every force whether it can be used there (ConstraintError, ForceError), gives
+    /// DP1 drivers their complement, and sets x.memory, x.remembered and the size of x.lambda. Called by
+    /// start().
     void prepare(State& x);
+    /// Lets the forces remember a start in x, whatever they remembered before. Called by prepare(), and by
+    /// start() once x is on the constraints.
+    void remember_start(State& x) const;
+
+    /// Smallest stable_step() of the forces, and the force that has it; -1 where any step is stable.
+    struct StableStep {
+        double h = std::numeric_limits<double>::infinity();  ///< [s]
+        int force = -1;
+    };
+    StableStep stable_step(const State& x) const;
 
     /// A row of a constraint, in the equations or dropped from them.
     struct Row {
@@ -110,6 +129,7 @@ public:
     std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
 
 private:
+    void swap_drivers(State& x) const;
     void set_pattern();
     void add_to_pattern(const Row& row);
 
@@ -121,7 +141,7 @@ private:
     std::vector<Row> row;
     std::vector<int> active, dropped;  ///< ascending
     std::vector<std::unique_ptr<Force>> force;
-    int memory = 0;
+    int memory = 0, remembered = 0;  ///< numbers in the state
 
     lie::Mass inertia;
     lie::Rows rows_pattern;

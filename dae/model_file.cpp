@@ -280,6 +280,7 @@ private:
         force->name = name;
         Json kept = o.finish();
         model.load(std::move(force));
+        out.force_place.push_back(o.place());
         return kept;
     }
 
@@ -371,6 +372,10 @@ StartReport start(Description& description, const StartOptions& options)
     } catch (const ConstraintError& e) {
         throw ConstraintError(
             description.constraint_place[static_cast<size_t>(e.constraint)] + ": " + e.what(), e.constraint);
+    } catch (const ForceError& e) {
+        const auto k = static_cast<size_t>(e.force);
+        if (k >= description.force_place.size()) throw;  // one that is not from the file
+        throw ForceError(description.force_place[k] + ": " + e.what(), e.force);
     }
 }
 

@@ -18,6 +18,7 @@ struct Description {
     std::string text;  ///< the model as read, in one form: JSON with defaults filled in and --set applied
     std::vector<std::string> warnings;          ///< one line each, with the place
     std::vector<std::string> constraint_place;  ///< "FILE:LINE:COL (/constraints/3)" of each constraint
+    std::vector<std::string> force_place;       ///< the same of each force of the model
 };
 
 /// Reads a model file. `file` is its name in messages. Each of `set` is "/json/pointer=VALUE" (VALUE is JSON,

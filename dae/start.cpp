@@ -276,6 +276,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
+    model.remember_start(x);  // what prepare() let them remember is of a start not yet on the constraints
     solve_accelerations(model, K, x);
     for (const int k : dropped) check_agreement(model, model.all_rows()[k], x);
     return report;

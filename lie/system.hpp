@@ -152,8 +152,9 @@ public:
 
     /// Potential energy of the loads that have one [J]
     virtual double potential_energy(const State&) const { return 0; }
-    /// Told once per accepted step, so that what the system remembers is updated in `after` (its memory, and
-    /// the multipliers of rows that change their meaning).
+    /// Told once per accepted step, so that what the system remembers is updated in `after` (its memory, its
+    /// remembered numbers, and the multipliers of rows that change their meaning). As long as a step is tried
+    /// they are those of the state before it.
     virtual void accepted(const State& /*before*/, State& /*after*/) const {}
     /// What row k belongs to, for messages: constraint 'crank-rod' row 2; bodies 'crank', 'rod'
     virtual std::string row_name(int k) const { return "constraint row " + std::to_string(k); }

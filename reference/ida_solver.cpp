@@ -102,6 +102,11 @@ public:
         if (!(t_end > x.t) || !std::isfinite(t_end))
             lie::reject("reference::IdaSolver", "the end must be finite and after t = " + number(x.t) + " s",
                         t_end);
+        if (!x.remembered.empty())
+            lie::reject("reference::IdaSolver",
+                        "what remembers real numbers from step to step jumps there, and needs a scheme of "
+                        "fixed steps; numbers remembered",
+                        x.remembered.size());
         const long before = statistics().iterations;
         const bool goes_on = valid && is_left(x);
         valid = false;  // until it is reached

@@ -44,6 +44,11 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
                     "a mechanism needs a degree of freedom to have equations of motion; where every one is "
                     "driven, use kinematic analysis (dae::Kinematics)",
                     0);
+    if (!start.remembered.empty())
+        lie::reject("reference::index1",
+                    "what remembers real numbers from step to step has no equations of motion between the "
+                    "steps; numbers remembered",
+                    start.remembered.size());
     lie::Saddle K(model);
     lie::State x = start, stage = start;
 

@@ -19,7 +19,8 @@ namespace hilda::reference {
 /// back on their constraints at every instant; drivers are swapped, and forces remember, at every step of the
 /// integrator. States are complete: with accelerations and multipliers.
 ///
-/// Refuses a model without degrees of freedom (lie::InvalidInput): its motion is kinematics.
+/// Refuses a model without degrees of freedom (lie::InvalidInput): its motion is kinematics. Refuses a model
+/// that remembers real numbers: what they are depends on the steps, which nobody here chooses.
 lie::Trajectory index1(const dae::Model& model, const lie::State& x, const std::vector<double>& instants,
                        const OdeTolerance& tolerance = {});
 

@@ -83,6 +83,7 @@ std::string RpEquations::name(int k) const
 void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
 {
     x.memory = from.memory;
+    x.remembered = from.remembered;
     y.setZero();
     ydot.setZero();
     for (int b = 0; b < bodies; ++b) {

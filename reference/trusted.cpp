@@ -92,7 +92,7 @@ lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std:
 {
     try {
         // What drives or remembers is beyond the closed forms here.
-        if (x.memory.empty())
+        if (x.memory.empty() && x.remembered.empty())
             if (auto run = completed(model, x, instants, closed_form)) return *std::move(run);
     } catch (const lie::InvalidInput&) {  // a closed form that does not cover the model
     } catch (const lie::NumericalFailure&) {

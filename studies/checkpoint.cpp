@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'C', 'K', 'P'};
-constexpr std::uint64_t format = 2;
+constexpr std::uint64_t format = 3;
 constexpr size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint32_t);
 
 /// CRC-32 as in zlib and PNG
@@ -95,6 +95,7 @@ void pass(Archive& a, lie::State& x)
     pass_list(a, x.body);
     pass_list(a, x.lambda);
     pass_list(a, x.memory);
+    pass_list(a, x.remembered);
     pass_list(a, x.history);
 }
 

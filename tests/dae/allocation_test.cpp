@@ -5,6 +5,7 @@
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/start.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/bristle.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/no_allocation.hpp"
 
@@ -13,7 +14,7 @@
 using namespace hilda;
 using lie::Vec3;
 
-TEST_CASE("a step of a mechanism with drivers, springs and expressions takes nothing from the heap",
+TEST_CASE("a step of a mechanism with drivers, springs, memories and expressions takes nothing from the heap",
           "[dae][allocation]")
 {
     if (!tests::counts_allocations) {
@@ -30,6 +31,7 @@ TEST_CASE("a step of a mechanism with drivers, springs and expressions takes not
         model.load(
             dae::PrescribedForce(1, Vec3(0, 0.1, 0), dae::Frame::body,
                                  {dae::Expression("t"), dae::Expression("0"), dae::Expression("cos(3*t)")}));
+        model.load(tests::Bristle(0, 2, 0.1, 1e-3));
         dae::start(model, x, {.fix_initial = true});
         const auto integrator = s.make(model, {});
         lie::March march(x, *integrator, 1e-3);

@@ -90,6 +90,7 @@ TEST_CASE("every good model is read, starts, and is written as it is read", "[da
         REQUIRE(again.model->constraints() == d.model->constraints());
         REQUIRE(again.model->forces().size() == d.model->forces().size());
         CHECK(d.constraint_place.size() == static_cast<std::size_t>(d.model->constraints()));
+        CHECK(d.force_place.size() == d.model->forces().size());
         for (int b = 0; b < d.model->bodies(); ++b) {
             CHECK(again.model->all_bodies()[b].name == d.model->all_bodies()[b].name);
             CHECK(again.model->all_bodies()[b].m == d.model->all_bodies()[b].m);

@@ -4,9 +4,11 @@
 #include "reference/index1.hpp"
 
 #include "dae/kinematics.hpp"
+#include "reference/ida_solver.hpp"
 #include "reference/trusted.hpp"
 #include "tests/reference/chains.hpp"
 #include "tests/reference/reference_csv.hpp"
+#include "tests/support/bristle.hpp"
 
 using namespace hilda;
 using namespace hilda::reference;
@@ -201,6 +203,11 @@ TEST_CASE("index 1 refuses what has no equations of motion, and instants out of 
     lie::State y;
     tests::DoublePendulum{}.build(model, y);
     CHECK_THROWS_WITH(index1(model, y, {0.01, 0}), Catch::Contains("ascend") && Catch::Contains("got 0"));
+
+    model.load(tests::Bristle(0, 1, 1, 0.1));
+    dae::start(model, y);
+    CHECK_THROWS_WITH(index1(model, y, {0.01}), Catch::Contains("remembers real numbers"));
+    CHECK_THROWS_WITH(IdaSolver(model, {}).advance(y, 0.01), Catch::Contains("scheme of fixed steps"));
 }
 
 TEST_CASE("the trusted motion of a driven mechanism is its kinematics", "[reference][trusted]")

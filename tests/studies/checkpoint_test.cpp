@@ -20,6 +20,7 @@ Checkpoint some_checkpoint()
     c.node.body[1].r = {1, 2, 3};
     c.node.lambda = Eigen::VectorXd::LinSpaced(5, 0, 1);
     c.node.memory = {1, -2};
+    c.node.remembered = {0.1, -1e-300, 7};
     c.number = 100;
     c.iterations = 3;
     c.pivots = c.node;
@@ -43,6 +44,7 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.node.body[1].r == c.node.body[1].r);
     CHECK(back.node.lambda == c.node.lambda);
     CHECK(back.node.memory == c.node.memory);
+    CHECK(back.node.remembered == c.node.remembered);
     CHECK(back.number == c.number);
     CHECK(back.statistics.refactorizations == c.statistics.refactorizations);
     CHECK(back.invariants.energy_drift == c.invariants.energy_drift);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Forces that remember real numbers from step to step, and what a force may say of a start and of a step.
+
+#include "dae/forces/torsion_spring.hpp"
+#include "dae/joints.hpp"
+#include "dae/start.hpp"
+#include "lie/trajectory.hpp"
+#include "tests/support/bristle.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::dae;
+using tests::Bristle;
+
+namespace {
+
+const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Z = Vec3::UnitZ();
+
+struct Two {
+    Model model;
+    State x;
+
+    Two()
+    {
+        for (const char* name : {"a", "b"})
+            model.add({.name = name, .m = 2, .J_bar = Vec3(1, 1.2, 1.4).asDiagonal()});
+        x.body.resize(2);
+        x.body[0].r = {1, 0, 0};
+        x.body[1].r = {0, 2, 0};
+    }
+    const Bristle& bristle(int k) const { return dynamic_cast<const Bristle&>(*model.forces()[k]); }
+};
+
+}  // namespace
+
+TEST_CASE("each force remembers in its own place, and in the state alone", "[dae][remembered]")
+{
+    Two two;
+    Model& model = two.model;
+    State& x = two.x;
+    model.gravity.setZero();
+    model.load(TorsionSpring(ground, Z, 0, Z, 0, 0, 0, x));
+    model.load(Bristle(ground, 0, 3, 0.5));
+    model.load(TorsionSpring(0, Z, 1, Z, 0, 0, 0, x));
+    model.load(Bristle(0, 1, 5, 0.25));
+    x.remembered = {7, 7};  // of another model
+    model.prepare(x);
+    CHECK(x.memory == std::vector<int>{0, 0});
+    CHECK(x.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
+
+    const auto loads = [&](const State& at) {
+        lie::Loads out(2);
+        model.loads(at, out);
+        return out;
+    };
+    State after = x;
+    after.body[0].r.x() = 1.25;
+    after.body[1].r = {0.25, 3, 0};
+    after.body[0].A = lie::exp(1.5 * Z);
+    const lie::Loads before_accepted = loads(after);
+    CHECK(before_accepted.F[1].isApprox(Vec3(0, -5, 0)));  // stretched by 1
+    model.accepted(x, after);
+    CHECK(after.memory == std::vector<int>{1, -1});
+    CHECK(after.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2.75, 0});  // the second has slipped
+    CHECK(loads(after).F[1].isApprox(Vec3(0, -1.25, 0)));
+    CHECK(loads(after).F[0].isApprox(Vec3(-0.75, 1.25, 0)));
+    CHECK(x.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
+
+    model.prepare(after);  // a new start
+    CHECK(after.remembered == std::vector<double>{1, 1.25, 0, 0, 1, -1, 3, 0});
+    CHECK(loads(after).F[0].norm() == 0);
+}
+
+TEST_CASE("forces remember the start where it is once it satisfies the constraints", "[dae][remembered]")
+{
+    Two two;
+    two.model.constrain("pin", revolute(ground, O, X, 0, Vec3(-0.9, 0, 0), X));
+    two.model.load(Bristle(ground, 0, 3, 0.01));
+    start(two.model, two.x, {.fix_initial = true});
+    CHECK(std::abs(two.x.body[0].r.x() - 0.9) < 1e-12);
+    CHECK(two.bristle(0).held(two.x) == two.x.body[0].r);
+}
+
+// A bristle that never slips is a spring, one that slips pulls with a constant force, here 1 N from 0.1 m on.
+TEST_CASE("what is remembered moves the bodies as it should", "[dae][remembered]")
+{
+    for (const lie::Scheme& scheme : lie::schemes()) {
+        Two two;
+        two.model.gravity = {0, 0, 0};
+        two.model.load(Bristle(ground, 0, 8, 10));
+        two.model.load(Bristle(ground, 1, 10, 0.1));
+        two.x.body[0].rdot = two.x.body[1].rdot = {1, 0, 0};
+        start(two.model, two.x);
+        const auto integrator = scheme.make(two.model, {});
+        constexpr double h = 1e-3, t = 0.5;
+        lie::March march(two.x, *integrator, h);
+        for (int n = 0; n < 500; ++n) march.advance({});
+        INFO(scheme.name);
+        CHECK(march.node().body[0].r.x() - 1 == Approx(std::sin(2 * t) / 2).margin(2e-3));
+        const double omega = std::sqrt(10 / 2.0), t_1 = std::asin(0.1 * omega) / omega, s = t - t_1;
+        const double slipped = 0.1 + std::cos(omega * t_1) * s - 0.25 * s * s;
+        CHECK(march.node().body[1].r.x() == Approx(slipped).margin(2e-3));
+    }
+}
+
+TEST_CASE("a force that cannot be used from a start is named before it remembers", "[dae][remembered]")
+{
+    Two two;
+    two.model.load(TorsionSpring(ground, Z, 0, Z, 0, 0, 0, two.x));
+    Bristle bristle(0, 1, 3, 0.5);
+    bristle.name = "velvet";
+    two.model.load(std::move(bristle));
+    two.x.body[1].r = two.x.body[0].r;
+    try {
+        start(two.model, two.x);
+        FAIL("a bristle between bodies at one place was accepted");
+    } catch (const ForceError& e) {
+        CHECK(e.force == 1);
+        CHECK_THAT(e.what(), Catch::Equals("force 'velvet': the bodies must be apart at the start"));
+    }
+    CHECK(two.x.memory.empty());
+    CHECK(two.x.remembered.empty());
+}
+
+TEST_CASE("the stable step of a model is the smallest of its forces", "[dae][remembered]")
+{
+    Two two;
+    CHECK(two.model.stable_step(two.x).force == -1);
+    two.model.load(TorsionSpring(ground, Z, 0, Z, 1, 0, 0, two.x));
+    CHECK(two.model.stable_step(two.x).h == std::numeric_limits<double>::infinity());
+    CHECK(two.model.stable_step(two.x).force == -1);
+    two.model.load(Bristle(ground, 0, 1, 1));
+    two.model.load(Bristle(ground, 1, 16, 1));
+    two.model.load(Bristle(0, 1, 4, 1));
+    CHECK(two.model.stable_step(two.x).h == 0.5);
+    CHECK(two.model.stable_step(two.x).force == 2);
+}

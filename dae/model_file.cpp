@@ -89,9 +89,7 @@ public:
                }));
         o.keep("forces", each(o, "forces", false,
                               [this](const Json& v, const std::string& at) { return load(v, at); }));
-        if (const Json::List& contacts = o.list("contacts", false); !contacts.empty())
-            o.fail("contacts", "contacts cannot be run from a model file yet; the list must be empty, got " +
-                                   std::to_string(contacts.size()));
+        contacts(o);
         out.text = written(o.finish()) + "\n";
         if (ignored > 0)
             out.warnings.push_back(ignored_place +
@@ -236,11 +234,17 @@ private:
     Heading heading(ObjectReader& o, const std::vector<std::string>& types, std::set<std::string>& taken)
     {
         o.keep("name", {});  // in front of the type
-        std::string type = o.one_of("type", types);
-        std::string name = o.name("name", type + "-" + std::to_string(taken.size() + 1));
+        const std::string type = o.one_of("type", types);
+        return {name_of_its_own(o, type, taken), type};
+    }
+
+    /// The name, which must be new, by default the kind and the number in the list
+    static std::string name_of_its_own(ObjectReader& o, const std::string& kind, std::set<std::string>& taken)
+    {
+        std::string name = o.name("name", kind + "-" + std::to_string(taken.size() + 1));
         if (!taken.insert(name).second)
             o.fail("name", "this name is taken already, got " + described({.value = name}));
-        return {std::move(name), std::move(type)};
+        return name;
     }
 
     Json constraint(const Json& v, const std::string& at)
@@ -277,6 +281,33 @@ private:
             const auto [i, j] = pair(o);
             force = placed(o, [&, t = type, i = i, j = j] { return read_pair_force(t, o, i, j, out.x); });
         }
+        force->name = name;
+        Json kept = o.finish();
+        model.load(std::move(force));
+        out.force_place.push_back(o.place());
+        return kept;
+    }
+
+    /// The list is kept where there is one, so that a model without contacts reads as it always did.
+    void contacts(ObjectReader& o)
+    {
+        const Json::List& list = o.list("contacts", false);
+        if (list.empty()) return;
+        const ReadContact read = contact_reader();
+        if (read == nullptr)
+            o.fail("contacts", "contacts are not part of this build; the list must be empty, got " +
+                                   std::to_string(list.size()));
+        o.keep("contacts", each(o, "contacts", false,
+                                [&](const Json& v, const std::string& at) { return contact(read, v, at); }));
+    }
+
+    Json contact(ReadContact read, const Json& v, const std::string& at)
+    {
+        ObjectReader o(source, v, at);
+        const std::string name = name_of_its_own(o, "contact", contact_names);
+        const auto [i, j] = pair(o);
+        std::unique_ptr<Force> force = placed(
+            o, [&, i = i, j = j] { return read(o, {.i = i, .j = j, .model = model, .start = out.x}); });
         force->name = name;
         Json kept = o.finish();
         model.load(std::move(force));
@@ -327,7 +358,7 @@ private:
     Model& model;
     std::map<std::string, int> by_name;
     std::map<int, int> by_id;
-    std::set<std::string> constraint_names, force_names;
+    std::set<std::string> constraint_names, force_names, contact_names;
     bool ground_listed = false;
     int ignored = 0;  // constraints with f_dot or f_ddot
     std::string ignored_place;

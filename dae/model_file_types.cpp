@@ -202,4 +202,23 @@ std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o,
     return reader(type, pair_forces)(o, i, j, x);
 }
 
+namespace {
+
+// in a function, so that it is there for whoever enrols before main()
+ReadContact& enrolled()
+{
+    static ReadContact read = nullptr;
+    return read;
+}
+
+}  // namespace
+
+bool enrol_contacts(ReadContact read)
+{
+    enrolled() = read;
+    return true;
+}
+
+ReadContact contact_reader() { return enrolled(); }
+
 }  // namespace hilda::dae

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The types of constraints and forces of the model file, and the keys of each. A new type is one more entry
-/// in the .cpp.
+/// in the .cpp. Contacts are read by the room that knows them, above this one, which enrols its reader here.
 
 #pragma once
 
@@ -21,5 +21,22 @@ const std::vector<std::string>& pair_force_types();
 
 std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o, int i, int j,
                                        const State& x);
+
+/// Between whom a contact is: two different bodies, the model with all its bodies and constraints, and the
+/// start
+struct ContactPair {
+    int i, j;
+    const Model& model;
+    const State& start;
+};
+
+/// Reads the keys of an element of "contacts" but for name, body_i and body_j. Throws PlacedError, and without
+/// a place lie::InvalidInput or ExpressionError for what the contact itself refuses.
+using ReadContact = std::unique_ptr<Force> (*)(ObjectReader& o, const ContactPair& pair);
+
+/// Makes this the reader of contacts; there is one at most, the last, and none after a nullptr. Called while
+/// the program starts: const bool enrolled = enrol_contacts(...);
+bool enrol_contacts(ReadContact read);
+ReadContact contact_reader();
 
 }  // namespace hilda::dae

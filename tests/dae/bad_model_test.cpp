@@ -152,7 +152,7 @@ const std::vector<Bad> keys_and_types = {
     {"\"end\": 2,", "\"end\": -1,", "/end", "end must be positive, got -1"},
     {"\"end\": 2,", "\"end\": true,", "/end", "must be a number, got true"},
     {"\"end\": 2,", "\"note\": 5,", "/note", "note must be a string, got 5"},
-    {"\"end\": 2,", "\"contacts\": [{}],", "/contacts", "the list must be empty, got 1"},
+    {"\"end\": 2,", "\"contacts\": [{}],", "/contacts", "contacts are not part of this build; the list must be empty, got 1"},
     {"\"end\": 2,", "\"contacts\": {},", "/contacts", "must be a list"},
     {"", R"({"hilda_model": 1, "name": "x", "bodies": []})", "/bodies", "at least one body with mass"},
     {"", R"({"hilda_model": 1, "name": "x", "bodies": {}})", "/bodies", "must be a list, got an object of 0 keys"},

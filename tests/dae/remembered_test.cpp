@@ -117,7 +117,7 @@ TEST_CASE("a force that cannot be used from a start is named before it remembers
         FAIL("a bristle between bodies at one place was accepted");
     } catch (const ForceError& e) {
         CHECK(e.force == 1);
-        CHECK_THAT(e.what(), Catch::Equals("force 'velvet': the bodies must be apart at the start"));
+        CHECK_THAT(e.what(), Catch::Equals("bristle 'velvet': the bodies must be apart at the start"));
     }
     CHECK(two.x.memory.empty());
     CHECK(two.x.remembered.empty());

@@ -24,6 +24,7 @@ public:
         push(j, -F, lie::Vec3::Zero(), x, out);
     }
 
+    std::string in_words() const override { return "bristle '" + name + "'"; }
     std::string objection(const lie::State& x) const override
     {
         return between(x).norm() > 0 ? "" : "the bodies must be apart at the start";

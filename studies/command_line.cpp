@@ -193,7 +193,8 @@ private:
                append(o.set, one_setting));
         c->add_flag("--fix-initial", o.fix_initial, "project initial data that violate the constraints");
         value(c, "--output", "DIR", "by default out/NAME", assign(o.output, path));
-        c->add_flag("--force", o.force, "write into a directory that is not empty");
+        c->add_flag("--force", o.force,
+                    "write into a directory that is not empty; take a step at which a force is not stable");
         c->add_flag("--resume", o.resume, "go on from the last checkpoint in the directory");
         value(c, "--checkpoint", "S", "wall seconds between checkpoints, by default 0: none",
               assign(o.checkpoint, nonnegative_number));

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -33,6 +34,13 @@ lie::Grid grid_of(const RunOptions& options, double end, bool adaptive)
     } catch (const lie::InvalidInput& error) {
         throw UsageError(error.what());
     }
+}
+
+/// Not above the number itself, so that a step of what is printed is taken
+std::string in_three_digits(double positive)
+{
+    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 2);
+    return fmt::format("{:.3g}", std::floor(positive / unit) * unit);
 }
 
 }  // namespace
@@ -58,6 +66,7 @@ Result SingleRun::go()
     told.stop = [] { return Interrupt::caught() != 0; };
     const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, told);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
+    judge_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, from);
@@ -112,6 +121,28 @@ void SingleRun::read()
         options.settings.reparametrise ? ", --reparametrise" : "",
         options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
         options.log_steps ? ", --log-steps" : "");
+}
+
+// A run that is gone on with has been judged when it began.
+void SingleRun::judge_step(bool resumed) const
+{
+    const dae::Model& model = *description.model;
+    if (scheme.adaptive) {
+        for (const auto& force : model.forces())
+            if (force->remembered() > 0)
+                throw UsageError(fmt::format(
+                    "run: {} chooses its own steps; {} remembers numbers from step to step and needs a "
+                    "fixed-step scheme",
+                    scheme.name, force->in_words()));
+        return;
+    }
+    const dae::Model::StableStep stable = model.stable_step(description.x);
+    if (!(grid.h > stable.h)) return;
+    const std::string what = fmt::format(
+        "the step {} s is above {} s, the largest at which {} is stable with an explicit step", grid.h,
+        in_three_digits(stable.h), model.forces()[static_cast<size_t>(stable.force)]->in_words());
+    if (!options.force && !resumed) throw UsageError("run: " + what + "; --force overrides");
+    warn(what);
 }
 
 std::optional<Checkpoint> SingleRun::load_checkpoint() const

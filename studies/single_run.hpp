@@ -33,6 +33,8 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void read();
+    /// Refuses a step that a force does not stand, or a scheme.
+    void judge_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;
     void clear_directory() const;
     void march(lie::Integrator& integrator, const std::optional<Checkpoint>& from);

@@ -1,69 +1,83 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surface.hpp"
 
+#include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
 #include <Eigen/LU>
+
+#include <algorithm>
 
 namespace hilda::contact {
 
 namespace {
 
-constexpr double vanishing =
-    1e-12;  // ∇G of this size, over that of ∇²G times the size of the surface, is none
+// ∇G of this size, over that of ∇²G times the size of the surface, is none
+constexpr double vanishing = 1e-12;
 
-struct Normal {
-    double g;  // |∇G|
-    Vec3 u;    // ∇G / g
-};
-
-Normal normal_at(const Surface& surface, const Vec3& a)
+/// g = |∇G|. NumericalFailure where it vanishes
+double checked_norm(const Surface& surface, const Vec3& a, const Vec3& gradient, const Mat3& hessian)
 {
-    const Vec3 gradient = surface.gradient(a);
     const double g = gradient.norm();
-    if (!(g > vanishing * surface.hessian(a).norm() * surface.size())) {
+    if (!(g > vanishing * hessian.norm() * surface.size())) {
         std::ostringstream what;
         what.precision(6);
-        what << "the gradient of a surface vanishes at (" << a.x() << ", " << a.y() << ", " << a.z() << ")";
+        what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z() << ")";
         throw lie::NumericalFailure("nonfinite", what.str());
     }
-    return {g, gradient / g};
+    return g;
 }
 
 }  // namespace
 
-Vec3 Surface::normal(const Vec3& a) const { return sigma() * normal_at(*this, a).u; }
+Vec3 Surface::normal(const Vec3& a) const
+{
+    const auto [G, gradient, hessian] = derivatives(a);
+    return sigma() / checked_norm(*this, a, gradient, hessian) * gradient;
+}
 
 Mat3 Surface::normal_derivative(const Vec3& a) const
 {
-    const auto [g, u] = normal_at(*this, a);
-    return sigma() / g * (Mat3::Identity() - u * u.transpose()) * hessian(a);
+    const auto [G, gradient, hessian] = derivatives(a);
+    const double g = checked_norm(*this, a, gradient, hessian);
+    const Vec3 u = gradient / g;
+    return sigma() / g * (hessian - u * (u.transpose() * hessian));
 }
 
 Mat3 Surface::shape_operator(const Vec3& a) const
 {
-    const auto [g, u] = normal_at(*this, a);
+    const auto [G, gradient, hessian] = derivatives(a);
+    const double g = checked_norm(*this, a, gradient, hessian);
+    const Vec3 u = gradient / g;
     const Mat3 P = Mat3::Identity() - u * u.transpose();
-    return P * (sigma() / g * hessian(a)) * P;
+    return P * (sigma() / g * hessian) * P;
 }
 
 Vec3 Surface::project(const Vec3& a) const
 {
-    // ᾱ - a + s ∇G = 0, G = 0
-    constexpr int most = 50;
+    // x(y) = x + T y - (G/g) u, with y from  Tᵀ(I + s ∇²G)(T y - (G/g) u) = Tᵀ(a - x),  s = (a - x)·u / g
+    constexpr int most = 100;
+    constexpr double converged = 1e-9;  // of the size; the error that is left is its square
     Vec3 x = a;
-    double s = 0, correction = 0;
+    double correction = 0;
     for (int k = 0; k < most; ++k) {
-        const Vec3 gradient = this->gradient(x);
-        Eigen::Matrix4d J;
-        J << Mat3::Identity() + s * hessian(x), gradient, gradient.transpose(), 0;
-        Eigen::Vector4d e;
-        e << x - a + s * gradient, value(x);
-        const Eigen::Vector4d d = J.partialPivLu().solve(e);
-        x -= d.head<3>();
-        s -= d[3];
-        correction = d.head<3>().norm();
-        if (correction <= 1e-15 * (size() + x.norm())) return x;
+        const auto [G, gradient, H] = derivatives(x);
+        const double g = checked_norm(*this, x, gradient, H);
+        const Vec3 u = gradient / g;
+        // far from the surface the linearised G is no guide to the distance: bounded by the size
+        const double down = std::clamp(-G / g, -size() - a.norm(), size() + a.norm());
+        const Eigen::Matrix<double, 3, 2> T = tangent_basis(u);
+        const double s = (a - x).dot(u) / g;
+        Eigen::Matrix2d M = s * T.transpose() * H * T;
+        M.diagonal().array() += 1;
+        Eigen::Vector2d y = T.transpose() * (a - x - s * down * (H * u));
+        if (M.determinant() > 0 && M.trace() > 0)
+            y = M.inverse() * y;  // else not near a minimum: steepest way
+        const double length = y.norm(), most_length = 0.5 * size();
+        if (length > most_length) y *= most_length / length;
+        x += T * y + down * u;
+        correction = std::hypot(y.norm(), down);
+        if (correction <= converged * size()) return x;
     }
     std::ostringstream what;
     what << "no nearest point on a surface: correction " << correction << " m after " << most

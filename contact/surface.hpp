@@ -31,6 +31,13 @@ public:
     virtual double value(const Vec3& a) const = 0;   ///< G
     virtual Vec3 gradient(const Vec3& a) const = 0;  ///< ∇G
     virtual Mat3 hessian(const Vec3& a) const = 0;   ///< ∇²G
+    struct Derivatives {
+        double G;
+        Vec3 gradient;
+        Mat3 hessian;
+    };
+    /// All three at once, for who can compute them together
+    virtual Derivatives derivatives(const Vec3& a) const { return {value(a), gradient(a), hessian(a)}; }
     /// σ: 1 where ∇G points out of the body, -1 for a hollow such as a bowl
     virtual double sigma() const { return 1; }
 
@@ -45,12 +52,14 @@ public:
     /// Half the trace of K [1/m]
     double mean_curvature(const Vec3& a) const { return 0.5 * shape_operator(a).trace(); }
 
+    /// Whether G < 0 is a convex set, and support() knows its boundary
+    virtual bool convex() const { return false; }
     /// The point with ∇G along the unit vector u, where that is a closed form: of all points the furthest along
     /// u. Nothing where it is not; lie::NumericalFailure where the furthest points are many.
     virtual std::optional<Vec3> support(const Vec3&) const { return {}; }
 
-    /// The point of the surface nearest to a: Newton's method on ᾱ + s ∇G = a, G = 0, from a point near the
-    /// surface. lie::NumericalFailure "contact_not_converged" where it finds none.
+    /// The point of the surface nearest to a: Newton's method on |ᾱ - a|² over the tangent plane, started down
+    /// the gradient. lie::NumericalFailure "contact_not_converged" where it finds none.
     virtual Vec3 project(const Vec3& a) const;
 
     /// A length that tells the size of the surface [m], by which tolerances are scaled; 0 for a plane, which has none

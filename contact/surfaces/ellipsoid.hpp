@@ -21,6 +21,7 @@ public:
     Vec3 gradient(const Vec3& a) const override { return curvature.cwiseProduct(a); }
     Mat3 hessian(const Vec3&) const override { return curvature.asDiagonal(); }
     double sigma() const override { return concave ? -1 : 1; }
+    bool convex() const override { return true; }
     /// D² u / |D u| with D = diag(a, b, c)
     std::optional<Vec3> support(const Vec3& u) const override;
     /// Everywhere, inside too: see ellipsoid.cpp

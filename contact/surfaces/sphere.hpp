@@ -18,6 +18,7 @@ public:
     Vec3 gradient(const Vec3& a) const override { return a / R; }
     Mat3 hessian(const Vec3&) const override { return Mat3::Identity() / R; }
     double sigma() const override { return concave ? -1 : 1; }
+    bool convex() const override { return true; }
     std::optional<Vec3> support(const Vec3& u) const override { return Vec3(R * u); }
     /// NumericalFailure for the centre
     Vec3 project(const Vec3& a) const override;

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Arithmetic on a function of three variables with its first and second derivatives: product, quotient and
+/// chain rule.
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace hilda::contact {
+
+/// A function of (x, y, z) at one point: f, ∇f and the upper half of ∇²f, xx, xy, xz, yy, yz, zz.
+struct Dual {
+    using Gradient = Eigen::Vector3d;
+    using Half = Eigen::Matrix<double, 6, 1>;
+
+    double f = 0;
+    Gradient g = Gradient::Zero();
+    Half h = Half::Zero();
+
+    Dual() = default;
+    Dual(double f) : f(f) {}  // NOLINT: a number is a constant function
+    Dual(double f, const Gradient& g, const Half& h) : f(f), g(g), h(h) {}
+
+    /// The coordinate k = 0, 1, 2 at the value x
+    static Dual variable(double x, int k) { return {x, Gradient::Unit(k), Half::Zero()}; }
+
+    Eigen::Matrix3d hessian() const
+    {
+        Eigen::Matrix3d H;
+        H << h[0], h[1], h[2], h[1], h[3], h[4], h[2], h[4], h[5];
+        return H;
+    }
+
+    Dual& operator+=(const Dual& b) { return f += b.f, g += b.g, h += b.h, *this; }
+    Dual& operator-=(const Dual& b) { return f -= b.f, g -= b.g, h -= b.h, *this; }
+    Dual& operator*=(const Dual& b) { return *this = *this * b; }
+    Dual& operator/=(const Dual& b) { return *this = *this / b; }
+
+    friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+    friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+    friend Dual operator+(const Dual& a) { return a; }
+    friend Dual operator-(const Dual& a) { return {-a.f, -a.g, -a.h}; }
+
+    friend Dual operator*(const Dual& a, const Dual& b)
+    {
+        return {a.f * b.f, a.f * b.g + b.f * a.g, a.f * b.h + b.f * a.h + both(a.g, b.g)};
+    }
+    friend Dual operator*(double a, const Dual& b) { return {a * b.f, a * b.g, a * b.h}; }
+    friend Dual operator*(const Dual& a, double b) { return b * a; }
+
+    friend Dual operator/(const Dual& a, const Dual& b)
+    {
+        // q b = a, differentiated twice
+        const double q = a.f / b.f;
+        const Gradient dq = (a.g - q * b.g) / b.f;
+        return {q, dq, (a.h - q * b.h - both(dq, b.g)) / b.f};
+    }
+    friend Dual operator/(const Dual& a, double b) { return {a.f / b, a.g / b, a.h / b}; }
+
+    // by value, for formulas with branches
+    friend bool operator<(const Dual& a, const Dual& b) { return a.f < b.f; }
+    friend bool operator>(const Dual& a, const Dual& b) { return a.f > b.f; }
+    friend bool operator<=(const Dual& a, const Dual& b) { return a.f <= b.f; }
+    friend bool operator>=(const Dual& a, const Dual& b) { return a.f >= b.f; }
+
+    /// a bᵀ + b aᵀ
+    static Half both(const Gradient& a, const Gradient& b)
+    {
+        Half ab;
+        ab << 2 * a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0], 2 * a[1] * b[1],
+            a[1] * b[2] + a[2] * b[1], 2 * a[2] * b[2];
+        return ab;
+    }
+};
+
+/// u(x) from u, u' and u'' at x.
+inline Dual chain(const Dual& x, double u, double u1, double u2)
+{
+    return {u, u1 * x.g, u1 * x.h + 0.5 * u2 * Dual::both(x.g, x.g)};
+}
+
+inline Dual sin(const Dual& x) { return chain(x, std::sin(x.f), std::cos(x.f), -std::sin(x.f)); }
+inline Dual cos(const Dual& x) { return chain(x, std::cos(x.f), -std::sin(x.f), -std::cos(x.f)); }
+inline Dual sinh(const Dual& x) { return chain(x, std::sinh(x.f), std::cosh(x.f), std::sinh(x.f)); }
+inline Dual cosh(const Dual& x) { return chain(x, std::cosh(x.f), std::sinh(x.f), std::cosh(x.f)); }
+inline Dual log(const Dual& x) { return chain(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f)); }
+
+inline Dual exp(const Dual& x)
+{
+    const double u = std::exp(x.f);
+    return chain(x, u, u, u);
+}
+
+inline Dual sqrt(const Dual& x)
+{
+    const double u = std::sqrt(x.f);
+    return chain(x, u, 0.5 / u, -0.25 / (x.f * u));
+}
+
+inline Dual tan(const Dual& x)
+{
+    const double u = std::tan(x.f), u1 = 1 + u * u;
+    return chain(x, u, u1, 2 * u * u1);
+}
+
+inline Dual tanh(const Dual& x)
+{
+    // 1/cosh² and not 1 - tanh², which loses all digits for large x
+    const double u = std::tanh(x.f), u1 = 1 / (std::cosh(x.f) * std::cosh(x.f));
+    return chain(x, u, u1, -2 * u * u1);
+}
+
+inline Dual atan(const Dual& x)
+{
+    const double u1 = 1 / (1 + x.f * x.f);
+    return chain(x, std::atan(x.f), u1, -2 * x.f * u1 * u1);
+}
+
+/// The angle of (x, y); both may not be zero
+inline Dual atan2(const Dual& y, const Dual& x)
+{
+    // of the two quotients, the one that is finite
+    Dual angle = std::abs(x.f) >= std::abs(y.f) ? atan(y / x) : -atan(x / y);
+    angle.f = std::atan2(y.f, x.f);
+    return angle;
+}
+
+inline Dual pow(const Dual& x, double p)
+{
+    // where p or p - 1 is 0, so is the derivative, and 0 times infinity shall not make it otherwise
+    const double u1 = p == 0 ? 0 : p * std::pow(x.f, p - 1);
+    const double u2 = p == 0 || p == 1 ? 0 : p * (p - 1) * std::pow(x.f, p - 2);
+    return chain(x, std::pow(x.f, p), u1, u2);
+}
+
+/// -x where x < 0; at 0 the derivatives are those on the right.
+inline Dual abs(const Dual& x) { return x.f < 0 ? -x : x; }
+
+}  // namespace hilda::contact

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A cylinder without ends: shaft or pipe.
+
+#pragma once
+
+#include "contact/surface.hpp"
+
+namespace hilda::contact {
+
+/// G = (x² + y² - R²) / 2R: about z of its frame, with curvature 1/R across and 0 along.
+class Cylinder final : public Surface {
+public:
+    /// R [m]; a pipe, touched from inside, where concave. InvalidInput unless R is positive.
+    explicit Cylinder(double R, bool concave = false);
+
+    std::string name() const override { return "cylinder"; }
+    double value(const Vec3& a) const override;
+    Vec3 gradient(const Vec3& a) const override { return {a.x() / R, a.y() / R, 0}; }
+    Mat3 hessian(const Vec3&) const override { return Vec3(1 / R, 1 / R, 0).asDiagonal(); }
+    double sigma() const override { return concave ? -1 : 1; }
+    /// NumericalFailure on the axis
+    Vec3 project(const Vec3& a) const override;
+    double size() const override { return R; }
+
+    const double R;
+    const bool concave;
+};
+
+}  // namespace hilda::contact

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/superquadric.hpp"
+
+#include "contact/surfaces/positive.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+constexpr const char* where = "contact::Superquadric";
+
+const Vec3& positive_axes(const Vec3& semi_axes)
+{
+    for (double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()})
+        positive(where, "a semi-axis of a superquadric", a);
+    return semi_axes;
+}
+
+double checked_exponent(double p)
+{
+    // beyond 100 the edges are so sharp that no step of a contact point along them is small
+    if (!(p >= 2 && p <= 100))
+        lie::reject(where, "an exponent of a superquadric must be between 2 and 100", p);
+    return p;
+}
+
+}  // namespace
+
+Superquadric::Superquadric(const Vec3& semi_axes, double p, double q)
+    : semi_axes(positive_axes(semi_axes)), p(checked_exponent(p)), q(checked_exponent(q)),
+      L(std::cbrt(semi_axes.prod())), scale(L / std::max(p, q))
+{}
+
+double Superquadric::value(const Vec3& a) const
+{
+    double sum = -1;
+    for (int k = 0; k < 3; ++k) sum += std::pow(std::abs(a[k]) / semi_axes[k], exponent(k));
+    return scale * sum;
+}
+
+Vec3 Superquadric::gradient(const Vec3& a) const
+{
+    Vec3 g;
+    for (int k = 0; k < 3; ++k) {
+        const double e = exponent(k), x = std::abs(a[k]) / semi_axes[k];
+        g[k] = std::copysign(scale * e * std::pow(x, e - 1) / semi_axes[k], a[k]);
+    }
+    return g;
+}
+
+Mat3 Superquadric::hessian(const Vec3& a) const
+{
+    Vec3 diagonal;
+    for (int k = 0; k < 3; ++k) {
+        const double e = exponent(k), x = std::abs(a[k]) / semi_axes[k];
+        diagonal[k] = scale * e * (e - 1) * std::pow(x, e - 2) / (semi_axes[k] * semi_axes[k]);
+    }
+    return diagonal.asDiagonal();
+}
+
+/// With ∇G along u, e_k |x_k/s_k|^(e_k - 1) = exp(m) s_k |u_k|, each x_k is a power of exp(m), and the logarithm
+/// of the sum in G is a convex and rising function of m with slopes between 1 and 2: Newton's method finds its
+/// zero from anywhere, for p = q in one step.
+std::optional<Vec3> Superquadric::support(const Vec3& u) const
+{
+    double m = 0;
+    Vec3 x;  // |x_k / s_k|
+    constexpr int most = 30;
+    for (int iteration = 0; iteration < most; ++iteration) {
+        double sum = 0, slope = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double e = exponent(k);
+            x[k] = std::pow(std::exp(m) * semi_axes[k] * std::abs(u[k]) / (e * L), 1 / (e - 1));
+            const double term = std::pow(x[k], e);
+            sum += term;
+            slope += term * e / (e - 1);
+        }
+        const double step = -std::log(sum) * sum / slope;
+        m += step;
+        if (std::abs(step) < 1e-15) break;
+    }
+    for (int k = 0; k < 3; ++k) x[k] = std::copysign(semi_axes[k] * x[k], u[k]);
+    return x;
+}
+
+}  // namespace hilda::contact

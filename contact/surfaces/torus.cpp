@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/torus.hpp"
+
+#include "contact/surfaces/positive.hpp"
+
+namespace hilda::contact {
+
+Torus::Torus(double R, double r, bool concave)
+    : R(positive("contact::Torus", "the radius of the ring of a torus", R)),
+      r(positive("contact::Torus", "the radius of the tube of a torus", r)), concave(concave)
+{
+    if (!(r < R)) lie::reject("contact::Torus", "the tube of a torus must be thinner than its ring", r);
+}
+
+double Torus::value(const Vec3& a) const
+{
+    const double across = a.head<2>().norm() - R;
+    return (across * across + a.z() * a.z() - r * r) / (2 * r);
+}
+
+Vec3 Torus::gradient(const Vec3& a) const
+{
+    const double part = 1 - R / a.head<2>().norm();
+    return Vec3(part * a.x(), part * a.y(), a.z()) / r;
+}
+
+Mat3 Torus::hessian(const Vec3& a) const
+{
+    const double rho = a.head<2>().norm();
+    const Vec3 radial(a.x() / rho, a.y() / rho, 0);
+    Mat3 H = radial * radial.transpose();
+    H *= R / rho;
+    H.diagonal() += Vec3(1 - R / rho, 1 - R / rho, 1);
+    return H / r;
+}
+
+std::optional<Vec3> Torus::support(const Vec3& u) const
+{
+    const double across = u.head<2>().norm();
+    if (!(across > 1e-12))
+        throw lie::NumericalFailure("contact_not_converged", "a torus lies flat: it touches along a circle");
+    return Vec3(R / across * Vec3(u.x(), u.y(), 0) + r * u);
+}
+
+Vec3 Torus::project(const Vec3& a) const
+{
+    const double rho = a.head<2>().norm();
+    const Vec3 ring = R / rho * Vec3(a.x(), a.y(), 0), out = a - ring;
+    const double distance = out.norm();
+    if (!(rho > 0 && distance > 0))
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "the axis of a torus and that of its tube have no nearest point");
+    return ring + r / distance * out;
+}
+
+}  // namespace hilda::contact

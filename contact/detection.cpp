@@ -2,6 +2,7 @@
 #include "contact/detection.hpp"
 
 #include "contact/detectors/detectors.hpp"
+#include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
@@ -13,24 +14,17 @@ namespace hilda::contact {
 
 namespace {
 
-/// The detector of j and i as one of i and j. It computes the same numbers: exchanging the bodies changes the
-/// sign of n and nothing else.
 class Exchanged final : public Detector {
 public:
-    explicit Exchanged(std::unique_ptr<Detector> of) : of(std::move(of)) {}
+    explicit Exchanged(std::unique_ptr<Detector> ji) : ji(std::move(ji)) {}
 
     Touch detect(const Motion& bi, const Motion& bj, const Points* from) const override
     {
-        const Points exchanged = from != nullptr ? Points{from->c_j, from->c_i} : Points{};
-        Touch touch = of->detect(bj, bi, from != nullptr ? &exchanged : nullptr);
-        std::swap(touch.C_i, touch.C_j);
-        std::swap(touch.K_i, touch.K_j);
-        touch.n = -touch.n;
-        return touch;
+        return detect_exchanged(*ji, bi, bj, from);
     }
 
 private:
-    const std::unique_ptr<Detector> of;
+    const std::unique_ptr<Detector> ji;
 };
 
 template <class S>
@@ -67,7 +61,7 @@ void refuse(const Shape& i, const Shape& j)
     for (const auto& [a, b] : {std::pair{&i, &j}, std::pair{&j, &i}}) {
         if (is<Foot>(*a) && !is<Plane>(*b)) lie::reject(where, "a foot touches planes only", names(i, j));
         if (is<Disk>(*a) && !is<Plane>(*b)) lie::reject(where, "a disk touches planes only", names(i, j));
-        if (is<Plane>(*a) && is<Plane>(*b))
+        if (is<Plane>(*a) && (is<Plane>(*b) || is<Cylinder>(*b)))
             lie::reject(where, "a pair of surfaces must touch in a single point", names(i, j));
         if (a->surface->sigma() < 0 && (is<Plane>(*b) || b->surface->sigma() < 0))
             lie::reject(where, "a concave surface can be touched from inside only", names(i, j));
@@ -76,15 +70,26 @@ void refuse(const Shape& i, const Shape& j)
 
 }  // namespace
 
+Touch detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from)
+{
+    const Points exchanged = from != nullptr ? Points{from->c_j, from->c_i} : Points{};
+    Touch touch = ji.detect(bj, bi, from != nullptr ? &exchanged : nullptr);
+    std::swap(touch.C_i, touch.C_j);
+    std::swap(touch.K_i, touch.K_j);
+    touch.n = -touch.n;
+    return touch;
+}
+
 std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j)
 {
     check(i), check(j);
     refuse(i, j);
-    for (const auto make : {sphere_plane, sphere_sphere, foot_plane, disk_plane, support_plane}) {
+    for (const auto make : {sphere_plane, sphere_sphere, foot_plane, disk_plane, cylinder_cylinder,
+                            support_plane, common_normal}) {
         if (auto detector = make(i, j)) return detector;
         if (auto detector = make(j, i)) return std::make_unique<Exchanged>(std::move(detector));
     }
-    lie::reject("contact::make_detector", "no detector for a pair of surfaces", names(i, j));
+    throw std::logic_error("common_normal takes every pair");
 }
 
 }  // namespace hilda::contact

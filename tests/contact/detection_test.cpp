@@ -3,11 +3,17 @@
 /// they are in space.
 
 #include "contact/detection.hpp"
+#include "contact/detectors/common_normal.hpp"
+#include "contact/implicit_surface.hpp"
+#include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "contact/surfaces/torus.hpp"
+#include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/random_motion.hpp"
@@ -28,8 +34,22 @@ Shape shape(Args&&... args)
 
 Shape placed(Shape s, Random& random)
 {
-    s.position = random.vector(0.3), s.orientation = random.rotation();
+    s.position = random.vector(0.3), s.orientation = random.rotation() * s.orientation;
     return s;
+}
+
+Shape lying(Shape s)
+{
+    s.orientation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return s;
+}
+
+Shape egg()
+{
+    const auto G = [](auto x, auto y, auto z) {
+        return 0.5 * ((x * x + y * y) / 0.2 + z * z * (1.0 + z) / 0.3 - 0.3);
+    };
+    return {.surface = std::make_shared<ImplicitSurface<decltype(G)>>(G, 0.3)};
 }
 
 struct Pair {
@@ -48,6 +68,21 @@ std::vector<Pair> pairs()
         {"foot plane", shape<Foot>(), shape<Plane>(), 0.1},
         {"disk plane", shape<Disk>(0.4), shape<Plane>(), 0.3},
         {"ellipsoid plane", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Plane>(), 0.3},
+        {"superquadric plane", shape<Superquadric>(Vec3(0.3, 0.2, 0.4), 3, 4), shape<Plane>(), 0.4},
+        {"torus plane", shape<Torus>(0.4, 0.1), shape<Plane>(), 0.4},
+        {"egg plane", egg(), shape<Plane>(), 0.3},
+        {"ellipsoid sphere", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Sphere>(0.3), 0.6},
+        {"ellipsoid ellipsoid", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Ellipsoid>(Vec3(0.5, 0.4, 0.3)),
+         0.7},
+        {"ellipsoid in a bowl", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.25)), shape<Sphere>(1.0, true), 0.7},
+        {"sphere in a deep bowl", shape<Sphere>(0.2), shape<Ellipsoid>(Vec3(1.0, 0.9, 0.8), true), 0.6},
+        {"superquadrics", shape<Superquadric>(Vec3(0.3, 0.2, 0.4), 3, 2),
+         shape<Superquadric>(Vec3(0.5, 0.4, 0.3), 2.5), 0.7},
+        {"egg sphere", egg(), shape<Sphere>(0.3), 0.6},
+        {"sphere cylinder", shape<Sphere>(0.3), lying(shape<Cylinder>(0.4)), 0.7},
+        {"sphere in a pipe", shape<Sphere>(0.3), lying(shape<Cylinder>(1.0, true)), 0.7},
+        {"cylinders", shape<Cylinder>(0.3), lying(shape<Cylinder>(0.5)), 0.8},
+        {"sphere torus", shape<Sphere>(0.3), lying(shape<Torus>(0.5, 0.2)), 1.0},
     };
 }
 
@@ -61,9 +96,9 @@ struct Scene {
     {
         bi.A = random.rotation(), bj.A = random.rotation();
         bj.r = random.vector();
-        const Vec3 d = (Vec3::UnitZ() + random.vector(0.3)).normalized();
-        bi.r = bj.r + bj.A * (j.position + pair.distance * random.number(0.8, 1.2) * (j.orientation * d)) -
-               bi.A * i.position;
+        const Vec3 d = j.orientation * pair.j.orientation.transpose() *
+                       (Vec3::UnitZ() + random.vector(0.3)).normalized();
+        bi.r = bj.r + bj.A * (j.position + pair.distance * random.number(0.8, 1.2) * d) - bi.A * i.position;
     }
     Touch touch() const { return make_detector(i, j)->detect(bi, bj, nullptr); }
 };
@@ -202,6 +237,146 @@ TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[
     CHECK(t.gap == Approx(body.r.z() - D.cwiseProduct(body.A.row(2).transpose()).norm()).margin(1e-15));
 }
 
+TEST_CASE("the gap of two ellipsoids is the largest of all distances between parallel tangent planes",
+          "[contact][detection]")
+{
+    // n·(o_i - o_j) - |D_i A_iᵀ n| - |D_j A_jᵀ n| of two ellipsoids, apart (> 0) or not, climbed without derivatives
+    Random random(GENERATE(range(0u, 20u)));
+    const Vec3 D_i(0.3, 0.2, 0.4), D_j(0.5, 0.45, 0.15);
+    Motion bi = random.motion(), bj = random.motion();
+    bi.r = bj.r + random.number(0.5, 1.2) * random.unit();
+    const auto distance = [&](const Vec3& n) {
+        return n.dot(bi.r - bj.r) - D_i.cwiseProduct(bi.A.transpose() * n).norm() -
+               D_j.cwiseProduct(bj.A.transpose() * n).norm();
+    };
+    Vec3 n = (bi.r - bj.r).normalized();
+    for (double step = 0.5; step > 1e-9;) {
+        const auto T = tangent_basis(n);
+        Vec3 best = n;
+        for (const Vec3& d : {Vec3(T.col(0)), Vec3(-T.col(0)), Vec3(T.col(1)), Vec3(-T.col(1))})
+            if (const Vec3 to = (n + step * d).normalized(); distance(to) > distance(best)) best = to;
+        if (best == n) step *= 0.5;
+        n = best;
+    }
+    const Touch t = make_detector(shape<Ellipsoid>(D_i), shape<Ellipsoid>(D_j))->detect(bi, bj, nullptr);
+    CHECK(std::abs(t.gap - distance(n)) < 1e-12);
+    CHECK((t.n - n).norm() < 1e-6);
+}
+
+TEST_CASE("Newton's method on the common normal converges quadratically", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        if (pair.i.surface->size() == 0 || pair.j.surface->size() == 0) continue;
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch();
+        const CommonNormal newton(s.i, s.j);
+        CommonNormal::Pair p = newton.placed(s.bi, s.bj);
+        p.a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r)) + random.vector(0.003);
+        p.a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r)) + random.vector(0.003);
+        double before = newton.improve(p);
+        for (int k = 0; k < 4; ++k) {
+            const double correction = newton.improve(p);
+            CHECK(correction < 100 * before * before + 1e-13);
+            before = correction;
+        }
+        CHECK(before < 1e-13);
+    }
+}
+
+TEST_CASE("from a near touch and from nothing the same touch is found", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 20u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        Scene s(pair, random);
+        const auto detector = make_detector(s.i, s.j);
+        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        s.bi.r += random.vector(1e-3), s.bi.A *= lie::exp(random.vector(1e-2));
+        const Touch cold = detector->detect(s.bi, s.bj, nullptr), warm = detector->detect(s.bi, s.bj, &from);
+        CHECK(warm.gap == Approx(cold.gap).margin(1e-14));
+        CHECK((warm.C_i - cold.C_i).norm() < 1e-12);
+        CHECK((warm.C_j - cold.C_j).norm() < 1e-12);
+    }
+}
+
+TEST_CASE("long and flat ellipsoids find each other from nothing", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 200u)));
+    const auto axes = [&] {
+        return Vec3(random.number(0.1, 2), random.number(0.1, 2), random.number(0.1, 2));
+    };
+    const Shape i = shape<Ellipsoid>(axes()), j = shape<Ellipsoid>(axes());
+    Motion bi = random.motion(), bj = random.motion();
+    bi.r *= 3;
+    const Touch t = make_detector(i, j)->detect(bi, bj, nullptr);
+    CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-14);
+}
+
+TEST_CASE("a ball rolls through a bowl and keeps its touch", "[contact][detection]")
+{
+    const Vec3 D(1.0, 0.8, 1.2);
+    const auto detector = make_detector(shape<Sphere>(0.2), shape<Ellipsoid>(D, true));
+    const Ellipsoid bowl(D);
+    Motion ball, ground;
+    Points from{{0, 0, -0.2}, {0, 0, -1.2}};
+    for (double angle = 0; angle < 6.3; angle += 0.1) {
+        const Vec3 u(std::sin(angle) * 0.6, std::sin(angle) * 0.8, -std::cos(angle));
+        const Vec3 C_j = *bowl.support(u);
+        ball.r = C_j - (0.2 + 0.01) * u;
+        const Touch t = detector->detect(ball, ground, &from);
+        CHECK(t.gap == Approx(0.01).margin(1e-14));
+        CHECK((t.n + u).norm() < 1e-13);
+        CHECK((t.C_j - C_j).norm() < 1e-13);
+        from = {t.C_i - ball.r, t.C_j};
+    }
+}
+
+TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest", "[contact][detection]")
+{
+    Motion ring, ball, ground;
+    ball.r = {1.5, 0, 0.5};
+    const Touch t = make_detector(shape<Torus>(1.0, 0.1), shape<Sphere>(0.2))->detect(ring, ball, nullptr);
+    CHECK(t.gap == Approx(std::sqrt(0.5) - 0.3));
+    ring.A = lie::exp({0.3, 0, 0}), ring.r.z() = 1;
+    const Touch low = make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect(ring, ground, nullptr);
+    CHECK(low.gap == Approx(1 - std::sin(0.3) - 0.1));
+    CHECK_THROWS_AS(make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect({}, {}, nullptr),
+                    lie::NumericalFailure);
+}
+
+TEST_CASE("where the surfaces do not curve away from each other there is no touch", "[contact][detection]")
+{
+    const auto trouble = [](const Shape& i, const Shape& j, const Motion& bi, const Points* from) {
+        try {
+            make_detector(i, j)->detect(bi, {}, from);
+        } catch (const lie::NumericalFailure& e) {
+            CHECK(e.status == "contact_not_converged");
+            return std::string(e.what());
+        }
+        return std::string("none");
+    };
+    const std::string start =
+        "no touch of two surfaces: the surfaces do not curve away from each other; correction ";
+    // flatter than the bowl where they would touch
+    Motion m;
+    m.r = {0, 0, -0.65};
+    const Points low{{0, 0, -0.3}, {0, 0, -1}};
+    CHECK(
+        trouble(shape<Ellipsoid>(Vec3(0.9, 0.8, 0.3)), shape<Sphere>(1.0, true), m, &low).starts_with(start));
+    // the far sides of two ellipsoids
+    m.r = {0, 0, 1};
+    const Points far{{0, 0, 0.5}, {0, 0, -0.5}};
+    CHECK(trouble(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), m, &far)
+              .starts_with(start));
+    // parallel axes
+    m.r = {1, 0, 0};
+    CHECK(trouble(shape<Cylinder>(0.3), shape<Cylinder>(0.2), m, nullptr) ==
+          "two cylinders are parallel: they touch along a line");
+}
+
 TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "[contact][detection]")
 {
     const auto detector = make_detector(shape<Disk>(0.5), shape<Plane>());
@@ -243,6 +418,10 @@ TEST_CASE("pairs without a single touch are refused", "[contact][detection]")
           where +
               "a ball must be smaller than the bowl it touches, got a ball of radius 1 in a bowl of "
               "radius 1");
+    CHECK(refusal(shape<Cylinder>(1.0), plane) ==
+          where + "a pair of surfaces must touch in a single point, got cylinder and plane");
+    CHECK(refusal(shape<Cylinder>(0.5), shape<Cylinder>(1.0, true)) ==
+          where + "a pair of surfaces must touch in a single point, got a cylinder in a pipe");
     CHECK(refusal(ball, {}) == where + "a shape must have a surface, got none");
 
     Shape turned = ball;

@@ -35,11 +35,12 @@ Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
     return {normal, 0.5 * (body.J_bar.trace() - normal)};
 }
 
-std::string with_value(const std::string& what, double value)
+/// "what, got value unit"
+std::string got(const std::string& what, double value, const std::string& unit)
 {
     std::ostringstream text;
     text.precision(6);
-    text << what << ", got " << value;
+    text << what << ", got " << value << ' ' << unit;
     return text.str();
 }
 
@@ -85,45 +86,48 @@ Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) 
     return now;
 }
 
-void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory,
-                      const Vec3* u) const
+void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const
 {
-    memory.found = true;
-    if (!(now.N > 0)) {
-        memory.touching = false;
+    const bool touching = now.N > 0;
+    if (!touching)
         memory.history = {};
-        memory.track = contact::track(now.touch, now.touch.n.unitOrthogonal(), bi, bj);
-        return;
-    }
-    if (memory.touching) friction->advance(now, memory.history);
-    memory.track = contact::track(now.touch, !memory.touching && u != nullptr ? *u : now.slip.u, bi, bj);
-    memory.touching = true;
+    else if (memory.touching)
+        friction->advance(now, memory.history);
+    memory.track = track(now.touch, touching ? now.slip.u : now.touch.n.unitOrthogonal(), bi, bj);
+    memory.found = true;
+    memory.touching = touching;
 }
 
 std::string Contact::objection(const Motion& bi, const Motion& bj) const
 {
-    const Touch touch = detector->detect(bi, bj, nullptr);
-    // eigenvalues of K_i + K_j: one belongs to n and is zero
+    Meeting now;
+    try {
+        now = meet(bi, bj, {});
+    } catch (const lie::NumericalFailure& e) {
+        return e.what();
+    }
+    const Touch& touch = now.touch;
+    // the smaller eigenvalue of K_i + K_j in the tangent plane
     const Vec3 u = touch.n.unitOrthogonal(), w = touch.n.cross(u);
     const Mat3 K = touch.K_i + touch.K_j;
     const double a = u.dot(K * u), b = u.dot(K * w), d = w.dot(K * w);
-    const double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
-    const double size = touch.K_i.norm() + touch.K_j.norm();
-    if (least < -no_curvature * size)
-        return with_value("the surfaces do not fit: the sum of their curvatures must not be negative", least);
-    double largest = 0;
-    for (const Mat3* one : {&touch.K_i, &touch.K_j})
-        largest = std::max(largest, std::abs(0.5 * one->trace()));
-    if (-touch.gap * largest > deepest)
-        return with_value(with_value("the surfaces must not overlap by more than a tenth of a radius of "
-                                     "curvature: 1/R",
-                                     largest) +
-                              " 1/m, and an overlap",
-                          -touch.gap);
-    const Memory fresh;
-    const Springs springs = friction->springs(meet(bi, bj, fresh));
-    if (!std::isfinite(springs.K_roll + springs.K_spin))
-        return with_value("rolling and spinning friction need curvature: kappa_i + kappa_j", least);
+    double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
+    const double rounding = no_curvature * (touch.K_i.norm() + touch.K_j.norm());
+    if (std::abs(least) <= rounding) least = 0;
+    if (least < 0)
+        return got("a surface does not fit into the other: the sum of their curvatures must not be negative",
+                   least, "1/m");
+    if (0.5 * (a + d) <= rounding && (law->needs_curvature() || friction->needs_curvature()))
+        return got("rolling and spinning friction need curvature: the sum of the curvatures must be positive",
+                   0.5 * (a + d), "1/m");
+    for (const Mat3* one : {&touch.K_i, &touch.K_j}) {
+        const double curvature = 0.5 * std::abs(one->trace());
+        if (curvature <= rounding || -touch.gap * curvature <= deepest) continue;
+        std::ostringstream what;
+        what << "the surfaces must not overlap by more than a tenth of a radius of curvature, "
+             << 1 / curvature << " m";
+        return got(what.str(), -touch.gap, "m");
+    }
     return {};
 }
 

@@ -40,9 +40,8 @@ public:
     /// lie::NumericalFailure "contact_not_converged" with the name of the contact, where no touch is found.
     Meeting meet(const Motion& bi, const Motion& bj, const Memory& memory) const;
     /// From the instant of the memory to that of the meeting. Where the surfaces have parted, histories are
-    /// dropped; where they meet anew, they begin at zero with the first tangent vector of `u`, or any.
-    void advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory,
-                 const Vec3* u = nullptr) const;
+    /// dropped; where they meet anew, they begin at zero.
+    void advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const;
     Wrench load(const Meeting& now, const Rates& rates, const Memory& memory) const
     {
         return now.N > 0 ? friction->load(now, rates, memory.history) : Wrench();

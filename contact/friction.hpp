@@ -80,6 +80,7 @@ public:
     /// Friction of the history it has got to
     virtual Wrench load(const Meeting& now, const Rates& rates, const History& history) const = 0;
     virtual Springs springs(const Meeting& now) const = 0;
+    virtual bool needs_curvature() const { return false; }  ///< rolling or spinning that it resists
 };
 
 /// What the built-in laws are told; a law takes from it what concerns it. As it stands: the balanced preset.

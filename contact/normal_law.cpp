@@ -15,19 +15,15 @@ void check(const std::string& law, const std::string& what, double value, bool f
     if (!fine || !std::isfinite(value)) lie::reject("contact::" + law, what, value);
 }
 
-// A restitution of zero has an infinite logarithm.
+// A restitution of zero needs an infinite dashpot.
 constexpr double least_restitution = 1e-6;
 
-/// Part of the critical damping that leaves a linear spring with this restitution
-double damping_ratio(double restitution)
+/// -ln e of a dashpot that never pulls
+double loss(double zeta)
 {
-    const double log = std::log(std::max(restitution, least_restitution));
-    return -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log);
-}
-
-void check_restitution(const std::string& law, double e)
-{
-    check(law, "the coefficient of restitution must be in [0, 1]", e, e >= 0 && e <= 1);
+    const double x = 1 - zeta * zeta;
+    if (std::abs(x) < 1e-8) return 2 * zeta * (1 + (1 - zeta) / 3);
+    return 2 * zeta * (x > 0 ? std::acos(zeta) / std::sqrt(x) : std::acosh(zeta) / std::sqrt(-x));
 }
 
 void check_mass(const std::string& law, double m)
@@ -50,7 +46,6 @@ Hooke::Hooke(double stiffness, double damping) : k(stiffness), c(damping)
 
 Hooke Hooke::rebounding(double stiffness, double restitution, double m)
 {
-    check_restitution("Hooke", restitution);
     check_mass("Hooke", m);
     Hooke law(stiffness, 0);
     law.zeta = damping_ratio(restitution);
@@ -66,11 +61,18 @@ double Hooke::force(const Pressing& p) const
 }
 
 Hertz::Hertz(double E_star, double restitution, double m)
-    : E_star(E_star), beta(damping_ratio(restitution)), m(m)
+    : E_star(E_star), zeta(damping_ratio(restitution)), m(m)
 {
     check("Hertz", "the effective modulus must be positive", E_star, E_star > 0);
-    check_restitution("Hertz", restitution);
     check_mass("Hertz", m);
+}
+
+Hertz Hertz::of_free_oscillation(double E_star, double restitution, double m)
+{
+    Hertz law(E_star, restitution, m);
+    const double log = std::log(std::max(restitution, least_restitution));
+    law.zeta = -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log);
+    return law;
 }
 
 double Hertz::stiffness(const Pressing& p) const
@@ -80,13 +82,26 @@ double Hertz::stiffness(const Pressing& p) const
 
 double Hertz::damping(const Pressing& p) const
 {
-    return 2 * std::sqrt(5. / 6) * beta * std::sqrt(stiffness(p) * (m > 0 ? m : p.m));
+    return 2 * std::sqrt(5. / 6) * zeta * std::sqrt(stiffness(p) * (m > 0 ? m : p.m));
 }
 
 double Hertz::force(const Pressing& p) const
 {
     if (!(p.overlap > 0)) return 0;
     return 2. / 3 * stiffness(p) * p.overlap + damping(p) * p.overlap_rate;
+}
+
+double damping_ratio(double e)
+{
+    check("damping_ratio", "the coefficient of restitution must be in [0, 1]", e, e >= 0 && e <= 1);
+    const double wanted = -std::log(std::max(e, least_restitution));
+    double lower = 0, upper = 1e4;
+    for (int k = 0; k < 200 && lower < upper; ++k) {
+        const double middle = 0.5 * (lower + upper);
+        if (middle == lower || middle == upper) break;
+        (loss(middle) < wanted ? lower : upper) = middle;
+    }
+    return lower;
 }
 
 double effective_modulus(double E_i, double nu_i, double E_j, double nu_j)

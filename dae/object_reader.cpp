@@ -2,9 +2,11 @@
 #include "dae/object_reader.hpp"
 
 #include "dae/nearest.hpp"
+#include "lie/euler_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hilda::dae {
 
@@ -22,6 +24,11 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
     const std::string meant = nearest(word, known);
     return meant.empty() ? "; allowed: " + in_words(known) : "; did you mean '" + meant + "'?";
 }
+
+// Orientations are written with few digits; so much is mended, more is a mistake.
+constexpr double orientation_tolerance = 1e-6;
+// An A this near to a rotation is left as it is, so that a model written and read again is the same.
+constexpr double exact_rotation = 1e-14;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
 
@@ -62,6 +69,17 @@ int ObjectReader::integer(std::string_view key)
     if (x != std::trunc(x) || std::abs(x) > most)
         fail(key, std::string(key) + " must be an integer of at most 31 bits, got " + shortest(x));
     return static_cast<int>(x);
+}
+
+bool ObjectReader::flag(std::string_view key, std::optional<bool> fallback)
+{
+    const Json* v = asked(key, !fallback);
+    const bool* given = v != nullptr ? std::get_if<bool>(&v->value) : nullptr;
+    if (v != nullptr && given == nullptr)
+        fail(key, std::string(key) + " must be true or false, got " + described(*v));
+    const bool x = given != nullptr ? *given : *fallback;
+    keep(key, {.value = x});
+    return x;
 }
 
 std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count)
@@ -157,6 +175,8 @@ std::string ObjectReader::formula(std::string_view key, const std::optional<std:
     return shortest(number(key));
 }
 
+ObjectReader ObjectReader::object(std::string_view key) { return {source, *asked(key, true), pointer(key)}; }
+
 const Json::List& ObjectReader::list(std::string_view key, bool required)
 {
     static const Json::List empty;
@@ -232,6 +252,42 @@ void ObjectReader::refuse_unknown(const Json::Member& m) const
 {
     Json at{.value = nullptr, .offset = m.offset, .change = m.value.change};
     source.fail(at, pointer(m.key), "unknown key " + described({.value = m.key}) + suggestion(m.key, known));
+}
+
+Mat3 read_orientation(ObjectReader& o)
+{
+    const std::vector<std::string> forms = {"A", "p", "axis_angle"};
+    const auto given = std::count_if(forms.begin(), forms.end(),
+                                     [&](const std::string& key) { return o.look(key) != nullptr; });
+    if (given > 1)
+        o.fail("the orientation must be given once, as one of A, p and axis_angle; got " +
+               std::to_string(given));
+
+    const auto off = [](const std::string& what, double value) {
+        return what + ", got " + shortest(value) + "; at most " + shortest(orientation_tolerance) +
+               " off is mended";
+    };
+    Mat3 A = Mat3::Identity();
+    if (o.has("A")) {
+        A = o.matrix("A");
+        if (const double error = lie::orthogonality_error(A); !(error <= orientation_tolerance))
+            o.fail("A", off("A must be a rotation matrix: |A^T A - I| must be 0", error));
+        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection with det A = -1");
+        if (lie::orthogonality_error(A) > exact_rotation) A = lie::nearest_rotation(A);
+    } else if (o.has("p")) {
+        const std::vector<double> e = o.numbers("p", 4);
+        const lie::Vec4 p(e[0], e[1], e[2], e[3]);
+        if (!(std::abs(p.norm() - 1) <= orientation_tolerance))
+            o.fail("p", off("p must have length 1", p.norm()));
+        A = lie::rotation(p.normalized());
+    } else if (o.has("axis_angle")) {
+        const std::vector<double> a = o.numbers("axis_angle", 4);
+        const Vec3 u(a[0], a[1], a[2]);
+        if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
+            o.fail("axis_angle", off("the axis of axis_angle must have length 1", u.norm()));
+        A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
+    }
+    return A;
 }
 
 Json json(const Vec3& v)

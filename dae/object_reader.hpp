@@ -25,6 +25,7 @@ public:
     double positive(std::string_view key, std::optional<double> fallback = {});
     double not_negative(std::string_view key, std::optional<double> fallback = {});
     int integer(std::string_view key);
+    bool flag(std::string_view key, std::optional<bool> fallback = {});
     Vec3 vec3(std::string_view key, const std::optional<Vec3>& fallback = {});
     Vec3 direction(std::string_view key);  ///< three numbers, not all zero
     std::vector<double> numbers(std::string_view key, std::size_t count);
@@ -37,6 +38,8 @@ public:
                        const std::optional<std::string>& fallback = {});
     /// A number or an expression, as the text of an expression
     std::string formula(std::string_view key, const std::optional<std::string>& fallback = {});
+    /// The object under a key; keep(key, its finish()) when it has been read
+    ObjectReader object(std::string_view key);
     /// The elements of a list, empty where the key is missing and may be
     const Json::List& list(std::string_view key, bool required);
 
@@ -68,6 +71,9 @@ private:
     std::vector<std::string> known;  // keys asked for so far
     Json::Object kept;
 };
+
+/// The orientation that an object gives as one of A, p and axis_angle, or the identity. A little off is mended.
+Mat3 read_orientation(ObjectReader& o);
 
 /// A vector or matrix as a JSON list
 Json json(const Vec3& v);

@@ -59,6 +59,14 @@ bool positive_definite(const Mat2& S)
     return trace > 0 && S.determinant() > 1e-13 * trace * trace;
 }
 
+/// The smaller eigenvalue of K_i + K_j in the tangent plane
+double least(const Touch& touch)
+{
+    const Mat32 T = tangent_basis(touch.n);
+    const Mat2 K = T.transpose() * (touch.K_i + touch.K_j) * T;
+    return 0.5 * K.trace() - std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
+}
+
 double size_or(const Shape& s, const Shape& other)
 {
     return s.surface->size() > 0 ? s.surface->size() : other.surface->size();
@@ -113,8 +121,10 @@ Touch CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* fro
         }
     }
     std::ostringstream what;
-    what << "no touch of two surfaces: " << end.trouble << "; correction " << end.correction << " m, gap "
-         << end.touch.gap << " m, after " << end.iterations << " iterations";
+    what << "no touch of two surfaces: " << end.trouble;
+    if (end.touch.n.allFinite()) what << ", least sum of their curvatures " << least(end.touch) << " 1/m";
+    what << "; correction " << end.correction << " m, gap " << end.touch.gap << " m, after " << end.iterations
+         << " iterations";
     throw lie::NumericalFailure("contact_not_converged", what.str());
 }
 

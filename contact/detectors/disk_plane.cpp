@@ -10,7 +10,7 @@ namespace {
 
 /// The lowest point of the rim. With e the direction from the centre to it and θ between e and -n,
 ///
-///     n - (n·z) z = -cos θ e,   t = z × e,   K_i = (1/R) cos θ t tᵀ
+///     n - (n·z) z = -cos θ e,   t = z × e,   K_i = (1/R) cos θ (I - n nᵀ)
 class DiskPlane final : public Detector {
 public:
     DiskPlane(const Shape& i, double R, const Shape& j)
@@ -33,7 +33,7 @@ public:
                 .C_j = C_i - gap * n,
                 .n = n,
                 .gap = gap,
-                .K_i = cosine / R * t * t.transpose(),
+                .K_i = cosine / R * (Mat3::Identity() - n * n.transpose()),
                 .K_j = Mat3::Zero()};
     }
 

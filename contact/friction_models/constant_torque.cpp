@@ -32,6 +32,8 @@ public:
         return out;
     }
 
+    bool needs_curvature() const override { return sliding.p.mu_r > 0; }
+
     Springs springs(const Meeting& now) const override
     {
         return {.K_slide = sliding.p.K_E, .D_slide = sliding.D(now)};

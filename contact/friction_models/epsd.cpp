@@ -43,6 +43,8 @@ public:
         return out;
     }
 
+    bool needs_curvature() const override { return sliding.p.mu_r > 0; }
+
     Springs springs(const Meeting& now) const override
     {
         const Spring spring = rolling(now);

@@ -93,6 +93,8 @@ public:
         return all;
     }
 
+    bool needs_curvature() const override { return p.eta_r > 0 || p.eta_psi > 0 || p.E_star > 0; }
+
 private:
     struct Spring {
         double K = 0, D = 0, cap_s = 0, cap_k = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/cylinder.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 namespace hilda::contact {
@@ -18,5 +19,16 @@ Vec3 Cylinder::project(const Vec3& a) const
         throw lie::NumericalFailure("contact_not_converged", "the axis of a cylinder has no nearest point");
     return {R / distance * a.x(), R / distance * a.y(), a.z()};
 }
+
+namespace {
+
+const bool enrolled = enrol({.name = "cylinder",
+                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                 const double R = o.positive("radius");
+                                 return std::make_shared<Cylinder>(R, o.flag("concave", false));
+                             },
+                             .z = "axis"});
+
+}  // namespace
 
 }  // namespace hilda::contact

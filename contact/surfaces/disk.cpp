@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/disk.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 #include <algorithm>
@@ -20,5 +21,15 @@ Vec3 Disk::project(const Vec3& a) const
 }
 
 double Disk::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
+
+namespace {
+
+const bool enrolled = enrol({.name = "disk",
+                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                 return std::make_shared<Disk>(o.positive("radius"));
+                             },
+                             .z = "axis"});
+
+}  // namespace
 
 }  // namespace hilda::contact

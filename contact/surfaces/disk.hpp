@@ -10,13 +10,13 @@ namespace hilda::contact {
 /// The rim is the circle of radius R about z, in the plane z = 0 of its frame. A circle has no G: as a surface
 /// the disk is the cylinder through it, G = (x² + y² - R²) / 2R, which has the curvature of the upright disk.
 ///
-/// Where it leans, its detector gives the curvature that the rim has seen along the contact normal, with t its
-/// tangent and θ the angle of its plane to the normal (Meusnier):
+/// Its detector gives the curvature of the rim as seen along the contact normal, with θ the angle of the plane of the
+/// disk to the normal (Meusnier), in all directions alike:
 ///
-///     K = (1/R) cos θ t tᵀ
+///     K = (1/R) cos θ (I - n nᵀ)
 ///
-/// The curvature across the rim, that of the edge, is taken as zero: an edge of finite radius would roll over
-/// a distance of that radius, which is none.
+/// Across the rim a disk has an edge, which rolls over no distance. Giving it the curvature of the rim there too keeps
+/// κ, and with it rolling and spinning friction, the same whether the disk moves or stands.
 class Disk final : public Surface {
 public:
     /// R [m]. InvalidInput unless it is positive.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/ellipsoid.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 namespace hilda::contact {
@@ -60,5 +61,15 @@ Vec3 Ellipsoid::project(const Vec3& a) const
     if (tau == 0) x[shortest] = s * std::sqrt(std::max(0.0, 1 - x.cwiseQuotient(semi_axes).squaredNorm()));
     return x;
 }
+
+namespace {
+
+const bool enrolled =
+    enrol({.name = "ellipsoid", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+               const Vec3 semi_axes = read_semi_axes(o);
+               return std::make_shared<Ellipsoid>(semi_axes, o.flag("concave", false));
+           }});
+
+}  // namespace
 
 }  // namespace hilda::contact

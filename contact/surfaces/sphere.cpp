@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/sphere.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 #include <algorithm>
@@ -20,5 +21,15 @@ Vec3 Sphere::project(const Vec3& a) const
 }
 
 double Sphere::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
+
+namespace {
+
+const bool enrolled =
+    enrol({.name = "sphere", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+               const double R = o.positive("radius");
+               return std::make_shared<Sphere>(R, o.flag("concave", false));
+           }});
+
+}  // namespace
 
 }  // namespace hilda::contact

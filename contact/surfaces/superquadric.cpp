@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/superquadric.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 #include <algorithm>
@@ -18,10 +19,12 @@ const Vec3& positive_axes(const Vec3& semi_axes)
     return semi_axes;
 }
 
+/// Beyond 100 the edges are so sharp that no step of a contact point along them is small.
+bool exponent_allowed(double p) { return p >= 2 && p <= 100; }
+
 double checked_exponent(double p)
 {
-    // beyond 100 the edges are so sharp that no step of a contact point along them is small
-    if (!(p >= 2 && p <= 100))
+    if (!exponent_allowed(p))
         lie::reject(where, "an exponent of a superquadric must be between 2 and 100", p);
     return p;
 }
@@ -84,5 +87,22 @@ std::optional<Vec3> Superquadric::support(const Vec3& u) const
     for (int k = 0; k < 3; ++k) x[k] = std::copysign(semi_axes[k] * x[k], u[k]);
     return x;
 }
+
+namespace {
+
+const bool enrolled =
+    enrol({.name = "superquadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+               const Vec3 semi_axes = read_semi_axes(o);
+               const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {
+                   const double p = o.number(key, fallback);
+                   if (!exponent_allowed(p))
+                       o.fail(key, std::string(key) + " must be between 2 and 100, got " + dae::shortest(p));
+                   return p;
+               };
+               const double p = exponent("exponent");
+               return std::make_shared<Superquadric>(semi_axes, p, exponent("exponent_z", p));
+           }});
+
+}  // namespace
 
 }  // namespace hilda::contact

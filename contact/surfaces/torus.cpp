@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/torus.hpp"
 
+#include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
 
 namespace hilda::contact {
@@ -52,5 +53,19 @@ Vec3 Torus::project(const Vec3& a) const
                                     "the axis of a torus and that of its tube have no nearest point");
     return ring + r / distance * out;
 }
+
+namespace {
+
+const bool enrolled = enrol({.name = "torus",
+                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                 const double R = o.positive("ring_radius"), r = o.positive("tube_radius");
+                                 if (!(r < R))
+                                     o.fail("tube_radius", "tube_radius must be less than ring_radius, got " +
+                                                               dae::shortest(r));
+                                 return std::make_shared<Torus>(R, r, o.flag("concave", false));
+                             },
+                             .z = "axis"});
+
+}  // namespace
 
 }  // namespace hilda::contact

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surface_types.hpp"
+
+#include "contact/tangent_basis.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hilda::contact {
+
+namespace {
+
+// Built on first use: files enrol their surfaces before main, in an order nobody fixes.
+std::vector<SurfaceType>& list()
+{
+    static std::vector<SurfaceType> types;
+    return types;
+}
+
+std::vector<std::string> names()
+{
+    std::vector<std::string> all;
+    for (const SurfaceType& type : surface_types()) all.push_back(type.name);
+    return all;
+}
+
+Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
+{
+    if (z.empty() || o.look(z) == nullptr) return dae::read_orientation(o);
+    for (const char* other : {"A", "p", "axis_angle"})
+        if (o.has(other)) o.fail(other, "the orientation must be given once, got " + z + " and " + other);
+    const Vec3 n = o.direction(z).normalized();
+    Mat3 axes;
+    axes << tangent_basis(n), n;
+    return axes + Mat3::Zero();  // no -0, which would look odd in the canonical text
+}
+
+}  // namespace
+
+const std::vector<SurfaceType>& surface_types() { return list(); }
+
+bool enrol(SurfaceType type)
+{
+    std::vector<SurfaceType>& all = list();
+    const auto at =
+        std::lower_bound(all.begin(), all.end(), type,
+                         [](const SurfaceType& a, const SurfaceType& b) { return a.name < b.name; });
+    if (at != all.end() && at->name == type.name)
+        throw std::logic_error("two kinds of surface are called " + type.name);
+    all.insert(at, std::move(type));
+    return true;
+}
+
+Shape read_shape(dae::ObjectReader& parent, std::string_view key)
+{
+    dae::ObjectReader o = parent.object(key);
+    const std::string name = o.one_of("type", names());
+    const SurfaceType& type = *std::find_if(surface_types().begin(), surface_types().end(),
+                                            [&](const SurfaceType& t) { return t.name == name; });
+    Shape shape;
+    shape.surface = type.read(o);
+    shape.position = o.vec3("position", Vec3::Zero());
+    shape.orientation = read_axes(o, type.z);
+    o.keep("A", dae::json(shape.orientation));
+
+    dae::Json kept = o.finish();
+    std::erase_if(std::get<dae::Json::Object>(kept.value), [&](const dae::Json::Member& k) {
+        return k.key == "p" || k.key == "axis_angle" || (k.key == type.z && !type.z.empty());
+    });
+    parent.keep(key, std::move(kept));
+    return shape;
+}
+
+Vec3 read_semi_axes(dae::ObjectReader& o)
+{
+    const Vec3 semi_axes = o.vec3("semi_axes");
+    if (!(semi_axes.minCoeff() > 0))
+        o.fail("semi_axes", "semi_axes must be positive, got " + dae::described(*o.look("semi_axes")));
+    return semi_axes;
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Surfaces of a model file: what is read, what is refused and where, and that the canonical text says the same.
+
+#include "contact/surface_types.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "contact/surfaces/torus.hpp"
+#include "lie/check.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::contact;
+
+namespace {
+
+struct Read {
+    Shape shape;
+    std::string canonical;
+};
+
+/// The shape of a text, read as the value of the key "on_i"
+Read read(const std::string& shape)
+{
+    const std::string text = "{\"on_i\": " + shape + "}";
+    const dae::JsonSource source(text, "model.json");
+    dae::ObjectReader o(source, source.root, "");
+    Read r{read_shape(o, "on_i"), {}};
+    r.canonical = dae::written(o.finish().member("on_i")->value);
+    return r;
+}
+
+std::string refusal(const std::string& shape)
+{
+    try {
+        read(shape);
+    } catch (const dae::PlacedError& e) {
+        return e.what();
+    }
+    return "accepted";
+}
+
+/// An example of every kind of surface; add the next one here.
+const std::pair<std::string, std::string> examples[] = {
+    {"cylinder", R"({"type": "cylinder", "radius": 0.5, "axis": [1, 0, 0]})"},
+    {"disk", R"({"type": "disk", "radius": 0.5})"},
+    {"ellipsoid", R"({"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "concave": true})"},
+    {"foot", R"({"type": "foot", "position": [0, 0, -0.5], "normal": [0, 0, -1]})"},
+    {"plane", R"({"type": "plane", "normal": [0, 3, 4]})"},
+    {"sphere", R"({"type": "sphere", "radius": 0.2, "position": [1, 2, 3], "axis_angle": [0, 0, 1, 0.5]})"},
+    {"superquadric", R"({"type": "superquadric", "semi_axes": [0.3, 0.2, 0.1], "exponent": 4})"},
+    {"torus", R"({"type": "torus", "ring_radius": 0.5, "tube_radius": 0.1, "p": [1, 0, 0, 0]})"},
+};
+
+}  // namespace
+
+TEST_CASE("every kind of surface is read and written the same", "[contact][surface_types]")
+{
+    REQUIRE(surface_types().size() >= std::size(examples));
+    for (const SurfaceType& type : surface_types()) {
+        INFO(type.name);
+        const auto* example = std::find_if(std::begin(examples), std::end(examples),
+                                           [&](const auto& e) { return e.first == type.name; });
+        REQUIRE(example != std::end(examples));
+        const Read once = read(example->second), twice = read(once.canonical);
+        CHECK(once.shape.surface->name() == type.name);
+        CHECK(twice.canonical == once.canonical);
+        CHECK(twice.shape.surface->name() == type.name);
+        CHECK(twice.shape.surface->size() == once.shape.surface->size());
+        CHECK(twice.shape.surface->sigma() == once.shape.surface->sigma());
+        CHECK(twice.shape.position == once.shape.position);
+        CHECK(twice.shape.orientation == once.shape.orientation);
+        CHECK(lie::orthogonality_error(once.shape.orientation) < 1e-15);
+    }
+}
+
+TEST_CASE("what a model file says of a surface is what it is", "[contact][surface_types]")
+{
+    const Shape ball = read(examples[5].second).shape;
+    CHECK(dynamic_cast<const Sphere&>(*ball.surface).R == 0.2);
+    CHECK_FALSE(dynamic_cast<const Sphere&>(*ball.surface).concave);
+    CHECK(ball.position == Vec3(1, 2, 3));
+    CHECK((ball.orientation - lie::exp({0, 0, 0.5})).norm() < 1e-15);
+
+    const Shape hollow = read(examples[2].second).shape;
+    CHECK(dynamic_cast<const Ellipsoid&>(*hollow.surface).semi_axes == Vec3(0.3, 0.2, 0.1));
+    CHECK(hollow.surface->sigma() == -1);
+    CHECK(hollow.orientation == Mat3::Identity());
+
+    CHECK((read(examples[4].second).shape.orientation.col(2) - Vec3(0, 0.6, 0.8)).norm() < 1e-15);
+    CHECK(dynamic_cast<const Superquadric&>(*read(examples[6].second).shape.surface).q == 4);
+    CHECK(dynamic_cast<const Torus&>(*read(examples[7].second).shape.surface).r == 0.1);
+    CHECK(read(R"({"type": "plane"})").canonical ==
+          "{\n  \"type\": \"plane\",\n  \"position\": [0, 0, 0],\n"
+          "  \"A\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n}");
+}
+
+TEST_CASE("a bad surface is refused with its place and value", "[contact][surface_types]")
+{
+    const auto says = [](const std::string& shape, const std::string& what) {
+        INFO(shape);
+        const std::string said = refusal(shape);
+        CHECK(said.starts_with("model.json:1:"));
+        CHECK_THAT(said, Catch::EndsWith(what));
+    };
+    says("3", "(/on_i): must be an object, got 3");
+    says("{}", "(/on_i): missing key 'type'");
+    says(R"({"type": "spere"})", "(/on_i/type): unknown type \"spere\"; did you mean 'sphere'?");
+    says(R"({"type": "sphere"})", "(/on_i): missing key 'radius'");
+    says(R"({"type": "sphere", "radius": -0.2})", "(/on_i/radius): radius must be positive, got -0.2");
+    says(R"({"type": "sphere", "radius": 1, "concave": 1})",
+         "(/on_i/concave): concave must be true or false, got 1");
+    says(R"({"type": "sphere", "radius": 1, "xyzzy": 1})",
+         "(/on_i/xyzzy): unknown key \"xyzzy\"; allowed: type, radius, concave, position, A, p, axis_angle, "
+         "note");
+    says(R"({"type": "ellipsoid", "semi_axes": [1, 0, 2]})",
+         "(/on_i/semi_axes): semi_axes must be positive, got [1, 0, 2]");
+    says(R"({"type": "torus", "ring_radius": 1, "tube_radius": 1})",
+         "(/on_i/tube_radius): tube_radius must be less than ring_radius, got 1");
+    says(R"({"type": "superquadric", "semi_axes": [1, 1, 1], "exponent": 1.5})",
+         "(/on_i/exponent): exponent must be between 2 and 100, got 1.5");
+    says(R"({"type": "superquadric", "semi_axes": [1, 1, 1], "exponent": 4, "exponent_z": 1000})",
+         "(/on_i/exponent_z): exponent_z must be between 2 and 100, got 1000");
+    says(R"({"type": "plane", "normal": [0, 0, 0]})",
+         "(/on_i/normal): normal must have a direction, got [0, 0, 0] of length 0");
+    says(R"({"type": "plane", "normal": [0, 0, 1], "axis_angle": [0, 0, 1, 2]})",
+         "(/on_i/axis_angle): the orientation must be given once, got normal and axis_angle");
+    says(
+        R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "axis_angle": [0, 0, 1, 2]})",
+        "(/on_i): the orientation must be given once, as one of A, p and axis_angle; got 2");
+    says(R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]})",
+         "(/on_i/A): A must be a rotation matrix, got a reflection with det A = -1");
+    says(R"({"type": "disk", "radius": 1, "axis_angle": [0, 0, 2, 2]})",
+         "(/on_i/axis_angle): the axis of axis_angle must have length 1, got 2; at most 1e-06 off is mended");
+    says(R"({"type": "disk", "radius": 1, "position": [0, 0]})",
+         "(/on_i/position): position must be a list of 3 numbers, got [0, 0]");
+}
+
+TEST_CASE("two kinds of surface with one name are refused", "[contact][surface_types]")
+{
+    CHECK_THROWS_AS(enrol(SurfaceType{.name = "sphere", .read = nullptr}), std::logic_error);
+}

@@ -72,6 +72,15 @@ double size_or(const Shape& s, const Shape& other)
     return s.surface->size() > 0 ? s.surface->size() : other.surface->size();
 }
 
+/// A point of a surface that faces the point x of another, where that has the normal n. The nearest point does not
+/// if x lies within the body; then the search begins well out on the other side.
+Vec3 facing(const Surface& s, const Vec3& x, const Vec3& n)
+{
+    if (s.convex()) return *s.support(-s.sigma() * n);
+    const Vec3 nearest = s.project(x);
+    return s.normal(nearest).dot(n) < 0 ? nearest : s.project(-2 * s.size() * n);
+}
+
 /// Detects in an order of the two shapes that does not depend on which is i, so that exchanging the bodies
 /// changes no digit.
 class EitherOrder final : public Detector {
@@ -249,24 +258,23 @@ void CommonNormal::turn_normal(Pair& p) const
     p.a_i = now.a_i, p.a_j = now.a_j;
 }
 
-/// From the centre of one surface to the nearest point of the other, from there back, and so on. A plane has no
-/// centre, and of the others the hollow or the larger one is met first.
+/// From the centre of one surface to the nearest point of the other, from there to the point that faces it, and so
+/// on. A plane has no centre, and of the others the hollow or the larger one is met first.
 void CommonNormal::alternate(Pair& p, int projections) const
 {
-    const auto onto = [](const Shape& s, const Placed& at, const Vec3& x) {
-        return s.surface->project(at.axes.transpose() * (x - at.origin));
+    const auto rank = [](const Surface& s) {
+        return s.size() == 0 ? INFINITY : s.size() * (s.sigma() < 0 ? 1e3 : 1);
     };
-    const auto first = [](const Shape& s) {
-        return s.surface->size() == 0 ? INFINITY : s.surface->size() * (s.surface->sigma() < 0 ? 1e3 : 1);
-    };
-    const bool i_first = first(i) > first(j);
-    const auto &a = i_first ? p.i : p.j, &b = i_first ? p.j : p.i;
-    Vec3 x = b.origin;
+    const bool i_first = rank(*i.surface) > rank(*j.surface);
+    const Surface &a = i_first ? *i.surface : *j.surface, &b = i_first ? *j.surface : *i.surface;
+    const Placed &at_a = i_first ? p.i : p.j, &at_b = i_first ? p.j : p.i;
+    Vec3 &a_a = i_first ? p.a_i : p.a_j, &a_b = i_first ? p.a_j : p.a_i;
+    a_b.setZero();
     for (int k = 0; k < std::max(projections, 1); ++k) {
-        const Vec3 a_a = onto(i_first ? i : j, a, x);
-        const Vec3 a_b = onto(i_first ? j : i, b, a.origin + a.axes * a_a);
-        x = b.origin + b.axes * a_b;
-        (i_first ? p.a_i : p.a_j) = a_a, (i_first ? p.a_j : p.a_i) = a_b;
+        const Vec3 x_b = at_b.origin + at_b.axes * a_b;
+        a_a = a.project(at_a.axes.transpose() * (x_b - at_a.origin));
+        const Vec3 x_a = at_a.origin + at_a.axes * a_a, n = at_a.axes * a.normal(a_a);
+        a_b = facing(b, at_b.axes.transpose() * (x_a - at_b.origin), at_b.axes.transpose() * n);
     }
 }
 

@@ -347,6 +347,23 @@ TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest"
                     lie::NumericalFailure);
 }
 
+TEST_CASE("a touch is found from nothing when the centre of a ball is inside the other body",
+          "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 50u)));
+    const double depth = random.number(0, 0.18);
+    const Vec3 u = random.unit();
+    const Torus torus(0.5, 0.2);
+    const Vec3 C = *torus.support(u);
+    Motion ball;
+    ball.r = C - depth * u;
+    const Touch t =
+        make_detector(shape<Sphere>(0.1), shape<Torus>(0.5, 0.2))->detect(ball, Motion(), nullptr);
+    CHECK(t.gap == Approx(-depth - 0.1));
+    CHECK((t.n - u).norm() < 1e-13);
+    CHECK((t.C_j - C).norm() < 1e-13);
+}
+
 TEST_CASE("where the surfaces do not curve away from each other there is no touch", "[contact][detection]")
 {
     const auto trouble = [](const Shape& i, const Shape& j, const Motion& bi, const Points* from) {
@@ -359,7 +376,7 @@ TEST_CASE("where the surfaces do not curve away from each other there is no touc
         return std::string("none");
     };
     const std::string start =
-        "no touch of two surfaces: the surfaces do not curve away from each othercorrection ";
+        "no touch of two surfaces: the surfaces do not curve away from each other, ";
     // flatter than the bowl where they would touch
     Motion m;
     m.r = {0, 0, -0.65};

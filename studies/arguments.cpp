@@ -101,6 +101,20 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
     refuse(option, "must be auto, klu or condensed", text);
 }
 
+std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words)
+{
+    if (std::find(words.begin(), words.end(), text) != words.end()) return text;
+    std::string all;
+    for (size_t k = 0; k < words.size(); ++k)
+        all += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
+    refuse(option, "must be " + all, text);
+}
+
+std::string preset(const std::string& option, const std::string& text)
+{
+    return one_of(option, text, std::vector<std::string>{"balanced", "dissertation"});
+}
+
 int positive_count(const std::string& option, const std::string& text)
 {
     const std::optional<int> value = whole<int>(text);

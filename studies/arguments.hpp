@@ -26,6 +26,10 @@ double relative_tolerance(const std::string& option, const std::string& text);
 double absolute_tolerance(const std::string& option, const std::string& text);
 /// auto, klu or condensed
 lie::LinearSolver linear_solver(const std::string& option, const std::string& text);
+/// One of these words; UsageError lists them.
+std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words);
+/// balanced or dissertation
+std::string preset(const std::string& option, const std::string& text);
 /// A whole number, at least 1
 int positive_count(const std::string& option, const std::string& text);
 

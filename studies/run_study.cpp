@@ -31,7 +31,8 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
         std::string those;
         for (const Study& other : studies())
             if ((other.also & option) != 0) those += (those.empty() ? "" : ", ") + other.kind;
-        throw UsageError("study " + study.kind + ": " + name + " is for " + those);
+        throw UsageError("study " + study.kind + ": " + name + " is for " +
+                         (those.empty() ? "other studies" : those));
     };
     idle(!options.reference.empty(), takes::reference, "--reference");
     idle(options.reference_step.has_value(), takes::reference, "--reference-step");
@@ -39,6 +40,9 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
     idle(!options.rtols.empty(), takes::rtols, "--rtols");
     idle(options.repeats > 0, takes::repeats, "--repeats");
     idle(!options.bars.empty(), takes::bars, "--bars");
+    idle(!options.preset.empty(), takes::preset, "--preset");
+    idle(!options.against.empty(), takes::against, "--against");
+    idle(!options.grid.empty(), takes::grid, "--grid");
 }
 
 }  // namespace

@@ -32,6 +32,10 @@ struct StudyOptions {
 
     std::string reference;                                 ///< an integrator; "": the truth of each problem
     std::optional<double> reference_step, reference_rtol;  ///< [s], 1
+    std::string preset;   ///< of the friction: balanced or dissertation; "": the default of the study
+    std::string against;  ///< a CSV file to compare with; "": none
+    std::string grid;     ///< of a sweep, by a name that the study knows; "": its default
+
     int repeats = 0;  ///< of what is timed; 0: the default of studies that time
     std::uint64_t seed = 0;
 
@@ -45,7 +49,7 @@ struct StudyOptions {
 
 /// Options that only some studies take
 namespace takes {
-enum : unsigned { reference = 1, rtols = 2, repeats = 4, bars = 8 };
+enum : unsigned { reference = 1, rtols = 2, repeats = 4, bars = 8, preset = 16, against = 32, grid = 64 };
 }  // namespace takes
 
 struct Study {

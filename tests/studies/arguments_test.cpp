@@ -25,6 +25,16 @@ TEST_CASE("numbers are read whole or not at all", "[studies][arguments]")
         CHECK_THROWS_AS(list("--problem", text), UsageError);
 }
 
+TEST_CASE("a word that is not one of those allowed is refused with them", "[studies][arguments]")
+{
+    CHECK(preset("--preset", "balanced") == "balanced");
+    CHECK_THROWS_AS(preset("--preset", "Balanced"), UsageError);
+    CHECK_THROWS_WITH(preset("--preset", "thesis"),
+                      "--preset: must be balanced or dissertation, got 'thesis'");
+    CHECK_THROWS_WITH(one_of("--grid", "", std::vector<std::string>{"a", "b", "c"}),
+                      "--grid: must be a, b or c, got ''");
+}
+
 TEST_CASE("an expectation has a key, a value and a tolerance", "[studies][arguments]")
 {
     const Expectation e = expectation("--expect", "order=2+-0.1");

@@ -91,6 +91,10 @@ TEST_CASE("an option that a study would not look at is refused", "[studies][memb
     refused({"study", "energy", "--rtols", "1e-4"}, "--rtols is for work-precision");
     refused({"study", "convergence", "--repeats", "3"}, "--repeats is for scaling, timing, work-precision");
     refused({"study", "timing", "--reference", "rA-half-2"}, "--reference is for compare, convergence");
+    refused({"study", "energy", "--against", "a.csv"}, "study energy: --against is for ");
+    refused({"study", "energy", "--preset", "balanced"}, "study energy: --preset is for ");
+    refused({"study", "energy", "--preset", "thesis"}, "--preset: must be balanced or dissertation");
+    refused({"study", "energy", "--grid", "fine"}, "study energy: --grid is for ");
     refused({"study", "timings"}, "unknown study 'timings'; did you mean 'timing'?");
     refused({"study", "scaling", "--bars", "4,0"},
             "--bars: N must be a whole number from 1 to 100000, got '0'");

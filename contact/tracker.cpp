@@ -7,14 +7,15 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double no_length = 1e-14;  // [m], a way shorter than this has no direction
+constexpr double rounding = 1e-15;  // of positions: a way shorter than this part of them has no direction
 
-/// d in the tangent plane, as long as the way along the surface
-Vec3 laid_flat(const Vec3& d, const Vec3& n, const Surface& surface)
+/// From where the old point c_bar of a body has gone to the new one, in the tangent plane and as long as along the surface
+Vec3 way(const Vec3& c_bar, const Vec3& C, const Vec3& n, const Motion& b, const Surface& surface)
 {
+    const Vec3 s = b.A * c_bar, d = C - (b.r + s);
     const Vec3 t = d - n * n.dot(d);
     const double flat = t.norm();
-    if (flat < no_length) return Vec3::Zero();
+    if (flat <= rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
     return surface.arc(d.norm()) / flat * t;
 }
 
@@ -65,8 +66,8 @@ Slip follow(const Track& from, const Touch& to, const Shape& i, const Shape& j, 
     s.u_i = carried(bi.A * from.u_i, bi.A * from.n_i, s.n);
     s.u_j = carried(bj.A * from.u_j, bj.A * from.n_j, s.n);
     s.psi = std::atan2(s.n.dot(s.u_j.cross(s.u_i)), s.u_j.dot(s.u_i));
-    s.p_i = laid_flat(to.C_i - (bi.r + bi.A * from.c_i), s.n, *i.surface);
-    s.p_j = laid_flat(to.C_j - (bj.r + bj.A * from.c_j), s.n, *j.surface);
+    s.p_i = way(from.c_i, to.C_i, s.n, bi, *i.surface);
+    s.p_j = way(from.c_j, to.C_j, s.n, bj, *j.surface);
     if (how.carrier == Carrier::mid) {
         const double half = s.psi / 2, part = how.beta * half;
         const double cosine = std::cos(part), sine = std::sin(part);

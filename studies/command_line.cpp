@@ -269,6 +269,8 @@ private:
         value(c, "--reference-rtol", "R", "its tolerance where it chooses its own steps, by default 1e-12",
               assign(o.reference_rtol, relative_tolerance));
         value(c, "--preset", "balanced|dissertation", "of the friction", assign(o.preset, preset));
+        c->add_flag("--check", o.check,
+                    "do all that a study is judged by; exit with 6 where something does not come out");
         value(c, "--against", "FILE", "a CSV table to compare the result with", assign(o.against, path));
         value(c, "--grid", "NAME", "of a sweep, by default the finest", assign(o.grid, as_it_is));
         value(c, "--repeats", "N", "of what is timed, by default 5", assign(o.repeats, positive_count));

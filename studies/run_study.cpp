@@ -42,6 +42,7 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
     idle(!options.bars.empty(), takes::bars, "--bars");
     idle(!options.preset.empty(), takes::preset, "--preset");
     idle(!options.against.empty(), takes::against, "--against");
+    idle(options.check, takes::check, "--check");
     idle(!options.grid.empty(), takes::grid, "--grid");
 }
 

@@ -41,6 +41,7 @@ struct StudyOptions {
 
     std::string output;  ///< directory, already made and empty; "" with --json and no --output
     int jobs = 0;        ///< runs side by side; 0: one for each core, or one where time is measured
+    bool check = false;  ///< all that must come out is wanted, and exit code 6 where it does not
     bool force = false;  ///< take a directory that is not empty, and a reference that is too coarse
     bool plot = true, quiet = false, json = false;
     std::vector<Expectation> expect;
@@ -49,7 +50,16 @@ struct StudyOptions {
 
 /// Options that only some studies take
 namespace takes {
-enum : unsigned { reference = 1, rtols = 2, repeats = 4, bars = 8, preset = 16, against = 32, grid = 64 };
+enum : unsigned {
+    reference = 1,
+    rtols = 2,
+    repeats = 4,
+    bars = 8,
+    preset = 16,
+    against = 32,
+    grid = 64,
+    check = 128
+};
 }  // namespace takes
 
 struct Study {

@@ -48,7 +48,7 @@ protected:
 private:
     bool assembled_at(const State& x) const
     {
-        if (at.t != x.t || at.memory != x.memory || at.remembered != x.remembered) return false;
+        if (at.t != x.t || at.memory != x.memory) return false;
         for (size_t i = 0; i < x.body.size(); ++i)
             if (at.body[i].r != x.body[i].r || at.body[i].A != x.body[i].A) return false;
         return true;

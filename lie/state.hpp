@@ -24,7 +24,7 @@ struct State {
     Eigen::VectorXd lambda;  ///< multiplier of each constraint row
     /// Whole numbers that a system remembers from step to step: the branch of a driver, turns
     std::vector<int> memory;
-    /// Real numbers that it remembers: contact points, what friction has stored
+    /// Real numbers that it remembers: contact points, what friction has stored. Loads may depend on them, not constraints.
     std::vector<double> remembered;
     /// What a scheme carries from step to step: half-step velocities, earlier increments. Empty at a start.
     Eigen::VectorXd history;

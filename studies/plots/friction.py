@@ -1,2 +1,153 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""The experiments on friction, one figure each.                             Fang (2022), Figs. 4.6-4.12, 4.15-4.18
+
+    friction.py DIR       reads DIR/study.csv and DIR/EXPERIMENT.csv, writes DIR/friction-EXPERIMENT.png
+"""
+import os
+
+from drawing import COLOURS, Line2D, directory, grid, number, plt, read, save
+
+# EXPERIMENT: rows of panels; a panel is (column, label, limits of t or None)
+PANELS = {
+    "brick": [[("x", "$x$ [m]", None), ("v", "$v$ [m/s]", None)],
+              [("Ef", "$E_f$ [N]", None), ("Df", "$D_f$ [N]", None)],
+              [("S", "$S_{ij}$ [m]", None), ("dS", r"$\Delta S_{ij}$ [m]", None)]],
+    "disk": [[("x", "$x$ [m]", (0, 1.6)), ("theta", r"$\theta$ [rad]", (0, 1.6))],
+             [("v", "$v$ [m/s]", (0, 1.6)), ("omega", r"$\omega$ [rad/s]", (0, 1.6))],
+             [("F_E", "$F_E$ [N]", (0, 1.6)), ("T_E", "$T_E$ [N m]", (0, 1.6))],
+             [("S_mm", "$|S|$ [mm]", (0, 1.6)), ("Theta_e-3rad", r"$|\Theta|$ [mrad]", (0, 1.6))]],
+    "disk-damping": [[("a", "$\\ddot x$ [m/s²]", (1.22, 1.42)), ("alpha", r"$\ddot\theta$ [rad/s²]", (1.22, 1.42))]],
+    "rolling-models": [[("theta", r"$\theta$ [rad]", None), ("T_E", "rolling torque [N m]", None)],
+                       [("theta", r"$\theta$ [rad], at rest", (1.25, 1.5)),
+                        ("T_E", "rolling torque [N m], at rest", (1.25, 1.5))]],
+    "incline": [[("v_cm", "$v_{CM}$ [m/s]", None), ("omega_x", r"$\omega$ [rad/s]", None)],
+                [("F_E", "$F_E$ [N]", None), ("T_E", "$T_E$ [N m]", None)]],
+    "spin": [[("omega", r"$\omega$ [rad/s]", None), ("T", "spinning torque [N m]", None)]],
+    "ellipsoid": [[("tilt", "tilt [deg]", None), ("omega", r"$\omega$ [rad/s]", None)],
+                  [("y", "$y$ [m]", None), ("z", "$z$ [m]", None)]],
+}
+PANELS["brick-angles"] = PANELS["brick"]
+PRESETS = ("dissertation", "balanced")
+
+
+def split(run):
+    """("balanced", "eta0.012") of balanced-eta0.012; ("", run) where there is no preset"""
+    preset, _, rest = run.partition("-")
+    return (preset, rest) if preset in PRESETS else ("", run)
+
+
+def styles(runs):
+    """A colour for what is varied, dashes for the preset of the dissertation where both are there"""
+    varied = list(dict.fromkeys(split(run)[1] or split(run)[0] for run in runs))
+    both = len({split(run)[0] for run in runs} - {""}) > 1 and any(split(run)[1] for run in runs)
+    return {run: (COLOURS[varied.index(split(run)[1] or split(run)[0]) % len(COLOURS)],
+                  "--" if both and split(run)[0] == "dissertation" else "-") for run in runs}
+
+
+def curve(rows, column):
+    return [number(row["t"]) for row in rows], [number(row[column]) for row in rows]
+
+
+def below(figure, lines, columns=4):
+    """A legend below the whole figure; the room it needs"""
+    handles = [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in lines.items()]
+    figure.legend(handles=handles, loc="lower center", ncol=min(columns, len(handles)), frameon=False, fontsize=9)
+    return 0.22 * -(-len(handles) // columns) / figure.get_figheight() + 0.01
+
+
+def within(rows, limits):
+    return [row for row in rows if limits is None or limits[0] <= number(row["t"]) <= limits[1]]
+
+
+def panels(folder, name, title, by_run):
+    layout = PANELS[name]
+    figure, axes = plt.subplots(len(layout), len(layout[0]), figsize=(11, 1.2 + 2.7 * len(layout)), squeeze=False)
+    lines = styles(list(by_run))
+    for row, row_axes in zip(layout, axes):
+        for (column, label, limits), ax in zip(row, row_axes):
+            for run, rows in by_run.items():
+                colour, dash = lines[run]
+                ax.plot(*curve(within(rows, limits), column), dash, color=colour, lw=1.2)
+            ax.set_ylabel(label)
+            ax.set_xlabel("$t$ [s]")
+            grid(ax)
+    if name == "disk":  # the dashpots of the first steps would hide the rest
+        axes[2][0].set_ylim(-1, 14)
+    figure.suptitle(title, fontsize=11)
+    save(figure, folder, f"friction-{name}.png", below(figure, lines))
+
+
+def spinning(folder, name, title, by_run, groups, columns):
+    """A row of panels for each group of runs, coloured by K_E"""
+    figure, axes = plt.subplots(len(groups), len(columns), figsize=(11, 1.2 + 2.6 * len(groups)), squeeze=False)
+    stiffness = list(dict.fromkeys(run.rpartition("-")[2] for run in by_run))
+    for group, row_axes in zip(groups, axes):
+        for (column, label), ax in zip(columns, row_axes):
+            for run, rows in by_run.items():
+                preset, rest = split(run)
+                if rest.rpartition("-")[0] != group:
+                    continue
+                ax.plot(*curve(rows, column), "--" if preset == "dissertation" else "-", lw=1.1,
+                        color=COLOURS[stiffness.index(rest.rpartition("-")[2])])
+            ax.set_ylabel(label)
+            ax.set_xlabel("$t$ [s]")
+            ax.set_title(group, fontsize=9)
+            grid(ax)
+    figure.suptitle(title, fontsize=11)
+    lines = {"$K_E$ = " + s[2:] + " N/m": (COLOURS[k], "-") for k, s in enumerate(stiffness)}
+    lines["dissertation (dashed)"] = ("0.4", "--")
+    save(figure, folder, f"friction-{name}.png", below(figure, lines, columns=5))
+
+
+def orbits(folder, name, title, by_run):
+    figure, (plane, radius) = plt.subplots(1, 2, figsize=(11, 5))
+    runs = [run for run in by_run if run.startswith("beta")]
+    lines = {run.replace("beta=", r"$\beta$ = "): (COLOURS[k], "-") for k, run in enumerate(runs)}
+    for (colour, _), run in zip(lines.values(), runs):
+        rows = by_run[run]
+        plane.plot([number(r["x"]) for r in rows], [number(r["y"]) for r in rows], color=colour, lw=1)
+        radius.plot(*curve(rows, "radius"), color=colour)
+    plane.set_aspect("equal")
+    plane.set_xlabel("$x$ [m]")
+    plane.set_ylabel("$y$ [m]")
+    radius.set_xlabel("$t$ [s]")
+    radius.set_ylabel("distance from the centre, over the exact one")
+    grid(plane)
+    grid(radius)
+    figure.suptitle(title, fontsize=11)
+    save(figure, folder, f"friction-{name}.png", below(figure, lines))
+
+
+def draw(folder, name, figure):
+    by_run = {}
+    for row in read(folder, name + ".csv"):
+        by_run.setdefault(row["run"], []).append(row)
+    title = f"{name} (Fig. {figure})" if figure[0].isdigit() else name
+    if name == "spin-hertz":
+        spinning(folder, name, title, by_run, ["steel-20mm", "steel-40mm", "glass-20mm"],
+                 [("Psi", r"$\Psi$ [rad]"), ("omega", r"$\omega$ [rad/s]")])
+    elif name == "spin-ellipsoid":
+        spinning(folder, name, title + ": true inertia; dashed, that of the published runs", by_run, ["upright", "flat"],
+                 [("Psi", r"$\Psi$ [rad]"), ("omega", r"$\omega$ [rad/s]")])
+    elif name == "turntable":
+        orbits(folder, name, title + ": ten orbits of a ball, by the part of the spin that is turned back", by_run)
+    elif name in PANELS:
+        columns = [panel[0] for row in PANELS[name] for panel in row]
+        by_run = {run: rows for run, rows in by_run.items() if all(rows[0].get(c) for c in columns)}
+        panels(folder, name, title, by_run)
+
+
+def main():
+    folder = directory()
+    for name in sorted(file[:-4] for file in os.listdir(folder) if file.endswith(".csv")):
+        if name not in ("study", "against"):
+            draw(folder, name, FIGURES.get(name, "4"))
+
+
+FIGURES = {"brick": "4.6", "brick-angles": "4.7", "disk": "4.9", "disk-damping": "4.10", "rolling-models": "4.11",
+           "incline": "4.12", "spin": "4.15", "spin-hertz": "4.16", "ellipsoid": "4.17", "spin-ellipsoid": "4.18",
+           "turntable": "beyond"}
+
+if __name__ == "__main__":
+    main()

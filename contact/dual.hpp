@@ -4,6 +4,8 @@
 
 #pragma once
 
+#include "dae/elementary.hpp"
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -81,42 +83,8 @@ inline Dual chain(const Dual& x, double u, double u1, double u2)
     return {u, u1 * x.g, u1 * x.h + 0.5 * u2 * Dual::both(x.g, x.g)};
 }
 
-inline Dual sin(const Dual& x) { return chain(x, std::sin(x.f), std::cos(x.f), -std::sin(x.f)); }
-inline Dual cos(const Dual& x) { return chain(x, std::cos(x.f), -std::sin(x.f), -std::cos(x.f)); }
-inline Dual sinh(const Dual& x) { return chain(x, std::sinh(x.f), std::cosh(x.f), std::sinh(x.f)); }
-inline Dual cosh(const Dual& x) { return chain(x, std::cosh(x.f), std::sinh(x.f), std::cosh(x.f)); }
-inline Dual log(const Dual& x) { return chain(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f)); }
-
-inline Dual exp(const Dual& x)
-{
-    const double u = std::exp(x.f);
-    return chain(x, u, u, u);
-}
-
-inline Dual sqrt(const Dual& x)
-{
-    const double u = std::sqrt(x.f);
-    return chain(x, u, 0.5 / u, -0.25 / (x.f * u));
-}
-
-inline Dual tan(const Dual& x)
-{
-    const double u = std::tan(x.f), u1 = 1 + u * u;
-    return chain(x, u, u1, 2 * u * u1);
-}
-
-inline Dual tanh(const Dual& x)
-{
-    // 1/cosh² and not 1 - tanh², which loses all digits for large x
-    const double u = std::tanh(x.f), u1 = 1 / (std::cosh(x.f) * std::cosh(x.f));
-    return chain(x, u, u1, -2 * u * u1);
-}
-
-inline Dual atan(const Dual& x)
-{
-    const double u1 = 1 / (1 + x.f * x.f);
-    return chain(x, std::atan(x.f), u1, -2 * x.f * u1 * u1);
-}
+using dae::acos, dae::asin, dae::atan, dae::cos, dae::cosh, dae::exp, dae::log, dae::pow, dae::sin, dae::sinh;
+using dae::sqrt, dae::tan, dae::tanh;
 
 /// The angle of (x, y); both may not be zero
 inline Dual atan2(const Dual& y, const Dual& x)
@@ -125,14 +93,6 @@ inline Dual atan2(const Dual& y, const Dual& x)
     Dual angle = std::abs(x.f) >= std::abs(y.f) ? atan(y / x) : -atan(x / y);
     angle.f = std::atan2(y.f, x.f);
     return angle;
-}
-
-inline Dual pow(const Dual& x, double p)
-{
-    // where p or p - 1 is 0, so is the derivative, and 0 times infinity shall not make it otherwise
-    const double u1 = p == 0 ? 0 : p * std::pow(x.f, p - 1);
-    const double u2 = p == 0 || p == 1 ? 0 : p * (p - 1) * std::pow(x.f, p - 2);
-    return chain(x, std::pow(x.f, p), u1, u2);
 }
 
 /// -x where x < 0; at 0 the derivatives are those on the right.

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <cmath>
+#include "dae/elementary.hpp"
 
 namespace hilda::dae {
 
@@ -33,60 +33,6 @@ inline Jet operator/(const Jet& a, const Jet& b)
 inline Jet chain(const Jet& x, double g, double g1, double g2)
 {
     return {g, g1 * x.fdot, g2 * x.fdot * x.fdot + g1 * x.fddot};
-}
-
-inline Jet sin(const Jet& x) { return chain(x, std::sin(x.f), std::cos(x.f), -std::sin(x.f)); }
-inline Jet cos(const Jet& x) { return chain(x, std::cos(x.f), -std::sin(x.f), -std::cos(x.f)); }
-inline Jet sinh(const Jet& x) { return chain(x, std::sinh(x.f), std::cosh(x.f), std::sinh(x.f)); }
-inline Jet cosh(const Jet& x) { return chain(x, std::cosh(x.f), std::sinh(x.f), std::cosh(x.f)); }
-inline Jet log(const Jet& x) { return chain(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f)); }
-
-inline Jet exp(const Jet& x)
-{
-    const double g = std::exp(x.f);
-    return chain(x, g, g, g);
-}
-
-inline Jet sqrt(const Jet& x)
-{
-    const double g = std::sqrt(x.f);
-    return chain(x, g, 0.5 / g, -0.25 / (x.f * g));
-}
-
-inline Jet tan(const Jet& x)
-{
-    const double g = std::tan(x.f), g1 = 1 + g * g;
-    return chain(x, g, g1, 2 * g * g1);
-}
-
-inline Jet tanh(const Jet& x)
-{
-    // 1/cosh² and not 1 - tanh², which loses all digits for large x
-    const double g = std::tanh(x.f), g1 = 1 / (std::cosh(x.f) * std::cosh(x.f));
-    return chain(x, g, g1, -2 * g * g1);
-}
-
-inline Jet asin(const Jet& x)
-{
-    const double w = (1 - x.f) * (1 + x.f), g1 = 1 / std::sqrt(w);
-    return chain(x, std::asin(x.f), g1, x.f * g1 / w);
-}
-
-inline Jet acos(const Jet& x)
-{
-    const double w = (1 - x.f) * (1 + x.f), g1 = -1 / std::sqrt(w);
-    return chain(x, std::acos(x.f), g1, x.f * g1 / w);
-}
-
-inline Jet atan(const Jet& x)
-{
-    const double g1 = 1 / (1 + x.f * x.f);
-    return chain(x, std::atan(x.f), g1, -2 * x.f * g1 * g1);
-}
-
-inline Jet pow(const Jet& x, double p)
-{
-    return chain(x, std::pow(x.f, p), p * std::pow(x.f, p - 1), p * (p - 1) * std::pow(x.f, p - 2));
 }
 
 /// A number with the sign that x has just after t.

@@ -4,7 +4,6 @@
 #include "dae/forces/prescribed.hpp"
 #include "dae/model_file_types.hpp"
 #include "dae/nearest.hpp"
-#include "lie/euler_parameters.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -13,53 +12,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <set>
 
 namespace hilda::dae {
 
 namespace {
-
-// Orientations are written with few digits; so much is mended, more is a mistake.
-constexpr double orientation_tolerance = 1e-6;
-// An A this near to a rotation is left as it is, so that a model written and read again is the same.
-constexpr double exact_rotation = 1e-14;
-
-Mat3 orientation(ObjectReader& o)
-{
-    const std::vector<std::string> forms = {"A", "p", "axis_angle"};
-    const auto given = std::count_if(forms.begin(), forms.end(),
-                                     [&](const std::string& key) { return o.look(key) != nullptr; });
-    if (given > 1)
-        o.fail("the orientation must be given once, as one of A, p and axis_angle; got " +
-               std::to_string(given));
-
-    const auto off = [](const std::string& what, double value) {
-        return what + ", got " + shortest(value) + "; at most " + shortest(orientation_tolerance) +
-               " off is mended";
-    };
-    Mat3 A = Mat3::Identity();
-    if (o.has("A")) {
-        A = o.matrix("A");
-        if (const double error = lie::orthogonality_error(A); !(error <= orientation_tolerance))
-            o.fail("A", off("A must be a rotation matrix: |A^T A - I| must be 0", error));
-        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection with det A = -1");
-        if (lie::orthogonality_error(A) > exact_rotation) A = lie::nearest_rotation(A);
-    } else if (o.has("p")) {
-        const std::vector<double> e = o.numbers("p", 4);
-        const lie::Vec4 p(e[0], e[1], e[2], e[3]);
-        if (!(std::abs(p.norm() - 1) <= orientation_tolerance))
-            o.fail("p", off("p must have length 1", p.norm()));
-        A = lie::rotation(p.normalized());
-    } else if (o.has("axis_angle")) {
-        const std::vector<double> a = o.numbers("axis_angle", 4);
-        const Vec3 u(a[0], a[1], a[2]);
-        if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
-            o.fail("axis_angle", off("the axis of axis_angle must have length 1", u.norm()));
-        A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
-    }
-    return A;
-}
 
 Mat3 inertia(ObjectReader& o)
 {
@@ -138,7 +95,7 @@ private:
 
         Motion m;
         m.r = o.vec3("r");
-        m.A = orientation(o);
+        m.A = read_orientation(o);
         o.keep("A", json(m.A));
         m.rdot = o.vec3("r_dot", Vec3::Zero());
         m.omega_bar = o.vec3("omega", Vec3::Zero());

@@ -64,26 +64,81 @@ Pressing Contact::pressing(const Touch& touch, const Motion& bi, const Motion& b
             .m = m_normal};
 }
 
-Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) const
+Touch Contact::find(const Motion& bi, const Motion& bj, const Memory& memory) const
 {
-    Meeting now;
+    const Points last{memory.track.c_i, memory.track.c_j};
     try {
-        const Points last{memory.track.c_i, memory.track.c_j};
-        now.touch = detector->detect(bi, bj, memory.found ? &last : nullptr);
-        const Pressing p = pressing(now.touch, bi, bj);
-        now.N = law->force(p);
-        now.overlap_rate = p.overlap_rate;
-        if (!(now.N > 0)) return now;
-        now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())
-                                   : no_slip(now.touch, now.touch.n.unitOrthogonal());
+        return detector->detect(bi, bj, memory.found ? &last : nullptr);
     } catch (const lie::NumericalFailure& e) {
-        throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
+        rethrow(e);
     }
+}
+
+void Contact::rethrow(const lie::NumericalFailure& e) const
+{
+    throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
+}
+
+void Contact::set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const
+{
     now.m = m;
     const Moments a = moments(of_i, bi.A, now.touch.n), b = moments(of_j, bj.A, now.touch.n);
     now.I_roll = friction->fictitious(a.tangential, b.tangential);
     now.I_spin = friction->fictitious(a.normal, b.normal);
+}
+
+Meeting Contact::without_slip(const Touch& touch, const Motion& bi, const Motion& bj) const
+{
+    Meeting now;
+    now.touch = touch;
+    now.N = law->force(pressing(touch, bi, bj));
+    now.slip = no_slip(touch, touch.n.unitOrthogonal());
+    set_fictitious(now, bi, bj);
     return now;
+}
+
+Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) const
+{
+    Meeting now;
+    now.touch = find(bi, bj, memory);
+    const Pressing p = pressing(now.touch, bi, bj);
+    now.N = law->force(p);
+    now.overlap_rate = p.overlap_rate;
+    if (!(now.N > 0)) return now;
+    try {
+        now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())
+                                   : no_slip(now.touch, now.touch.n.unitOrthogonal());
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e);
+    }
+    set_fictitious(now, bi, bj);
+    return now;
+}
+
+Meeting Contact::hardest(const Motion& bi, const Motion& bj, const Memory& memory, double g) const
+{
+    Touch touch = find(bi, bj, memory);
+    Pressing p = pressing(touch, bi, bj);
+    const double gap = std::max(touch.gap, 0.), approach = std::max(p.overlap_rate, 0.);
+    const double first = std::max(p.overlap, 0.), weight = std::isfinite(p.m) ? p.m * g : 0;
+    p.overlap = first;
+    const double given =
+        law->energy(p) + weight * gap + (std::isfinite(p.m) ? 0.5 * p.m * approach * approach : 0);
+    const auto beyond = [&](double overlap) {
+        p.overlap = overlap;
+        return law->energy(p) > given + weight * (overlap - first);
+    };
+    constexpr double shortest = 1e-12, longest = 1e3;  // [m]
+    double lower = std::max(first, shortest), upper = lower;
+    while (!beyond(upper) && upper < longest) lower = upper, upper *= 2;
+    if (upper >= longest) lower = upper = first;  // no spring
+    while (upper > lower * (1 + 1e-6)) {
+        const double middle = 0.5 * (lower + upper);
+        (beyond(middle) ? upper : lower) = middle;
+    }
+    touch.gap = -upper;
+    const Motion still_i{.r = bi.r, .A = bi.A}, still_j{.r = bj.r, .A = bj.A};
+    return without_slip(touch, still_i, still_j);
 }
 
 void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const
@@ -100,13 +155,12 @@ void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Me
 
 std::string Contact::objection(const Motion& bi, const Motion& bj) const
 {
-    Meeting now;
+    Touch touch;
     try {
-        now = meet(bi, bj, {});
+        touch = detector->detect(bi, bj, nullptr);
     } catch (const lie::NumericalFailure& e) {
         return e.what();
     }
-    const Touch& touch = now.touch;
     // the smaller eigenvalue of K_i + K_j in the tangent plane
     const Vec3 u = touch.n.unitOrthogonal(), w = touch.n.cross(u);
     const Mat3 K = touch.K_i + touch.K_j;
@@ -137,21 +191,23 @@ double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& 
     using Rows = Eigen::Matrix<double, 6, 3>;
     const Springs springs = friction->springs(now);
     const Pressing p = pressing(now.touch, bi, bj);
-    const Vec3 n = now.touch.n, u = n.unitOrthogonal(), w = n.cross(u), C = now.touch.C();
+    const Vec3 n = now.touch.n, u = n.unitOrthogonal(), w = n.cross(u);
 
     // Rows: sliding along u and w, pressing along n, rolling about u and w, spinning about n
     Rows linear = Rows::Zero();
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
     Mat6 W = Mat6::Zero();
-    for (const auto& [body, motion] : {std::pair(&of_i, &bi), std::pair(&of_j, &bj)}) {
-        if (!body->moves()) continue;
-        const Vec3 s = C - motion->r;
+    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C) {
+        if (!body.moves()) return;
+        const Vec3 s = C - motion.r;
         Rows angular = Rows::Zero();
         angular << s.cross(u).transpose(), s.cross(w).transpose(), s.cross(n).transpose(), u.transpose(),
             w.transpose(), n.transpose();
-        const Rows in_body = angular * motion->A;
-        W += linear * linear.transpose() / body->m + in_body * body->J_bar_inverse() * in_body.transpose();
-    }
+        const Rows in_body = angular * motion.A;
+        W += linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose();
+    };
+    add(of_i, bi, now.touch.C_i);
+    add(of_j, bj, now.touch.C_j);
     Eigen::Matrix<double, 6, 1> K, D;
     K << springs.K_slide, springs.K_slide, law->stiffness(p), springs.K_roll, springs.K_roll, springs.K_spin;
     D << springs.D_slide, springs.D_slide, p.overlap > 0 ? law->damping(p) : 0, springs.D_roll,

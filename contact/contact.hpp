@@ -5,6 +5,7 @@
 
 #include "contact/friction.hpp"
 #include "contact/normal_law.hpp"
+#include "lie/check.hpp"
 
 namespace hilda::contact {
 
@@ -56,6 +57,17 @@ public:
     /// 4 M - 2 h D - h² K becomes singular; for one damped mode h ω = 2 (√(1 + ζ²) - ζ).
     double stable_step(const Meeting& now, const Motion& bi, const Motion& bj) const;
 
+    /// The meeting of these surfaces when they will press hardest: what they approach with, and what a fall through
+    /// their gap and overlap adds under the acceleration g [m/s²], has gone into the spring of the normal law. An
+    /// estimate, of two bodies without joints; for stable_step() before they touch.
+    Meeting hardest(const Motion& bi, const Motion& bj, const Memory& memory, double g) const;
+
+    /// In the spring of the normal law [J]
+    double energy(const Meeting& now, const Motion& bi, const Motion& bj) const
+    {
+        return law->energy(pressing(now.touch, bi, bj));
+    }
+
     const std::string name;
     const Shape i, j;
     const Inertia of_i, of_j;
@@ -64,6 +76,10 @@ public:
 
 private:
     Pressing pressing(const Touch& touch, const Motion& bi, const Motion& bj) const;
+    [[noreturn]] void rethrow(const lie::NumericalFailure& e) const;
+    Touch find(const Motion& bi, const Motion& bj, const Memory& memory) const;
+    Meeting without_slip(const Touch& touch, const Motion& bi, const Motion& bj) const;
+    void set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const;
 
     std::unique_ptr<const Detector> detector;
     double m, m_normal;

@@ -36,20 +36,37 @@ Rates mean_rates(const Slip& slip, double h)
 Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj)
 {
     const Vec3& n = slip.n;
-    const Vec3 C = touch.C(), omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar;
-    const Vec3 v = bj.rdot + omega_j.cross(C - bj.r) - bi.rdot - omega_i.cross(C - bi.r);
-    const Vec3 omega = omega_i - omega_j;
-    Rates r{.s = v - n * n.dot(v), .p_i = Vec3::Zero(), .p_j = Vec3::Zero(), .psi = omega.dot(n)};
+    const Vec3 omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar, omega = omega_i - omega_j;
+    const auto flat = [&](const Vec3& v) -> Vec3 { return v - n * n.dot(v); };
+    const Vec3 v =
+        flat(bj.rdot + omega_j.cross(touch.C_j - bj.r) - bi.rdot - omega_i.cross(touch.C_i - bi.r));
+    Rates r{
+        .s = v + touch.gap * omega_j.cross(n), .p_i = Vec3::Zero(), .p_j = Vec3::Zero(), .psi = omega.dot(n)};
 
     const Vec3 u = slip.u, w = n.cross(u);
     const Mat3 K = touch.K_i + touch.K_j;
-    const Vec3 Ku = K * u, Kw = K * w, right = omega.cross(n) + touch.K_j * r.s;
+    const Vec3 Ku = K * u, Kw = K * w;
     const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
     if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
-    const double x = u.dot(right), y = w.dot(right);
-    r.p_i = ((d * x - b * y) * u + (a * y - b * x) * w) / det;
-    r.p_j = r.p_i - r.s;
+    for (int pass = 0; pass < 2; ++pass) {  // the gap is small against the radii: a part (gap κ)² is left out
+        const Vec3 right = omega.cross(n) + touch.K_j * r.s;
+        const double x = u.dot(right), y = w.dot(right);
+        r.p_i = ((d * x - b * y) * u + (a * y - b * x) * w) / det;
+        r.p_j = r.p_i - r.s;
+        if (pass == 0) r.s = v + touch.gap * (omega_j.cross(n) + touch.K_j * r.p_j);
+    }
     return r;
+}
+
+std::shared_ptr<const FrictionModel> frictionless()
+{
+    struct Frictionless final : FrictionModel {
+        void advance(const Meeting&, History&) const override {}
+        Wrench load(const Meeting&, const Rates&, const History&) const override { return {}; }
+        Springs springs(const Meeting&) const override { return {}; }
+    };
+    static const auto none = std::make_shared<const Frictionless>();
+    return none;
 }
 
 FrictionParameters FrictionParameters::as_in_dissertation() const

@@ -45,8 +45,13 @@ struct Rates {
 /// The mean over a step of length h
 Rates mean_rates(const Slip& slip, double h);
 
-/// At this instant, from the velocities of the bodies; the contact point moves over them as Montana's equations
-/// say: (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ in the tangent plane. Zero for p where K_i + K_j is singular.
+/// At this instant, from the velocities of the bodies, the limit of the mean rates for a small step:
+///
+///     ṡ = v_j(C_j) - v_i(C_i) + gap ṅ,   ṅ = ω_j × n + K_j ṗ_j              in the tangent plane
+///
+/// the velocity of each body at its own point: in the middle between the two there is a false slip of |ω gap|. The
+/// contact point moves as Montana's equations say: (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ. Zero for p where K_i +
+/// K_j is singular.
 Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj);
 
 /// Friction on the two bodies of a contact, global: F [N] on i at C, -F on j; torques [N m]
@@ -82,6 +87,9 @@ public:
     virtual Springs springs(const Meeting& now) const = 0;
     virtual bool needs_curvature() const { return false; }  ///< rolling or spinning that it resists
 };
+
+/// No friction at all
+std::shared_ptr<const FrictionModel> frictionless();
 
 /// What the built-in laws are told; a law takes from it what concerns it. As it stands: the balanced preset.
 struct FrictionParameters {

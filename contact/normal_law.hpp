@@ -24,6 +24,8 @@ public:
     /// ∂N/∂δ and ∂N/∂δ̇ [N/m, N s/m], for the stability bound
     virtual double stiffness(const Pressing&) const { return 0; }
     virtual double damping(const Pressing&) const { return 0; }
+    /// What the spring has taken up, ∫ N dδ without damping [J]; zero for a law that has no spring
+    virtual double energy(const Pressing&) const { return 0; }
     virtual bool needs_curvature() const { return false; }  ///< a radius to press on
 };
 
@@ -49,6 +51,11 @@ public:
     double force(const Pressing& p) const override;
     double stiffness(const Pressing&) const override { return k; }
     double damping(const Pressing& p) const override;
+    /// k δ²/2
+    double energy(const Pressing& p) const override
+    {
+        return p.overlap > 0 ? 0.5 * k * p.overlap * p.overlap : 0;
+    }
 
 private:
     double k, c;
@@ -70,6 +77,11 @@ public:
     double force(const Pressing& p) const override;
     double stiffness(const Pressing& p) const override;
     double damping(const Pressing& p) const override;
+    /// 2/5 k δ^(5/2)
+    double energy(const Pressing& p) const override
+    {
+        return p.overlap > 0 ? 4. / 15 * stiffness(p) * p.overlap * p.overlap : 0;
+    }
     bool needs_curvature() const override { return true; }
 
 private:

@@ -143,7 +143,7 @@ TEST_CASE("a start that no contact can have is refused", "[contact]")
     const Shape flat{
         std::make_shared<contact::Ellipsoid>(Vec3(0.4, 0.4, 0.2))};  // of curvature 1.25 at its pole
     CHECK(objection(flat, sphere(0.5, true), {0, 0, -0.3}, slides)
-              .starts_with("contact 'c': no touch of two surfaces: the surfaces do not curve away from each "
+              .starts_with("no touch of two surfaces: the surfaces do not curve away from each "
                            "other, least "
                            "sum of their curvatures -0.75 1/m; "));
     const Shape foot{std::make_shared<contact::Foot>()};

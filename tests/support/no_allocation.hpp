@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Counts what the program takes from the heap. The counters replace malloc and operator new, so the one test
-/// program that includes this file in one of its sources counts everything in it, KLU included.
+/// Counts what the program takes from the heap. The counters replace malloc and operator new, so a test program that
+/// includes this file in any of its sources counts everything in it, KLU included.
 #pragma once
 
 #include <atomic>
@@ -34,17 +34,17 @@ extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* __libc_realloc(void*, std::size_t);
 extern "C" void* __libc_calloc(std::size_t, std::size_t);
 
-extern "C" void* malloc(std::size_t size)
+extern "C" __attribute__((weak)) void* malloc(std::size_t size)
 {
     ++hilda::tests::allocations;
     return __libc_malloc(size);
 }
-extern "C" void* realloc(void* p, std::size_t size)
+extern "C" __attribute__((weak)) void* realloc(void* p, std::size_t size)
 {
     ++hilda::tests::allocations;
     return __libc_realloc(p, size);
 }
-extern "C" void* calloc(std::size_t n, std::size_t size)
+extern "C" __attribute__((weak)) void* calloc(std::size_t n, std::size_t size)
 {
     ++hilda::tests::allocations;
     return __libc_calloc(n, size);

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/contact_force.hpp"
+
+namespace hilda::contact {
+
+namespace {
+
+// Rounding of a pose that went through other coordinates and back, over 1 m and the distance from the origin; and
+// of a time, over 1 s and itself
+constexpr double at_rest = 1e-12;
+
+/// Walks along the numbers of a state, reading or writing them in one order.
+template <class Number>
+struct Numbers {
+    Number* at;
+
+    template <class V>
+    void operator()(V& v)
+    {
+        for (Eigen::Index k = 0; k < v.size(); ++k) pass(v[k]);
+    }
+    void pass(double& v)
+    {
+        if constexpr (std::is_const_v<Number>)
+            v = *at++;
+        else
+            *at++ = v;
+    }
+};
+
+/// All that a contact remembers in real numbers: the instant, the track, the histories, and the last way of the
+/// contact point over each body, which gives the rolling of the dissertation its curvature
+struct Kept {
+    double t = 0;
+    Track track = {};
+    Vec2 S = Vec2::Zero(), Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();
+    double Psi = 0;
+    Vec2 p_i = Vec2::Zero(), p_j = Vec2::Zero();
+
+    template <class Number>
+    void pass(Number* first)
+    {
+        Numbers<Number> numbers{first};
+        numbers.pass(t);
+        for (Vec3* v : {&track.c_i, &track.c_j, &track.n_i, &track.n_j, &track.u_i, &track.u_j}) numbers(*v);
+        for (Vec2* v : {&S, &Theta_i, &Theta_j}) numbers(*v);
+        numbers.pass(Psi);
+        for (Vec2* v : {&p_i, &p_j}) numbers(*v);
+    }
+};
+
+Kept kept(const lie::State& x, int first)
+{
+    Kept all;
+    all.pass(x.remembered.data() + first);
+    return all;
+}
+
+/// The one whole number: a bit for each flag that is not as in a memory without a past, so that zero is such a one
+int flags_of(const Memory& m)
+{
+    int flags = m.found | m.touching << 1, bit = 2;
+    for (const Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin}) {
+        flags |= r->slipping << bit++;
+        flags |= !r->damped << bit++;
+    }
+    return flags;
+}
+
+void set_flags(int flags, Memory& m)
+{
+    int bit = 0;
+    const auto next = [&] { return (flags >> bit++ & 1) != 0; };
+    m.found = next(), m.touching = next();
+    for (Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin})
+        r->slipping = next(), r->damped = !next();
+}
+
+Inertia inertia(const dae::Model& model, int b)
+{
+    if (b == dae::ground) return {};
+    return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
+}
+
+/// F [N, global] at C and T [N m, global] on body b
+void put(int b, const Vec3& F, const Vec3& C, const Vec3& T, const lie::State& x, lie::Loads& out)
+{
+    if (b == dae::ground) return;
+    const Motion& body = x.body[b];
+    out.F[b] += F;
+    out.n_bar[b] += body.A.transpose() * ((C - body.r).cross(F) + T);
+}
+
+}  // namespace
+
+ContactForce::ContactForce(const std::string& name, const dae::Model& model, int i, const Shape& shape_i,
+                           int j, const Shape& shape_j, std::shared_ptr<const NormalLaw> law,
+                           std::shared_ptr<const FrictionModel> friction)
+    : i(i), j(j), contact(name, shape_i, shape_j, inertia(model, i), inertia(model, j), std::move(law),
+                          std::move(friction)),
+      name_i(model.body_name(i)), name_j(model.body_name(j)), g(model.gravity.norm())
+{
+    this->name = name;
+    if (i == j) lie::reject(in_words(), "a contact needs two different bodies", "'" + name_i + "' twice");
+}
+
+Memory ContactForce::recall(const lie::State& x) const
+{
+    Memory m;
+    set_flags(x.memory[first_memory], m);
+    const Kept all = kept(x, first_remembered);
+    m.track = all.track;
+    m.history.S = all.S, m.history.Theta_i = all.Theta_i, m.history.Theta_j = all.Theta_j;
+    m.history.Psi = all.Psi;
+    return m;
+}
+
+void ContactForce::keep(const Instant& now, lie::State& x) const
+{
+    const Memory& m = now.memory;
+    x.memory[first_memory] = flags_of(m);
+    const Slip& s = now.meeting.slip;
+    Kept all{.t = x.t,
+             .track = m.track,
+             .S = m.history.S,
+             .Theta_i = m.history.Theta_i,
+             .Theta_j = m.history.Theta_j,
+             .Psi = m.history.Psi};
+    if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
+    all.pass(x.remembered.data() + first_remembered);
+}
+
+ContactForce::Instant ContactForce::at(const lie::State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    Instant now{.meeting = {}, .memory = recall(x)};
+    try {
+        now.meeting = contact.meet(bi, bj, now.memory);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e, x);
+    }
+    Slip& s = now.meeting.slip;
+    if (now.meeting.N > 0 && now.memory.touching) {
+        const Kept last = kept(x, first_remembered);
+        const double length = at_rest * (1 + now.meeting.touch.C().norm());
+        if (std::abs(x.t - last.t) <= at_rest * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
+            s.p_j.norm() < length && std::abs(s.psi) < at_rest) {
+            const Vec3 n = s.n, u = s.u;
+            s = no_slip(now.meeting.touch, u);
+            s.p_i = tangent(last.p_i, n, u), s.p_j = tangent(last.p_j, n, u);
+            return now;
+        }
+    }
+    contact.advance(now.meeting, bi, bj, now.memory);
+    return now;
+}
+
+void ContactForce::add(const lie::State& x, lie::Loads& out) const
+{
+    const Instant now = at(x);
+    const Meeting& m = now.meeting;
+    if (!(m.N > 0)) return;
+    const Wrench w = contact.load(m, rates(m.touch, m.slip, motion(x, i), motion(x, j)), now.memory);
+    const Vec3 F = m.N * m.touch.n + w.F, C = m.touch.C();
+    put(i, F, C, w.T_i, x, out);
+    put(j, -F, C, w.T_j, x, out);
+}
+
+Wrench ContactForce::friction(const lie::State& x) const
+{
+    const Instant now = at(x);
+    const Meeting& m = now.meeting;
+    if (!(m.N > 0)) return {};
+    return contact.load(m, rates(m.touch, m.slip, motion(x, i), motion(x, j)), now.memory);
+}
+
+void ContactForce::remember(lie::State& x) const { keep(at(x), x); }
+
+double ContactForce::potential_energy(const lie::State& x) const
+{
+    return contact.energy(at(x).meeting, motion(x, i), motion(x, j));
+}
+
+std::string ContactForce::objection(const lie::State& x) const
+{
+    return contact.objection(motion(x, i), motion(x, j));
+}
+
+double ContactForce::stable_step(const lie::State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    try {
+        return contact.stable_step(contact.hardest(bi, bj, recall(x), g), bi, bj);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e, x);
+    }
+}
+
+void ContactForce::rethrow(const lie::NumericalFailure& e, const lie::State& x) const
+{
+    std::ostringstream what;
+    what << e.what() << "; bodies '" << name_i << "', '" << name_j << "', t = " << x.t << " s";
+    throw lie::NumericalFailure(e.status, what.str());
+}
+
+}  // namespace hilda::contact

@@ -263,8 +263,9 @@ private:
         ObjectReader o(source, v, at);
         const std::string name = name_of_its_own(o, "contact", contact_names);
         const auto [i, j] = pair(o);
-        std::unique_ptr<Force> force = placed(
-            o, [&, i = i, j = j] { return read(o, {.i = i, .j = j, .model = model, .start = out.x}); });
+        std::unique_ptr<Force> force = placed(o, [&, i = i, j = j] {
+            return read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
+        });
         force->name = name;
         Json kept = o.finish();
         model.load(std::move(force));

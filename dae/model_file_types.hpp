@@ -22,9 +22,10 @@ const std::vector<std::string>& pair_force_types();
 std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o, int i, int j,
                                        const State& x);
 
-/// Between whom a contact is: two different bodies, the model with all its bodies and constraints, and the
-/// start
+/// Between whom a contact is: its name, two different bodies, the model with all its bodies and constraints, and
+/// the start
 struct ContactPair {
+    const std::string& name;
     int i, j;
     const Model& model;
     const State& start;

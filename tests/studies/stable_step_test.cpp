@@ -89,6 +89,7 @@ TEST_CASE("a run with --force that was killed is gone on with, and ends as one t
     }
     REQUIRE(child > 0);
     CHECK(tests::appears(m.in / "out/checkpoint.1"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // by then it is not that of the start
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
 

@@ -48,8 +48,8 @@ void March::advance(std::span<Observer* const> observers)
 {
     const int k = try_step(after);
     if (n > 0) integrator.complete(x, after);  // the start keeps the accelerations it was solved for
+    integrator.system().accepted(x, after);  // first: where it fails, the node is told of when the march ends
     for (Observer* o : observers) o->accepted(x, n, iterations);
-    integrator.system().accepted(x, after);
     std::swap(x, after);
     ++n;
     iterations = k;

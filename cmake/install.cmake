@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# libhilda.so (the rooms lie and dae), their headers, the program, and a package for find_package(hilda CONFIG).
+# libhilda.so (the rooms lie, dae and contact), their headers, the program, and a package for find_package(hilda CONFIG).
 # GSL is in none of the library.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -7,7 +7,8 @@ include(CMakePackageConfigHelpers)
 set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
 
 # Not named `hilda`: that would clash with the program's file in the build folder.
-add_library(hilda_library SHARED $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects>)
+add_library(hilda_library SHARED
+    $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
 add_library(hilda::hilda ALIAS hilda_library)
 set_target_properties(hilda_library PROPERTIES
     OUTPUT_NAME hilda
@@ -20,7 +21,7 @@ target_include_directories(hilda_library PUBLIC
 target_link_libraries(hilda_library PUBLIC
     Eigen3::Eigen KLU::KLU SPQR::SPQR nlohmann_json::nlohmann_json fmt::fmt)
 if(NOT HILDA_SANITIZE)
-    # Nothing may be left to whoever links us: this is also the proof that lie and dae do without GSL.
+    # Nothing may be left to whoever links us: this is also the proof that these rooms do without GSL.
     target_link_options(hilda_library PRIVATE LINKER:--no-undefined)
 endif()
 if(HILDA_NATIVE)
@@ -32,7 +33,7 @@ install(TARGETS hilda_library EXPORT hilda_targets)
 if(TARGET hilda_program)
     install(TARGETS hilda_program)
 endif()
-foreach(room lie dae)
+foreach(room lie dae contact)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
         FILES_MATCHING PATTERN "*.hpp")
 endforeach()

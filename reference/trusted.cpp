@@ -76,6 +76,12 @@ std::optional<lie::Trajectory> completed(const dae::Model& model, const lie::Sta
 
 lie::Trajectory trusted(const dae::Model& model, const lie::State& start, const std::vector<double>& instants)
 {
+    if (!start.remembered.empty())
+        lie::reject(
+            "reference::trusted",
+            "what contacts remember from step to step leaves no equations of motion between the steps: "
+            "let an integrator be the reference (--reference NAME); numbers remembered",
+            start.remembered.size());
     if (6 * model.bodies() != model.rows()) return index1(model, start, instants);
     dae::Kinematics kinematics(model);
     lie::Trajectory run;

@@ -11,7 +11,7 @@ namespace hilda::reference {
 using ClosedForm = std::function<lie::Trajectory(const std::vector<double>& instants)>;
 
 /// Complete states at these instants, ascending, none before x.t; x is a state that dae::start() has readied.
-/// Kinematic analysis where nothing is free, index1() otherwise.
+/// Kinematic analysis where nothing is free, index1() otherwise. InvalidInput where real numbers are remembered.
 lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std::vector<double>& instants);
 
 /// The same by a closed form where it is a motion of the model, with multipliers by inverse dynamics: where

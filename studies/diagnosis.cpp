@@ -20,11 +20,11 @@ std::string not_finite(const dae::Model& model, const lie::State& x)
         try {
             force->add(x, loads);
         } catch (const lie::NumericalFailure&) {
-            return fmt::format("force '{}'", force->name);
+            return force->in_words();
         }
         for (int b = 0; b < model.bodies(); ++b)
             if (!loads.F[b].allFinite() || !loads.n_bar[b].allFinite())
-                return fmt::format("force '{}' on body '{}'", force->name, model.body_name(b));
+                return fmt::format("{} on body '{}'", force->in_words(), model.body_name(b));
     }
     for (const dae::Model::Row& row : model.all_rows())
         if (!std::isfinite(model.scaled_residual(row, x))) return model.name_of(row);
@@ -69,7 +69,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     const bool at_node = failure.status == "constraint_drift";
     d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
                          number + (at_node ? 0 : 1), scheme, step_text(h), how);
-    if (at_node) return d;
+    if (at_node || failure.status == "contact_not_converged") return d;  // the message has it all
 
     lie::State next = node;
     next.t += h;

@@ -98,7 +98,9 @@ TEST_CASE("the benchmark mechanisms have their degrees of freedom", "[studies][p
                                                     {"double_pendulum", 2},   {"double_pendulum_w005", 2},
                                                     {"n_pendulum", 6},        {"double_pendulum_moving", 2},
                                                     {"n_pendulum_2_spin", 6}, {"n_pendulum_8", 24},
-                                                    {"free_top", 6},          {"heavy_top", 3}};
+                                                    {"free_top", 6},          {"heavy_top", 3},
+                                                    {"rolling_ball", 6},      {"bouncing_ellipsoid", 6},
+                                                    {"edge_mill", 3}};
     for (const auto& [name, freedom] : freedoms) {
         INFO(name);
         dae::Description d = dae::read_model(studies::problem(name).model, name);

@@ -32,7 +32,7 @@ bool same(const lie::State& a, const lie::State& b)
 // way.
 TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studies][resume]")
 {
-    const std::string name = GENERATE("slider_crank", "n_pendulum_2_spin");
+    const std::string name = GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill");
     dae::Description d = dae::read_model(studies::problem(name).model, name);
     const int last = d.model->bodies() - 1;
     d.model->load(tests::Bristle(dae::ground, last, 0.5, 10));

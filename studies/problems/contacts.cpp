@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Bodies that touch: a ball that slides until it rolls, an ellipsoid that bounces, an edge mill. What contacts remember
+/// leaves no equations of motion between the steps, so the truth is a run with small ones.
+
+#include "studies/problem.hpp"
+
+#include "dae/start.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+constexpr double fine = 2e-6;  // [s]
+
+lie::Trajectory run_with_small_steps(dae::Description& d, const std::vector<double>& instants)
+{
+    const auto integrator = lie::scheme("rA-rattle").make(*d.model, {.tolerance = 1e-13});
+    lie::Saddle K(*d.model);
+    lie::Trajectory run;
+    lie::State x = d.x;
+    for (const double instant : instants) {
+        const double steps = std::ceil((instant - x.t) / fine - 1e-6);
+        if (steps > 0) {
+            lie::March march(x, *integrator, (instant - x.t) / steps);
+            while (march.number() < static_cast<long>(steps)) march.advance({});
+            x = march.node();
+            x.t = instant;
+        }
+        dae::solve_accelerations(*d.model, K, x);
+        run.row.push_back(x);
+    }
+    return run;
+}
+
+constexpr const char* truth_name = "rA-rattle at h = 2e-6 s";
+
+const bool ball = enrol({.name = "rolling_ball",
+                         .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
+                         .model = R"({"hilda_model": 1, "name": "rolling_ball",
+  "note": "ball of 5 kg and radius 0.2 m in its sag on the floor; a rigid ball would roll after 2 v / 7 mu_k g = 0.29 s",
+  "gravity": [0, 0, -9.81], "end": 1,
+  "bodies": [
+    {"name": "ball", "mass": 5, "inertia": [0.08, 0.08, 0.08], "r": [0, 0, 0.19975475], "r_dot": [2, 0, 0], "omega": [0, 0, 1]}
+  ],
+  "contacts": [
+    {"name": "ball-floor", "body_i": "ball", "body_j": "ground",
+      "surface_i": {"type": "sphere", "radius": 0.2}, "surface_j": {"type": "plane"},
+      "normal": {"type": "hooke", "stiffness": 2e5, "restitution": 0.5},
+      "friction": {"mu_s": 0.25, "mu_k": 0.2, "K_E": 2e4, "zeta": 0.5, "eta_r": 0.05, "eta_psi": 0.05}}
+  ]
+}
+)",
+                         .truth_name = truth_name,
+                         .truth = run_with_small_steps,
+                         .watched = {.body = "ball", .component = "vx"}});
+
+const bool ellipsoid = enrol(
+    {.name = "bouncing_ellipsoid",
+     .what = "ellipsoid dropped askew on a floor, Hertzian with friction; smooth enough for steps of 1e-4 s",
+     .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
+  "note": "homogeneous, semi-axes 0.12, 0.1 and 0.08 m, let go about 0.1 m above the floor",
+  "gravity": [0, 0, -9.81], "end": 0.6,
+  "bodies": [
+    {"name": "egg", "mass": 1, "inertia": [0.00328, 0.00416, 0.00488], "r": [0, 0, 0.2],
+      "axis_angle": [0.6, 0.8, 0, 0.5], "r_dot": [0.3, 0, 0], "omega": [1, 2, 0]}
+  ],
+  "contacts": [
+    {"name": "egg-floor", "body_i": "egg", "body_j": "ground",
+      "surface_i": {"type": "ellipsoid", "semi_axes": [0.12, 0.1, 0.08]}, "surface_j": {"type": "plane"},
+      "normal": {"type": "hertz", "E_star": 3e6, "restitution": 0.8},
+      "friction": {"mu_s": 0.3, "K_E": 1e4, "zeta": 0.3}}
+  ]
+}
+)",
+     .truth_name = truth_name,
+     .truth = run_with_small_steps,
+     .watched = {.body = "egg", .component = "rz"}});
+
+const bool mill = enrol(
+    {.name = "edge_mill",
+     .what = "ball on an arm that goes round and can rise: it rolls on the floor and presses by its spin",
+     .model = R"({"hilda_model": 1, "name": "edge_mill",
+  "note": "the arm turns about the vertical and pitches in a universal joint, the ball turns on its end; set going at 1 rad/s, rolling",
+  "gravity": [0, 0, -9.81], "end": 2,
+  "bodies": [
+    {"name": "arm", "mass": 1, "inertia": [0.001, 0.02, 0.02], "r": [0.25, 0, 0.2], "r_dot": [0, 0.25, 0], "omega": [0, 0, 1]},
+    {"name": "ball", "mass": 5, "inertia": [0.08, 0.08, 0.08], "r": [0.5, 0, 0.2], "r_dot": [0, 0.5, 0], "omega": [-2.5, 0, 1]}
+  ],
+  "constraints": [
+    {"name": "pivot", "type": "universal", "body_i": "arm", "body_j": "ground",
+      "s_bar_p_i": [-0.25, 0, 0], "s_bar_q_j": [0, 0, 0.2], "axis_bar_i": [0, 1, 0], "axis_bar_j": [0, 0, 1]},
+    {"name": "axle", "type": "revolute", "body_i": "ball", "body_j": "arm",
+      "s_bar_q_j": [0.25, 0, 0], "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}
+  ],
+  "contacts": [
+    {"name": "ball-floor", "body_i": "ball", "body_j": "ground",
+      "surface_i": {"type": "sphere", "radius": 0.2}, "surface_j": {"type": "plane", "position": [0, 0, 2.69775e-4]},
+      "normal": {"type": "hooke", "stiffness": 2e5, "restitution": 0.5},
+      "friction": {"mu_s": 0.3, "mu_k": 0.25, "K_E": 2e4, "zeta": 0.5, "eta_r": 0.01, "eta_psi": 0.01}}
+  ]
+}
+)",
+     .truth_name = truth_name,
+     .truth = run_with_small_steps,
+     .watched = {.body = "ball", .component = "ry"}});
+
+}  // namespace
+
+}  // namespace hilda::studies

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Contacts as a user of the program meets them.
+
+#include "studies/exit_codes.hpp"
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hilda;
+using tests::call;
+using tests::Ended;
+
+namespace {
+
+/// A ball in a bowl without gravity, at x with a velocity of 1 m/s along x
+std::string in_bowl(const std::string& x, const std::string& radius = "0.1")
+{
+    return R"({"hilda_model": 1, "name": "bowl", "gravity": [0, 0, 0], "end": 0.03125,
+ "bodies": [{"name": "ball", "mass": 1, "inertia": [0.01, 0.01, 0.01], "r": [)" +
+           x + R"(, 0, 0], "r_dot": [1, 0, 0]}],
+ "contacts": [{"name": "ball-bowl", "body_i": "ball", "body_j": "ground",
+   "surface_i": {"type": "sphere", "radius": )" +
+           radius + R"(}, "surface_j": {"type": "sphere", "radius": 1, "concave": true},
+   "normal": {"type": "hooke", "stiffness": 1000}}]}
+)";
+}
+
+}  // namespace
+
+TEST_CASE("a model file with contacts is run, checked and refused", "[studies][contact]")
+{
+    const tests::Scratch in;
+    tests::write(in / "good.json", in_bowl("0.25"));
+    tests::write(in / "bad.json", in_bowl("0.25", "-1"));
+    CHECK(call(in, {"check", "good.json"}).code == studies::exit_code::done);
+    CHECK(call(in, {"run", "good.json", "--no-plot"}).code == studies::exit_code::done);
+    const Ended bad = call(in, {"run", "bad.json", "--no-plot"});
+    CHECK(bad.code == studies::exit_code::invalid_input);
+    CHECK_THAT(bad.err, Catch::Contains("bad.json:4:46 (/contacts/0/surface_i/radius): radius must be "
+                                        "positive, got -1"));
+    const Ended stiff =
+        call(in, {"run", "good.json", "--no-plot", "--force", "--set", "/contacts/0/normal/stiffness=1e8"});
+    CHECK(stiff.code == studies::exit_code::done);
+    CHECK_THAT(stiff.err, Catch::Contains("contact 'ball-bowl' is stable"));
+}
+
+TEST_CASE("a touch that is not found ends the run with the pair, the bodies and the time",
+          "[studies][contact]")
+{
+    const tests::Scratch in;
+    tests::write(in / "start.json", in_bowl("0"));
+    const Ended start = call(in, {"run", "start.json", "--no-plot"});
+    CHECK(start.code == studies::exit_code::invalid_input);
+    CHECK_THAT(
+        start.err,
+        Catch::Contains("start.json:3:15 (/contacts/0): contact 'ball-bowl': the centres of two spheres"));
+
+    // through the centre of the bowl in the eighth step of 1/1024 s
+    tests::write(in / "on.json", in_bowl("-0.0078125"));
+    const Ended on =
+        call(in, {"run", "on.json", "--no-plot", "--step", "0.0009765625", "--every", "0.0009765625"});
+    CHECK(on.code == studies::exit_code::numerical_failure);
+    CHECK_THAT(on.err, Catch::Contains("error[contact_not_converged]: t=0.0078") &&
+                           Catch::Contains("contact 'ball-bowl': the centres of two spheres coincide") &&
+                           Catch::Contains("bodies 'ball', 'ground', t = 0.0078125 s"));
+    const std::string rows = tests::read(in / "out/on/trajectory.csv");
+    CHECK(std::count(rows.begin(), rows.end(), '\n') == 1 + 8);  // each node once, up to the last good one
+    CHECK_THAT(tests::read(in / "out/on/summary.json"), Catch::Contains("contact_not_converged"));
+}
+
+TEST_CASE("a model file with contacts is judged by an integrator, or not at all", "[studies][contact]")
+{
+    const tests::Scratch in;
+    tests::write(in / "m.json", in_bowl("0.89"));
+    const std::vector<std::string> study = {
+        "study",   "convergence",          "--problem", "m.json",   "--integrator", "rA-half-1",
+        "--steps", "7.8125e-4,3.90625e-4", "--no-plot", "--output", "out",          "--force"};
+    const Ended refused = call(in, study);
+    CHECK(refused.code == studies::exit_code::invalid_input);
+    CHECK_THAT(refused.err, Catch::Contains("let an integrator be the reference (--reference NAME)"));
+    std::vector<std::string> judged = study;
+    judged.insert(judged.end(), {"--reference", "rA-rattle"});
+    CHECK(call(in, judged).code == studies::exit_code::done);
+}

@@ -49,4 +49,16 @@ double one_step(const std::string& kind, const StudyOptions& options, double oth
     return options.steps.empty() ? otherwise : options.steps.front();
 }
 
+void refuse_models(const std::string& kind, const StudyOptions& options)
+{
+    const auto idle = [&](bool given, const std::string& option) {
+        if (given)
+            throw UsageError("study " + kind + ": " + option +
+                             " is for studies of models; this one has bodies of its own");
+    };
+    idle(!options.problems.empty(), "--problem");
+    idle(!options.integrators.empty(), "--integrator");
+    idle(!options.set.empty(), "--set");
+}
+
 }  // namespace hilda::studies

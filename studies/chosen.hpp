@@ -22,4 +22,7 @@ std::vector<double> steps_or(const StudyOptions& options, std::vector<double> ot
 /// The one of --steps, or else this; UsageError for several.
 double one_step(const std::string& kind, const StudyOptions& options, double otherwise);
 
+/// UsageError where a model, an integrator or a setting of a model is named: the study has bodies of its own.
+void refuse_models(const std::string& kind, const StudyOptions& options);
+
 }  // namespace hilda::studies

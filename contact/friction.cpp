@@ -30,7 +30,11 @@ double FrictionModel::fictitious(double a, double b) const
 
 Rates mean_rates(const Slip& slip, double h)
 {
-    return {.s = slip.ds / h, .p_i = slip.q_i / h, .p_j = slip.q_j / h, .psi = slip.psi / h};
+    const double per_step = 1 / h;
+    return {.s = per_step * slip.ds,
+            .p_i = per_step * slip.q_i,
+            .p_j = per_step * slip.q_j,
+            .psi = per_step * slip.psi};
 }
 
 Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj)

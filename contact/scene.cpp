@@ -80,7 +80,7 @@ void Scene::step(double h)
             m.omega_bar += h * m.omegadot_bar;
         }
         m.r += h * m.rdot;
-        m.A = lie::orthonormalised(m.A * lie::exp(h * m.omega_bar));
+        if (m.omega_bar != Vec3::Zero()) m.A = lie::orthonormalised(m.A * lie::exp(h * m.omega_bar));
     }
     t += h;
 }

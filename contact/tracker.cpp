@@ -69,9 +69,8 @@ Slip follow(const Track& from, const Touch& to, const Shape& i, const Shape& j, 
     s.p_i = way(from.c_i, to.C_i, s.n, bi, *i.surface);
     s.p_j = way(from.c_j, to.C_j, s.n, bj, *j.surface);
     if (how.carrier == Carrier::mid) {
-        const double half = s.psi / 2, part = how.beta * half;
-        const double cosine = std::cos(part), sine = std::sin(part);
-        s.u = turned(s.u_i, s.n, std::cos(half), -std::sin(half));
+        const double part = how.beta * s.psi / 2, cosine = std::cos(part), sine = std::sin(part);
+        s.u = (s.u_i + s.u_j).normalized();  // halfway, without another sine
         s.q_i = turned(s.p_i, s.n, cosine, -sine);
         s.q_j = turned(s.p_j, s.n, cosine, sine);
     } else {

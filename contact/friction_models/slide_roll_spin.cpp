@@ -66,7 +66,7 @@ public:
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
             out.T_spin_E = -spring.K * h.Psi;
-            out.T_spin = within(out.T_spin_E, h.spin.damped ? -spring.D * rates.psi : 0.,
+            out.T_spin = within(out.T_spin_E, h.spin.damped ? -D_spin(now, spring.K) * rates.psi : 0.,
                                 spring.K * spring.cap_s, p.capped);
             out.T_i += out.T_spin * now.slip.n;
             out.T_j -= out.T_spin * now.slip.n;
@@ -84,11 +84,11 @@ public:
             const double a = u.dot(K * u), b = u.dot(K * w), d = w.dot(K * w);
             const double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b), mean = 0.5 * (a + d);
             const Spring spring = rolling(now, least > flat ? least : mean);
-            all.K_roll = spring.K, all.D_roll = spring.D;
+            all.K_roll = spring.K, all.D_roll = D_roll(now, spring.K);
         }
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
-            all.K_spin = spring.K, all.D_spin = spring.D;
+            all.K_spin = spring.K, all.D_spin = D_spin(now, spring.K);
         }
         return all;
     }
@@ -97,7 +97,7 @@ public:
 
 private:
     struct Spring {
-        double K = 0, D = 0, cap_s = 0, cap_k = 0;
+        double K = 0, cap_s = 0, cap_k = 0;
     };
 
     /// Eqs. 4.6, 4.7
@@ -105,10 +105,7 @@ private:
     {
         if (!(kappa > flat)) return {};
         const double K = 4 * p.eta_r * p.K_E / (kappa * kappa), lever = kappa / (2 * p.K_E);
-        return {.K = K,
-                .D = p.D_roll.value_or(2 * p.zeta * std::sqrt(now.I_roll * K)),
-                .cap_s = lever * p.mu_s * now.N,
-                .cap_k = lever * p.mu_k * now.N};
+        return {.K = K, .cap_s = lever * p.mu_s * now.N, .cap_k = lever * p.mu_k * now.N};
     }
 
     /// Eq. 4.9, or A.21 to A.23
@@ -125,10 +122,16 @@ private:
             K = p.eta_psi * p.K_E / (kappa * kappa);
             per_newton = kappa / p.K_E;
         }
-        return {.K = K,
-                .D = p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K)),
-                .cap_s = per_newton * p.mu_s * now.N,
-                .cap_k = per_newton * p.mu_k * now.N};
+        return {.K = K, .cap_s = per_newton * p.mu_s * now.N, .cap_k = per_newton * p.mu_k * now.N};
+    }
+
+    double D_roll(const Meeting& now, double K) const
+    {
+        return p.D_roll.value_or(2 * p.zeta * std::sqrt(now.I_roll * K));
+    }
+    double D_spin(const Meeting& now, double K) const
+    {
+        return p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K));
     }
 
     /// κ_i + κ_j along Θ
@@ -164,7 +167,7 @@ private:
                                 const Vec3& rate, Vec3& elastic) -> Vec3 {
             const Vec3 tau = spring.K * tangent(Theta, s.n, s.u);
             elastic = tau.cross(s.n);
-            const Vec3 damping = regime.damped ? Vec3(spring.D * rate) : Vec3(Vec3::Zero());
+            const Vec3 damping = regime.damped ? Vec3(D_roll(now, spring.K) * rate) : Vec3(Vec3::Zero());
             return within(tau, damping, spring.K * spring.cap_s, p.capped).cross(s.n);
         };
         if (p.relative_rolling) {

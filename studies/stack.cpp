@@ -46,8 +46,10 @@ contact::Scene scene(const Stack& stack)
     contact::FrictionParameters p{.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e5, .eta_r = stack.eta_r};
     if (stack.dissertation) p = p.as_in_dissertation();
     const auto friction = contact::friction_law("slide-roll-spin").make(p);
-    const auto between = std::make_shared<contact::Hertz>(E_star, restitution);
-    const auto below = std::make_shared<contact::Hertz>(E_star, restitution, m / 2);
+    const auto between =
+        std::make_shared<contact::Hertz>(contact::Hertz::of_free_oscillation(E_star, restitution));
+    const auto below =
+        std::make_shared<contact::Hertz>(contact::Hertz::of_free_oscillation(E_star, restitution, m / 2));
     const contact::Shape sphere{std::make_shared<contact::Sphere>(R)},
         plane{std::make_shared<contact::Plane>()};
 

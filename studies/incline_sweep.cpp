@@ -261,9 +261,10 @@ int incline_sweep(const StudyOptions& options)
         end, preset, h);
     print(map, output.text);
     output.text << fmt::format(
-        "less the limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} deg; slip "
-        "without rolling from eta_r = {:.3f}\n",
-        b.rest.least, b.rest.most, b.rolling.least, b.rolling.most, b.slip_from);
+        "less the limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} deg; slip without rolling "
+        "{}\n",
+        b.rest.least, b.rest.most, b.rolling.least, b.rolling.most,
+        std::isfinite(b.slip_from) ? fmt::format("from eta_r = {:.3f}", b.slip_from) : "nowhere");
     output.json = {
         {"preset", preset},
         {"h", h},

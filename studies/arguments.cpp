@@ -4,6 +4,7 @@
 #include "dae/nearest.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/problems/n_pendulum.hpp"
+#include "studies/vtk.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -119,6 +120,14 @@ int positive_count(const std::string& option, const std::string& text)
 {
     const std::optional<int> value = whole<int>(text);
     if (!value || *value < 1) refuse(option, "must be a whole number, at least 1", text);
+    return *value;
+}
+
+int frames(const std::string& option, const std::string& text)
+{
+    const std::optional<int> value = whole<int>(text);
+    if (!value || *value < 1 || *value > Snapshots::most)
+        refuse(option, "must be a whole number from 1 to " + std::to_string(Snapshots::most), text);
     return *value;
 }
 

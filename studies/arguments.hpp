@@ -32,6 +32,8 @@ std::string one_of(const std::string& option, const std::string& text, std::span
 std::string preset(const std::string& option, const std::string& text);
 /// A whole number, at least 1
 int positive_count(const std::string& option, const std::string& text);
+/// The same, of frames that can be told apart by their names
+int frames(const std::string& option, const std::string& text);
 
 /// A whole number from 0, of 64 bits
 std::uint64_t seed(const std::string& option, const std::string& text);

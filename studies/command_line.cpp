@@ -273,6 +273,7 @@ private:
                     "do all that a study is judged by; exit with 6 where something does not come out");
         value(c, "--against", "FILE", "a CSV table to compare the result with", assign(o.against, path));
         value(c, "--grid", "NAME", "of a sweep, by default the finest", assign(o.grid, as_it_is));
+        value(c, "--vtk", "N", "so many frames of each run for ParaView", assign(o.vtk, frames));
         value(c, "--repeats", "N", "of what is timed, by default 5", assign(o.repeats, positive_count));
         value(c, "--seed", "N", "of random starts, by default 0", assign(o.seed, seed));
         c->add_flag("--force", o.force,

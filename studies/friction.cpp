@@ -59,6 +59,19 @@ std::vector<Chosen> chosen(const StudyOptions& options)
     return all;
 }
 
+/// Where nothing would come of --vtk
+void check_vtk(const StudyOptions& options, const std::vector<Chosen>& all)
+{
+    if (options.vtk == 0) return;
+    if (options.output.empty())
+        throw UsageError("study friction: --vtk writes files; with --json it needs --output");
+    if (std::any_of(all.begin(), all.end(), [](const Chosen& c) { return c.experiment->in_space; })) return;
+    std::string those;
+    for (const Experiment& e : experiments())
+        if (e.in_space) those += (those.empty() ? "" : ", ") + e.name;
+    throw UsageError("study friction: --vtk is for " + those);
+}
+
 std::string curves(const Chosen& c)
 {
     std::string csv = "run";
@@ -158,6 +171,7 @@ int study(const StudyOptions& options)
 {
     check_keys(kind, options, {});
     std::vector<Chosen> all = chosen(options);
+    check_vtk(options, all);
     struct Job {
         Chosen* c;
         size_t run;
@@ -165,13 +179,20 @@ int study(const StudyOptions& options)
     std::vector<Job> jobs;
     for (Chosen& c : all)
         for (size_t r = 0; r < c.runs.size(); ++r) jobs.push_back({&c, r});
+    const bool anew = options.force && !options.output.empty();
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(jobs.size())).run([&](long k) {
         const Job& job = jobs[k];
+        const Run& run = job.c->runs[job.run];
+        const std::string name = job.c->experiment->name + '-' + run.name;
+        if (anew) Snapshots::remove(options.output, name);
+        Frames frames{.count = options.vtk};
+        const bool seen = options.vtk > 0 && job.c->experiment->in_space;
         try {
-            job.c->series[job.run] = job.c->runs[job.run].go();
+            job.c->series[job.run] = run.go(seen ? &frames : nullptr);
         } catch (const lie::NumericalFailure& e) {
             job.c->failures[job.run] = e.what();
         }
+        if (seen) frames.snapshots.write(options.output, name);
     });
 
     StudyOutput output{.kind = kind};
@@ -218,6 +239,11 @@ int study(const StudyOptions& options)
         differences.print(output.text);
         output.files.emplace_back("against.csv", differences.csv());
     }
+    if (options.vtk > 0)
+        for (const Chosen& c : all)
+            if (c.experiment->in_space)
+                output.text << fmt::format("\nfor ParaView: {}/{}-*.pvd", options.output, c.experiment->name);
+    if (options.vtk > 0) output.text << '\n';
     output.table = table.csv();
     output.json = {{"checks", rows}};
     const int code = finish(options, output, {}, {});
@@ -228,7 +254,7 @@ int study(const StudyOptions& options)
 const bool enrolled =
     enrol(Study{.kind = kind,
                 .answers = "sliding, rolling and spinning friction (Figs. 4.6-4.12, 4.15-4.18, Table 4.7)",
-                .also = takes::against | takes::check,
+                .also = takes::against | takes::check | takes::vtk,
                 .run = study});
 
 }  // namespace

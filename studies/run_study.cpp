@@ -44,6 +44,7 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
     idle(!options.against.empty(), takes::against, "--against");
     idle(options.check, takes::check, "--check");
     idle(!options.grid.empty(), takes::grid, "--grid");
+    idle(options.vtk > 0, takes::vtk, "--vtk");
 }
 
 }  // namespace

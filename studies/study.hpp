@@ -36,6 +36,7 @@ struct StudyOptions {
     std::string against;  ///< a CSV file to compare with; "": none
     std::string grid;     ///< of a sweep, by a name that the study knows; "": its default
 
+    int vtk = 0;      ///< frames of each run for ParaView; 0: none
     int repeats = 0;  ///< of what is timed; 0: the default of studies that time
     std::uint64_t seed = 0;
 
@@ -58,7 +59,8 @@ enum : unsigned {
     preset = 16,
     against = 32,
     grid = 64,
-    check = 128
+    check = 128,
+    vtk = 256
 };
 }  // namespace takes
 

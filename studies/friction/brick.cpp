@@ -13,7 +13,7 @@ namespace {
 
 constexpr double m = 1, mu_s = 0.25, mu_k = 0.2, K_E = 1e5, g = 9.8, h = 1e-4;
 
-Series slide(double alpha, double zeta, double end)
+Series slide(double alpha, double zeta, double end, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {g * std::sin(alpha), 0, -g * std::cos(alpha)};
@@ -24,7 +24,7 @@ Series slide(double alpha, double zeta, double end)
               std::make_shared<contact::GivenForce>(m * g * std::cos(alpha)), law(p));
     scene.check(h);
     return sample(
-        scene, h, end, {"t", "x", "v", "Ef", "Df", "S", "dS", "slips"},
+        scene, h, end, frames, {"t", "x", "v", "Ef", "Df", "S", "dS", "slips"},
         [&](Series& s, const std::vector<contact::Motion>& body) {
             const contact::Scene::Pair& pair = scene.pair[0];
             const double Ef = -pair.wrench.F_E.x();
@@ -35,8 +35,8 @@ Series slide(double alpha, double zeta, double end)
 
 std::vector<Run> dashpot()
 {
-    return {{.name = "damped", .go = [] { return slide(0.18, 1, 0.1); }},
-            {.name = "undamped", .go = [] { return slide(0.18, 0, 0.1); }}};
+    return {{.name = "damped", .go = [](Frames* frames) { return slide(0.18, 1, 0.1, frames); }},
+            {.name = "undamped", .go = [](Frames* frames) { return slide(0.18, 0, 0.1, frames); }}};
 }
 
 void check_dashpot(const Results& runs, std::vector<Check>& out)
@@ -58,9 +58,10 @@ const bool brick = enrol({.name = "brick",
 
 std::vector<Run> angles()
 {
-    return {{.name = "atan_muk", .go = [] { return slide(std::atan(mu_k), 1, 0.04); }},
-            {.name = "atan_mus", .go = [] { return slide(std::atan(mu_s), 1, 0.04); }},
-            {.name = "0.25", .go = [] { return slide(0.25, 1, 0.04); }}};
+    return {
+        {.name = "atan_muk", .go = [](Frames* frames) { return slide(std::atan(mu_k), 1, 0.04, frames); }},
+        {.name = "atan_mus", .go = [](Frames* frames) { return slide(std::atan(mu_s), 1, 0.04, frames); }},
+        {.name = "0.25", .go = [](Frames* frames) { return slide(0.25, 1, 0.04, frames); }}};
 }
 
 void check_angles(const Results& runs, std::vector<Check>& out)

@@ -31,7 +31,7 @@ contact::FrictionParameters usual(const std::string& preset_name, double K_E = 1
     return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .eta_r = eta_r});
 }
 
-Series roll(const Setting& set)
+Series roll(const Setting& set, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, 0, -g};
@@ -44,7 +44,7 @@ Series roll(const Setting& set)
     scene.check(set.h);
     bool begun = false;
     double theta = 0, v = v_0, omega = 0;  // of the node before
-    return sample(scene, set.h, set.end,
+    return sample(scene, set.h, set.end, frames,
                   {"t", "x", "theta", "v", "omega", "a", "alpha", "F_E", "F_D", "T_E", "T_D", "S_mm",
                    "Theta_e-3rad", "slips", "rolls"},
                   [&](Series& s, const std::vector<contact::Motion>& body) {
@@ -82,12 +82,16 @@ Setting stick()
 
 std::vector<Run> runs()
 {
-    return {{.name = "dissertation", .go = [] { return roll(stick()); }},
-            {.name = "saturated", .go = [] { return roll({.p = usual("dissertation"), .saturated = true}); }},
-            {.name = "balanced", .go = [] { return roll({.p = usual("balanced"), .end = 3}); }},
-            {.name = "stiff",
-             .go = [] { return roll({.p = usual("balanced", 1e6), .h = 2e-5, .end = 2}); },
-             .for_check = true}};
+    return {
+        {.name = "dissertation", .go = [](Frames* frames) { return roll(stick(), frames); }},
+        {.name = "saturated",
+         .go = [](Frames* frames) { return roll({.p = usual("dissertation"), .saturated = true}, frames); }},
+        {.name = "balanced",
+         .go = [](Frames* frames) { return roll({.p = usual("balanced"), .end = 3}, frames); }},
+        {.name = "stiff",
+         .go =
+             [](Frames* frames) { return roll({.p = usual("balanced", 1e6), .h = 2e-5, .end = 2}, frames); },
+         .for_check = true}};
 }
 
 /// Rigid disk with kinetic friction alone
@@ -146,7 +150,8 @@ const bool disk = enrol({.name = "disk",
                          .figure = "4.9",
                          .what = "disk thrown without spin: slips, rolls, stops",
                          .runs = runs,
-                         .checks = checks});
+                         .checks = checks,
+                         .in_space = true});
 
 std::vector<Run> dampings()
 {
@@ -160,7 +165,7 @@ std::vector<Run> dampings()
                                            : part == 1   ? "-1"
                                            : part == 1.5 ? "-1.5"
                                                          : "-2"),
-                           .go = [set] { return roll(set); }});
+                           .go = [set](Frames* frames) { return roll(set, frames); }});
         }
     return all;
 }
@@ -180,7 +185,7 @@ std::vector<Run> models()
     for (const std::string law : {"slide-roll-spin", "constant-torque", "epsd"}) {
         Setting set{.p = usual("balanced"), .law = law, .end = 2};
         if (law != "slide-roll-spin") set.p.mu_r = 2 * eta_r * mu_k;  // the same torque while rolling
-        all.push_back({.name = law, .go = [set] { return roll(set); }});
+        all.push_back({.name = law, .go = [set](Frames* frames) { return roll(set, frames); }});
     }
     return all;
 }

@@ -21,7 +21,7 @@ struct Setting {
     bool at_rest_height = true;  ///< the normal spring carries the weight at the start
 };
 
-Series fall(const Setting& set)
+Series fall(const Setting& set, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, 0, -g};
@@ -34,7 +34,7 @@ Series fall(const Setting& set)
               shape<contact::Plane>(), std::make_shared<contact::Hooke>(set.k_n, 0), law(set.p));
     scene.check(set.h);
     return sample(
-        scene, set.h, set.end, {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
+        scene, set.h, set.end, frames, {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
         [&](Series& s, const std::vector<contact::Motion>& b) {
             const lie::Vec3 axis = b[body].A.col(2);
             const contact::Scene::Pair& pair = scene.pair[0];
@@ -60,10 +60,12 @@ std::vector<Run> runs()
 {
     std::vector<Run> all;
     for (const std::string& name : presets)
-        all.push_back({.name = name, .go = [name] { return fall(falling(name)); }});
-    all.push_back({.name = "no-resistance", .go = [] { return fall(rolling(1e5, 1e-4)); }});
+        all.push_back({.name = name, .go = [name](Frames* frames) { return fall(falling(name), frames); }});
     all.push_back(
-        {.name = "no-resistance-stiff", .go = [] { return fall(rolling(1e7, 5e-6)); }, .for_check = true});
+        {.name = "no-resistance", .go = [](Frames* frames) { return fall(rolling(1e5, 1e-4), frames); }});
+    all.push_back({.name = "no-resistance-stiff",
+                   .go = [](Frames* frames) { return fall(rolling(1e7, 5e-6), frames); },
+                   .for_check = true});
     return all;
 }
 
@@ -100,7 +102,8 @@ const bool ellipsoid = enrol({.name = "ellipsoid",
                               .figure = "4.17",
                               .what = "ellipsoid that rolls over and comes to rest on its side",
                               .runs = runs,
-                              .checks = checks});
+                              .checks = checks,
+                              .in_space = true});
 
 }  // namespace
 

@@ -14,6 +14,41 @@ std::vector<Experiment>& list()
     return all;
 }
 
+/// `count` of the nodes 0 … steps, in turn
+class Choice {
+public:
+    Choice(int count, long steps) : count(count), steps(steps) {}
+
+    bool takes(long n)
+    {
+        if (chosen == count || n != next()) return false;
+        while (chosen < count && next() <= n) ++chosen;
+        return true;
+    }
+
+private:
+    long next() const
+    {
+        return count == 1 ? 0 : std::lround(static_cast<double>(steps) * chosen / (count - 1));
+    }
+
+    const int count;
+    const long steps;
+    int chosen = 0;
+};
+
+void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
+{
+    std::vector<Snapshots::Touch> touches;
+    for (size_t k = 0; k < scene.pair.size(); ++k) {
+        const contact::Scene::Pair& p = scene.pair[k];
+        if (p.meeting.N > 0)
+            touches.push_back(
+                Snapshots::touch(static_cast<int>(k), p.i, p.meeting, p.wrench, p.memory.history));
+    }
+    to.add(scene.t, bodies, std::move(touches));
+}
+
 }  // namespace
 
 size_t Series::place(const std::string& column) const
@@ -36,11 +71,17 @@ double Series::when(const std::function<bool(size_t)>& holds, double from) const
     return std::nan("");
 }
 
-Series sample(contact::Scene& scene, double h, double end, std::vector<std::string> columns,
+Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
               const std::function<void(Series&, const std::vector<contact::Motion>&)>& row)
 {
     Series series(std::move(columns));
     const long steps = std::lround(end / h);
+    Choice choice(frames != nullptr ? frames->count : 0, steps);
+    if (frames != nullptr)
+        for (const contact::Scene::Pair& p : scene.pair) {
+            frames->snapshots.show(p.i, p.contact.i);
+            frames->snapshots.show(p.j, p.contact.j);
+        }
     series.values.reserve(static_cast<size_t>(steps + 1) * series.columns.size());
     std::vector<contact::Motion> before;
     for (long n = 0; n <= steps; ++n) {
@@ -50,6 +91,7 @@ Series sample(contact::Scene& scene, double h, double end, std::vector<std::stri
         scene.step(h);
         scene.t = t;
         row(series, before);
+        if (choice.takes(n)) add_frame(frames->snapshots, scene, before);
     }
     return series;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/scene.hpp"
+#include "studies/vtk.hpp"
 
 #include <functional>
 #include <string>
@@ -33,14 +34,20 @@ public:
     std::vector<double> values;
 };
 
+/// Snapshots of a run at `count` of its nodes, the first, the last and evenly between
+struct Frames {
+    int count = 0;
+    Snapshots snapshots = {};
+};
+
 /// Samples a column set at every node while a scene is stepped: what `row` says of the node that the step left, whose
-/// loads are then in scene.pair; `before` is the scene's bodies at that node.
-Series sample(contact::Scene& scene, double h, double end, std::vector<std::string> columns,
+/// loads are then in scene.pair; `before` is the scene's bodies at that node. Frames too, unless nullptr.
+Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
               const std::function<void(Series&, const std::vector<contact::Motion>& before)>& row);
 
 struct Run {
     std::string name;
-    std::function<Series()> go;
+    std::function<Series(Frames*)> go;
     bool for_check = false;  ///< only its numbers are wanted, with --check
 };
 
@@ -69,6 +76,7 @@ struct Experiment {
     std::string name, figure, what;
     std::vector<Run> (*runs)() = nullptr;
     void (*checks)(const Results&, std::vector<Check>& out) = nullptr;
+    bool in_space = false;  ///< its bodies are worth being looked at
 };
 
 const std::vector<Experiment>& experiments();

@@ -16,7 +16,7 @@ namespace {
 constexpr double m = 5, R = 0.2, mu_s = 0.25, mu_k = 0.2, K_E = 1e5, eta_r = 0.3, g = 9.8, h = 1e-4;
 constexpr double degree = std::numbers::pi / 180;
 
-Series roll(const std::string& preset_name, double alpha, double v_0, double end)
+Series roll(const std::string& preset_name, double alpha, double v_0, double end, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, -g * std::sin(alpha), -g * std::cos(alpha)};
@@ -27,7 +27,7 @@ Series roll(const std::string& preset_name, double alpha, double v_0, double end
               std::make_shared<contact::GivenForce>(m * g * std::cos(alpha)), law(p));
     scene.check(h);
     return sample(
-        scene, h, end, {"t", "v_cm", "omega_x", "F_E", "T_E", "slips", "rolls"},
+        scene, h, end, frames, {"t", "v_cm", "omega_x", "F_E", "T_E", "slips", "rolls"},
         [&](Series& s, const std::vector<contact::Motion>& body) {
             const contact::Wrench& w = scene.pair[0].wrench;
             const contact::History& history = scene.pair[0].memory.history;
@@ -37,7 +37,7 @@ Series roll(const std::string& preset_name, double alpha, double v_0, double end
 }
 
 /// A slope that tilts at `rate` from the horizontal, with a stiff normal spring; alpha is its angle [deg].
-Series tilt(double rate, double end)
+Series tilt(double rate, double end, Frames* frames)
 {
     contact::Scene scene;
     const double k_n = 1e7;
@@ -49,7 +49,7 @@ Series tilt(double rate, double end)
               std::make_shared<contact::Hooke>(contact::Hooke::rebounding(k_n, 0.3)), law(p));
     scene.check(h);
     return sample(
-        scene, h, end, {"t", "alpha", "rolls"}, [&](Series& s, const std::vector<contact::Motion>&) {
+        scene, h, end, frames, {"t", "alpha", "rolls"}, [&](Series& s, const std::vector<contact::Motion>&) {
             const double alpha = rate * scene.t;
             s.add({scene.t, alpha / degree, scene.pair[0].memory.history.roll_i.slipping ? 1. : 0.});
             scene.gravity = {0, -g * std::sin(alpha), -g * std::cos(alpha)};
@@ -60,12 +60,15 @@ std::vector<Run> runs()
 {
     std::vector<Run> all;
     for (const std::string& name : presets)
-        all.push_back({.name = name, .go = [name] { return roll(name, 35 * degree, 0.5, 0.3); }});
+        all.push_back({.name = name,
+                       .go = [name](Frames* frames) { return roll(name, 35 * degree, 0.5, 0.3, frames); }});
     for (const std::string& name : presets)
         all.push_back({.name = name + "-2deg",
-                       .go = [name] { return roll(name, 2 * degree, 0, 1); },
+                       .go = [name](Frames* frames) { return roll(name, 2 * degree, 0, 1, frames); },
                        .for_check = true});
-    all.push_back({.name = "slow-tilt", .go = [] { return tilt(degree, 10); }, .for_check = true});
+    all.push_back({.name = "slow-tilt",
+                   .go = [](Frames* frames) { return tilt(degree, 10, frames); },
+                   .for_check = true});
     return all;
 }
 
@@ -119,7 +122,8 @@ const bool incline = enrol({.name = "incline",
                             .figure = "4.12",
                             .what = "sphere thrown up a slope of 35 degrees",
                             .runs = runs,
-                            .checks = checks});
+                            .checks = checks,
+                            .in_space = true});
 
 }  // namespace
 

@@ -29,7 +29,7 @@ struct Spinner {
     double I = 0;  ///< about the vertical
 };
 
-Series spin(const Spinner& body, const contact::FrictionParameters& p, double end)
+Series spin(const Spinner& body, const contact::FrictionParameters& p, double end, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, 0, -g};
@@ -41,7 +41,7 @@ Series spin(const Spinner& body, const contact::FrictionParameters& p, double en
               std::make_shared<contact::GivenForce>(body.inertia.m * g), law(p));
     // No scene.check(h): at K_E of 1e7 and more the step is beyond the bound of sliding, which nothing sets in motion here.
     double angle = 0;
-    return sample(scene, h, end, {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
+    return sample(scene, h, end, frames, {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
                   [&](Series& s, const std::vector<contact::Motion>& bodies) {
                       const contact::Scene::Pair& pair = scene.pair[0];
                       const double omega = (bodies[b].A * bodies[b].omega_bar).z();
@@ -85,10 +85,11 @@ std::vector<Run> empirical()
     std::vector<Run> all;
     for (const std::string& name : presets)
         for (const double eta : etas)
-            all.push_back({.name = fmt::format("{}-eta{:.3f}", name, eta), .go = [=] {
+            all.push_back({.name = fmt::format("{}-eta{:.3f}", name, eta), .go = [=](Frames* frames) {
                                return spin(
                                    big_sphere(),
-                                   preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8);
+                                   preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8,
+                                   frames);
                            }});
     return all;
 }
@@ -115,7 +116,8 @@ const bool spinning = enrol({.name = "spin",
                              .figure = "4.15",
                              .what = "sphere that spins in place, empirical spinning resistance",
                              .runs = empirical,
-                             .checks = check_empirical});
+                             .checks = check_empirical,
+                             .in_space = true});
 
 // Fig. 4.16
 
@@ -148,8 +150,10 @@ std::vector<Run> hertz()
     for (const std::string& name : presets)
         for (const Material& of : balls)
             for (const double K_E : {5e5, 1e6, 5e6, 1e7})
-                all.push_back({.name = fmt::format("{}-{}-KE{}", name, of.name, power(K_E)),
-                               .go = [=] { return spin(ball_of(of), hertzian(name, of.E, of.nu, K_E), 6); }});
+                all.push_back(
+                    {.name = fmt::format("{}-{}-KE{}", name, of.name, power(K_E)), .go = [=](Frames* frames) {
+                         return spin(ball_of(of), hertzian(name, of.E, of.nu, K_E), 6, frames);
+                     }});
     return all;
 }
 
@@ -198,11 +202,12 @@ std::vector<Run> ellipsoids()
                 const std::string preset_name = published ? "dissertation" : "balanced";
                 all.push_back(
                     {.name = fmt::format("{}-{}-KE{}", preset_name, upright ? "upright" : "flat", power(K_E)),
-                     .go = [=] {
+                     .go = [=](Frames* frames) {
                          return spin(ellipsoid(upright, published), hertzian(preset_name, 2e11, 0.3, K_E),
                                      published ? 2
                                      : upright ? 4
-                                               : 8);
+                                               : 8,
+                                     frames);
                      }});
             }
     return all;
@@ -255,7 +260,8 @@ const bool spinning_ellipsoid = enrol({.name = "spin-ellipsoid",
                                        .figure = "4.18",
                                        .what = "steel ellipsoid that spins upright and flat; Table 4.7",
                                        .runs = ellipsoids,
-                                       .checks = check_ellipsoids});
+                                       .checks = check_ellipsoids,
+                                       .in_space = true});
 
 }  // namespace
 

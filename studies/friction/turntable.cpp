@@ -18,7 +18,7 @@ namespace {
 
 constexpr double m = 5, R = 0.2, g = 9.81, v = 0.5, Omega = 2 * std::numbers::pi, rate = 2 * Omega / 7;
 
-Series orbit(double beta, double K_E, double h)
+Series orbit(double beta, double K_E, double h, Frames* frames)
 {
     contact::Scene scene;
     const lie::Vec3 z = lie::Vec3::UnitZ(), r(v / rate, 0, R), axis(0.4, 0.3, 0), rdot(0, v, 0);
@@ -33,7 +33,7 @@ Series orbit(double beta, double K_E, double h)
     scene.check(h);
     double angle = 0, last = 0;
     return sample(
-        scene, h, 10 * 2 * std::numbers::pi / rate, {"t", "x", "y", "radius", "turns"},
+        scene, h, 10 * 2 * std::numbers::pi / rate, frames, {"t", "x", "y", "radius", "turns"},
         [&](Series& s, const std::vector<contact::Motion>& body) {
             const lie::Vec3& at = body[b].r;
             const double now = std::atan2(at.y(), at.x());
@@ -45,12 +45,16 @@ Series orbit(double beta, double K_E, double h)
 
 std::vector<Run> runs()
 {
-    return {{.name = "beta=0.5", .go = [] { return orbit(0.5, 1e5, 1e-3); }},
-            {.name = "beta=1", .go = [] { return orbit(1, 1e5, 1e-3); }},
-            {.name = "beta=0", .go = [] { return orbit(0, 1e5, 1e-3); }},
-            {.name = "beta=-1", .go = [] { return orbit(-1, 1e5, 1e-3); }},
-            {.name = "beta=1, h=1e-4", .go = [] { return orbit(1, 1e5, 1e-4); }, .for_check = true},
-            {.name = "stiff", .go = [] { return orbit(0.5, 1e6, 1e-4); }, .for_check = true}};
+    return {{.name = "beta=0.5", .go = [](Frames* frames) { return orbit(0.5, 1e5, 1e-3, frames); }},
+            {.name = "beta=1", .go = [](Frames* frames) { return orbit(1, 1e5, 1e-3, frames); }},
+            {.name = "beta=0", .go = [](Frames* frames) { return orbit(0, 1e5, 1e-3, frames); }},
+            {.name = "beta=-1", .go = [](Frames* frames) { return orbit(-1, 1e5, 1e-3, frames); }},
+            {.name = "beta=1, h=1e-4",
+             .go = [](Frames* frames) { return orbit(1, 1e5, 1e-4, frames); },
+             .for_check = true},
+            {.name = "stiff",
+             .go = [](Frames* frames) { return orbit(0.5, 1e6, 1e-4, frames); },
+             .for_check = true}};
 }
 
 void checks(const Results& results, std::vector<Check>& out)
@@ -76,7 +80,8 @@ const bool turntable =
            .figure = "beyond 4.3",
            .what = "ball on a turntable, ten orbits: only half of the counter-spin keeps the circle",
            .runs = runs,
-           .checks = checks});
+           .checks = checks,
+           .in_space = true});
 
 }  // namespace
 

@@ -20,7 +20,7 @@ TEST_CASE("every experiment on friction gives what it must", "[studies][friction
         std::vector<friction::Run> runs = experiment.runs();
         std::erase_if(runs, [](const friction::Run& run) { return run.for_check; });
         std::vector<friction::Series> series;
-        for (const friction::Run& run : runs) series.push_back(run.go());
+        for (const friction::Run& run : runs) series.push_back(run.go(nullptr));
         std::vector<friction::Check> checks;
         experiment.checks(friction::Results(runs, series), checks);
         for (const friction::Check& check : checks) {

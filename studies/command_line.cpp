@@ -196,6 +196,8 @@ private:
         c->add_flag("--force", o.force,
                     "write into a directory that is not empty; take a step at which a force is not stable");
         c->add_flag("--resume", o.resume, "go on from the last checkpoint in the directory");
+        value(c, "--vtk", "DT", "s between frames of the bodies in contact, for ParaView",
+              assign(o.vtk, positive_number));
         value(c, "--checkpoint", "S", "wall seconds between checkpoints, by default 0: none",
               assign(o.checkpoint, nonnegative_number));
         c->add_flag("--reactions", o.reactions, "also write constraint forces and multipliers");

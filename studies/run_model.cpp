@@ -51,6 +51,9 @@ void refuse_for_adaptive(const RunOptions& options)
 
 int run_model(const RunOptions& options)
 {
+    if (options.vtk && (options.resume || options.checkpoint > 0))
+        throw UsageError(
+            "run: --vtk keeps its frames until the run ends; --checkpoint and --resume exclude it");
     refuse_for_adaptive(options);
     const std::vector<std::string> directory = directories(options);
     const Interrupt interrupt;

@@ -23,7 +23,8 @@ struct RunOptions {
     std::string output;  ///< "": out/NAME
     bool force = false, resume = false;
     bool reactions = false, log_steps = false, plot = false;
-    double checkpoint = 0;  ///< wall seconds between checkpoints; 0: none
+    std::optional<double> vtk;  ///< [s] between frames for ParaView
+    double checkpoint = 0;      ///< wall seconds between checkpoints; 0: none
 
     bool json = false, quiet = false, verbose = false;
     int threads = 1;

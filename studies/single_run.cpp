@@ -113,6 +113,7 @@ void SingleRun::read()
     result.directory = directory;
     result.files = {"model.json", "trajectory.csv"};
     if (options.log_steps) result.files.emplace_back("steps.csv");
+    if (options.vtk) prepare_frames();
     settings = fmt::format(
         "model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}, linear solver {}, rho "
         "{}{}{}{}{}",
@@ -121,6 +122,21 @@ void SingleRun::read()
         options.settings.reparametrise ? ", --reparametrise" : "",
         options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
         options.log_steps ? ", --log-steps" : "");
+}
+
+void SingleRun::prepare_frames()
+{
+    const lie::Grid at = lie::Grid::over(result.end, grid.h, *options.vtk);
+    if (at.steps / at.every + 2 > Snapshots::most)
+        throw UsageError(fmt::format("run: --vtk {} makes {} frames, more than {}", *options.vtk,
+                                     at.steps / at.every + 1, Snapshots::most));
+    const double between = static_cast<double>(at.every) * at.h;
+    if (between > *options.vtk * (1 + 1e-9))
+        warn(fmt::format("--vtk {} is no multiple of the step: frames are {:.12g} s apart", *options.vtk,
+                         between));
+    frames.emplace(*description.model, at);
+    if (!frames->has_contacts())
+        throw UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
 }
 
 // A run that is gone on with has been judged when it began.
@@ -162,6 +178,7 @@ void SingleRun::clear_directory() const
 {
     make_directory(directory);
     remove_checkpoints(directory);
+    Snapshots::remove(directory, "run");
     for (const char* file : {"summary.json", "trajectory.csv", "steps.csv", "trajectory.png"})
         std::remove(path(file).c_str());
     write_file(path("model.json"),
@@ -188,7 +205,8 @@ void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoin
 
 void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
 {
-    const std::vector<lie::Observer*> observers = recorder.observers();
+    std::vector<lie::Observer*> observers = recorder.observers();
+    if (frames) observers.push_back(&*frames);
     Progress line(options.quiet, result.end, grid.steps, march.number());
     const bool watch_clock = line.shown() || options.checkpoint > 0;
     Clock::time_point saved = Clock::now();
@@ -261,6 +279,10 @@ void SingleRun::finish()
     result.files.emplace_back("summary.json");
     if (result.status == "ok") remove_checkpoints(directory);
     if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
+    if (frames) {
+        frames->snapshots.write(directory, "run");
+        result.files.emplace_back("run.pvd");
+    }
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
     write_file(path("summary.json"), as_text(summary(result)));
 }

@@ -6,6 +6,7 @@
 #include "dae/model_file.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/checkpoint.hpp"
+#include "studies/model_frames.hpp"
 #include "studies/progress.hpp"
 #include "studies/recorder.hpp"
 #include "studies/run_model.hpp"
@@ -33,6 +34,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void read();
+    void prepare_frames();
     /// Refuses a step that a force does not stand, or a scheme.
     void judge_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;
@@ -52,6 +54,7 @@ private:
     const lie::Scheme& scheme;
     const std::string directory;
     dae::Description description;
+    std::optional<ModelFrames> frames;
     lie::Grid grid;
     std::string settings;
     Clock::time_point begin;

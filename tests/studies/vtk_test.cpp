@@ -356,3 +356,47 @@ TEST_CASE("snapshots are refused where nothing would come of them", "[studies][v
     CHECK_FALSE(tests::fs::exists(in / "new"));
     refused({"study", "friction", "--json", "--vtk", "3"}, "--vtk writes files");
 }
+
+TEST_CASE("frames of a model with contacts", "[studies][vtk]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"run", "rolling_ball", "--end", "0.1", "--vtk", "0.02", "--output", "out"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const std::vector<Data> listed = collection(in / "out/run.pvd");
+    REQUIRE(listed.size() == 6);
+    CHECK(files(in / "out/vtk") == 6);
+    for (size_t k = 0; k < listed.size(); ++k) {
+        CHECK(std::stod(listed[k].time) == Approx(0.02 * static_cast<double>(k)));
+        const Frame frame(in / ("out/" + listed[k].file));
+        REQUIRE(frame.vertex.size() == 1);  // the ball lies on the floor
+        CHECK(frame.body[0] == 0);
+        CHECK(frame.body.back() == -1);
+        CHECK(frame.N[0].z() == Approx(5 * 9.81).epsilon(1e-3));
+        CHECK(frame.slipping[0] == (k > 0));
+        if (k > 0) CHECK(frame.F[0].x() == Approx(-0.2 * frame.N[0].z()).epsilon(1e-2));
+    }
+    CHECK_THAT(tests::read(in / "out/summary.json"), Contains("run.pvd"));
+    // again without: no snapshots of another run stay
+    CHECK(call(in, {"run", "rolling_ball", "--end", "0.1", "--output", "out", "--force"}).code == 0);
+    CHECK_FALSE(tests::fs::exists(in / "out/run.pvd"));
+    CHECK(files(in / "out/vtk") == 0);
+}
+
+TEST_CASE("frames of a run are refused where nothing would come of them", "[studies][vtk][run]")
+{
+    const Scratch in;
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, Contains(says));
+        CHECK_FALSE(tests::fs::exists(in / "out"));
+    };
+    for (const std::string text : {"0", "-1", "nan", "often"})
+        refused({"run", "rolling_ball", "--vtk", text}, "--vtk: must be a positive, finite number");
+    refused({"run", "double_pendulum", "--vtk", "0.1"}, "double_pendulum has no contacts");
+    refused({"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, "more than 1000000");
+    refused({"run", "rolling_ball", "--vtk", "0.1", "--checkpoint", "1"},
+            "--checkpoint and --resume exclude");
+}

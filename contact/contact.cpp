@@ -6,19 +6,25 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <algorithm>
+
 namespace hilda::contact {
 
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double longest_lever = 10;    // of rolling, over the size of the smaller body
+constexpr double nearby = 1e-6;         // a gap, over the same, that is none
 constexpr double deepest = 0.1;         // overlap at a start, over a radius of curvature
 constexpr double no_curvature = 1e-12;  // over the size of the curvatures: rounding
 
-double reduced(double a, double b)
+/// The smaller size of two surfaces, of which a plane has none
+double smaller_size(const Shape& i, const Shape& j)
 {
-    if (!std::isfinite(a)) return b;
-    if (!std::isfinite(b)) return a;
-    return a * b / (a + b);
+    double smaller = infinite;
+    for (const Shape* s : {&i, &j})
+        if (s->surface->size() > 0) smaller = std::min(smaller, s->surface->size());
+    return smaller;
 }
 
 Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
@@ -52,7 +58,8 @@ Contact::Contact(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
                  std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction)
     : name(std::move(name)), i(std::move(i)), j(std::move(j)), of_i(std::move(of_i)), of_j(std::move(of_j)),
       law(std::move(law)), friction(std::move(friction)), detector(make_detector(this->i, this->j)),
-      m(this->friction->fictitious(this->of_i.m, this->of_j.m)), m_normal(reduced(this->of_i.m, this->of_j.m))
+      m(this->friction->fictitious(this->of_i.m, this->of_j.m)),
+      m_normal(reduced(this->of_i.m, this->of_j.m)), length(smaller_size(this->i, this->j))
 {}
 
 Pressing Contact::pressing(const Touch& touch, const Motion& bi, const Motion& bj) const
@@ -82,6 +89,7 @@ void Contact::rethrow(const lie::NumericalFailure& e) const
 void Contact::set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const
 {
     now.m = m;
+    now.lever = longest_lever * length;
     const Moments a = moments(of_i, bi.A, now.touch.n), b = moments(of_j, bj.A, now.touch.n);
     now.I_roll = friction->fictitious(a.tangential, b.tangential);
     now.I_spin = friction->fictitious(a.normal, b.normal);
@@ -115,12 +123,17 @@ Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) 
     return now;
 }
 
-Meeting Contact::hardest(const Motion& bi, const Motion& bj, const Memory& memory, double g) const
+bool Contact::close(const Motion& bi, const Motion& bj, const Memory& memory) const
+{
+    return find(bi, bj, memory).gap <= nearby * (std::isfinite(length) ? length : 1);
+}
+
+Meeting Contact::hardest(const Motion& bi, const Motion& bj, const Memory& memory, double weight) const
 {
     Touch touch = find(bi, bj, memory);
     Pressing p = pressing(touch, bi, bj);
     const double gap = std::max(touch.gap, 0.), approach = std::max(p.overlap_rate, 0.);
-    const double first = std::max(p.overlap, 0.), weight = std::isfinite(p.m) ? p.m * g : 0;
+    const double first = std::max(p.overlap, 0.);
     p.overlap = first;
     const double given =
         law->energy(p) + weight * gap + (std::isfinite(p.m) ? 0.5 * p.m * approach * approach : 0);
@@ -185,7 +198,8 @@ std::string Contact::objection(const Motion& bi, const Motion& bj) const
     return {};
 }
 
-double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& bj) const
+double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& bj, int contacts_of_i,
+                            int contacts_of_j) const
 {
     using Mat6 = Eigen::Matrix<double, 6, 6>;
     using Rows = Eigen::Matrix<double, 6, 3>;
@@ -197,17 +211,18 @@ double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& 
     Rows linear = Rows::Zero();
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
     Mat6 W = Mat6::Zero();
-    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C) {
+    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int contacts) {
         if (!body.moves()) return;
         const Vec3 s = C - motion.r;
         Rows angular = Rows::Zero();
         angular << s.cross(u).transpose(), s.cross(w).transpose(), s.cross(n).transpose(), u.transpose(),
             w.transpose(), n.transpose();
         const Rows in_body = angular * motion.A;
-        W += linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose();
+        W += contacts *
+             (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
     };
-    add(of_i, bi, now.touch.C_i);
-    add(of_j, bj, now.touch.C_j);
+    add(of_i, bi, now.touch.C_i, contacts_of_i);
+    add(of_j, bj, now.touch.C_j, contacts_of_j);
     Eigen::Matrix<double, 6, 1> K, D;
     K << springs.K_slide, springs.K_slide, law->stiffness(p), springs.K_roll, springs.K_roll, springs.K_spin;
     D << springs.D_slide, springs.D_slide, p.overlap > 0 ? law->damping(p) : 0, springs.D_roll,

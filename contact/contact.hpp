@@ -52,15 +52,20 @@ public:
     /// curvature; or an empty text.
     std::string objection(const Motion& bi, const Motion& bj) const;
 
-    /// The largest step [s] with which symplectic Euler is stable on the springs and dashpots of this contact
-    /// alone, none of them slipping, with the curvatures and the normal force of this meeting. It is the h at which
-    /// 4 M - 2 h D - h² K becomes singular; for one damped mode h ω = 2 (√(1 + ζ²) - ζ).
-    double stable_step(const Meeting& now, const Motion& bi, const Motion& bj) const;
+    /// The largest step [s] with which symplectic Euler is stable on the springs and dashpots of this contact, none of
+    /// them slipping, with the curvatures and the normal force of this meeting. It is the h at which
+    /// 4 M - 2 h D - h² K becomes singular; for one damped mode h ω = 2 (√(1 + ζ²) - ζ). A body that has more than
+    /// one contact lends each an equal part of its mass: where each of them is then stable, all are together.
+    double stable_step(const Meeting& now, const Motion& bi, const Motion& bj, int contacts_of_i = 1,
+                       int contacts_of_j = 1) const;
 
     /// The meeting of these surfaces when they will press hardest: what they approach with, and what a fall through
-    /// their gap and overlap adds under the acceleration g [m/s²], has gone into the spring of the normal law. An
-    /// estimate, of two bodies without joints; for stable_step() before they touch.
-    Meeting hardest(const Motion& bi, const Motion& bj, const Memory& memory, double g) const;
+    /// their gap and overlap adds under a weight [N] that may rest on them, has gone into the spring of the normal law.
+    /// An estimate, of two bodies without joints; for stable_step() at a start.
+    Meeting hardest(const Motion& bi, const Motion& bj, const Memory& memory, double weight) const;
+
+    /// Whether they touch or are about to: nearer than a millionth of their size
+    bool close(const Motion& bi, const Motion& bj, const Memory& memory) const;
 
     /// In the spring of the normal law [J]
     double energy(const Meeting& now, const Motion& bi, const Motion& bj) const
@@ -83,6 +88,7 @@ private:
 
     std::unique_ptr<const Detector> detector;
     double m, m_normal;
+    double length;  ///< the smaller size of the two [m], infinite where neither has one
 };
 
 }  // namespace hilda::contact

@@ -98,7 +98,7 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
                            std::shared_ptr<const FrictionModel> friction)
     : i(i), j(j), contact(name, shape_i, shape_j, inertia(model, i), inertia(model, j), std::move(law),
                           std::move(friction)),
-      name_i(model.body_name(i)), name_j(model.body_name(j)), g(model.gravity.norm())
+      name_i(model.body_name(i)), name_j(model.body_name(j)), model(model)
 {
     this->name = name;
     if (i == j) lie::reject(in_words(), "a contact needs two different bodies", "'" + name_i + "' twice");
@@ -189,11 +189,26 @@ std::string ContactForce::objection(const lie::State& x) const
 double ContactForce::stable_step(const lie::State& x) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
+    double weight = 0;  // all that may rest on the contact
+    for (const double m : model.mass().m) weight += m * model.gravity.norm();
     try {
-        return contact.stable_step(contact.hardest(bi, bj, recall(x), g), bi, bj);
+        return contact.stable_step(contact.hardest(bi, bj, recall(x), weight), bi, bj, contacts_of(i, x),
+                                   contacts_of(j, x));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
+}
+
+int ContactForce::contacts_of(int body, const lie::State& x) const
+{
+    int count = 0;
+    for (const auto& force : model.forces()) {
+        const auto* other = dynamic_cast<const ContactForce*>(force.get());
+        if (other == nullptr || (other->i != body && other->j != body)) continue;
+        if (other == this || other->contact.close(motion(x, other->i), motion(x, other->j), other->recall(x)))
+            ++count;
+    }
+    return std::max(1, count);
 }
 
 void ContactForce::rethrow(const lie::NumericalFailure& e, const lie::State& x) const

@@ -54,11 +54,13 @@ public:
 
 private:
     void keep(const Instant& now, lie::State& x) const;
+    /// How many contacts of a body touch at x, this one among them
+    int contacts_of(int body, const lie::State& x) const;
     /// Throws what went wrong in `x`, with the bodies and the time.
     [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
 
     const std::string name_i, name_j;
-    const double g;  ///< [m/s²]
+    const dae::Model& model;
 };
 
 }  // namespace hilda::contact

@@ -76,6 +76,7 @@ Touch detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, c
     Touch touch = ji.detect(bj, bi, from != nullptr ? &exchanged : nullptr);
     std::swap(touch.C_i, touch.C_j);
     std::swap(touch.K_i, touch.K_j);
+    std::swap(touch.edge_i, touch.edge_j);
     touch.n = -touch.n;
     return touch;
 }

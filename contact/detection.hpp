@@ -19,6 +19,9 @@ struct Touch {
     Vec3 n;         ///< unit normal, INTO body i: C_i - C_j = gap n
     double gap;     ///< [m], negative where they overlap
     Mat3 K_i, K_j;  ///< shape operators there [1/m], see Surface
+    /// Unit tangent of the edge with which a body touches, along which alone the point moves over it; zero where the
+    /// body is smooth
+    Vec3 edge_i = Vec3::Zero(), edge_j = Vec3::Zero();
 
     Vec3 C() const { return 0.5 * (C_i + C_j); }  ///< where loads act, on both bodies alike
 };

@@ -21,7 +21,7 @@ constexpr double singular = 1e-9;
 
 }  // namespace
 
-double FrictionModel::fictitious(double a, double b) const
+double reduced(double a, double b)
 {
     if (!std::isfinite(a)) return b;
     if (!std::isfinite(b)) return a;
@@ -47,16 +47,26 @@ Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion
     Rates r{
         .s = v + touch.gap * omega_j.cross(n), .p_i = Vec3::Zero(), .p_j = Vec3::Zero(), .psi = omega.dot(n)};
 
-    const Vec3 u = slip.u, w = n.cross(u);
+    // (K_i + K_j) ṗ = q, of a body with an edge along the edge alone
     const Mat3 K = touch.K_i + touch.K_j;
-    const Vec3 Ku = K * u, Kw = K * w;
+    const bool edge_j = touch.edge_j.squaredNorm() > 0;
+    const Vec3 edge = touch.edge_i + touch.edge_j;  // at most one of the two
+    const Vec3 u = slip.u, w = n.cross(u), Ku = K * u, Kw = K * w;
     const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
     if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
+    const auto solve = [&](const Vec3& q) -> Vec3 {
+        if (edge.squaredNorm() > 0) return edge * (edge.dot(q) / edge.dot(K * edge));
+        const double x = u.dot(q), y = w.dot(q);
+        return ((d * x - b * y) * u + (a * y - b * x) * w) / det;
+    };
     for (int pass = 0; pass < 2; ++pass) {  // the gap is small against the radii: a part (gap κ)² is left out
-        const Vec3 right = omega.cross(n) + touch.K_j * r.s;
-        const double x = u.dot(right), y = w.dot(right);
-        r.p_i = ((d * x - b * y) * u + (a * y - b * x) * w) / det;
-        r.p_j = r.p_i - r.s;
+        if (edge_j) {
+            r.p_j = solve(omega.cross(n) - touch.K_i * r.s);
+            r.p_i = r.p_j + r.s;
+        } else {
+            r.p_i = solve(omega.cross(n) + touch.K_j * r.s);
+            r.p_j = r.p_i - r.s;
+        }
         if (pass == 0) r.s = v + touch.gap * (omega_j.cross(n) + touch.K_j * r.p_j);
     }
     return r;

@@ -5,6 +5,7 @@
 
 #include "contact/tracker.hpp"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct Meeting {
     /// Fictitious mass and moments of inertia of the pair for the dashpots, about the tangents and about the
     /// normal [kg, kg m²]                                                                    Eqs. 4.4, 4.10
     double m = 0, I_roll = 0, I_spin = 0;
+    double lever =
+        std::numeric_limits<double>::infinity();  ///< the longest that 1/κ may be as a lever arm [m]
 };
 
 /// Speeds of what Slip has the displacements of
@@ -70,6 +73,9 @@ struct Springs {
     double K_spin = 0, D_spin = 0;
 };
 
+/// a b / (a + b), of masses or moments of inertia, one of which may be infinite
+double reduced(double a, double b);
+
 /// Derive for a law of your own; one object may serve many contacts.
 class FrictionModel {
 public:
@@ -78,7 +84,7 @@ public:
     /// Frames and counter-spin that the law wants
     virtual Tracking tracking() const { return {}; }
     /// Fictitious mass or moment of inertia of two, one of which may be infinite
-    virtual double fictitious(double a, double b) const;
+    virtual double fictitious(double a, double b) const { return reduced(a, b); }
 
     /// The history from the last instant to this one
     virtual void advance(const Meeting& now, History& history) const = 0;

@@ -3,6 +3,8 @@
 
 #include "lie/check.hpp"
 
+#include <algorithm>
+
 namespace hilda::contact {
 
 int Scene::add(const Inertia& of, const Motion& start)
@@ -32,11 +34,20 @@ int Scene::add(const std::string& name, int i, const Shape& shape_i, int j, cons
 
 void Scene::check(double h) const
 {
+    double weight = 0;  // all that may rest on a contact
+    for (const Inertia& of : inertia)
+        if (of.moves()) weight += gravity.norm() * of.m;
+    std::vector<int> contacts(body.size());
     for (const Pair& p : pair) {
         const Motion &bi = body[p.i], &bj = body[p.j];
         if (const std::string why = p.contact.objection(bi, bj); !why.empty())
             throw lie::InvalidInput("contact '" + p.contact.name + "': " + why);
-        const double bound = p.contact.stable_step(p.contact.meet(bi, bj, p.memory), bi, bj);
+        if (p.contact.close(bi, bj, p.memory)) ++contacts[p.i], ++contacts[p.j];
+    }
+    for (const Pair& p : pair) {
+        const Motion &bi = body[p.i], &bj = body[p.j];
+        const double bound = p.contact.stable_step(p.contact.hardest(bi, bj, p.memory, weight), bi, bj,
+                                                   std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
         if (h > bound) {
             std::ostringstream what;
             what << "contact '" << p.contact.name << "': the step must not exceed its stability bound of "

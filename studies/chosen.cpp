@@ -49,16 +49,23 @@ double one_step(const std::string& kind, const StudyOptions& options, double oth
     return options.steps.empty() ? otherwise : options.steps.front();
 }
 
-void refuse_models(const std::string& kind, const StudyOptions& options)
+void refuse_schemes(const std::string& kind, const StudyOptions& options)
 {
     const auto idle = [&](bool given, const std::string& option) {
         if (given)
             throw UsageError("study " + kind + ": " + option +
                              " is for studies of models; this one has bodies of its own");
     };
-    idle(!options.problems.empty(), "--problem");
     idle(!options.integrators.empty(), "--integrator");
     idle(!options.set.empty(), "--set");
+}
+
+void refuse_models(const std::string& kind, const StudyOptions& options)
+{
+    if (!options.problems.empty())
+        throw UsageError("study " + kind +
+                         ": --problem is for studies of models; this one has bodies of its own");
+    refuse_schemes(kind, options);
 }
 
 }  // namespace hilda::studies

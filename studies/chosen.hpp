@@ -24,5 +24,7 @@ double one_step(const std::string& kind, const StudyOptions& options, double oth
 
 /// UsageError where a model, an integrator or a setting of a model is named: the study has bodies of its own.
 void refuse_models(const std::string& kind, const StudyOptions& options);
+/// The same where --problem has a meaning of its own
+void refuse_schemes(const std::string& kind, const StudyOptions& options);
 
 }  // namespace hilda::studies

@@ -9,6 +9,7 @@
 #include "studies/friction/experiment.hpp"
 
 #include "studies/arguments.hpp"
+#include "studies/chosen.hpp"
 #include "studies/csv.hpp"
 #include "studies/csv_table.hpp"
 #include "studies/exit_codes.hpp"
@@ -167,9 +168,14 @@ Table compared(const std::string& file, const std::vector<Chosen>& all)
     return out;
 }
 
+std::string figure_of(const Experiment& e) { return e.figure.empty() ? "" : " (Fig. " + e.figure + ")"; }
+
 int study(const StudyOptions& options)
 {
     check_keys(kind, options, {});
+    refuse_schemes(kind, options);
+    if (!options.steps.empty() || options.end)
+        throw UsageError("study friction: --steps and --end are set by each experiment");
     std::vector<Chosen> all = chosen(options);
     check_vtk(options, all);
     struct Job {
@@ -205,11 +211,17 @@ int study(const StudyOptions& options)
                  {"by"},
                  {"met"}});
     ordered_json rows = ordered_json::array();
-    size_t missed = 0;
+    size_t demands = 0, missed = 0;
     for (Chosen& c : all) {
         if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), c.checks);
         Table shown(
             {{"measured", "{:.8g}"}, {"demanded", "{:.8g}"}, {"+-", "{:.1e}"}, {"met"}, {"by"}, {"what"}});
+        for (size_t r = 0; r < c.runs.size(); ++r)  // a run that did not end is a demand that is not met
+            if (!c.failures[r].empty())
+                c.checks.push_back({.what = "run " + c.runs[r].name + " ends",
+                                    .measured = std::nan(""),
+                                    .by = "failed: " + c.failures[r]});
+        demands += c.checks.size();
         for (const Check& k : c.checks) {
             const std::string met = k.met() ? "yes" : "NO";
             if (!k.met()) ++missed;
@@ -224,15 +236,14 @@ int study(const StudyOptions& options)
                             {"by", k.by},
                             {"met", k.met()}});
         }
-        output.text << fmt::format("\n{} (Fig. {}): {}\n", c.experiment->name, c.experiment->figure,
+        output.text << fmt::format("\n{}{}: {}\n", c.experiment->name, figure_of(*c.experiment),
                                    c.experiment->what);
         if (!c.checks.empty()) shown.print(output.text);
-        for (size_t r = 0; r < c.runs.size(); ++r)
-            if (!c.failures[r].empty())
-                output.text << fmt::format("run {} failed: {}\n", c.runs[r].name, c.failures[r]);
         output.files.emplace_back(c.experiment->name + ".csv", curves(c));
         output.figures.push_back(fmt::format("{}-{}.png", kind, c.experiment->name));
     }
+    output.text << fmt::format("\n{} of {} demands met{}\n", demands - missed, demands,
+                               options.check ? "" : "; --check does the long runs too, and judges by them");
     if (!options.against.empty()) {
         const Table differences = compared(options.against, all);
         output.text << fmt::format("\nagainst {}: each column with every run that has it\n", options.against);
@@ -245,7 +256,7 @@ int study(const StudyOptions& options)
                 output.text << fmt::format("\nfor ParaView: {}/{}-*.pvd", options.output, c.experiment->name);
     if (options.vtk > 0) output.text << '\n';
     output.table = table.csv();
-    output.json = {{"checks", rows}};
+    output.json = {{"demands", demands}, {"met", demands - missed}, {"checks", rows}};
     const int code = finish(options, output, {}, {});
     if (options.check && missed > 0) return exit_code::expectation_failed;
     return code;

@@ -34,7 +34,8 @@ public:
                 .n = n,
                 .gap = gap,
                 .K_i = cosine / R * (Mat3::Identity() - n * n.transpose()),
-                .K_j = Mat3::Zero()};
+                .K_j = Mat3::Zero(),
+                .edge_i = t};
     }
 
 private:

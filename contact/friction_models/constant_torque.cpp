@@ -16,6 +16,7 @@ public:
     explicit ConstantTorque(const FrictionParameters& p) : sliding(p) {}
 
     Tracking tracking() const override { return sliding.p.tracking; }
+    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
     void advance(const Meeting& now, History& h) const override { sliding.advance(now, h); }
 
     Wrench load(const Meeting& now, const Rates& rates, const History& h) const override

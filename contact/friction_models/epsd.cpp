@@ -17,6 +17,7 @@ public:
     explicit Epsd(const FrictionParameters& p) : sliding(p) {}
 
     Tracking tracking() const override { return sliding.p.tracking; }
+    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
 
     void advance(const Meeting& now, History& h) const override
     {

@@ -12,8 +12,12 @@
 ///     |Ψ| ≤ μ N / (K_E a), K_ψ = a² K_E / 2,     a³ = 3 N / (4 κ E*)                                    (A.21-A.23)
 ///
 /// Balanced, the default: n × (K_i q_i + K_j q_j) is the turn of i against j but for the spin, so one vector Θ gives
-/// opposite torques and no angular momentum is made. In K_R and its bound κ is the curvature along Θ, which
-/// stands still when the bodies do; in spinning it is the mean.
+/// opposite torques and no angular momentum is made. κ in rolling is the tensor K_i + K_j:
+///
+///     T = (4 η_r K_E κ⁻² Θ + D κ⁻¹ Δθ/h) × n,   |κ⁻¹ Θ| ≤ μ N / (2 K_E),   D = ζ 4 √(I η_r K_E)
+///
+/// a spring that stores what is put into it, whichever way it rolls; on a sphere it is that of (4.6). Curvatures whose
+/// 1/κ is longer than the lever of the meeting count as that long. In spinning κ is the mean.
 ///
 /// As in the dissertation: Θ_i += κ_i q_i and Θ_j += κ_j q_j apart, with κ along the way of each contact point (the
 /// mean where there is none), T_i = (K_R Θ_i + ...) × n and T_j = -(K_R Θ_j + ...) × n. Their sum is not zero
@@ -25,8 +29,9 @@
 namespace hilda::contact {
 namespace {
 
-constexpr double no_way = 1e-14;  // [m], [rad]: a shorter vector has no direction
-constexpr double flat = 1e-9;     // [1/m]: a smaller κ_i + κ_j has no rolling to resist
+constexpr double no_way = 1e-14;        // [m], [rad]: a shorter vector has no direction
+constexpr double no_curvature = 1e-12;  // part of a curvature that is rounding
+constexpr double flat = 1e-9;           // [1/m]: a smaller κ_i + κ_j has no rolling to resist
 
 /// Curvature along t, or the mean where t has no direction
 double curvature(const Mat3& K, const Vec3& t)
@@ -35,17 +40,43 @@ double curvature(const Mat3& K, const Vec3& t)
     return squared > no_way * no_way ? t.dot(K * t) / squared : 0.5 * K.trace();
 }
 
+/// K_i + K_j in (u, w), and its inverse: the lever arms of rolling. Curvatures below 1/lever count as that.
+struct RollingLevers {
+    explicit RollingLevers(const Meeting& now)
+    {
+        const Vec3 &n = now.slip.n, &u = now.slip.u, w = n.cross(u);
+        const Mat3 sum = now.touch.K_i + now.touch.K_j;
+        const Vec3 Ku = sum * u, Kw = sum * w;
+        K << u.dot(Ku), u.dot(Kw), u.dot(Kw), w.dot(Kw);
+        const double mean = 0.5 * K.trace(), apart = std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
+        least = mean - apart;
+        if (const double floor = 1 / now.lever; least < floor) {
+            // the same principal directions, with the smaller curvatures raised
+            const double raised = std::max(mean + apart, floor);
+            const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+            if (apart > no_curvature * std::abs(mean))
+                K = floor * I + (raised - floor) / (2 * apart) * (K - least * I);
+            else
+                K = raised * I;
+            least = floor;
+        }
+        L << K(1, 1), -K(0, 1), -K(0, 1), K(0, 0);
+        L /= K(0, 0) * K(1, 1) - K(0, 1) * K(0, 1);
+    }
+
+    double longest() const { return 1 / least; }
+
+    Eigen::Matrix2d K, L;  ///< [1/m, m]
+    double least;          ///< [1/m]
+};
+
 class SlideRollSpin final : public FrictionModel {
 public:
     explicit SlideRollSpin(const FrictionParameters& p) : p(p), sliding(p) {}
 
     Tracking tracking() const override { return p.tracking; }
 
-    double fictitious(double a, double b) const override
-    {
-        if (p.reduced_mass || !std::isfinite(a) || !std::isfinite(b)) return FrictionModel::fictitious(a, b);
-        return 0.5 * (a + b);
-    }
+    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
 
     void advance(const Meeting& now, History& h) const override
     {
@@ -79,12 +110,8 @@ public:
         Springs all{.K_slide = p.K_E, .D_slide = sliding.D(now)};
         if (p.eta_r > 0) {
             // along the direction of the smaller curvature, where rolling is stiffest
-            const Mat3 K = now.touch.K_i + now.touch.K_j;
-            const Vec3 &n = now.slip.n, &u = now.slip.u, w = n.cross(u);
-            const double a = u.dot(K * u), b = u.dot(K * w), d = w.dot(K * w);
-            const double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b), mean = 0.5 * (a + d);
-            const Spring spring = rolling(now, least > flat ? least : mean);
-            all.K_roll = spring.K, all.D_roll = D_roll(now, spring.K);
+            const double longest = RollingLevers(now).longest();
+            all.K_roll = 4 * p.eta_r * p.K_E * longest * longest, all.D_roll = D_roll(now, all.K_roll);
         }
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
@@ -103,7 +130,7 @@ private:
     /// Eqs. 4.6, 4.7
     Spring rolling(const Meeting& now, double kappa) const
     {
-        if (!(kappa > flat)) return {};
+        kappa = std::max(kappa, 1 / now.lever);
         const double K = 4 * p.eta_r * p.K_E / (kappa * kappa), lever = kappa / (2 * p.K_E);
         return {.K = K, .cap_s = lever * p.mu_s * now.N, .cap_k = lever * p.mu_k * now.N};
     }
@@ -134,18 +161,13 @@ private:
         return p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K));
     }
 
-    /// κ_i + κ_j along Θ
-    static double along(const Meeting& now, const History& h)
-    {
-        return curvature(now.touch.K_i + now.touch.K_j, tangent(h.Theta_i, now.slip.n, now.slip.u));
-    }
-
     void roll_together(const Meeting& now, History& h) const
     {
         const Slip& s = now.slip;
         h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
-        const Spring spring = rolling(now, along(now, h));
-        give_way(h.Theta_i, h.roll_i, spring.cap_s, spring.cap_k);
+        const double per_newton = 1 / (2 * p.K_E);
+        give_way(h.Theta_i, (RollingLevers(now).L * h.Theta_i).norm(), h.roll_i, per_newton * p.mu_s * now.N,
+                 per_newton * p.mu_k * now.N);
     }
 
     /// Each along its own way, each carried by its own body and then written in the common frame
@@ -162,27 +184,47 @@ private:
 
     void add_rolling(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
     {
+        p.relative_rolling ? add_relative(now, rates, h, out) : add_each(now, rates, h, out);
+    }
+
+    void add_relative(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    {
         const Slip& s = now.slip;
-        const auto torque = [&](const Spring& spring, const Vec2& Theta, const Regime& regime,
-                                const Vec3& rate, Vec3& elastic) -> Vec3 {
+        const RollingLevers levers(now);
+        const double k = 4 * p.eta_r * p.K_E;
+        const Vec2 elastic = k * (levers.L * (levers.L * h.Theta_i));
+        Vec2 tau = elastic;
+        if (h.roll_i.damped) {
+            const Vec2 rate = components(now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j, s.n, s.u);
+            if (p.D_roll)
+                tau += *p.D_roll * rate;
+            else
+                tau += 2 * p.zeta * std::sqrt(now.I_roll * k) * (levers.L * rate);
+        }
+        const double bound = 2 * p.eta_r * p.mu_s * now.N;  // of κ τ
+        if (const double size = (levers.K * tau).norm(); p.capped && size > bound) tau *= bound / size;
+        const Vec3 T = tangent(tau, s.n, s.u).cross(s.n);
+        out.T_roll_E = tangent(elastic, s.n, s.u).cross(s.n);
+        out.T_roll_E_j = -out.T_roll_E;
+        out.T_i += T;
+        out.T_j -= T;
+    }
+
+    void add_each(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    {
+        const Slip& s = now.slip;
+        const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
+        const Spring spring = rolling(now, kappa_i + kappa_j);
+        const auto torque = [&](const Vec2& Theta, const Regime& regime, const Vec3& rate,
+                                Vec3& elastic) -> Vec3 {
             const Vec3 tau = spring.K * tangent(Theta, s.n, s.u);
             elastic = tau.cross(s.n);
             const Vec3 damping = regime.damped ? Vec3(D_roll(now, spring.K) * rate) : Vec3(Vec3::Zero());
             return within(tau, damping, spring.K * spring.cap_s, p.capped).cross(s.n);
         };
-        if (p.relative_rolling) {
-            const Vec3 rate = now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j;
-            const Vec3 T = torque(rolling(now, along(now, h)), h.Theta_i, h.roll_i, rate, out.T_roll_E);
-            out.T_i += T;
-            out.T_j -= T;
-            out.T_roll_E_j = -out.T_roll_E;
-        } else {
-            const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
-            const Spring spring = rolling(now, kappa_i + kappa_j);
-            out.T_i += torque(spring, h.Theta_i, h.roll_i, kappa_i * rates.p_i, out.T_roll_E);
-            out.T_j -= torque(spring, h.Theta_j, h.roll_j, kappa_j * rates.p_j, out.T_roll_E_j);
-            out.T_roll_E_j *= -1;
-        }
+        out.T_i += torque(h.Theta_i, h.roll_i, kappa_i * rates.p_i, out.T_roll_E);
+        out.T_j -= torque(h.Theta_j, h.roll_j, kappa_j * rates.p_j, out.T_roll_E_j);
+        out.T_roll_E_j *= -1;
     }
 
     const FrictionParameters p;

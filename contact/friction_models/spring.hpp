@@ -14,13 +14,19 @@ inline double size(const Vec3& v) { return v.norm(); }
 /// A micro-deflection that has grown: sticking, it gives way at cap_s and slips; slipping, it stays at cap_k until
 /// it falls below and sticks again. The dashpot is off while it slips. The sign of a spin is kept, which the
 /// dissertation's wording would lose.
+/// `length` measures it where that is not its size.
 template <class Deflection>
-void give_way(Deflection& H, Regime& regime, double cap_s, double cap_k)
+void give_way(Deflection& H, double length, Regime& regime, double cap_s, double cap_k)
 {
-    const double length = size(H), cap = regime.slipping ? cap_k : cap_s;
+    const double cap = regime.slipping ? cap_k : cap_s;
     const bool beyond = length > cap;
     if (beyond) H *= cap / length;
     regime = {.slipping = beyond, .damped = !beyond};
+}
+template <class Deflection>
+void give_way(Deflection& H, Regime& regime, double cap_s, double cap_k)
+{
+    give_way(H, size(H), regime, cap_s, cap_k);
 }
 
 /// Spring and dashpot, and together no more than `bound` where it is to be kept.
@@ -54,6 +60,13 @@ public:
     }
 
     double D(const Meeting& now) const { return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E)); }
+
+    /// Reduced, or the mean of Eqs. 4.4 and 4.10
+    double fictitious(double a, double b) const
+    {
+        if (p.reduced_mass || !std::isfinite(a) || !std::isfinite(b)) return reduced(a, b);
+        return 0.5 * (a + b);
+    }
 
     const FrictionParameters p;
 };

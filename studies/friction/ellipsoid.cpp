@@ -78,10 +78,12 @@ void checks(const Results& results, std::vector<Check>& out)
         if (s == nullptr) continue;
         size_t k = 1;
         while (k < s->rows() && s->at(k, "tilt") < 90) ++k;
-        if (k == s->rows()) continue;
-        const double part = (90 - s->at(k - 1, "tilt")) / (s->at(k, "tilt") - s->at(k - 1, "tilt"));
+        const bool flat = k < s->rows();  // or else the numbers are none
+        const double part =
+            flat ? (90 - s->at(k - 1, "tilt")) / (s->at(k, "tilt") - s->at(k - 1, "tilt")) : std::nan("");
         const auto between = [&](const char* column) {
-            return s->at(k - 1, column) + part * (s->at(k, column) - s->at(k - 1, column));
+            const size_t end = flat ? k : k - 1;
+            return s->at(k - 1, column) + part * (s->at(end, column) - s->at(k - 1, column));
         };
         const std::string of = std::string(", ") + name;
         out.push_back({"lies flat" + of + " [s]", between("t"), t_90, dt, "energy"});
@@ -93,7 +95,7 @@ void checks(const Results& results, std::vector<Check>& out)
         const Series* s = results.find(name);
         if (s == nullptr) continue;
         const double reversal = s->when([&](size_t k) { return s->at(k, "omega") < 0; }, 0.5);
-        out.push_back({"rolls back, " + name + " [s]", reversal, 1.085, 0.035, "prototype"});
+        out.push_back({"rolls back, " + name + " [s]", reversal, 1.085, 0.035, "independent code"});
         out.push_back({"settles at, " + name + " [deg]", s->last("tilt"), 90, 4, "within the static band"});
     }
 }

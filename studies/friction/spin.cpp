@@ -108,7 +108,7 @@ void check_empirical(const Results& results, std::vector<Check>& out)
         }
         if (const Series* s = results.find(fmt::format("dissertation-eta{:.3f}", etas[k])))
             out.push_back({fmt::format("stops, eta_psi {:.3f}, dissertation [s]", etas[k]), first_stop(*s),
-                           published[k], 1e-4, "prototype"});
+                           published[k], 1e-4, "independent code"});
     }
 }
 
@@ -166,7 +166,7 @@ void check_hertz(const Results& results, std::vector<Check>& out)
                            1e-3, "rigid"});
         if (const Series* s = results.find(fmt::format("dissertation-{}-KE1e7", balls[k].name)))
             out.push_back({fmt::format("stops, {}, dissertation [s]", balls[k].name), first_stop(*s),
-                           balls[k].stop, 1e-3, "prototype"});
+                           balls[k].stop, 1e-3, "independent code"});
     }
 }
 

@@ -127,6 +127,42 @@ TEST_CASE("a scene refuses a step above the bound and says it", "[contact][stabi
           "contact 'ball-floor': the step must not exceed its stability bound of 0.00189354 s, got 0.002");
 }
 
+TEST_CASE("a light ball under a heavy one needs the step of both its contacts", "[contact][stability]")
+{
+    const auto energy_after = [](double part) {
+        contact::Scene scene;
+        const double R = 0.05;
+        const int light = scene.add(ball(0.01, R), at({0, 0, R})),
+                  heavy = scene.add(ball(1000, 2 * R), at({0, 0, 4 * R}));
+        const int floor = scene.add(Inertia{}, {});
+        const auto law = std::make_shared<contact::Hertz>(1e8);
+        scene.add("floor", light, sphere(R), floor, plane, law, contact::frictionless());
+        scene.add("ball", light, sphere(R), heavy, sphere(2 * R), law, contact::frictionless());
+        double h = 1;  // the bound, by bisection of what is refused
+        for (double lower = 1e-9; h > lower * 1.001;) {
+            const double middle = std::sqrt(lower * h);
+            (refusal([&] { scene.check(middle); }).empty() ? lower : h) = middle;
+        }
+        h *= part;
+        for (double t = 0; t < 0.02; t += h) scene.step(h);
+        return scene.kinetic_energy();
+    };
+    CHECK(energy_after(0.99) < 1000 * 9.81 * 0.01);  // what a fall of a centimetre gives
+    CHECK(energy_after(3) > 1e3);
+}
+
+TEST_CASE("the bound of bodies that do not touch yet is that of the impact to come", "[contact][stability]")
+{
+    const auto bound_at = [](double gap) {
+        const contact::Contact c("ball", sphere(0.2), plane, ball(5, 0.2), {},
+                                 std::make_shared<contact::Hertz>(1e8), contact::frictionless());
+        const Motion up = at({0, 0, 0.2 + gap}), ground;
+        return c.stable_step(c.hardest(up, ground, {}, 5 * 9.81), up, ground);
+    };
+    CHECK(bound_at(1e-6) == Approx(bound_at(-1e-9)).epsilon(1e-2));
+    CHECK(bound_at(1) < bound_at(1e-6));
+}
+
 TEST_CASE("a start that no contact can have is refused", "[contact]")
 {
     const auto objection = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {

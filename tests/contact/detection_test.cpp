@@ -375,8 +375,7 @@ TEST_CASE("where the surfaces do not curve away from each other there is no touc
         }
         return std::string("none");
     };
-    const std::string start =
-        "no touch of two surfaces: the surfaces do not curve away from each other, ";
+    const std::string start = "no touch of two surfaces: the surfaces do not curve away from each other, ";
     // flatter than the bowl where they would touch
     Motion m;
     m.r = {0, 0, -0.65};

@@ -3,6 +3,7 @@
 // care which body is called i, and make no momentum.
 #include "contact/contact.hpp"
 #include "contact/scene.hpp"
+#include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
@@ -224,28 +225,102 @@ TEST_CASE("a ball that rolls and pivots slips by nothing to second order with ha
 
 TEST_CASE("displacements of the contact point tend to what the velocities say", "[contact][tracker]")
 {
-    const auto off = [](double h) {
-        // both steady, so that velocities are those of the motion; touching without overlap
-        const contact::Contact c("", shape<contact::Sphere>(0.1),
-                                 shape<contact::Ellipsoid>(Vec3(0.2, 0.3, 0.4)), ball(1, 0.1), ball(3, 0.3),
-                                 std::make_shared<contact::GivenForce>(1), friction(all_kinds));
-        const Vec3 u = Vec3(0.1, 0.2, 1).normalized(), D(0.04, 0.09, 0.16);
-        const Vec3 centre = D.cwiseProduct(u) / std::sqrt(u.dot(D.cwiseProduct(u))) + 0.1 * u;
-        const Steady under{.omega = Vec3(0.3, -0.5, 2.5)},
-            on{.r = centre, .v = Vec3(0.1, -0.2, 0.02), .omega = Vec3(1, 2, -1.5)};
-        contact::Memory memory;
-        c.advance(c.meet(on.at(0), under.at(0), memory), on.at(0), under.at(0), memory);
-        const contact::Meeting now = c.meet(on.at(h), under.at(h), memory);
-        const contact::Rates mean = contact::mean_rates(now.slip, h),
-                             exact = contact::rates(now.touch, now.slip, on.at(h), under.at(h));
-        CHECK(exact.s.norm() > 0.1);
-        CHECK(exact.p_i.norm() > 0.01);
-        return std::max({(mean.s - exact.s).norm(), (mean.p_i - exact.p_i).norm(),
-                         (mean.p_j - exact.p_j).norm(), std::abs(mean.psi - exact.psi) * 0.1});
+    struct Bodies {
+        const char* name;
+        Shape i, j;
+        Steady on, under;  // touching at t = 0
     };
-    const double coarse = off(1e-3), fine = off(1e-4);
-    CHECK(fine < 1e-3);
-    CHECK(coarse / fine == Approx(10).margin(0.5));
+    const Vec3 u = Vec3(0.1, 0.2, 1).normalized(), D(0.04, 0.09, 0.16);
+    const Vec3 on_ellipsoid = D.cwiseProduct(u) / std::sqrt(u.dot(D.cwiseProduct(u)));
+    const double lean = 0.3;
+    const Mat3 leaning = lie::exp(Vec3(pi / 2 + lean, 0, 0));
+    const Steady tumbling{.omega = Vec3(0.3, -0.5, 2.5)};
+    const Vec3 omega(1, 2, -1.5), v(0.1, -0.2, 0.02);
+    const Bodies all[] = {
+        {"ball on ellipsoid",
+         shape<contact::Sphere>(0.1),
+         shape<contact::Ellipsoid>(Vec3(0.2, 0.3, 0.4)),
+         {.r = on_ellipsoid + 0.1 * u, .v = v, .omega = omega},
+         tumbling},
+        {"ball in a bowl",
+         shape<contact::Sphere>(0.05),
+         shape<contact::Ellipsoid>(Vec3(0.2, 0.3, 0.4), true),
+         {.r = on_ellipsoid - 0.05 * u, .v = v, .omega = omega},
+         tumbling},
+        {"ball on a plane",
+         shape<contact::Sphere>(0.1),
+         shape<contact::Plane>(),
+         {.r = Vec3(0, 0, 0.1), .v = v, .omega = omega},
+         {.omega = Vec3(0, 0, 1)}},
+        {"leaning disk on a plane",
+         shape<contact::Disk>(0.1),
+         shape<contact::Plane>(),
+         {.r = Vec3(0, 0, 0.1 * std::cos(lean)), .v = v, .omega = omega, .A = leaning},
+         {.omega = Vec3(0, 0, 1)}},
+        {"plane under a leaning disk",
+         shape<contact::Plane>(),
+         shape<contact::Disk>(0.1),
+         {.omega = Vec3(0, 0, 1)},
+         {.r = Vec3(0, 0, 0.1 * std::cos(lean)), .v = v, .omega = omega, .A = leaning}},
+    };
+    for (const Bodies& bodies : all) {
+        INFO(bodies.name);
+        const auto off = [&](double h) {
+            const contact::Contact c("", bodies.i, bodies.j, ball(1, 0.1), ball(3, 0.3),
+                                     std::make_shared<contact::GivenForce>(1), friction(all_kinds));
+            contact::Memory memory;
+            c.advance(c.meet(bodies.on.at(0), bodies.under.at(0), memory), bodies.on.at(0),
+                      bodies.under.at(0), memory);
+            const contact::Meeting now = c.meet(bodies.on.at(h), bodies.under.at(h), memory);
+            const contact::Rates mean = contact::mean_rates(now.slip, h),
+                                 exact =
+                                     contact::rates(now.touch, now.slip, bodies.on.at(h), bodies.under.at(h));
+            CHECK(exact.s.norm() > 0.1);
+            CHECK(exact.p_i.norm() + exact.p_j.norm() > 0.01);
+            return std::max({(mean.s - exact.s).norm(), (mean.p_i - exact.p_i).norm(),
+                             (mean.p_j - exact.p_j).norm(), std::abs(mean.psi - exact.psi) * 0.1});
+        };
+        const double coarse = off(1e-3), fine = off(1e-4);
+        CHECK(fine < 1e-3);
+        CHECK(coarse / fine == Approx(10).margin(0.5));
+    }
+}
+
+TEST_CASE("the rolling spring gives back what is put into it on any way round", "[contact][friction]")
+{
+    // Two curvatures: out along the one, round and back along the other
+    const auto model = friction({.mu_s = 1e6, .mu_k = 1e6, .K_E = 1e5, .zeta = 0, .eta_r = 0.2});
+    contact::Meeting now;
+    now.touch.n = now.slip.n = Vec3::UnitZ();
+    now.slip.u = now.slip.u_i = now.slip.u_j = Vec3::UnitX();
+    now.touch.K_i = Vec3(8, 50, 0).asDiagonal();
+    now.touch.K_j.setZero();
+    now.slip.ds.setZero();
+    now.slip.q_j = now.slip.p_j = Vec3::Zero();
+    now.N = 1;
+    const contact::Rates still{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0};
+    contact::History h;
+    double work = 0, put_in = 0;
+    const int steps = 2000;
+    // Θ goes out to r along x, on a quarter circle to y, and home
+    const double r = 1e-4;
+    const auto Theta = [&](double s) -> Vec3 {
+        if (s < 1) return r * s * Vec3::UnitX();
+        if (s < 2) return r * Vec3(std::cos(pi / 2 * (s - 1)), std::sin(pi / 2 * (s - 1)), 0);
+        return r * (3 - s) * Vec3::UnitY();
+    };
+    Vec3 before = Vec3::Zero();
+    for (int k = 1; k <= 3 * steps; ++k) {
+        const Vec3 now_at = Theta(static_cast<double>(k) / steps), step = now_at - Theta((k - 1.) / steps);
+        now.slip.q_i = now.slip.p_i = Vec3(step.x() / 8, step.y() / 50, 0);
+        model->advance(now, h);
+        const Vec3 tau = now.slip.n.cross(model->load(now, still, h).T_i);  // T = τ × n
+        work += 0.5 * (tau + before).dot(step);
+        put_in = std::max(put_in, work);
+        before = tau;
+    }
+    CHECK(put_in > 1e-7);
+    CHECK(std::abs(work) < 1e-6 * put_in);
 }
 
 TEST_CASE("a free pair keeps its momentum and its angular momentum", "[contact][friction]")

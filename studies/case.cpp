@@ -57,10 +57,25 @@ bool divides(double h, double end)
     return steps >= 1 && std::abs(end / h - steps) <= 1e-6;
 }
 
+/// As `hilda run` does: above the bound of a force a study would measure an explosion.
+void check_stable(const std::string& kind, const Case& c, const std::vector<double>& steps)
+{
+    const dae::Model& model = *c.started->model;
+    const dae::Model::StableStep stable = model.stable_step(c.started->x);
+    for (const double h : steps)
+        if (h > stable.h)
+            throw UsageError(fmt::format(
+                "study {}: {}: the step {} s is above {:.3g} s, the largest at which {} is stable with an "
+                "explicit step; --steps sets others",
+                kind, c.problem.name, h, stable.h,
+                model.forces()[static_cast<size_t>(stable.force)]->in_words()));
+}
+
 }  // namespace
 
 void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps, double most)
 {
+    check_stable(kind, c, steps);
     for (const double h : steps)
         if (h > most * (1 + 1e-9) || !divides(h, c.end))
             throw UsageError(fmt::format(
@@ -70,6 +85,7 @@ void check_steps(const std::string& kind, const Case& c, const std::vector<doubl
 
 void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps)
 {
+    check_stable(kind, c, steps);
     for (const double h : steps)
         if (!divides(h, c.end))
             throw UsageError(fmt::format("study {}: --steps must divide the end of {}, {} s, got {}", kind,

@@ -101,3 +101,13 @@ TEST_CASE("a run with --force that was killed is gone on with, and ends as one t
     CHECK(resumed.resumed_at > 0);
     CHECK(tests::read(m.in / "out/trajectory.csv") == whole);
 }
+
+TEST_CASE("a study refuses steps that a force does not stand", "[studies][stable-step]")
+{
+    const tests::Scratch in;
+    const tests::Ended ended = tests::call(
+        in, {"study", "convergence", "--problem", "rolling_ball", "--steps", "2e-2,1e-2", "--no-plot"});
+    CHECK(ended.code == 2);
+    CHECK(ended.err.find("rolling_ball: the step 0.02 s is above") != std::string::npos);
+    CHECK(ended.err.find("--steps sets others") != std::string::npos);
+}

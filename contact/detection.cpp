@@ -6,8 +6,10 @@
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
+#include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace hilda::contact {
@@ -69,6 +71,19 @@ void refuse(const Shape& i, const Shape& j)
 }
 
 }  // namespace
+
+Curvatures principal_curvatures(const Mat3& K, const Vec3& n)
+{
+    const Eigen::Matrix<double, 3, 2> T = tangent_basis(n);
+    const Eigen::Matrix2d S = T.transpose() * K * T;
+    const double mean = 0.5 * S.trace(), off = std::hypot(0.5 * (S(0, 0) - S(1, 1)), S(0, 1));
+    return {mean - off, mean + off};
+}
+
+double least_curvature(const Touch& touch)
+{
+    return principal_curvatures(touch.K_i + touch.K_j, touch.n).least;
+}
 
 Touch detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from)
 {

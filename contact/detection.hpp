@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/shape.hpp"
+#include "lie/check.hpp"
 #include "lie/state.hpp"
 
 #include <optional>
@@ -26,6 +27,22 @@ struct Touch {
     Vec3 C() const { return 0.5 * (C_i + C_j); }  ///< where loads act, on both bodies alike
 };
 
+/// Principal curvatures of a shape operator with the normal n [1/m]
+struct Curvatures {
+    double least, most;
+};
+Curvatures principal_curvatures(const Mat3& K, const Vec3& n);
+
+/// The smaller principal curvature of K_i + K_j [1/m]: negative where a surface does not fit into the other
+double least_curvature(const Touch& touch);
+
+/// Two surfaces that touch, in a pose in which they have no single touch: along a line, or where one does not fit into
+/// the other. Of a start it says that the input is wrong, and not that a search has failed.
+class NoSingleTouch : public lie::NumericalFailure {
+public:
+    explicit NoSingleTouch(const std::string& what) : NumericalFailure("contact_not_converged", what) {}
+};
+
 /// Contact points of an earlier instant, each in the frame of its body: where to begin.
 struct Points {
     Vec3 c_i, c_j;
@@ -36,9 +53,10 @@ class Detector {
 public:
     virtual ~Detector() = default;
 
-    /// Bodies i and j at r, A. With `from` the search begins at those points and stays with that touch; without,
-    /// it begins from nothing. lie::NumericalFailure "contact_not_converged" with pair-independent words
-    /// (residual, iterations) where there is no touch to be found.
+    /// Bodies i and j at r, A. With `from` the search begins at those points and stays with that touch while the
+    /// surfaces overlap there; without, or where it finds none, it begins from nothing. Where the bodies are apart
+    /// and their nearest points are many, it is any one of those. lie::NumericalFailure "contact_not_converged" with
+    /// pair-independent words (residual, iterations) where they may touch and no touch is found.
     virtual Touch detect(const Motion& bi, const Motion& bj, const Points* from) const = 0;
 };
 

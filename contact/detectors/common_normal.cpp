@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/detectors/common_normal.hpp"
 
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/torus.hpp"
 #include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
@@ -8,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hilda::contact {
 
@@ -53,18 +56,45 @@ struct Local {
 };
 
 /// Whether a 2x2 matrix with real eigenvalues has positive ones, by a margin that round-off does not reach
-bool positive_definite(const Mat2& S)
+bool positive_definite(const Mat2& S, double margin = 1e-13)
 {
     const double trace = S.trace();
-    return trace > 0 && S.determinant() > 1e-13 * trace * trace;
+    return trace > 0 && S.determinant() > margin * trace * trace;
 }
 
-/// The smaller eigenvalue of K_i + K_j in the tangent plane
-double least(const Touch& touch)
+/// K_i + K_j + g K_i K_j in the tangent plane
+Mat2 relative_curvature(const Touch& touch)
 {
     const Mat32 T = tangent_basis(touch.n);
-    const Mat2 K = T.transpose() * (touch.K_i + touch.K_j) * T;
-    return 0.5 * K.trace() - std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
+    const Mat2 K_i = T.transpose() * touch.K_i * T, K_j = T.transpose() * touch.K_j * T;
+    return K_i + K_j + touch.gap * K_i * K_j;
+}
+
+bool fills(const Surface& s) { return s.convex() && s.sigma() > 0; }
+
+bool outside(const Surface& s, const Vec3& a) { return s.sigma() * s.value(a) > 0; }
+
+/// A ball of this radius about the origin of a body holds all of it.
+double reach(const Surface& s)
+{
+    if (const auto* sphere = dynamic_cast<const Sphere*>(&s)) return sphere->concave ? INFINITY : sphere->R;
+    if (const auto* torus = dynamic_cast<const Torus*>(&s))
+        return torus->concave ? INFINITY : torus->R + torus->r;
+    if (!fills(s)) return INFINITY;
+    Vec3 corner;  // of a box around it
+    for (int k = 0; k < 3; ++k)
+        corner[k] = std::max((*s.support(Vec3::Unit(k)))[k], -(*s.support(-Vec3::Unit(k)))[k]);
+    return corner.norm();
+}
+
+/// The nearest point, or one of them where they are many: on the axis of a torus
+Vec3 nearest(const Surface& s, const Vec3& x)
+{
+    try {
+        return s.project(x);
+    } catch (const lie::NumericalFailure&) {
+        return s.project(x + 1e-9 * s.size() * Vec3(0.48, 0.6, 0.64));
+    }
 }
 
 double size_or(const Shape& s, const Shape& other)
@@ -77,8 +107,8 @@ double size_or(const Shape& s, const Shape& other)
 Vec3 facing(const Surface& s, const Vec3& x, const Vec3& n)
 {
     if (s.convex()) return *s.support(-s.sigma() * n);
-    const Vec3 nearest = s.project(x);
-    return s.normal(nearest).dot(n) < 0 ? nearest : s.project(-2 * s.size() * n);
+    const Vec3 near = nearest(s, x);
+    return s.normal(near).dot(n) < 0 ? near : nearest(s, -2 * s.size() * n);
 }
 
 /// Detects in an order of the two shapes that does not depend on which is i, so that exchanging the bodies
@@ -105,36 +135,112 @@ private:
 struct CommonNormal::Outcome {
     Touch touch;
     const char* trouble;  // nullptr if there is none
+    bool no_fit;          // the pose is to blame, not the search
     double correction;
     int iterations;
 };
 
 CommonNormal::CommonNormal(const Shape& i, const Shape& j)
-    : i(i), j(j), small(std::min(size_or(i, j), size_or(j, i))), large(std::max(size_or(i, j), size_or(j, i)))
+    : i(i), j(j), small(std::min(size_or(i, j), size_or(j, i))),
+      large(std::max(size_or(i, j), size_or(j, i))), reach_i(reach(*i.surface)), reach_j(reach(*j.surface)),
+      single(fills(*i.surface) && fills(*j.surface))
 {}
 
 Touch CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* from) const
 {
     Pair p = placed(bi, bj);
     const Vec3 origin = bj.r + bj.A * j.position;
-    Outcome end{};
+    Outcome best{};
+    best.trouble = "there is no point to begin from";
+    best.touch.n.setConstant(NAN);
+    const auto search = [&] {
+        Outcome end = solve(p, origin);
+        if (end.trouble == nullptr && !single && crossed(p, end.touch.gap))
+            end.trouble = "the bodies do not overlap where their normals are opposite";
+        if (best.trouble != nullptr || (end.trouble == nullptr && end.touch.gap < best.touch.gap)) best = end;
+    };
     if (from != nullptr) {
         p.a_i = i.to_surface(from->c_i), p.a_j = j.to_surface(from->c_j);
-        end = solve(p, origin);
-        if (end.trouble == nullptr) return end.touch;
-    } else {
-        for (int projections : {0, 1, 3, 10, 30}) {
-            begin(p, projections);
-            end = solve(p, origin);
-            if (end.trouble == nullptr) return end.touch;
-        }
+        search();
+        if (best.trouble == nullptr && (single || best.touch.gap <= 0)) return best.touch;
     }
+    // Of two convex bodies the first touch is the only one. In a bowl, or around a ring, there may be several,
+    // and another may be nearer than the one that is followed.
+    const int enough = single ? 1 : 2;
+    int searches = 0;
+    for (int projections : {0, 1, 3, 10, 30}) {
+        if (!begin(p, projections, Vec3::Zero())) continue;
+        search();
+        if (++searches >= enough && best.trouble == nullptr) break;
+    }
+    if (!supported())
+        for (int corner = 0; corner < 8 && best.trouble != nullptr; ++corner) {
+            const auto sign = [&](int bit) { return (corner & bit) != 0 ? -1 : 1; };
+            if (begin(p, 10, Vec3(sign(1) * 0.48, sign(2) * 0.6, sign(4) * 0.64))) search();
+        }
+    if (best.trouble == nullptr) return best.touch;
+    if (const auto touch = apart(bi, bj, origin)) return *touch;
+
     std::ostringstream what;
-    what << "no touch of two surfaces: " << end.trouble;
-    if (end.touch.n.allFinite()) what << ", least sum of their curvatures " << least(end.touch) << " 1/m";
-    what << "; correction " << end.correction << " m, gap " << end.touch.gap << " m, after " << end.iterations
-         << " iterations";
+    what << "no touch of two surfaces: " << best.trouble;
+    if (best.touch.n.allFinite())
+        what << ", least sum of their curvatures " << least_curvature(best.touch) << " 1/m";
+    what << "; correction " << best.correction << " m, gap " << best.touch.gap << " m, after "
+         << best.iterations << " iterations";
+    if (best.no_fit) throw NoSingleTouch(what.str());
     throw lie::NumericalFailure("contact_not_converged", what.str());
+}
+
+/// Whether what looks like overlap is none, as where the normals of two rings are opposite across their holes:
+/// neither of the points is within the other body.
+bool CommonNormal::crossed(const Pair& p, double gap) const
+{
+    if (gap >= -converged * small) return false;
+    const Vec3 d = p.i.origin - p.j.origin;
+    const Vec3 i_in_j = p.j.axes.transpose() * (p.i.axes * p.a_i + d);
+    const Vec3 j_in_i = p.i.axes.transpose() * (p.j.axes * p.a_j - d);
+    return outside(*j.surface, i_in_j) && outside(*i.surface, j_in_i);
+}
+
+/// The points of the two surfaces to which projections lead, where they show that the bodies do not touch:
+///
+/// - the middle of one body is further from the other surface than any of its own points; or
+/// - they are the nearest points of each other, as Newton's method finds them, but not the only ones; or
+/// - no body is hollow, and the distance is more than the size of the smaller.
+std::optional<Touch> CommonNormal::apart(const Motion& bi, const Motion& bj, const Vec3& origin) const
+{
+    Pair p = placed(bi, bj), before = p;
+    const auto beyond = [&](const Surface& s, const Placed& at, const Vec3& x, double reach) {
+        const Vec3 a = at.axes.transpose() * (x - at.origin);
+        return std::isfinite(reach) && outside(s, a) && (nearest(s, a) - a).norm() > reach;
+    };
+    try {
+        alternate(before, 29, Vec3::Zero());
+        alternate(p, 30, Vec3::Zero());
+        const Local at_i(*i.surface, p.i, p.a_i), at_j(*j.surface, p.j, p.a_j);
+        const Vec3 x = at_i.x - at_j.x;
+        Touch touch;
+        touch.gap = x.norm();
+        touch.n = x / touch.gap;
+        touch.C_i = origin + at_i.x, touch.C_j = origin + at_j.x;
+        const Mat3 P = Mat3::Identity() - touch.n * touch.n.transpose();
+        touch.K_i = P * at_i.B * P, touch.K_j = P * at_j.B * P;
+        if (!(touch.gap > converged * small && touch.K_i.allFinite() && touch.K_j.allFinite())) return {};
+
+        if (beyond(*j.surface, p.j, p.i.origin, reach_i) || beyond(*i.surface, p.i, p.j.origin, reach_j))
+            return touch;
+        if (!outside(*j.surface, p.j.axes.transpose() * (at_i.x - p.j.origin)) ||
+            !outside(*i.surface, p.i.axes.transpose() * (at_j.x - p.i.origin)))
+            return {};
+        const bool hollow = i.surface->sigma() < 0 || j.surface->sigma() < 0;
+        if (!hollow && touch.gap > small) return touch;
+        const double moved = std::max((p.a_i - before.a_i).norm(), (p.a_j - before.a_j).norm());
+        constexpr double rounding = 1e-6;
+        if (moved < rounding * small && positive_definite(relative_curvature(touch), -rounding)) return touch;
+    } catch (const lie::NumericalFailure&) {
+        // a point without a nearest one or without a normal shows nothing
+    }
+    return {};
 }
 
 CommonNormal::Pair CommonNormal::placed(const Motion& bi, const Motion& bj) const
@@ -161,16 +267,16 @@ CommonNormal::Outcome CommonNormal::solve(Pair& p, const Vec3& origin) const
     touch.gap = n.dot(at_i.x - at_j.x);
     touch.K_i = at_i.shape_operator(), touch.K_j = at_j.shape_operator();
 
-    const Mat32 T = tangent_basis(n);
-    const Mat2 K_i = T.transpose() * touch.K_i * T, K_j = T.transpose() * touch.K_j * T;
+    constexpr const char* no_fit = "the surfaces do not curve away from each other";
     if (!std::isfinite(correction))
-        end.trouble = "the surfaces do not curve away from each other";
+        end.trouble = no_fit;
     else if (!(correction <= converged * small))
         end.trouble = "Newton's method did not converge";
     else if (!(at_i.n.dot(n) < -0.5))
         end.trouble = "the normals are not opposite";
-    else if (!positive_definite(K_i + K_j + touch.gap * K_i * K_j))
-        end.trouble = "the surfaces do not curve away from each other";
+    else if (!positive_definite(relative_curvature(touch)))
+        end.trouble = no_fit;
+    end.no_fit = end.trouble == no_fit;
     return end;
 }
 
@@ -203,12 +309,20 @@ double CommonNormal::improve(Pair& p) const
     return std::sqrt(std::max(step_i.squaredNorm(), step_j.squaredNorm()));
 }
 
-void CommonNormal::begin(Pair& p, int projections) const
+bool CommonNormal::supported() const { return i.surface->convex() && j.surface->convex(); }
+
+bool CommonNormal::begin(Pair& p, int projections, const Vec3& corner) const
 {
-    if (projections == 0 && i.surface->convex() && j.surface->convex())
-        turn_normal(p);
-    else
-        alternate(p, projections);
+    if (projections == 0 && !supported()) return false;
+    try {
+        if (projections == 0)
+            turn_normal(p);
+        else
+            alternate(p, projections, corner);
+    } catch (const lie::NumericalFailure&) {
+        return false;
+    }
+    return true;
 }
 
 /// Newton's method on the two angles of n, to the least overlap: with the support points C_i(n) and C_j(n),
@@ -258,9 +372,9 @@ void CommonNormal::turn_normal(Pair& p) const
     p.a_i = now.a_i, p.a_j = now.a_j;
 }
 
-/// From the centre of one surface to the nearest point of the other, from there to the point that faces it, and so
+/// From the centre of one surface, or from its point that is the nearest to one far away in a corner, to the nearest point of the other, from there to the point that faces it, and so
 /// on. A plane has no centre, and of the others the hollow or the larger one is met first.
-void CommonNormal::alternate(Pair& p, int projections) const
+void CommonNormal::alternate(Pair& p, int projections, const Vec3& corner) const
 {
     const auto rank = [](const Surface& s) {
         return s.size() == 0 ? INFINITY : s.size() * (s.sigma() < 0 ? 1e3 : 1);
@@ -269,10 +383,10 @@ void CommonNormal::alternate(Pair& p, int projections) const
     const Surface &a = i_first ? *i.surface : *j.surface, &b = i_first ? *j.surface : *i.surface;
     const Placed &at_a = i_first ? p.i : p.j, &at_b = i_first ? p.j : p.i;
     Vec3 &a_a = i_first ? p.a_i : p.a_j, &a_b = i_first ? p.a_j : p.a_i;
-    a_b.setZero();
-    for (int k = 0; k < std::max(projections, 1); ++k) {
+    a_b = corner == Vec3::Zero() ? corner : nearest(b, 10 * b.size() * corner);
+    for (int k = 0; k < projections; ++k) {
         const Vec3 x_b = at_b.origin + at_b.axes * a_b;
-        a_a = a.project(at_a.axes.transpose() * (x_b - at_a.origin));
+        a_a = nearest(a, at_a.axes.transpose() * (x_b - at_a.origin));
         const Vec3 x_a = at_a.origin + at_a.axes * a_a, n = at_a.axes * a.normal(a_a);
         a_b = facing(b, at_b.axes.transpose() * (x_a - at_b.origin), at_b.axes.transpose() * n);
     }

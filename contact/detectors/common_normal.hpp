@@ -17,6 +17,9 @@ namespace hilda::contact {
 ///
 /// The equations hold wherever the distance is stationary, on the far sides of two bodies too. A touch is where
 /// the relative curvature K_i + K_j + g K_i K_j is positive: for two balls, where R_i + R_j + g > 0.
+///
+/// Two convex bodies have one touch, and it is followed. In a bowl, or with a ring, there may be several: a touch
+/// is followed while there is overlap; between bodies that are apart the one with the smallest gap is looked for.
 class CommonNormal final : public Detector {
 public:
     CommonNormal(const Shape& i, const Shape& j);
@@ -31,8 +34,9 @@ public:
     };
     Pair placed(const Motion& bi, const Motion& bj) const;
     /// Points to begin from: support points along the normal, which it turns until they face each other, or,
-    /// where a surface knows no support, projections from one to the other.
-    void begin(Pair& p, int projections) const;
+    /// where a surface knows no support, projections from one to the other, from the middle of one or, if it is not
+    /// zero, from a corner of the space around it. False where that leads nowhere.
+    bool begin(Pair& p, int projections, const Vec3& corner) const;
     /// One step of Newton's method, cut where it would turn a normal by more than half a radian. Returns the
     /// larger displacement of the two points [m], not finite where the equations are singular.
     double improve(Pair& p) const;
@@ -41,10 +45,15 @@ private:
     struct Outcome;
     Outcome solve(Pair& p, const Vec3& origin) const;
     void turn_normal(Pair& p) const;
-    void alternate(Pair& p, int projections) const;
+    void alternate(Pair& p, int projections, const Vec3& corner) const;
+    bool supported() const;
+    bool crossed(const Pair& p, double gap) const;
+    std::optional<Touch> apart(const Motion& bi, const Motion& bj, const Vec3& origin) const;
 
     const Shape i, j;
-    const double small, large;  // sizes of the two surfaces; both that of the other where one is a plane
+    const double small, large;      // sizes of the two surfaces; both that of the other where one is a plane
+    const double reach_i, reach_j;  // of balls that hold the bodies
+    const bool single;              // two convex bodies, with a single touch
 };
 
 }  // namespace hilda::contact

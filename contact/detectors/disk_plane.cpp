@@ -11,6 +11,8 @@ namespace {
 /// The lowest point of the rim. With e the direction from the centre to it and θ between e and -n,
 ///
 ///     n - (n·z) z = -cos θ e,   t = z × e,   K_i = (1/R) cos θ (I - n nᵀ)
+///
+/// Flat above the plane all points of the rim are equally low, and it is any of them.
 class DiskPlane final : public Detector {
 public:
     DiskPlane(const Shape& i, double R, const Shape& j)
@@ -23,12 +25,12 @@ public:
         const Vec3 c = bi.r + bi.A * c_bar_i, z = bi.A * z_bar_i, n = bj.A * n_bar_j;
         const Vec3 t_cosine = n.cross(z);  // as long as cos θ, and free of cancellation when the disk is flat
         const double cosine = t_cosine.norm();
-        if (!(cosine > flat))
-            throw lie::NumericalFailure("contact_not_converged",
-                                        "a disk lies flat on a plane: it touches with all of its rim");
-        const Vec3 t = t_cosine / cosine;
+        const bool leans = cosine > flat;
+        const Vec3 t = leans ? Vec3(t_cosine / cosine) : z.unitOrthogonal();
         const Vec3 C_i = c + R * t.cross(z);
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);
+        if (!leans && !(gap > 0))
+            throw NoSingleTouch("a disk lies flat on a plane: it touches with all of its rim");
         return {.C_i = C_i,
                 .C_j = C_i - gap * n,
                 .n = n,

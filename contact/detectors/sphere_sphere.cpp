@@ -20,8 +20,7 @@ public:
         const Vec3 c_i = bi.r + bi.A * c_bar_i, c_j = bj.r + bj.A * c_bar_j;
         const double distance = (c_i - c_j).norm();
         if (!(distance > 0))
-            throw lie::NumericalFailure("contact_not_converged",
-                                        "the centres of two spheres coincide: there is no contact normal");
+            throw NoSingleTouch("the centres of two spheres coincide: there is no contact normal");
         const Vec3 n = (c_i - c_j) / (sign * distance);
         const Mat3 P = Mat3::Identity() - n * n.transpose();
         return {.C_i = c_i - R_i * n,

@@ -343,8 +343,6 @@ TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest"
     ring.A = lie::exp({0.3, 0, 0}), ring.r.z() = 1;
     const Touch low = make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect(ring, ground, nullptr);
     CHECK(low.gap == Approx(1 - std::sin(0.3) - 0.1));
-    CHECK_THROWS_AS(make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect({}, {}, nullptr),
-                    lie::NumericalFailure);
 }
 
 TEST_CASE("a touch is found from nothing when the centre of a ball is inside the other body",
@@ -382,13 +380,8 @@ TEST_CASE("where the surfaces do not curve away from each other there is no touc
     const Points low{{0, 0, -0.3}, {0, 0, -1}};
     CHECK(
         trouble(shape<Ellipsoid>(Vec3(0.9, 0.8, 0.3)), shape<Sphere>(1.0, true), m, &low).starts_with(start));
-    // the far sides of two ellipsoids
-    m.r = {0, 0, 1};
-    const Points far{{0, 0, 0.5}, {0, 0, -0.5}};
-    CHECK(trouble(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), m, &far)
-              .starts_with(start));
     // parallel axes
-    m.r = {1, 0, 0};
+    m.r = {0.5, 0, 0};
     CHECK(trouble(shape<Cylinder>(0.3), shape<Cylinder>(0.2), m, nullptr) ==
           "two cylinders are parallel: they touch along a line");
 }
@@ -405,8 +398,138 @@ TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "
         CHECK((t.K_i - Vec3(std::cos(lean) / 0.5, std::cos(lean) / 0.5, 0).asDiagonal().toDenseMatrix())
                   .norm() < 1e-15);
     }
-    disk.A.setIdentity();
-    CHECK_THROWS_AS(detector->detect(disk, ground, nullptr), lie::NumericalFailure);
+}
+
+TEST_CASE("from points that lead to no touch the search begins anew", "[contact][detection]")
+{
+    Motion m, ground;
+    m.r = {0, 0, 1};
+    const auto detector =
+        make_detector(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)));
+    const Points far{{0, 0, 0.5}, {0, 0, -0.5}};  // the far sides
+    const Touch t = detector->detect(m, ground, &far);
+    CHECK(t.gap == Approx(0).margin(1e-15));
+    CHECK((t.C_j - Vec3(0, 0, 0.5)).norm() < 1e-13);
+}
+
+TEST_CASE("a ball that flies across a bowl meets the wall that it comes to", "[contact][detection]")
+{
+    Motion ball, ground;
+    const Points first{{-0.05, 0, 0}, {-1, 0, 0}};
+    for (const Vec3& axes : {Vec3(1, 2, 2), Vec3(1, 1.2, 0.9)}) {
+        const Ellipsoid bowl(axes);
+        const auto detector = make_detector(shape<Sphere>(0.05), shape<Ellipsoid>(axes, true));
+        Points from = first;
+        double last = 0;
+        for (int k = -90; k <= 96; ++k) {
+            ball.r = {0.01 * k, 0.003, 0};
+            const Touch t = detector->detect(ball, ground, &from);
+            INFO(axes.transpose() << ", x = " << ball.r.x());
+            CHECK(t.gap == Approx((ball.r - bowl.project(ball.r)).norm() - 0.05).margin(1e-12));
+            if (k > -90) CHECK(std::abs(t.gap - last) < 0.0101);  // no faster than the ball
+            last = t.gap;
+            from = {t.C_i - ball.r, t.C_j};
+        }
+        CHECK(last < 0);
+        CHECK(from.c_j.x() > 0.99);
+    }
+}
+
+TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection]")
+{
+    const double upright = GENERATE(0., 1e-14, 1e-11, 1e-6);
+    const Shape ring = shape<Torus>(0.5, 0.1), plane = shape<Plane>();
+    Motion ground, m;
+    m.A = lie::exp({upright, 0, 0});
+    const auto gap = [&](const Shape& i, const Shape& j, const Vec3& r) {
+        m.r = r;
+        const Touch t = make_detector(i, j)->detect(m, ground, nullptr);
+        CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-8);
+        CHECK(t.K_i.allFinite());
+        CHECK(t.K_j.allFinite());
+        const Points from{m.A.transpose() * (t.C_i - m.r), t.C_j};
+        CHECK(make_detector(i, j)->detect(m, ground, &from).gap == Approx(t.gap).margin(1e-6));
+        return t.gap;
+    };
+    const auto about = [](double g) { return Approx(g).margin(2e-6); };
+    CHECK(gap(shape<Disk>(0.3), plane, {0, 0, 1}) == about(1));
+    CHECK(gap(ring, plane, {0, 0, 1}) == about(0.9));
+    const double ahead = 1.3 - 0.5;  // of infinite cylinders that are not quite parallel it is not the least
+    if (upright < 1e-9) CHECK(gap(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {1.3, 0, 2}) == about(ahead));
+    // on the axis: above a ring, within its hole, in a pipe, in the tube of another ring
+    CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 1.2}) == about(1.3 - 0.3));
+    CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 0}) == about(0.2));
+    CHECK(gap(shape<Sphere>(0.2), shape<Cylinder>(0.5, true), {0, 0, 1}) == about(0.3));
+    CHECK(gap(shape<Sphere>(0.02), shape<Torus>(0.5, 0.1, true), {0.5, 0, 0}) == about(0.08));
+    CHECK(gap(ring, ring, {0, 0, 0.7}) == about(0.5));
+    CHECK(gap(ring, ring, {0, 0, 0.25}) == about(0.05));
+    CHECK(gap(shape<Sphere>(0.2), shape<Ellipsoid>(Vec3(0.5, 0.5, 1), true), {0, 0, 0}) == about(0.3));
+}
+
+TEST_CASE("bodies that touch in many points are refused", "[contact][detection]")
+{
+    const auto refusal = [](const Shape& i, const Shape& j, const Vec3& r) {
+        Motion m;
+        m.r = r;
+        try {
+            make_detector(i, j)->detect(m, {}, nullptr);
+        } catch (const NoSingleTouch& e) {
+            CHECK(e.status == "contact_not_converged");
+            return std::string(e.what());
+        }
+        return std::string("none");
+    };
+    for (double sunk : {0., 1e-3}) {
+        CHECK(refusal(shape<Disk>(0.3), shape<Plane>(), {0, 0, -sunk}) ==
+              "a disk lies flat on a plane: it touches with all of its rim");
+        CHECK(refusal(shape<Torus>(0.5, 0.1), shape<Plane>(), {0, 0, 0.1 - sunk}) ==
+              "a torus lies flat: it touches along a circle");
+        CHECK(refusal(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {0.5 - sunk, 0, 0}) ==
+              "two cylinders are parallel: they touch along a line");
+    }
+}
+
+TEST_CASE("two rings are apart until they touch", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 30u)));
+    const Torus ring(0.3, 0.05);
+    const auto detector = make_detector(shape<Torus>(0.3, 0.05), shape<Torus>(0.3, 0.05));
+    Motion m, ground;
+    m.A = random.rotation();
+    const Vec3 u = random.unit();
+    std::optional<Points> from;
+    for (double distance = 1.2; distance > 0.3; distance -= 0.01) {
+        m.r = distance * u;
+        // from circle to circle, over the whole of one
+        double least = INFINITY;
+        for (int k = 0; k < 2000; ++k) {
+            const double angle = 2 * 3.14159265358979 / 2000 * k;
+            const Vec3 c = m.r + m.A * Vec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
+            least = std::min(least, std::hypot(std::hypot(c.x(), c.y()) - 0.3, c.z()) - 0.1);
+        }
+        if (least < 0.002) break;
+        INFO("distance " << distance);
+        const Touch cold = detector->detect(m, ground, nullptr);
+        const Touch t = detector->detect(m, ground, from ? &*from : nullptr);
+        CHECK(cold.gap > 0);
+        CHECK(t.gap == Approx(least).margin(1e-4));
+        from = {m.A.transpose() * (t.C_i - m.r), t.C_j};
+    }
+}
+
+TEST_CASE("the principal curvatures of a touch", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 5u)));
+    const Mat3 A = random.rotation();
+    const auto [least, most] =
+        principal_curvatures(A * Vec3(3, -2, 0).asDiagonal() * A.transpose(), A.col(2));
+    CHECK(least == Approx(-2));
+    CHECK(most == Approx(3));
+    Touch t;
+    t.n = A.col(2);
+    t.K_i = A * Vec3(3, 5, 0).asDiagonal() * A.transpose();
+    t.K_j = A * Vec3(-1, -4, 0).asDiagonal() * A.transpose();
+    CHECK(least_curvature(t) == Approx(1));
 }
 
 TEST_CASE("pairs without a single touch are refused", "[contact][detection]")

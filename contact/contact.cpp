@@ -171,30 +171,39 @@ std::string Contact::objection(const Motion& bi, const Motion& bj) const
     Touch touch;
     try {
         touch = detector->detect(bi, bj, nullptr);
-    } catch (const lie::NumericalFailure& e) {
+    } catch (const NoSingleTouch& e) {
         return e.what();
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e);
     }
-    // the smaller eigenvalue of K_i + K_j in the tangent plane
-    const Vec3 u = touch.n.unitOrthogonal(), w = touch.n.cross(u);
-    const Mat3 K = touch.K_i + touch.K_j;
-    const double a = u.dot(K * u), b = u.dot(K * w), d = w.dot(K * w);
-    double least = 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
+    double least = least_curvature(touch);
+    const double mean = 0.5 * (touch.K_i + touch.K_j).trace();
     const double rounding = no_curvature * (touch.K_i.norm() + touch.K_j.norm());
     if (std::abs(least) <= rounding) least = 0;
     if (least < 0)
         return got("a surface does not fit into the other: the sum of their curvatures must not be negative",
                    least, "1/m");
-    if (0.5 * (a + d) <= rounding && (law->needs_curvature() || friction->needs_curvature()))
+    // a coin that hovers flat leans before it touches; a foot on a plane never curves
+    const bool may_curve = touch.gap > 0 && (i.surface->size() > 0 || j.surface->size() > 0);
+    if (mean <= rounding && !may_curve && (law->needs_curvature() || friction->needs_curvature()))
         return got("rolling and spinning friction need curvature: the sum of the curvatures must be positive",
-                   0.5 * (a + d), "1/m");
-    for (const Mat3* one : {&touch.K_i, &touch.K_j}) {
-        const double curvature = 0.5 * std::abs(one->trace());
-        if (curvature <= rounding || -touch.gap * curvature <= deepest) continue;
+                   mean, "1/m");
+    const auto too_deep = [&](const Surface& surface, const Mat3& K) {
+        const auto [less, more] = principal_curvatures(K, touch.n);
+        const double curvature = std::max(std::abs(less), std::abs(more));
+        const double radius = curvature > rounding ? 1 / curvature : infinite;
+        // where it is flat its size tells how deep is deep
+        const double size = surface.size() > 0 ? surface.size() : infinite;
+        const bool round = radius <= size * (1 + 1e-9);
+        const double length = round ? radius : size;
+        if (!(-touch.gap > deepest * length)) return std::string();
         std::ostringstream what;
-        what << "the surfaces must not overlap by more than a tenth of a radius of curvature, "
-             << 1 / curvature << " m";
+        what << "the surfaces must not overlap by more than a tenth of "
+             << (round ? "a radius of curvature, " : "the size of one, ") << length << " m";
         return got(what.str(), -touch.gap, "m");
-    }
+    };
+    if (const std::string why = too_deep(*i.surface, touch.K_i); !why.empty()) return why;
+    if (const std::string why = too_deep(*j.surface, touch.K_j); !why.empty()) return why;
     return {};
 }
 

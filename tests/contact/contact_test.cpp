@@ -4,10 +4,13 @@
 
 #include "contact/friction_models/spring.hpp"
 #include "contact/scene.hpp"
+#include "contact/surfaces/cylinder.hpp"
+#include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
 #include "lie/check.hpp"
 
 #include <catch2/catch.hpp>
@@ -187,6 +190,51 @@ TEST_CASE("a start that no contact can have is refused", "[contact]")
     CHECK(objection(foot, plane, {0, 0, 0}, rolls) ==
           "rolling and spinning friction need curvature: the sum of the curvatures must be positive, got 0 "
           "1/m");
+}
+
+TEST_CASE("the overlap of a start is measured by the sharpest curvature and the size", "[contact]")
+{
+    const auto objection = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
+        const contact::Contact c("c", i, j, ball(1, 0.1), {}, std::make_shared<contact::Hooke>(1e5, 0),
+                                 friction({.K_E = 1, .eta_r = eta_r}));
+        return c.objection(bi, Motion());
+    };
+    const std::string deep = "the surfaces must not overlap by more than a tenth of ";
+    const Shape shaft{std::make_shared<contact::Cylinder>(0.3)};
+    CHECK(objection(sphere(0.9), shaft, at({1.171, 0, 0})).empty());
+    CHECK(objection(sphere(0.9), shaft, at({1.16, 0, 0})) ==
+          deep + "a radius of curvature, 0.3 m, got 0.04 m");
+    const Shape box{std::make_shared<contact::Superquadric>(Vec3(0.1, 0.1, 0.1), 8)};
+    CHECK(objection(box, plane, at({0, 0, 0.091})).empty());
+    CHECK(objection(box, plane, at({0, 0, -0.05})) == deep + "the size of one, 0.1 m, got 0.15 m");
+    const Shape coin{std::make_shared<contact::Disk>(0.1)};
+    Motion leaning = at({0, 0, -0.01});
+    leaning.A = lie::exp({0.05, 0, 0});
+    CHECK(objection(coin, plane, leaning) == deep + "the size of one, 0.1 m, got 0.0149979 m");
+    // flat in the air, where it has no curvature
+    CHECK(objection(coin, plane, at({0, 0, 1}), 0.1).empty());
+    CHECK(objection(coin, plane, at({0, 0, 0})) ==
+          "a disk lies flat on a plane: it touches with all of its rim");
+}
+
+TEST_CASE("a search that fails at the start is a failure of the numerics", "[contact]")
+{
+    class Lost final : public contact::Surface {  // G has no root
+    public:
+        double value(const Vec3& a) const override { return a.squaredNorm() + 1; }
+        Vec3 gradient(const Vec3& a) const override { return 2 * a; }
+        Mat3 hessian(const Vec3&) const override { return 2 * Mat3::Identity(); }
+        double size() const override { return 1; }
+    };
+    const contact::Contact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
+                             std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
+    try {
+        c.objection(at({1, 0.2, 0}), Motion());
+        FAIL("accepted");
+    } catch (const lie::NumericalFailure& e) {
+        CHECK(e.status == "contact_not_converged");
+        CHECK_THAT(e.what(), Catch::StartsWith("contact 'c': no touch of two surfaces: "));
+    }
 }
 
 TEST_CASE("a friction law refuses parameters that are none", "[contact][friction]")

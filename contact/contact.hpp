@@ -48,8 +48,8 @@ public:
         return now.N > 0 ? friction->load(now, rates, memory.history) : Wrench();
     }
 
-    /// Why a run cannot begin here: a ball larger than its bowl, an overlap above a tenth of a radius of
-    /// curvature; or an empty text.
+    /// Why a run cannot begin here: a ball larger than its bowl, an overlap above a tenth of a radius of curvature or of
+    /// the size of a surface; or an empty text. lie::NumericalFailure where the search for the touch fails.
     std::string objection(const Motion& bi, const Motion& bj) const;
 
     /// The largest step [s] with which symplectic Euler is stable on the springs and dashpots of this contact, none of

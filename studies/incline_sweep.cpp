@@ -3,11 +3,14 @@
 ///
 /// Each cell is a run of 1 s. Its state is read from the modes of sliding and rolling friction at the end (Table
 /// 4.4): 0 rest, 1 rolling, 2 rolling with slip, 3 slip without rolling. The boundaries are compared with those of the
-/// Coulomb bounds alone (A.7; the rest limit with μ_k, see incline.hpp).
+/// Coulomb bounds alone (A.7; the rest limit with μ_k, see incline.hpp). --check demands that they agree, and exits with 6
+/// where they do not.
 
 #include "studies/arguments.hpp"
 #include "studies/chosen.hpp"
 #include "studies/csv_table.hpp"
+#include "studies/demands.hpp"
+#include "studies/exit_codes.hpp"
 #include "studies/incline.hpp"
 #include "studies/pool.hpp"
 #include "studies/study_output.hpp"
@@ -111,6 +114,7 @@ struct Deviation {
 
 struct Boundaries {
     Deviation rest, rolling;
+    Deviation rest_by_torque;         ///< up to η_r = 1/2
     double slip_from = std::nan("");  ///< the smallest η_r with slip without rolling
 };
 
@@ -121,10 +125,33 @@ Boundaries boundaries(const Map& map)
         const double eta = map.eta[e];
         for (size_t a = 0; a < map.angle.size(); ++a)
             if (map.at(e, a).state == 3 && std::isnan(b.slip_from)) b.slip_from = eta;
-        b.rest.add(last_of(map, e, {0}) - rest_limit(eta) / degree);
+        const double rest = last_of(map, e, {0}) - rest_limit(eta) / degree;
+        b.rest.add(rest);
+        if (eta <= 0.5) b.rest_by_torque.add(rest);
         b.rolling.add(last_of(map, e, {0, 1}) - rolling_limit(eta) / degree);
     }
     return b;
+}
+
+/// What the map must show, by the bounds that Coulomb's law sets. A boundary is known to half a cell. Balanced friction
+/// leaves a sphere slipping where the dissertation's has it stick: it has no rolling limit of its own, and beyond
+/// η_r = 1/2 a sphere that slips decides on rest.
+std::vector<Demand> demands(const Map& map, const Boundaries& b, bool dissertation)
+{
+    const double cell = map.angle[1] - map.angle[0], row = map.eta[1] - map.eta[0], half = 0.5 * cell;
+    const Deviation& rest = dissertation ? b.rest : b.rest_by_torque;
+    const std::string up_to = dissertation ? "" : " up to eta_r = 1/2";
+    std::vector<Demand> all = {
+        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", least [deg]", rest.least, 0, 0.15 + half),
+        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", most [deg]", rest.most, 0, 0.15 + half)};
+    if (dissertation)
+        for (const auto& [which, value] :
+             {std::pair("least", b.rolling.least), std::pair("most", b.rolling.most)})
+            all.push_back(between(fmt::format("rolling limit less A.7, {} [deg]", which), value, -0.8 - half,
+                                  0.05 + half));
+    all.push_back(between("slip without rolling from eta_r, the first above 1/2", b.slip_from,
+                          0.5 + 0.1 * row, 0.5 + 1.1 * row));
+    return all;
 }
 
 /// The published map on the same grid; -1 where it has no such cell
@@ -280,21 +307,26 @@ int incline_sweep(const StudyOptions& options)
                                              {"rolling_limit_least", b.rolling.least},
                                              {"rolling_limit_most", b.rolling.most},
                                              {"slip_from", b.slip_from}}}};
+    std::vector<Demand> must;
+    if (options.check) must = demands(map, b, preset == "dissertation");
     if (!published.empty()) {
         const Agreement a = agreement(map, published);
+        must.push_back(between("agreement with the file [%]", a.percent(), 99.7, 100));
         print(a, options.against, output.text);
         came.push_back({.of = options.against,
                         .value = {{"agreement", a.percent()}, {"far", static_cast<double>(a.far)}}});
         output.json["against"] = {
             {"file", options.against}, {"compared", a.compared}, {"agreement", a.percent()}, {"far", a.far}};
     }
-    return finish(options, output, {}, came);
+    const bool met = !options.check || judge(must, output.text, output.json);
+    const int code = finish(options, output, {}, came);
+    return code == exit_code::done && !met ? exit_code::expectation_failed : code;
 }
 
 const bool enrolled = enrol(
     Study{.kind = kind,
           .answers = "final state of a sphere on an incline over slope and rolling resistance (Fig. 4.13)",
-          .also = takes::preset | takes::against | takes::grid,
+          .also = takes::preset | takes::against | takes::grid | takes::check,
           .run = incline_sweep});
 
 }  // namespace

@@ -82,6 +82,25 @@ TEST_CASE("the incline sweep maps the states and compares them", "[studies][incl
     CHECK(rows[4].at("published").empty());
     CHECK(number(rows[11], "R_omega") == Approx(number(rows[11], "v")).margin(1e-9));  // rolling
 }
+
+TEST_CASE("the incline sweep judges its limits", "[studies][incline]")
+{
+    const Scratch in;
+    write(in / "other.csv", "nan,4,12,28\n0.2,0,1,1\n0.4,0,1,2\n0.6,0,0,1\n");
+    const std::string preset = GENERATE("dissertation", "balanced");
+    const std::vector<std::string> words = {"study", "incline-sweep", "--grid",    "coarse",   "--steps",
+                                            "2e-4",  "--check",       "--no-plot", "--preset", preset};
+    const Ended good = call(in, words);
+    CAPTURE(good.out, good.err);
+    CHECK(good.code == 0);
+    CHECK_THAT(good.out, Contains(preset == "balanced" ? "3 of 3 met" : "5 of 5 met"));
+
+    std::vector<std::string> other = words;
+    other.insert(other.end(), {"--against", "other.csv", "--force"});
+    const Ended apart = call(in, other);
+    CHECK(apart.code == 6);
+    CHECK_THAT(apart.out, Contains(preset == "balanced" ? "3 of 4 met" : "5 of 6 met"));
+}
 #endif
 
 TEST_CASE("the incline sweep refuses what it cannot use before it begins", "[studies][incline]")

@@ -91,6 +91,25 @@ TEST_CASE("the stacking study finds critical masses and compares them", "[studie
     CHECK(rows[3].at("gives_way") == "sliding");
     CHECK(number(rows[6], "critical_mass") == Approx(1.553).margin(1.5e-3));
 }
+
+TEST_CASE("the stacking study judges what comes out", "[studies][stacking]")
+{
+    const Scratch in;
+    const std::vector<std::string> words = {"study",   "stacking",  "--grid", "coarse",
+                                            "--quiet", "--no-plot", "--check"};
+    const Ended good = call(in, words);
+    CAPTURE(good.err);
+    CHECK(good.code == 0);
+    const std::string json = read(in / "out/stacking/study.json");
+    CHECK_THAT(json, Contains("mass with h = 2e-05 s less that with h = 0.0001 s, gap 0.40R, eta_r = 0.24"));
+
+    write(in / "other.csv", "eta_r,m_c_gap_0.20R,m_c_gap_0.40R\n0.15,1.105,\n0.60,1.815,1.37\n");
+    std::vector<std::string> other = {"study",   "stacking", "--grid",    "coarse",   "--no-plot",
+                                      "--check", "--force",  "--against", "other.csv"};
+    const Ended apart = call(in, other);
+    CHECK(apart.code == 6);
+    CHECK_THAT(apart.out, Contains("5 of 7 met") && Contains("against the file, largest [kg]"));
+}
 #endif
 
 TEST_CASE("the stacking study refuses what it cannot use before it begins", "[studies][stacking]")

@@ -4,7 +4,8 @@
 /// Each experiment is a few runs, from the smallest bodies in contact that show the matter. The table sets the number
 /// that came out beside the demanded one; NAME.csv has the curves of experiment NAME, thinned. --against FILE compares every
 /// step of the runs with the columns of a table: a column "x_damped" with column x of run damped, a column "x" with column
-/// x of every run. --check does the runs that only the table needs too, and exits with 6 where a demand is not met.
+/// x of every run, of which the one that comes nearest is marked. --check does the runs that only the table needs too,
+/// and exits with 6 where a demand is not met.
 
 #include "studies/friction/experiment.hpp"
 
@@ -100,7 +101,9 @@ std::string curves(const Chosen& c)
 /// Largest difference of two columns, and where
 struct Difference {
     double largest = 0, t = 0, size = 0;
-    long shift = 0;
+    long shift = 0, rows = 0;
+
+    double relative() const { return size > 0 ? largest / size : largest; }
 };
 
 /// Rows with the same t, the file's against ours or against ours of `shift` rows before; signs may differ by convention
@@ -113,9 +116,11 @@ Difference difference(const std::vector<double>& t, const std::vector<double>& t
         const long row = std::lround(t[k] / h) - shift;
         if (row < 0 || row >= static_cast<long>(s.rows()) || !std::isfinite(theirs[k])) continue;
         if (std::abs(static_cast<double>(row + shift) * h - t[k]) > 1e-6 * h) continue;
+        ++d.rows;
         d.size = std::max(d.size, std::abs(theirs[k]));
         const double off = std::abs(theirs[k] - sign * s.at(static_cast<size_t>(row), column));
         if (off > d.largest) d.largest = off, d.t = t[k];
+        if (std::isnan(off)) d.largest = INFINITY, d.t = t[k];
     }
     return d;
 }
@@ -129,42 +134,79 @@ std::string base_of(const std::string& column, const std::string& run)
     return run == of || run.ends_with('-' + of) ? column.substr(0, at) : column;
 }
 
-Table compared(const std::string& file, const std::vector<Chosen>& all)
+/// A column of the file with a run that has it too
+struct Match {
+    std::string column, experiment, run;
+    Difference difference;
+    double sign = 1;
+    bool nearest = false;  ///< of all runs that have this column
+};
+
+/// The same curve may be a row late, or have the other sign.
+void match(Match& m, const std::vector<double>& t, const std::vector<double>& theirs, const Series& s,
+           size_t column)
+{
+    for (const long shift : {0L, 1L})
+        for (const double sign : {1., -1.})
+            if (const Difference d = difference(t, theirs, s, column, shift, sign);
+                d.rows > 0 && (m.difference.rows == 0 || d.largest < m.difference.largest))
+                m.difference = d, m.sign = sign;
+}
+
+std::vector<Match> matches(const std::string& file, const std::vector<Chosen>& all)
 {
     const CsvTable table = read_csv_table(file);
     const std::vector<double> t = table.values("t");
+    std::vector<Match> found;
+    for (const std::string& name : table.columns) {
+        if (name == "t") continue;
+        const std::vector<double> theirs = table.values(name);
+        const size_t first = found.size();
+        for (const Chosen& c : all)
+            for (size_t r = 0; r < c.runs.size(); ++r) {
+                const Series& s = c.series[r];
+                const size_t column = s.place(base_of(name, c.runs[r].name));
+                if (s.rows() == 0 || column == s.columns.size()) continue;
+                Match m{.column = name,
+                        .experiment = c.experiment->name,
+                        .run = c.runs[r].name,
+                        .difference = {}};
+                match(m, t, theirs, s, column);
+                if (m.difference.rows > 0) found.push_back(m);
+            }
+        const auto nearest = std::min_element(
+            found.begin() + first, found.end(),
+            [](const Match& a, const Match& b) { return a.difference.largest < b.difference.largest; });
+        if (nearest != found.end()) nearest->nearest = true;
+    }
+    if (found.empty())
+        throw lie::InvalidInput(file + ": no column of it is a column of the chosen experiments");
+    return found;
+}
+
+/// Over the columns, of the run that comes nearest, by the size of the column
+double largest_difference(const std::vector<Match>& found)
+{
+    double largest = 0;
+    for (const Match& m : found)
+        if (m.nearest) largest = std::max(largest, m.difference.relative());
+    return largest;
+}
+
+Table as_table(const std::vector<Match>& found)
+{
     Table out({{"column"},
                {"experiment"},
                {"run"},
+               {"nearest"},
                {"largest difference"},
                {"at t [s]", "{:.4f}"},
                {"of size", "{:.4g}"},
                {"rows later", "{:.0f}"},
                {"sign", "{:+.0f}"}});
-    bool any = false;
-    for (const std::string& name : table.columns) {
-        if (name == "t") continue;
-        const std::vector<double> theirs = table.values(name);
-        for (const Chosen& c : all)
-            for (size_t r = 0; r < c.runs.size(); ++r) {
-                const std::string base = base_of(name, c.runs[r].name);
-                const Series& s = c.series[r];
-                const size_t column = s.place(base);
-                if (s.rows() == 0 || column == s.columns.size()) continue;
-                Difference best;
-                double best_sign = 1;
-                best.largest = INFINITY;
-                for (const long shift : {0L, 1L})
-                    for (const double sign : {1., -1.})
-                        if (const Difference d = difference(t, theirs, s, column, shift, sign);
-                            d.largest < best.largest)
-                            best = d, best_sign = sign;
-                out.add({name, c.experiment->name, c.runs[r].name, best.largest, best.t, best.size,
-                         static_cast<double>(best.shift), best_sign});
-                any = true;
-            }
-    }
-    if (!any) throw lie::InvalidInput(file + ": no column of it is a column of the chosen experiments");
+    for (const Match& m : found)
+        out.add({m.column, m.experiment, m.run, m.nearest ? "*" : "", m.difference.largest, m.difference.t,
+                 m.difference.size, static_cast<double>(m.difference.shift), m.sign});
     return out;
 }
 
@@ -172,7 +214,10 @@ std::string figure_of(const Experiment& e) { return e.figure.empty() ? "" : " (F
 
 int study(const StudyOptions& options)
 {
-    check_keys(kind, options, {});
+    const std::vector<std::string> keys = {"difference"};
+    check_keys(kind, options, keys);
+    if (!options.expect.empty() && options.against.empty())
+        throw UsageError("study friction: --expect difference needs --against FILE");
     refuse_schemes(kind, options);
     if (!options.steps.empty() || options.end)
         throw UsageError("study friction: --steps and --end are set by each experiment");
@@ -244,10 +289,16 @@ int study(const StudyOptions& options)
     }
     output.text << fmt::format("\n{} of {} demands met{}\n", demands - missed, demands,
                                options.check ? "" : "; --check does the long runs too, and judges by them");
+    std::vector<Measured> came;
     if (!options.against.empty()) {
-        const Table differences = compared(options.against, all);
-        output.text << fmt::format("\nagainst {}: each column with every run that has it\n", options.against);
+        const std::vector<Match> found = matches(options.against, all);
+        const Table differences = as_table(found);
+        came.push_back({.of = options.against, .value = {{"difference", largest_difference(found)}}});
+        output.text << fmt::format(
+            "\nagainst {}: each column with every run that has it, the nearest marked\n", options.against);
         differences.print(output.text);
+        output.text << fmt::format("largest difference of the nearest, over the size of its column: {:.2e}\n",
+                                   came.back().value.at("difference"));
         output.files.emplace_back("against.csv", differences.csv());
     }
     if (options.vtk > 0)
@@ -257,7 +308,7 @@ int study(const StudyOptions& options)
     if (options.vtk > 0) output.text << '\n';
     output.table = table.csv();
     output.json = {{"demands", demands}, {"met", demands - missed}, {"checks", rows}};
-    const int code = finish(options, output, {}, {});
+    const int code = finish(options, output, {}, came);
     if (options.check && missed > 0) return exit_code::expectation_failed;
     return code;
 }

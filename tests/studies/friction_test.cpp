@@ -56,6 +56,28 @@ TEST_CASE("the friction study compares every step with a table", "[studies][fric
     CHECK(number(rows[0], "largest difference") == Approx(1).epsilon(1e-4));
     CHECK(number(rows[0], "at t [s]") == 0.05);
 
+    CHECK(rows[0].at("nearest") == "*");
+    CHECK_THAT(ended.out, Contains("over the size of its column: 1.00e+00"));
+
+    // a column that every run has: the one it came from is the nearest
+    std::string whole = "t,x\n";
+    for (const CsvRow& row : csv(in / "out/friction/brick.csv"))
+        if (row.at("run") == "damped") whole += row.at("t") + "," + row.at("x") + "\n";
+    write(in / "whole.csv", whole);
+    const auto against = [&](const std::string& expected) {
+        return call(in, {"study", "friction", "--problem", "brick", "--no-plot", "--quiet", "--force",
+                         "--against", "whole.csv", "--expect", expected});
+    };
+    CHECK(against("difference=0+-1e-12").code == 0);
+    for (const CsvRow& row : csv(in / "out/friction/against.csv"))
+        CHECK((row.at("nearest") == "*") == (row.at("run") == "damped"));
+    const Ended missed = against("difference=1+-0.5");
+    CHECK(missed.code == 6);
+    CHECK_THAT(missed.err, Contains("expected difference=1+-0.5, got 0 for whole.csv"));
+    const Ended unknown = against("differenz=0");
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Contains("'differenz'; did you mean 'difference'?; there are difference"));
+
     write(in / "other.csv", "t,pressure\n0,1\n");
     const Ended other = call(
         in, {"study", "friction", "--problem", "brick", "--no-plot", "--force", "--against", "other.csv"});

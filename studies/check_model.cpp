@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/check_model.hpp"
 
+#include "contact/contact_force.hpp"
 #include "studies/message.hpp"
 #include "studies/named_model.hpp"
 #include "studies/output.hpp"
@@ -59,6 +60,47 @@ Reactions largest_reactions(const dae::Model& model, const lie::State& x)
     return largest;
 }
 
+/// A contact at the start
+struct Touching {
+    std::string name;
+    double gap, N;       ///< [m], [N]
+    double curvature;    ///< κ_i + κ_j, each the mean over the directions [1/m]
+    double stable_step;  ///< [s]
+};
+
+std::vector<Touching> contacts(const dae::Model& model, const lie::State& x)
+{
+    std::vector<Touching> all;
+    for (const auto& force : model.forces()) {
+        const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
+        if (contact == nullptr) continue;
+        const contact::Meeting m = contact->at(x).meeting;
+        all.push_back({.name = contact->name,
+                       .gap = m.touch.gap,
+                       .N = std::max(0., m.N),
+                       .curvature = 0.5 * (m.touch.K_i + m.touch.K_j).trace(),
+                       .stable_step = contact->stable_step(x)});
+    }
+    return all;
+}
+
+nlohmann::ordered_json as_json(const Touching& c)
+{
+    return {{"name", c.name},
+            {"gap", c.gap},
+            {"normal_force", c.N},
+            {"curvature", c.curvature},
+            {"stable_step", std::isfinite(c.stable_step) ? nlohmann::ordered_json(c.stable_step) : nullptr}};
+}
+
+std::string in_words(const Touching& c)
+{
+    return fmt::format("{} {:.3e} m, {:.3e} N, curvature {:.4g} 1/m, {}", c.gap > 0 ? "gap" : "overlap",
+                       std::abs(c.gap), c.N, c.curvature,
+                       std::isfinite(c.stable_step) ? fmt::format("stable up to {:.3g} s", c.stable_step)
+                                                    : "stable with any step");
+}
+
 nlohmann::ordered_json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
 }  // namespace
@@ -71,6 +113,8 @@ int check_model(const CheckOptions& options)
     const dae::Model& model = *d.model;
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
+    const std::vector<Touching> touching = contacts(model, d.x);
+    const size_t other_forces = model.forces().size() - touching.size();
     const Change moved = change(model, given, d.x);
 
     if (options.json) {
@@ -79,7 +123,8 @@ int check_model(const CheckOptions& options)
             {"model", d.name},
             {"bodies", model.bodies()},
             {"constraints", model.constraints()},
-            {"forces", model.forces().size()},
+            {"forces", other_forces},
+            {"contacts", nlohmann::ordered_json::array()},
             {"rows", start.rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
@@ -91,6 +136,7 @@ int check_model(const CheckOptions& options)
             {"largest_reaction_torque", as_json(loads.T)},
             {"end", d.end},
             {"warnings", d.warnings}};
+        for (const Touching& c : touching) out["contacts"].push_back(as_json(c));
         if (options.fix_initial)
             out["fix_initial"] = {{"projected", start.projected},
                                   {"r", as_json(moved.r)},
@@ -116,7 +162,9 @@ int check_model(const CheckOptions& options)
     line("bodies", std::to_string(model.bodies()));
     line("constraints",
          fmt::format("{} with {} rows of rank {}", model.constraints(), start.rows, start.rank));
-    line("forces", std::to_string(model.forces().size()));
+    line("forces", std::to_string(other_forces));
+    if (!touching.empty()) line("contacts", std::to_string(touching.size()));
+    for (const Touching& c : touching) line(("  " + c.name + " ").c_str(), in_words(c));
     line("degrees of freedom", std::to_string(start.degrees_of_freedom));
     for (const std::string& row : start.dropped) line("redundant", row);
     line("position residual", residual(start.position_residual, "m or rad", start.worst_position));

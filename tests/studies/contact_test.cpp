@@ -46,6 +46,23 @@ TEST_CASE("a model file with contacts is run, checked and refused", "[studies][c
     CHECK_THAT(stiff.err, Catch::Contains("contact 'ball-bowl' is stable"));
 }
 
+TEST_CASE("check tells of each contact at the start", "[studies][contact]")
+{
+    const tests::Scratch in;
+    tests::write(in / "m.json", in_bowl("0.90625"));  // 6.25 mm deep in the bowl
+    const Ended words = call(in, {"check", "m.json"});
+    CHECK_THAT(words.out, Catch::Contains("forces              0\n") &&
+                              Catch::Contains("contacts            1\n") &&
+                              Catch::Contains("  ball-bowl         overlap 6.250e-03 m, 6.250e+00 N, "
+                                              "curvature 9 1/m, stable up to "));
+    // symplectic Euler on a spring: h = 2 sqrt(m/k)
+    const Ended json = call(in, {"check", "m.json", "--json"});
+    CHECK_THAT(json.out, Catch::Contains(R"("forces": 0)") && Catch::Contains(R"("name": "ball-bowl")") &&
+                             Catch::Contains(R"("stable_step": 0.0632)"));
+    tests::write(in / "apart.json", in_bowl("0.5"));
+    CHECK_THAT(call(in, {"check", "apart.json"}).out, Catch::Contains("gap 4.000e-01 m, 0.000e+00 N"));
+}
+
 TEST_CASE("a touch that is not found ends the run with the pair, the bodies and the time",
           "[studies][contact]")
 {

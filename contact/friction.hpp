@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+namespace hilda::dae {
+class ObjectReader;
+}
+
 namespace hilda::contact {
 
 /// Whether a micro-deflection sticks or slips, and whether its dashpot works
@@ -126,6 +130,10 @@ struct FrictionParameters {
 struct FrictionLaw {
     std::string name, what;
     std::shared_ptr<const FrictionModel> (*make)(const FrictionParameters&) = nullptr;
+    /// Reads the keys that only this law has, and makes it. p: those that all laws share have been read, and E_star is
+    /// that of the normal law, zero where that is not Hertz's. Without it the law has no keys of its own. Throws
+    /// dae::PlacedError.
+    std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p) = nullptr;
 };
 const std::vector<FrictionLaw>& friction_laws();
 /// The law of that name; InvalidInput names those there are.

@@ -33,16 +33,9 @@ double poisson_ratio(ObjectReader& o, std::string_view key)
     return nu;
 }
 
-/// Refuses a key beside another that says the same.
-void exclude(ObjectReader& o, const char* key, const char* other)
-{
-    const bool both = o.look(key) != nullptr && o.look(other) != nullptr;  // either is known then
-    if (both) o.fail(other, std::string("give one of ") + key + " and " + other + ", not both");
-}
-
 std::shared_ptr<const NormalLaw> read_hertz(ObjectReader& o)
 {
-    for (const char* key : {"E_i", "nu_i", "E_j", "nu_j"}) exclude(o, "E_star", key);
+    for (const char* key : {"E_i", "nu_i", "E_j", "nu_j"}) o.exclude("E_star", key);
     double E_star = 0;
     if (o.has("E_i") || o.has("E_j")) {
         const double E_i = o.positive("E_i"), nu_i = poisson_ratio(o, "nu_i");
@@ -56,7 +49,7 @@ std::shared_ptr<const NormalLaw> read_hertz(ObjectReader& o)
 
 std::shared_ptr<const NormalLaw> read_hooke(ObjectReader& o)
 {
-    exclude(o, "damping", "restitution");
+    o.exclude("damping", "restitution");
     const double stiffness = o.positive("stiffness");
     if (o.has("restitution"))
         return std::make_shared<Hooke>(Hooke::rebounding(stiffness, from_zero_to_one(o, "restitution", 1)));
@@ -75,7 +68,7 @@ std::shared_ptr<const NormalLaw> read_normal(ObjectReader& contact)
     return law;
 }
 
-std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact)
+std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
 {
     if (!contact.has("friction")) return frictionless();
     ObjectReader o = contact.object("friction");
@@ -96,28 +89,21 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact)
     for (const auto& [key, D] :
          {std::pair("D_slide", &p.D_slide), std::pair("D_roll", &p.D_roll), std::pair("D_spin", &p.D_spin)})
         if (o.look(key) != nullptr) *D = o.not_negative(key);
-    if (law == "slide-roll-spin") {
-        exclude(o, "eta_psi", "spin");
-        p.eta_r = o.not_negative("eta_r", 0);
-        if (o.look("spin") != nullptr) {
-            o.one_of("spin", {"hertz"});
-            p.E_star = o.positive("E_star");
-        } else {
-            p.eta_psi = o.not_negative("eta_psi", 0);
-        }
-    } else {
-        p.mu_r = o.not_negative("mu_r", 0);
-    }
     p.tracking.beta = o.number("beta", p.tracking.beta);
+    const FrictionLaw& kind = friction_law(law);
+    const auto* hertz = dynamic_cast<const Hertz*>(&normal);
+    if (kind.read != nullptr && hertz != nullptr) p.E_star = hertz->E_star;
+    const std::shared_ptr<const FrictionModel> model = kind.read != nullptr ? kind.read(o, p) : kind.make(p);
     contact.keep("friction", o.finish());
-    return friction_law(law).make(p);
+    return model;
 }
 
 std::unique_ptr<dae::Force> read_contact(ObjectReader& o, const dae::ContactPair& pair)
 {
     const Shape i = read_shape(o, "surface_i"), j = read_shape(o, "surface_j");
     const std::shared_ptr<const NormalLaw> law = read_normal(o);
-    return std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law, read_friction(o));
+    return std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law,
+                                          read_friction(o, *law));
 }
 
 const bool enrolled = dae::enrol_contacts(read_contact);

@@ -84,8 +84,10 @@ public:
     }
     bool needs_curvature() const override { return true; }
 
+    const double E_star;  ///< [Pa]
+
 private:
-    double E_star, zeta, m;
+    double zeta, m;
 };
 
 /// ζ of a linear spring and dashpot that pushes but never pulls, so that the bodies part when the force is zero:

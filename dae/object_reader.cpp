@@ -188,6 +188,12 @@ const Json::List& ObjectReader::list(std::string_view key, bool required)
 
 const Json* ObjectReader::look(std::string_view key) { return asked(key, false); }
 
+void ObjectReader::exclude(std::string_view key, std::string_view other)
+{
+    const bool both = look(key) != nullptr && look(other) != nullptr;  // either is known then
+    if (both) fail(other, "give one of " + std::string(key) + " and " + std::string(other) + ", not both");
+}
+
 void ObjectReader::keep(std::string_view key, Json as)
 {
     for (Json::Member& m : kept)

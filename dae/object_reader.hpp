@@ -46,6 +46,8 @@ public:
     bool has(std::string_view key) const { return value.member(key) != nullptr; }
     /// The value of a key, which counts as asked for but is not kept; nullptr where it is missing
     const Json* look(std::string_view key);
+    /// Refuses a key beside another that says the same.
+    void exclude(std::string_view key, std::string_view other);
     /// What the canonical text shall say of a key
     void keep(std::string_view key, Json as);
 

@@ -7,6 +7,7 @@
 /// where the speed should be zero, rounding gives the torque its direction.
 
 #include "contact/friction_models/spring.hpp"
+#include "dae/object_reader.hpp"
 
 namespace hilda::contact {
 namespace {
@@ -44,8 +45,15 @@ private:
     const Sliding sliding;
 };
 
-const bool enrolled = enrol<ConstantTorque>(
-    {.name = "constant-torque", .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)"});
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+{
+    p.mu_r = o.not_negative("mu_r", 0);
+    return std::make_shared<ConstantTorque>(p);
+}
+
+const bool enrolled = enrol<ConstantTorque>({.name = "constant-torque",
+                                             .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
+                                             .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

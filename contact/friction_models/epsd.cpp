@@ -8,6 +8,7 @@
 /// slide-roll-spin; published codes keep it as a vector of the global frame.
 
 #include "contact/friction_models/spring.hpp"
+#include "dae/object_reader.hpp"
 
 namespace hilda::contact {
 namespace {
@@ -71,8 +72,16 @@ private:
     const Sliding sliding;
 };
 
-const bool enrolled = enrol<Epsd>(
-    {.name = "epsd", .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)"});
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+{
+    p.mu_r = o.not_negative("mu_r", 0);
+    return std::make_shared<Epsd>(p);
+}
+
+const bool enrolled =
+    enrol<Epsd>({.name = "epsd",
+                 .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
+                 .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -25,6 +25,9 @@
 /// its cross product with n.
 
 #include "contact/friction_models/spring.hpp"
+#include "dae/object_reader.hpp"
+
+#include <utility>
 
 namespace hilda::contact {
 namespace {
@@ -231,8 +234,26 @@ private:
     const Sliding sliding;
 };
 
-const bool enrolled = enrol<SlideRollSpin>(
-    {.name = "slide-roll-spin", .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)"});
+/// Where spinning is resisted by a Hertzian patch, its modulus is that of the normal law unless told otherwise.
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+{
+    const double of_normal_law = std::exchange(p.E_star, 0);
+    o.exclude("eta_psi", "spin");
+    p.eta_r = o.not_negative("eta_r", 0);
+    if (o.look("spin") != nullptr) {
+        o.one_of("spin", {"hertz"});
+        const bool known = of_normal_law > 0 && !o.has("E_star");
+        p.E_star = known ? of_normal_law : o.positive("E_star");
+    } else {
+        p.eta_psi = o.not_negative("eta_psi", 0);
+    }
+    return std::make_shared<SlideRollSpin>(p);
+}
+
+const bool enrolled =
+    enrol<SlideRollSpin>({.name = "slide-roll-spin",
+                          .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
+                          .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -73,6 +73,23 @@ TEST_CASE("defaults of a contact are those of the balanced preset", "[contact][m
                Catch::Contains(R"("beta": 1)"));
 }
 
+TEST_CASE("a patch that resists spinning has the modulus of a Hertzian normal law", "[contact][model_file]")
+{
+    const std::string hertz = R"({"type": "hertz", "E_star": 2e6})";
+    const auto stiffness = [&](const std::string& normal, const std::string& more) {
+        const std::string friction = R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz")" + more + "}";
+        dae::Description d = dae::read_model(ball(sphere, flat, normal, friction, 0.199), "m.json");
+        dae::start(d);
+        const auto& force = dynamic_cast<const ContactForce&>(*d.model->forces()[0]);
+        return force.contact.friction->springs(force.at(d.x).meeting).K_spin;
+    };
+    CHECK(stiffness(hertz, "") > 0);
+    CHECK(stiffness(hertz, "") == stiffness(hertz, R"(, "E_star": 2e6)"));
+    CHECK(stiffness(hertz, "") > stiffness(hertz, R"(, "E_star": 4e6)"));
+    CHECK_THAT(refusal(ball(sphere, flat, steel, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})")),
+               Catch::Contains("(/contacts/0/friction): missing key 'E_star'"));
+}
+
 TEST_CASE("a contact that is none is refused at its place", "[contact][model_file]")
 {
     struct Bad {
@@ -111,6 +128,8 @@ TEST_CASE("a contact that is none is refused at its place", "[contact][model_fil
          "m.json:6:36 (/contacts/0/friction/eta_psi): eta_psi must not be negative, got -1"},
         {friction(R"({"mu_s": 0.2, "K_E": 1, "law": "epsd", "eta_r": 1})"),
          "m.json:6:40 (/contacts/0/friction/eta_r): unknown key \"eta_r\""},
+        {friction(R"({"mu_s": 0.2, "K_E": 1, "mu_r": 1})"),
+         "m.json:6:25 (/contacts/0/friction/mu_r): unknown key \"mu_r\""},
         {friction(R"({"mu_s": 0.2})"), "m.json:6:1 (/contacts/0/friction): missing key 'K_E'"},
         // what the contact itself objects to
         {ball(sphere, flat, steel, rough, 0.17),

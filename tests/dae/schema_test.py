@@ -13,6 +13,9 @@ import jsonschema
 root = pathlib.Path(__file__).resolve().parents[2]
 models = root / "tests" / "data" / "models"
 
+# Any name of a surface or of a friction law may be one that a build has: these only the program can refuse.
+left_to_the_program = {"contact_unknown_surface.json"}
+
 
 def read(path):
     with open(path, encoding="utf-8") as file:
@@ -46,14 +49,14 @@ def main():
         for error in validator.iter_errors(read(path)):
             faults.append(f"{path.name}: {error.json_path}: {error.message[:200]}")
     for path in bad:
-        if validator.is_valid(read(path)):
-            faults.append(f"{path.name} is accepted")
+        if validator.is_valid(read(path)) != (path.name in left_to_the_program):
+            faults.append(f"{path.name} is {'refused' if path.name in left_to_the_program else 'accepted'}")
     if len(good) < 5 or len(bad) < 15:
         faults.append(f"only {len(good)} good and {len(bad)} bad models in {models.name}")
 
     for fault in faults:
         print(fault)
-    print(f"{len(good)} models accepted, {len(bad)} refused, {len(faults)} faults")
+    print(f"{len(good)} models accepted, {len(bad) - len(left_to_the_program)} refused, {len(faults)} faults")
     return 1 if faults else 0
 
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A surface and a friction law in one file, as a user would add them, with keys of their own in the model file.
+
+#include "contact/friction.hpp"
+#include "contact/implicit_surface.hpp"
+#include "contact/surface_types.hpp"
+
+namespace hilda::contact {
+namespace {
+
+/// A sphere of the given radius that is pointed along z: x² + y² + z² (1 + point z/R) = R².
+std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
+{
+    const double R = o.positive("radius"), point = o.number("point", 0.1);
+    if (!(std::abs(point) <= 0.3))
+        o.fail("point", "point must be from -0.3 to 0.3, got " + dae::shortest(point));
+    const auto G = [R, point](auto x, auto y, auto z) {
+        return (x * x + y * y + z * z * (1.0 + point / R * z)) * (0.5 / R) - 0.5 * R;
+    };
+    return std::make_shared<ImplicitSurface<decltype(G)>>(G, R);
+}
+
+const bool egg = enrol({.name = "demo-egg", .read = read_egg});
+
+/// F = c ṡ, never above μ_s N: a film of oil
+class DemoOil final : public FrictionModel {
+public:
+    DemoOil(double c, double mu_s) : c(c), mu_s(mu_s) {}
+
+    void advance(const Meeting&, History&) const override {}
+    Wrench load(const Meeting& now, const Rates& rates, const History&) const override
+    {
+        Wrench out;
+        out.F = c * rates.s;
+        if (const double bound = mu_s * now.N, F = out.F.norm(); F > bound) out.F *= bound / F;
+        return out;
+    }
+    Springs springs(const Meeting&) const override { return {.D_slide = c}; }
+
+private:
+    const double c, mu_s;
+};
+
+const bool oil = enrol(FrictionLaw{
+    .name = "demo-oil",
+    .what = "viscous, up to the Coulomb bound",
+    .read = [](dae::ObjectReader& o, FrictionParameters p) -> std::shared_ptr<const FrictionModel> {
+        return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+    }});
+
+}  // namespace
+}  // namespace hilda::contact

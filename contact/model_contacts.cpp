@@ -93,7 +93,7 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
     const FrictionLaw& kind = friction_law(law);
     const auto* hertz = dynamic_cast<const Hertz*>(&normal);
     if (kind.read != nullptr && hertz != nullptr) p.E_star = hertz->E_star;
-    const std::shared_ptr<const FrictionModel> model = kind.read != nullptr ? kind.read(o, p) : kind.make(p);
+    std::shared_ptr<const FrictionModel> model = kind.read != nullptr ? kind.read(o, p) : kind.make(p);
     contact.keep("friction", o.finish());
     return model;
 }

@@ -491,7 +491,7 @@ TEST_CASE("bodies that touch in many points are refused", "[contact][detection]"
 
 TEST_CASE("two rings are apart until they touch", "[contact][detection]")
 {
-    Random random(GENERATE(range(0u, 30u)));
+    Random random(GENERATE(range(0u, 10u)));
     const Torus ring(0.3, 0.05);
     const auto detector = make_detector(shape<Torus>(0.3, 0.05), shape<Torus>(0.3, 0.05));
     Motion m, ground;

@@ -109,9 +109,7 @@ Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) 
 {
     Meeting now;
     now.touch = find(bi, bj, memory);
-    const Pressing p = pressing(now.touch, bi, bj);
-    now.N = law->force(p);
-    now.overlap_rate = p.overlap_rate;
+    now.N = law->force(pressing(now.touch, bi, bj));
     if (!(now.N > 0)) return now;
     try {
         now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())

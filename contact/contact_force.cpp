@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/contact_force.hpp"
 
+#include <cstring>
+
 namespace hilda::contact {
 
 namespace {
@@ -9,50 +11,21 @@ namespace {
 // of a time, over 1 s and itself
 constexpr double at_rest = 1e-12;
 
-/// Walks along the numbers of a state, reading or writing them in one order.
-template <class Number>
-struct Numbers {
-    Number* at;
-
-    template <class V>
-    void operator()(V& v)
-    {
-        for (Eigen::Index k = 0; k < v.size(); ++k) pass(v[k]);
-    }
-    void pass(double& v)
-    {
-        if constexpr (std::is_const_v<Number>)
-            v = *at++;
-        else
-            *at++ = v;
-    }
-};
-
-/// All that a contact remembers in real numbers: the instant, the track, the histories, and the last way of the
-/// contact point over each body, which gives the rolling of the dissertation its curvature
+/// All that a contact remembers in real numbers: the histories, the last way of the contact point over each body, which
+/// gives the rolling of the dissertation its curvature, the track and the instant
 struct Kept {
-    double t = 0;
-    Track track = {};
     Vec2 S = Vec2::Zero(), Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();
-    double Psi = 0;
     Vec2 p_i = Vec2::Zero(), p_j = Vec2::Zero();
-
-    template <class Number>
-    void pass(Number* first)
-    {
-        Numbers<Number> numbers{first};
-        numbers.pass(t);
-        for (Vec3* v : {&track.c_i, &track.c_j, &track.n_i, &track.n_j, &track.u_i, &track.u_j}) numbers(*v);
-        for (Vec2* v : {&S, &Theta_i, &Theta_j}) numbers(*v);
-        numbers.pass(Psi);
-        for (Vec2* v : {&p_i, &p_j}) numbers(*v);
-    }
+    Track track = {};
+    double Psi = 0, t = 0;
 };
+constexpr size_t numbers = 5 * 2 + 6 * 3 + 2;
+static_assert(sizeof(Kept) == numbers * sizeof(double), "what is kept is numbers and nothing else");
 
 Kept kept(const lie::State& x, int first)
 {
     Kept all;
-    all.pass(x.remembered.data() + first);
+    std::memcpy(static_cast<void*>(&all), x.remembered.data() + first, sizeof all);
     return all;
 }
 
@@ -104,6 +77,8 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
     if (i == j) lie::reject(in_words(), "a contact needs two different bodies", "'" + name_i + "' twice");
 }
 
+int ContactForce::remembered() const { return numbers; }
+
 Memory ContactForce::recall(const lie::State& x) const
 {
     Memory m;
@@ -120,14 +95,13 @@ void ContactForce::keep(const Instant& now, lie::State& x) const
     const Memory& m = now.memory;
     x.memory[first_memory] = flags_of(m);
     const Slip& s = now.meeting.slip;
-    Kept all{.t = x.t,
-             .track = m.track,
-             .S = m.history.S,
-             .Theta_i = m.history.Theta_i,
-             .Theta_j = m.history.Theta_j,
-             .Psi = m.history.Psi};
+    Kept all;
+    all.S = m.history.S, all.Theta_i = m.history.Theta_i, all.Theta_j = m.history.Theta_j;
+    all.Psi = m.history.Psi;
+    all.track = m.track;
+    all.t = x.t;
     if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
-    all.pass(x.remembered.data() + first_remembered);
+    std::memcpy(x.remembered.data() + first_remembered, &all, sizeof all);
 }
 
 ContactForce::Instant ContactForce::at(const lie::State& x) const

@@ -29,7 +29,7 @@ public:
     std::string objection(const lie::State& x) const override;
 
     int memory() const override { return 1; }
-    int remembered() const override { return 30; }
+    int remembered() const override;
     void remember(lie::State& x) const override;
 
     /// As the contact is, or as it will be where it presses hardest: see Contact::hardest.

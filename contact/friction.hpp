@@ -15,6 +15,8 @@ class ObjectReader;
 
 namespace hilda::contact {
 
+class NormalLaw;
+
 /// Whether a micro-deflection sticks or slips, and whether its dashpot works
 struct Regime {
     bool slipping = false;  ///< k; sticking, s, at first
@@ -32,9 +34,8 @@ struct History {
 /// A contact at one instant, as a friction law sees it
 struct Meeting {
     Touch touch;
-    Slip slip;                ///< since the instant before
-    double N = 0;             ///< normal force [N]; not positive where the surfaces do not touch
-    double overlap_rate = 0;  ///< δ̇ [m/s]
+    Slip slip;     ///< since the instant before
+    double N = 0;  ///< normal force [N]; not positive where the surfaces do not touch
     /// Fictitious mass and moments of inertia of the pair for the dashpots, about the tangents and about the
     /// normal [kg, kg m²]                                                                    Eqs. 4.4, 4.10
     double m = 0, I_roll = 0, I_spin = 0;
@@ -130,10 +131,10 @@ struct FrictionParameters {
 struct FrictionLaw {
     std::string name, what;
     std::shared_ptr<const FrictionModel> (*make)(const FrictionParameters&) = nullptr;
-    /// Reads the keys that only this law has, and makes it. p: those that all laws share have been read, and E_star is
-    /// that of the normal law, zero where that is not Hertz's. Without it the law has no keys of its own. Throws
-    /// dae::PlacedError.
-    std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p) = nullptr;
+    /// Reads the keys that only this law has, and makes it. In p those that all laws share have been read. Without it the
+    /// law has no keys of its own. Throws dae::PlacedError.
+    std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p,
+                                                 const NormalLaw& normal) = nullptr;
 };
 const std::vector<FrictionLaw>& friction_laws();
 /// The law of that name; InvalidInput names those there are.

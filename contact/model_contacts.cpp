@@ -91,9 +91,8 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
         if (o.look(key) != nullptr) *D = o.not_negative(key);
     p.tracking.beta = o.number("beta", p.tracking.beta);
     const FrictionLaw& kind = friction_law(law);
-    const auto* hertz = dynamic_cast<const Hertz*>(&normal);
-    if (kind.read != nullptr && hertz != nullptr) p.E_star = hertz->E_star;
-    std::shared_ptr<const FrictionModel> model = kind.read != nullptr ? kind.read(o, p) : kind.make(p);
+    std::shared_ptr<const FrictionModel> model =
+        kind.read != nullptr ? kind.read(o, p, normal) : kind.make(p);
     contact.keep("friction", o.finish());
     return model;
 }

@@ -12,40 +12,32 @@
 namespace hilda::contact {
 namespace {
 
-class ConstantTorque final : public FrictionModel {
+class ConstantTorque final : public Sliding {
 public:
-    explicit ConstantTorque(const FrictionParameters& p) : sliding(p) {}
+    explicit ConstantTorque(const FrictionParameters& p) : Sliding(p) {}
 
-    Tracking tracking() const override { return sliding.p.tracking; }
-    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
-    void advance(const Meeting& now, History& h) const override { sliding.advance(now, h); }
+    void advance(const Meeting& now, History& h) const override { slide(now, h); }
 
     Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
     {
         Wrench out;
-        sliding.add(now, rates, h, out);
+        add_sliding(now, rates, h, out);
         const Vec3 q = now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j;  // (ω_i - ω_j) × n
         const double speed = q.norm(), kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
         if (!(speed > 0) || !(kappa > 0)) return out;
-        out.T_roll_E = sliding.p.mu_r * now.N / (kappa * speed) * q.cross(now.slip.n);
+        out.T_roll_E = p.mu_r * now.N / (kappa * speed) * q.cross(now.slip.n);
         out.T_roll_E_j = -out.T_roll_E;
         out.T_i = out.T_roll_E;
         out.T_j = -out.T_roll_E;
         return out;
     }
 
-    bool needs_curvature() const override { return sliding.p.mu_r > 0; }
+    bool needs_curvature() const override { return p.mu_r > 0; }
 
-    Springs springs(const Meeting& now) const override
-    {
-        return {.K_slide = sliding.p.K_E, .D_slide = sliding.D(now)};
-    }
-
-private:
-    const Sliding sliding;
+    Springs springs(const Meeting& now) const override { return {.K_slide = p.K_E, .D_slide = D_slide(now)}; }
 };
 
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
 {
     p.mu_r = o.not_negative("mu_r", 0);
     return std::make_shared<ConstantTorque>(p);

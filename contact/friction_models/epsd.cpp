@@ -13,16 +13,13 @@
 namespace hilda::contact {
 namespace {
 
-class Epsd final : public FrictionModel {
+class Epsd final : public Sliding {
 public:
-    explicit Epsd(const FrictionParameters& p) : sliding(p) {}
-
-    Tracking tracking() const override { return sliding.p.tracking; }
-    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
+    explicit Epsd(const FrictionParameters& p) : Sliding(p) {}
 
     void advance(const Meeting& now, History& h) const override
     {
-        sliding.advance(now, h);
+        slide(now, h);
         const Slip& s = now.slip;
         const Spring spring = rolling(now);
         h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
@@ -32,7 +29,7 @@ public:
     Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
     {
         Wrench out;
-        sliding.add(now, rates, h, out);
+        add_sliding(now, rates, h, out);
         const Slip& s = now.slip;
         const Spring spring = rolling(now);
         const Vec3 elastic = spring.K * tangent(h.Theta_i, s.n, s.u);
@@ -45,12 +42,12 @@ public:
         return out;
     }
 
-    bool needs_curvature() const override { return sliding.p.mu_r > 0; }
+    bool needs_curvature() const override { return p.mu_r > 0; }
 
     Springs springs(const Meeting& now) const override
     {
         const Spring spring = rolling(now);
-        return {.K_slide = sliding.p.K_E, .D_slide = sliding.D(now), .K_roll = spring.K, .D_roll = spring.D};
+        return {.K_slide = p.K_E, .D_slide = D_slide(now), .K_roll = spring.K, .D_roll = spring.D};
     }
 
 private:
@@ -62,17 +59,14 @@ private:
     {
         const double kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
         if (!(kappa > 0)) return {};
-        const FrictionParameters& p = sliding.p;
         const double R = 1 / kappa, K = p.K_E * R * R;
         return {.K = K,
                 .D = p.D_roll.value_or(2 * p.zeta * std::sqrt((now.I_roll + now.m * R * R) * K)),
                 .cap = p.mu_r * R * now.N / K};
     }
-
-    const Sliding sliding;
 };
 
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
 {
     p.mu_r = o.not_negative("mu_r", 0);
     return std::make_shared<Epsd>(p);

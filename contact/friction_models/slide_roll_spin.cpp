@@ -25,6 +25,7 @@
 /// its cross product with n.
 
 #include "contact/friction_models/spring.hpp"
+#include "contact/normal_law.hpp"
 #include "dae/object_reader.hpp"
 
 #include <utility>
@@ -73,17 +74,13 @@ struct RollingLevers {
     double least;          ///< [1/m]
 };
 
-class SlideRollSpin final : public FrictionModel {
+class SlideRollSpin final : public Sliding {
 public:
-    explicit SlideRollSpin(const FrictionParameters& p) : p(p), sliding(p) {}
-
-    Tracking tracking() const override { return p.tracking; }
-
-    double fictitious(double a, double b) const override { return sliding.fictitious(a, b); }
+    explicit SlideRollSpin(const FrictionParameters& p) : Sliding(p) {}
 
     void advance(const Meeting& now, History& h) const override
     {
-        sliding.advance(now, h);
+        slide(now, h);
         if (p.eta_r > 0) p.relative_rolling ? roll_together(now, h) : roll_apart(now, h);
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
@@ -95,7 +92,7 @@ public:
     Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
     {
         Wrench out;
-        sliding.add(now, rates, h, out);
+        add_sliding(now, rates, h, out);
         if (p.eta_r > 0) add_rolling(now, rates, h, out);
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
@@ -110,7 +107,7 @@ public:
 
     Springs springs(const Meeting& now) const override
     {
-        Springs all{.K_slide = p.K_E, .D_slide = sliding.D(now)};
+        Springs all{.K_slide = p.K_E, .D_slide = D_slide(now)};
         if (p.eta_r > 0) {
             // along the direction of the smaller curvature, where rolling is stiffest
             const double longest = RollingLevers(now).longest();
@@ -229,21 +226,17 @@ private:
         out.T_j -= torque(h.Theta_j, h.roll_j, kappa_j * rates.p_j, out.T_roll_E_j);
         out.T_roll_E_j *= -1;
     }
-
-    const FrictionParameters p;
-    const Sliding sliding;
 };
 
 /// Where spinning is resisted by a Hertzian patch, its modulus is that of the normal law unless told otherwise.
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p)
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw& normal)
 {
-    const double of_normal_law = std::exchange(p.E_star, 0);
     o.exclude("eta_psi", "spin");
     p.eta_r = o.not_negative("eta_r", 0);
     if (o.look("spin") != nullptr) {
         o.one_of("spin", {"hertz"});
-        const bool known = of_normal_law > 0 && !o.has("E_star");
-        p.E_star = known ? of_normal_law : o.positive("E_star");
+        const auto* hertz = dynamic_cast<const Hertz*>(&normal);
+        p.E_star = hertz != nullptr && !o.has("E_star") ? hertz->E_star : o.positive("E_star");
     } else {
         p.eta_psi = o.not_negative("eta_psi", 0);
     }

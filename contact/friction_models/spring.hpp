@@ -39,12 +39,21 @@ Load within(const Load& elastic, const Load& damping, double bound, bool keep)
     return sum;
 }
 
-/// Sliding friction, which the rolling models that are compared have in common
-class Sliding {
+/// The built-in laws slide alike (Sec. 4.3.1) and differ in rolling and spinning.
+class Sliding : public FrictionModel {
 public:
+    Tracking tracking() const final { return p.tracking; }
+    /// Reduced, or the mean of Eqs. 4.4 and 4.10
+    double fictitious(double a, double b) const final
+    {
+        if (p.reduced_mass || !std::isfinite(a) || !std::isfinite(b)) return reduced(a, b);
+        return 0.5 * (a + b);
+    }
+
+protected:
     explicit Sliding(const FrictionParameters& p) : p(p) { p.validate(); }
 
-    void advance(const Meeting& now, History& history) const
+    void slide(const Meeting& now, History& history) const
     {
         const Vec3& n = now.slip.n;
         history.S += components(now.slip.ds, n, now.slip.u);
@@ -52,20 +61,16 @@ public:
     }
 
     /// F = K_E S + D Δs/h                                                                            Eq. 4.2
-    void add(const Meeting& now, const Rates& rates, const History& history, Wrench& out) const
+    void add_sliding(const Meeting& now, const Rates& rates, const History& history, Wrench& out) const
     {
         out.F_E = p.K_E * tangent(history.S, now.slip.n, now.slip.u);
-        const Vec3 damping = history.slide.damped ? Vec3(D(now) * rates.s) : Vec3(Vec3::Zero());
+        const Vec3 damping = history.slide.damped ? Vec3(D_slide(now) * rates.s) : Vec3(Vec3::Zero());
         out.F = within(out.F_E, damping, p.mu_s * now.N, p.capped);
     }
 
-    double D(const Meeting& now) const { return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E)); }
-
-    /// Reduced, or the mean of Eqs. 4.4 and 4.10
-    double fictitious(double a, double b) const
+    double D_slide(const Meeting& now) const
     {
-        if (p.reduced_mass || !std::isfinite(a) || !std::isfinite(b)) return reduced(a, b);
-        return 0.5 * (a + b);
+        return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E));
     }
 
     const FrictionParameters p;

@@ -41,12 +41,12 @@ private:
     const double c, mu_s;
 };
 
-const bool oil = enrol(FrictionLaw{
-    .name = "demo-oil",
-    .what = "viscous, up to the Coulomb bound",
-    .read = [](dae::ObjectReader& o, FrictionParameters p) -> std::shared_ptr<const FrictionModel> {
-        return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
-    }});
+const bool oil = enrol(FrictionLaw{.name = "demo-oil",
+                                   .what = "viscous, up to the Coulomb bound",
+                                   .read = [](dae::ObjectReader& o, FrictionParameters p,
+                                              const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
+                                       return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+                                   }});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -13,22 +13,24 @@ namespace hilda::studies {
 
 Demand between(const std::string& what, double measured, double least, double most)
 {
-    return {.what = what,
-            .measured = measured,
-            .demanded = 0.5 * (least + most),
-            .tolerance = 0.5 * (most - least)};
+    return {.what = what, .measured = measured, .least = least, .most = most};
+}
+
+Demand demand(const std::string& what, double measured, double value, double tolerance)
+{
+    return between(what, measured, value - tolerance, value + tolerance);
 }
 
 bool judge(const std::vector<Demand>& demands, std::ostream& out, nlohmann::ordered_json& json)
 {
-    Table table({{"measured", "{:.6g}"}, {"demanded", "{:.6g}"}, {"+-", "{:.2g}"}, {"met"}, {"what"}});
+    Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"met"}, {"what"}});
     json["checks"] = nlohmann::ordered_json::array();
     for (const Demand& d : demands) {
-        table.add({d.measured, d.demanded, d.tolerance, d.met() ? "yes" : "NO", d.what});
+        table.add({d.measured, d.least, d.most, d.met() ? "yes" : "NO", d.what});
         json["checks"].push_back({{"what", d.what},
                                   {"measured", number_or_null(d.measured)},
-                                  {"demanded", d.demanded},
-                                  {"tolerance", d.tolerance},
+                                  {"least", d.least},
+                                  {"most", d.most},
                                   {"met", d.met()}});
     }
     const auto met = std::count_if(demands.begin(), demands.end(), [](const Demand& d) { return d.met(); });

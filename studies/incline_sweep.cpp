@@ -142,8 +142,8 @@ std::vector<Demand> demands(const Map& map, const Boundaries& b, bool dissertati
     const Deviation& rest = dissertation ? b.rest : b.rest_by_torque;
     const std::string up_to = dissertation ? "" : " up to eta_r = 1/2";
     std::vector<Demand> all = {
-        Demand{"rest limit less atan(2 eta_r mu_k)" + up_to + ", least [deg]", rest.least, 0, 0.15 + half},
-        Demand{"rest limit less atan(2 eta_r mu_k)" + up_to + ", most [deg]", rest.most, 0, 0.15 + half}};
+        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", least [deg]", rest.least, 0, 0.15 + half),
+        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", most [deg]", rest.most, 0, 0.15 + half)};
     if (dissertation)
         for (const auto& [which, value] :
              {std::pair("least", b.rolling.least), std::pair("most", b.rolling.most)})

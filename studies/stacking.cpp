@@ -225,15 +225,15 @@ std::vector<Demand> demands(const std::vector<Cell>& cells, const Grid& g, const
         const Known& must = known_of(gap);
         const Curve c = curve(cells, gap);
         all.push_back(
-            Demand{"eta_r of the largest mass, gap " + in_gaps(gap), c.peak_eta, must.peak_eta, 1e-9});
-        all.push_back(Demand{fmt::format("mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), in_gaps(gap)),
-                             c.plateau, must.plateau, same_mass});
+            demand("eta_r of the largest mass, gap " + in_gaps(gap), c.peak_eta, must.peak_eta, 1e-9));
+        all.push_back(demand(fmt::format("mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), in_gaps(gap)),
+                             c.plateau, must.plateau, same_mass));
     }
     const Cell& coarse = tried_finer(cells, g);
     all.push_back(
-        Demand{fmt::format("mass with h = {:g} s less that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
+        demand(fmt::format("mass with h = {:g} s less that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
                            h / finer_by, h, in_gaps(coarse.stack.gap), coarse.stack.eta_r),
-               finer.m_c() - coarse.m_c(), 0, same_mass});
+               finer.m_c() - coarse.m_c(), 0, same_mass));
     return all;
 }
 

@@ -63,11 +63,15 @@ Series roll(const Setting& set, Frames* frames)
                       const lie::Vec3 omega_now = b.A * b.omega_bar;
                       const contact::Wrench& w = pair.wrench;
                       const contact::History& history = pair.memory.history;
+                      const contact::Slip& frame = pair.meeting.slip;
+                      const auto along_x = [&](const contact::Vec2& of) {
+                          return contact::tangent(of, frame.n, frame.u).x();
+                      };
                       const double F_E = -w.F_E.x(), T_E = -w.T_roll_E.y();
                       theta += set.h * omega_now.y();
                       s.add({scene.t, b.r.x(), theta, b.rdot.x(), omega_now.y(), (b.rdot.x() - v) / set.h,
                              (omega_now.y() - omega) / set.h, F_E, -w.F.x() - F_E, T_E, -w.T_i.y() - T_E,
-                             1e3 * history.S.norm(), 1e3 * history.Theta_i.norm(),
+                             -1e3 * along_x(history.S), 1e3 * along_x(history.Theta_i),
                              history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 0. : 1.});
                       v = b.rdot.x(), omega = omega_now.y();
                   });

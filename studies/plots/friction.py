@@ -16,7 +16,7 @@ PANELS = {
     "disk": [[("x", "$x$ [m]", (0, 1.6)), ("theta", r"$\theta$ [rad]", (0, 1.6))],
              [("v", "$v$ [m/s]", (0, 1.6)), ("omega", r"$\omega$ [rad/s]", (0, 1.6))],
              [("F_E", "$F_E$ [N]", (0, 1.6)), ("T_E", "$T_E$ [N m]", (0, 1.6))],
-             [("S_mm", "$|S|$ [mm]", (0, 1.6)), ("Theta_e-3rad", r"$|\Theta|$ [mrad]", (0, 1.6))]],
+             [("S_mm", "$S$ [mm]", (0, 1.6)), ("Theta_e-3rad", r"$\Theta$ [mrad]", (0, 1.6))]],
     "disk-damping": [[("a", "$\\ddot x$ [m/s²]", (1.22, 1.42)), ("alpha", r"$\ddot\theta$ [rad/s²]", (1.22, 1.42))]],
     "rolling-models": [[("theta", r"$\theta$ [rad]", None), ("T_E", "rolling torque [N m]", None)],
                        [("theta", r"$\theta$ [rad], at rest", (1.25, 1.5)),

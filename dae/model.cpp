@@ -74,9 +74,25 @@ void Model::constrain(const std::string& name, Blocks rows)
                        .branch = -1,
                        .constraint = constraints(),
                        .number = ++number});
-        add_to_pattern(row.back());
+        if (with_unknowns.empty()) add_to_pattern(row.back());
     }
+    if (!with_unknowns.empty()) set_pattern();  // whose rows stay last
     constraint_names.push_back(name);
+}
+
+void Model::constrain(const std::string& name, std::unique_ptr<Constraint> c)
+{
+    const int bodies = static_cast<int>(body.size());
+    for (const int b : {c->i, c->j})
+        if (b < ground || b >= bodies) lie::reject("constraint '" + name + "'", "no body has this number", b);
+    if (c->i == c->j)
+        lie::reject("constraint '" + name + "'", "a constraint needs two different bodies",
+                    "'" + body_name(c->i) + "' twice");
+    if (!names_taken.insert(name).second)
+        lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
+    c->name = name;
+    with_unknowns.push_back(std::move(c));
+    set_pattern();
 }
 
 void Model::load(std::unique_ptr<Force> f)
@@ -114,6 +130,20 @@ void Model::prepare(State& x)
     active.resize(row.size());
     std::iota(active.begin(), active.end(), 0);
     set_pattern();  // the complements may enter where their blocks do not
+    int alphas = 0;
+    for (const auto& c : with_unknowns) {
+        c->first_alpha = alphas;
+        alphas += c->unknowns();
+        c->first_remembered = remembered;
+        remembered += c->remembered();
+    }
+    x.alpha = Eigen::VectorXd::Zero(alphas);
+    x.remembered.assign(remembered, 0);
+    for (const auto& c : with_unknowns) {
+        if (const std::string why = c->objection(at(*c, x)); !why.empty())
+            throw lie::InvalidInput(name_of(*c) + ": " + why);
+        c->track(at(*c, x), true, x.alpha.data() + c->first_alpha);
+    }
     for (const auto& f : force) {
         f->first_memory = memory;
         memory += f->memory();
@@ -121,7 +151,7 @@ void Model::prepare(State& x)
         remembered += f->remembered();
     }
     x.memory.assign(memory, 0);
-    x.lambda = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size()));
+    x.lambda = Eigen::VectorXd::Zero(rows());
     swap_drivers(x);  // one may start near its singular point
     remember_start(x);
 }
@@ -130,6 +160,8 @@ void Model::remember_start(State& x) const
 {
     for (const auto& f : force) std::fill_n(x.memory.begin() + f->first_memory, f->memory(), 0);
     x.remembered.assign(remembered, 0);
+    for (const auto& c : with_unknowns)
+        c->remember(at(*c, x), true, x.remembered.data() + c->first_remembered);
     for (const auto& f : force) f->remember(x);
 }
 
@@ -154,10 +186,55 @@ std::string Model::name_of(const Row& r) const
            "; bodies '" + body_name(r.block->i) + "', '" + body_name(r.block->j) + "'";
 }
 
+std::string Model::name_of(const Constraint& c) const
+{
+    return "contact '" + c.name + "'; bodies '" + body_name(c.i) + "', '" + body_name(c.j) + "'";
+}
+
+std::string Model::row_name(int k) const
+{
+    if (k < static_cast<int>(active.size())) return name_of(row[active[k]]);
+    for (const auto& c : with_unknowns) {
+        const int on_velocity = k - c->first_velocity_row;
+        if (k >= c->first_row && k < c->first_row + c->rows())
+            return "contact '" + c->name + "' " + c->row_name(k - c->first_row) + "; bodies '" +
+                   body_name(c->i) + "', '" + body_name(c->j) + "'";
+        if (on_velocity >= 0 && on_velocity < c->velocity_rows())
+            return "contact '" + c->name + "' " + c->row_name(c->rows() + on_velocity) + "; bodies '" +
+                   body_name(c->i) + "', '" + body_name(c->j) + "'";
+    }
+    return System::row_name(k);
+}
+
 void Model::set_pattern()
 {
     rows_pattern = {};
     for (const int k : active) add_to_pattern(row[k]);
+    int alphas = 0;
+    for (const auto& c : with_unknowns) {
+        c->first_row = rows_pattern.rows();
+        add_to_pattern(*c, 0, c->rows());
+        rows_pattern.massless.push_back({c->first_row, c->rows(), alphas, c->unknowns(), {}});
+        rows_pattern.massless.back().D.setZero(c->rows(), c->unknowns());
+        alphas += c->unknowns();
+    }
+    for (const auto& c : with_unknowns) {
+        c->first_velocity_row = rows_pattern.rows();
+        add_to_pattern(*c, c->rows(), c->velocity_rows());
+        rows_pattern.velocity_rows += c->velocity_rows();
+    }
+}
+
+void Model::add_to_pattern(const Constraint& c, int first, int rows)
+{
+    for (int k = first; k < first + rows; ++k) {
+        const unsigned nonzero = c.nonzero(k);
+        for (const auto& [b, mask] : {std::pair{c.i, nonzero & 0b111111}, {c.j, nonzero >> 6}})
+            if (b != ground && mask != 0)
+                rows_pattern.entry.push_back(
+                    {.body = b, .nonzero = mask, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+        rows_pattern.start.push_back(static_cast<int>(rows_pattern.entry.size()));
+    }
 }
 
 void Model::add_to_pattern(const Row& r)
@@ -239,6 +316,8 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
         const Block& block = row[k].in_force(x);
         out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
     }
+    for (const auto& c : with_unknowns) c->phi(at(*c, x), out.data() + c->first_row);
+    out.tail(rows_pattern.velocity_rows).setZero();
 }
 
 void Model::variation(const State& x, lie::Rows& out) const
@@ -250,6 +329,25 @@ void Model::variation(const State& x, lie::Rows& out) const
         if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
         if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
     }
+    Constraint::Derivatives d;
+    const auto fill = [&](const Constraint& c, int of_c, int row, int rows) {
+        for (int k = 0; k < rows; ++k)
+            for (int e = out.start[row + k]; e < out.start[row + k + 1]; ++e) {
+                const auto& of_body = out.entry[e].body == c.i ? d.of_i : d.of_j;
+                out.entry[e].r = of_body.row(of_c + k).head<3>();
+                out.entry[e].pi = of_body.row(of_c + k).tail<3>();
+            }
+    };
+    for (size_t n = 0; n < with_unknowns.size(); ++n) {
+        const Constraint& c = *with_unknowns[n];
+        d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
+        d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
+        d.of_alpha.setZero(c.rows(), c.unknowns());
+        c.variation(at(c, x), d);
+        fill(c, 0, c.first_row, c.rows());
+        fill(c, c.rows(), c.first_velocity_row, c.velocity_rows());
+        out.massless[n].D = d.of_alpha;
+    }
 }
 
 void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
@@ -259,6 +357,7 @@ void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
         const Block& block = row[k].in_force(x);
         out[n++] = block.nu(motion(x, block.i), motion(x, block.j), x.t);
     }
+    out.tail(out.size() - n).setZero();
 }
 
 void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
@@ -268,6 +367,17 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
         const Block& block = row[k].in_force(x);
         out[n++] = block.gamma(motion(x, block.i), motion(x, block.j), x.t);
     }
+    double of_c[12];
+    for (const auto& c : with_unknowns) {
+        c->gamma(at(*c, x), of_c);
+        std::copy_n(of_c, c->rows(), out.data() + c->first_row);
+        std::copy_n(of_c + c->rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
+    }
+}
+
+void Model::track(State& x) const
+{
+    for (const auto& c : with_unknowns) c->track(at(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
 void Model::second_variation(const State& x, lie::SecondVariation& out) const
@@ -364,6 +474,8 @@ double Model::potential_energy(const State& x) const
 void Model::accepted(const State&, State& after) const
 {
     swap_drivers(after);
+    for (const auto& c : with_unknowns)
+        c->remember(at(*c, after), false, after.remembered.data() + c->first_remembered);
     for (const auto& f : force) f->remember(after);
 }
 

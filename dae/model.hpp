@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/constraint.hpp"
 #include "dae/force.hpp"
 #include "lie/check.hpp"
 
@@ -52,6 +53,17 @@ public:
         constrain(name, std::move(rows));
     }
 
+    /// Adds a constraint with unknowns of its own; its rows come after those of all blocks.
+    void constrain(const std::string& name, std::unique_ptr<Constraint> constraint);
+    const std::vector<std::unique_ptr<Constraint>>& evolving() const { return with_unknowns; }
+    /// Where one of them stands in a state
+    Constraint::At at(const Constraint& c, const State& x) const
+    {
+        return {motion(x, c.i), motion(x, c.j), x.t, x.alpha.data() + c.first_alpha,
+                x.remembered.data() + c.first_remembered};
+    }
+    std::string name_of(const Constraint& c) const;
+
     void load(std::unique_ptr<Force> force);
     template <class F>
     requires std::derived_from<F, Force>
@@ -60,8 +72,8 @@ public:
 
     /// Readies the model for a run from x: puts dropped rows back, asks every body whether its orientation is
     /// one and every block and every force whether it can be used there (ConstraintError, ForceError), gives
-    /// DP1 drivers their complement, and sets x.memory, x.remembered and the size of x.lambda. Called by
-    /// start().
+    /// DP1 drivers their complement, and sets x.memory, x.remembered, x.alpha and the size of x.lambda. Called
+    /// by start().
     void prepare(State& x);
     /// Lets the forces remember a start in x, whatever they remembered before. Called by prepare(), and by
     /// start() once x is on the constraints.
@@ -115,6 +127,7 @@ public:
     void variation(const State& x, lie::Rows& out) const override;
     void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
     void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
+    void track(State& x) const override;
     void second_variation(const State& x, lie::SecondVariation& out) const override;
     void nu_variation(const State& x, lie::Rows& out) const override;
     void gamma_variation(const State& x, lie::GammaVariation& out) const override;
@@ -125,13 +138,14 @@ public:
     /// Swaps DP1 drivers that come near |f| = 1 for their complement, with the multiplier that gives the same
     /// torque, and lets forces remember.
     void accepted(const State& before, State& after) const override;
-    std::string row_name(int k) const override { return name_of(row[active[k]]); }
+    std::string row_name(int k) const override;
     std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
 
 private:
     void swap_drivers(State& x) const;
     void set_pattern();
     void add_to_pattern(const Row& row);
+    void add_to_pattern(const Constraint& c, int first, int rows);
 
     const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
 
@@ -140,6 +154,7 @@ private:
     std::unordered_set<std::string> names_taken;  ///< of constraints
     std::vector<Row> row;
     std::vector<int> active, dropped;  ///< ascending
+    std::vector<std::unique_ptr<Constraint>> with_unknowns;
     std::vector<std::unique_ptr<Force>> force;
     int memory = 0, remembered = 0;  ///< numbers in the state
 

@@ -24,12 +24,28 @@ std::string number(double value)
     return text.str();
 }
 
+/// The contact that row k of the reduced rows belongs to
+std::string contact_of(const Model& model, int k)
+{
+    int row = static_cast<int>(model.active_rows().size());
+    for (const bool of_velocities : {false, true})
+        for (const auto& c : model.evolving()) {
+            row += of_velocities ? c->velocity_rows() : c->rows() - c->unknowns();
+            if (k < row) return "'" + c->name + "'";
+        }
+    return "row " + std::to_string(k);
+}
+
 /// The rows that add less than `tolerance` to those before them, as numbers into model.active_rows(). In the
-/// metric of the mass, so that the answer does not depend on units.
+/// metric of the mass, so that the answer does not depend on units. lie::NumericalFailure "contact_rank" where a contact
+/// is among them: its force would not be determined.
 std::vector<int> dependent_rows(const Model& model, const State& x, double tolerance)
 {
-    lie::Rows C = model.pattern();
-    model.variation(x, C);
+    lie::Rows whole = model.pattern();
+    model.variation(x, whole);
+    lie::Elimination contacts(whole);  // a contact is the one row that is left of it
+    contacts.factor(whole);
+    const lie::Rows& C = contacts.reduced();
     const int m = C.rows(), n = 6 * model.bodies();
 
     cholmod_common common;
@@ -86,6 +102,17 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
     cholmod_l_finish(&common);
     if (rank < 0 || rank != steps)
         throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
+    std::string names;
+    while (!dependent.empty() && dependent.back() >= static_cast<int>(model.active_rows().size())) {
+        names = contact_of(model, dependent.back()) + (names.empty() ? "" : ", ") + names;
+        dependent.pop_back();
+    }
+    if (!names.empty())
+        throw lie::NumericalFailure(
+            "contact_rank",
+            "contacts press where other constraints hold already, so that their forces "
+            "are not determined: " +
+                names);
     return dependent;
 }
 
@@ -113,15 +140,34 @@ void check_agreement(const Model& model, const Model::Row& row, const State& x)
 
 }  // namespace
 
+namespace {
+
+std::string worst_row(const Model& model, const State& x)
+{
+    const int row = model.largest_residual(x).row;
+    if (model.evolving().empty()) return model.name_of(model.all_rows()[row]);
+    Eigen::VectorXd Phi(model.rows());
+    model.phi(x, Phi);
+    int worst = 0;
+    Phi.cwiseAbs().maxCoeff(&worst);
+    return model.row_name(worst);
+}
+
+}  // namespace
+
 int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance)
 {
-    Eigen::VectorXd step(K.size());
+    Eigen::VectorXd step(K.size()), Phi(model.rows());
     constexpr int most = 50;
     const auto residual = [&] {
         double largest = 0;
         for (const int k : model.active_rows())
             largest = std::max(largest, std::abs(model.scaled_residual(model.all_rows()[k], x)));
-        return largest;
+        if (model.evolving().empty()) return largest;
+        model.phi(x, Phi);
+        return std::max(
+            largest,
+            Phi.tail(model.rows() - static_cast<int>(model.active_rows().size())).cwiseAbs().maxCoeff());
     };
     for (int k = 0;; ++k) {
         const double before = residual();
@@ -141,6 +187,7 @@ int project_positions(const Model& model, lie::Saddle& K, State& x, double toler
             x.body[b].r += part * step.segment<3>(6 * b);
             x.body[b].A = lie::orthonormalised(x.body[b].A * lie::exp(part * step.segment<3>(6 * b + 3)));
         }
+        if (x.alpha.size() > 0) x.alpha += part * K.massless_part(step);  // those of a model are in its order
         // Goes on below the tolerance for as long as it still gains: the last step is free and gives the last
         // digits.
         const double after = residual();
@@ -151,7 +198,7 @@ int project_positions(const Model& model, lie::Saddle& K, State& x, double toler
         if (k == most)
             throw lie::NoConvergence(
                 "no position satisfies the constraints near the one given; largest residual " +
-                    number(after) + " in " + model.name_of(model.all_rows()[model.largest_residual(x).row]),
+                    number(after) + " in " + worst_row(model, x),
                 after, most);
     }
 }
@@ -164,6 +211,7 @@ void project_velocities(const lie::System& system, lie::Saddle& K, State& x)
         v.segment<3>(6 * b) = system.mass().m[b] * x.body[b].rdot;
         v.segment<3>(6 * b + 3) = system.mass().J_bar[b] * x.body[b].omega_bar;
     }
+    K.massless_part(v).setZero();
     system.nu(x, K.constraint_part(v));
     K.solve_refined(v);
     for (int b = 0; b < system.bodies(); ++b) {
@@ -183,6 +231,7 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
         a.segment<3>(6 * b) = loads.F[b];
         a.segment<3>(6 * b + 3) = loads.n_bar[b] - omega_bar.cross(system.mass().J_bar[b] * omega_bar);
     }
+    K.massless_part(a).setZero();
     system.gamma(x, K.constraint_part(a));
     if (!a.allFinite()) throw lie::NonFinite("a load or a constraint is not finite");
     K.solve_refined(a);
@@ -237,6 +286,43 @@ std::vector<int> drop_and_project(Model& model, State& x, double residual)
 
 }  // namespace
 
+namespace {
+
+/// Bodies that are to be in contact and are not, unless they may be moved; and what of it is the largest error
+void check_contact_positions(const Model& model, const State& x, const StartOptions& options,
+                             StartReport& report)
+{
+    for (const auto& c : model.evolving()) {
+        const double error = c->position_error(model.at(*c, x));
+        if (!options.fix_initial && !(error <= c->allowance()))
+            throw lie::InvalidInput(
+                model.name_of(*c) + ": not in contact at the start, a gap or overlap of " + number(error) +
+                " m, more than " + number(c->allowance()) + " m; --fix-initial closes it");
+        if (error > report.position_residual) {
+            report.position_residual = error;
+            report.worst_position = model.name_of(*c);
+        }
+    }
+}
+
+void check_contact_velocities(const Model& model, const State& x, const StartOptions& options,
+                              StartReport& report)
+{
+    for (const auto& c : model.evolving()) {
+        const double error = c->velocity_error(model.at(*c, x));
+        if (!options.fix_initial && !(error <= options.tolerance))
+            throw lie::InvalidInput(model.name_of(*c) + ": the initial velocities violate the contact by " +
+                                    number(error) + " m/s, more than " + number(options.tolerance) +
+                                    "; --fix-initial tries to move them");
+        if (error > report.velocity_residual) {
+            report.velocity_residual = error;
+            report.worst_velocity = model.name_of(*c);
+        }
+    }
+}
+
+}  // namespace
+
 StartReport start(Model& model, State& x, const StartOptions& options)
 {
     model.prepare(x);
@@ -257,9 +343,10 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                   model.all_rows()[position.row].constraint);
     }
 
+    check_contact_positions(model, x, options, report);
     const std::vector<int> dropped = drop_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
-    report.rank = model.rows();
+    report.rank = model.rows() - model.pattern().unknowns();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
     lie::Saddle K(model);
@@ -273,6 +360,9 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                       number(velocity.value) + ", more than " + number(options.tolerance) +
                                       " m/s or rad/s; --fix-initial tries to move them",
                                   model.all_rows()[velocity.row].constraint);
+    }
+    check_contact_velocities(model, x, options, report);
+    if (model.rows() > 0) {
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }

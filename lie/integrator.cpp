@@ -28,6 +28,21 @@ const Scheme& scheme(const std::string& name)
     reject("lie::scheme", "an integrator must be one of " + names, name);
 }
 
+std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
+{
+    const auto refuse_unless = [&](bool Scheme::*takes, const std::string& what) {
+        if (this->*takes) return;
+        std::string names;
+        for (const Scheme& s : schemes())
+            if (s.*takes) names += (names.empty() ? "" : ", ") + s.name;
+        reject("integrator " + name, "takes no " + what + "; those that do are " + names, name);
+    };
+    const Rows& rows = system.pattern();
+    if (!rows.massless.empty()) refuse_unless(&Scheme::massless, "contacts that evolve");
+    if (rows.velocity_rows > 0) refuse_unless(&Scheme::velocities, "rolling without slip");
+    return construct(system, settings);
+}
+
 bool enrol(Scheme scheme)
 {
     std::vector<Scheme>& all = list();

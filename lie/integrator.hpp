@@ -75,7 +75,12 @@ struct Scheme {
     /// Chooses its own steps inside the step it is asked for, by rtol and atol. It remembers past steps
     /// outside the state, so its runs do not resume.
     bool adaptive = false;
-    std::unique_ptr<Integrator> (*make)(const System&, const Settings&) = nullptr;
+    bool massless = false;    ///< takes systems with massless unknowns: contacts that evolve
+    bool velocities = false;  ///< takes rows that hold velocities alone: rolling
+    std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
+
+    /// InvalidInput for a system with unknowns or rows that the scheme does not take
+    std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
 };
 
 /// All schemes, by name.
@@ -90,7 +95,7 @@ bool enrol(Scheme scheme);
 template <class Method>
 bool enrol(Scheme scheme)
 {
-    scheme.make = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
+    scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<Method>(system, settings);
     };
     return enrol(std::move(scheme));

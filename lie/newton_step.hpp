@@ -171,7 +171,8 @@ private:
 class SaddleStep : public NewtonStep {
 public:
     SaddleStep(const System& model, const Settings& settings)
-        : NewtonStep(model, settings), K(model, Metric::mass, settings.linear_solver), b(K.size())
+        : NewtonStep(model, settings), K(model, Metric::mass, settings.linear_solver), b(K.size()),
+          of_velocities(model.pattern().velocity_rows)
     {
         z.resize(K.size());
         e.resize(K.size());
@@ -186,15 +187,12 @@ protected:
     ///
     ///     K e = (b - K z, -factor Φ)                                       Fang (2022), Eqs. 3.30, 3.31
     ///
-    /// The rows of the bodies are linear in z: from the second correction on they hold, and only Φ is left.
+    /// The rows of the bodies, of massless unknowns and of velocities are linear in z: from the second correction on
+    /// they hold, and only Φ is left.
     void correct(int k, const State& x, double factor)
     {
-        if (k == 1) {
-            K.multiply(z, e);
-            e = b - e;
-        }
-        model.phi(x, K.constraint_part(e));
-        K.constraint_part(e) *= -factor;
+        if (k == 1) set_linear_residual();
+        set_constraint_residual(k, x, factor);
         if (k == 1)
             K.solve(e);
         else
@@ -202,11 +200,58 @@ protected:
         z += e;
     }
 
+    /// e = b - K z
+    void set_linear_residual()
+    {
+        K.multiply(z, e);
+        e = b - e;
+        of_velocities = velocity_part(e);
+    }
+
+    /// -factor Φ into e, and for the rows of velocities what set_linear_residual() found, or 0 from k = 2 on
+    void set_constraint_residual(int k, const State& x, double factor)
+    {
+        model.phi(x, K.constraint_part(e));
+        K.constraint_part(e) *= -factor;
+        if (k == 1) velocity_part(e) = of_velocities;
+    }
+
     /// (Δr, Δθ) of a correction
     auto motion_part(const Eigen::VectorXd& z) const { return z.head(6 * model.bodies()); }
+    /// Its length, with the massless unknowns
+    double length_of_motion(Eigen::VectorXd& e) const
+    {
+        return std::sqrt(motion_part(e).squaredNorm() + K.massless_part(e).squaredNorm());
+    }
+    /// The rows that hold velocities, last of the constraints
+    Eigen::VectorBlock<Eigen::VectorXd> velocity_part(Eigen::VectorXd& z) const
+    {
+        return z.segment(6 * model.bodies() + model.rows() - of_velocities.size(), of_velocities.size());
+    }
+
+    /// The massless unknowns of x moved by these, which stand group by group
+    template <class Step>
+    void move_massless(State& x, const Step& by) const
+    {
+        Eigen::Index at = 0;
+        for (const Rows::Massless& group : K.rows().massless) {
+            x.alpha.segment(group.first_alpha, group.count) += by.segment(at, group.count);
+            at += group.count;
+        }
+    }
+    /// Those of x_n, moved by a factor times those of z
+    void place_massless(State& x, double factor)
+    {
+        x.alpha = x_n.alpha;
+        if (K.rows().massless.empty()) return;
+        move_massless(x, factor * K.massless_part(z));
+    }
 
     Saddle K;
     Eigen::VectorXd b;
+
+private:
+    Eigen::VectorXd of_velocities;
 };
 
 }  // namespace hilda::lie

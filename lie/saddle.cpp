@@ -4,32 +4,52 @@
 namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
-    : system(system), metric(metric), bodies(system.bodies()), m(system.rows()), C(system.pattern()),
-      scale(Eigen::VectorXd::Ones(size())), work(size()), residual(size()), right_side(size())
+    : system(system), metric(metric), bodies(system.bodies()), m(system.rows()),
+      unknowns(system.pattern().unknowns()), C(system.pattern()), work(size()), residual(size()),
+      right_side(size())
 {
+    if (unknowns > 0 && solver != LinearSolver::klu) {
+        elimination = std::make_unique<Elimination>(C);
+        reduced.resize(6 * bodies + elimination->reduced().rows());
+    }
+    scale = Eigen::VectorXd::Ones(elimination ? reduced.size() : size());
     analyse();
     if (solver == LinearSolver::klu) return;
     Mass unit;
     unit.m.assign(bodies, 1);
     unit.J_bar.assign(bodies, Mat3::Identity());
-    condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, C);
+    condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, solved());
     if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
 }
 
 void Saddle::analyse()
 {
+    const Rows& R = solved();
+    const int rows = R.rows();
     // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
     std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
-    for (int k = 0; k < m; ++k)
-        for (int n = C.start[k]; n < C.start[k + 1]; ++n)
+    std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
+    for (int k = 0; k < rows; ++k)
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n)
             for (int c = 0; c < 6; ++c)
-                if (C.entry[n].nonzero >> c & 1) {
-                    lower[6 * C.entry[n].body + c].emplace_back(6 * bodies + k,
-                                                                static_cast<int>(slot.size()));
+                if (R.entry[n].nonzero >> c & 1) {
+                    const int at = 6 * R.entry[n].body + c, s = static_cast<int>(slot.size());
+                    lower[at].emplace_back(6 * bodies + k, s);
+                    of_row[k].emplace_back(at, s);
                     slot.push_back({0, 0, 1});
                 }
+    int alpha = 0;
+    for (const Rows::Massless& group : R.massless)
+        for (int c = 0; c < group.count; ++c, ++alpha)
+            for (int k = 0; k < group.rows; ++k) {
+                const int s = static_cast<int>(slot.size());
+                of_alpha[alpha].emplace_back(6 * bodies + group.first + k, s);
+                of_row[group.first + k].emplace_back(6 * bodies + rows + alpha, s);
+                slot.push_back({0, 0, 1});
+            }
 
     std::vector<int> column_start(1, 0), row_index;
+    const auto end_column = [&] { column_start.push_back(static_cast<int>(row_index.size())); };
     for (int b = 0; b < bodies; ++b)
         for (int c = 0; c < 6; ++c) {
             const int first = c < 3 ? c : 3, last = c < 3 ? c : 5;
@@ -41,45 +61,62 @@ void Saddle::analyse()
                 slot[s].lower = static_cast<int>(row_index.size());
                 row_index.push_back(row);
             }
-            column_start.push_back(static_cast<int>(row_index.size()));
+            end_column();
         }
-    for (int k = 0, s = 0; k < m; ++k) {
-        for (int n = C.start[k]; n < C.start[k + 1]; ++n)
-            for (int c = 0; c < 6; ++c)
-                if (C.entry[n].nonzero >> c & 1) {
-                    slot[s++].upper = static_cast<int>(row_index.size());
-                    row_index.push_back(6 * C.entry[n].body + c);
-                }
-        column_start.push_back(static_cast<int>(row_index.size()));
+    for (int k = 0; k < rows; ++k) {
+        for (const auto& [row, s] : of_row[k]) {
+            slot[s].upper = static_cast<int>(row_index.size());
+            row_index.push_back(row);
+        }
+        end_column();
     }
+    if (!R.massless.empty())
+        for (const auto& column : of_alpha) {
+            for (const auto& [row, s] : column) {
+                slot[s].lower = static_cast<int>(row_index.size());
+                row_index.push_back(row);
+            }
+            end_column();
+        }
     klu.analyse(std::move(column_start), std::move(row_index));
 }
 
 // S = diag(M, J̄)^(-1/2) on the bodies, and on row k what brings (Φ_r, Π̄) S to length one. Then K is about as
-// well conditioned as the mechanism is, whatever its units, and the reciprocal condition means something.
+// well conditioned as the mechanism is, whatever its units, and the reciprocal condition means something. The rows of
+// a group with massless unknowns, whose Φ_α is of length one, share one factor, and the unknowns have its reciprocal.
 void Saddle::scale_rows()
 {
+    const Rows& R = solved();
     for (int b = 0; b < bodies; ++b)
         for (int c = 0; c < 6; ++c)
             if (metric == Metric::mass)
                 scale[6 * b + c] =
                     1 / std::sqrt(c < 3 ? system.mass().m[b] : system.mass().J_bar[b](c - 3, c - 3));
-    for (int k = 0; k < m; ++k) {
+    for (int k = 0; k < R.rows(); ++k) {
         double sum = 0;
-        for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
-            const int at = 6 * C.entry[n].body;
-            sum += C.entry[n].r.cwiseProduct(scale.segment<3>(at)).squaredNorm() +
-                   C.entry[n].pi.cwiseProduct(scale.segment<3>(at + 3)).squaredNorm();
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n) {
+            const int at = 6 * R.entry[n].body;
+            sum += R.entry[n].r.cwiseProduct(scale.segment<3>(at)).squaredNorm() +
+                   R.entry[n].pi.cwiseProduct(scale.segment<3>(at + 3)).squaredNorm();
         }
-        if (sum > 0) scale[6 * bodies + k] = 1 / std::sqrt(sum);
+        scale[6 * bodies + k] = sum > 0 ? 1 / std::sqrt(sum) : std::numeric_limits<double>::infinity();
     }
+    int alpha = 6 * bodies + R.rows();
+    for (const Rows::Massless& group : R.massless) {
+        auto of_rows = scale.segment(6 * bodies + group.first, group.rows);
+        of_rows.setConstant(of_rows.minCoeff());
+        for (int c = 0; c < group.count; ++c) scale[alpha++] = 1 / of_rows[0];
+    }
+    for (int k = 0; k < R.rows(); ++k)
+        if (!std::isfinite(scale[6 * bodies + k])) scale[6 * bodies + k] = 1;
 
     int s = 0;
-    for (int k = 0; k < m; ++k)
-        for (int n = C.start[k]; n < C.start[k + 1]; ++n)
+    for (int k = 0; k < R.rows(); ++k)
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n)
             for (int c = 0; c < 6; ++c)
-                if (C.entry[n].nonzero >> c & 1)
-                    slot[s++].factor = scale[6 * bodies + k] * scale[6 * C.entry[n].body + c];
+                if (R.entry[n].nonzero >> c & 1)
+                    slot[s++].factor = scale[6 * bodies + k] * scale[6 * R.entry[n].body + c];
+    // Φ_α keeps factor 1
     s = 0;
     for (int b = 0; b < bodies; ++b)
         for (int c = 0; c < 6; ++c)
@@ -96,19 +133,24 @@ void Saddle::scale_rows()
 void Saddle::fill()
 {
     const Slot* s = slot.data();
-    for (const Rows::Entry& entry : C.entry)
+    for (const Rows::Entry& entry : solved().entry)
         for (int c = 0; c < 6; ++c)
             if (entry.nonzero >> c & 1) {
                 klu.value[s->upper] = klu.value[s->lower] =
                     s->factor * (c < 3 ? entry.r[c] : entry.pi[c - 3]);
                 ++s;
             }
+    for (const Rows::Massless& group : solved().massless)
+        for (int c = 0; c < group.count; ++c)
+            for (int k = 0; k < group.rows; ++k, ++s)
+                klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
 }
 
 void Saddle::assemble(const State& x)
 {
     system.variation(x, C);
-    by_condensed = condensed != nullptr && condensed->factor(C);
+    if (elimination) elimination->factor(C);
+    by_condensed = condensed != nullptr && condensed->factor(solved());
     if (by_condensed) {
         ++by_blocks;
         return;
@@ -121,6 +163,7 @@ void Saddle::assemble(const State& x)
 void Saddle::choose_pivots(const State& x)
 {
     system.variation(x, C);
+    if (elimination) elimination->factor(C);
     by_condensed = false;
     factor(x);
 }
@@ -133,27 +176,44 @@ void Saddle::factor(const State& x)
     pivot_state = x;
 }
 
-void Saddle::solve(Eigen::VectorXd& b)
+void Saddle::solve_solved(Eigen::VectorXd& b, bool only_constraints)
 {
     if (by_condensed) {
-        condensed->solve(b);
+        if (only_constraints)
+            condensed->solve_constraints(b);
+        else
+            condensed->solve(b);
+        return;
+    }
+    if (only_constraints) b.head(6 * bodies).setZero();
+    b.array() *= scale.array();
+    klu.solve(b.data());
+    b.array() *= scale.array();
+}
+
+void Saddle::solve(Eigen::VectorXd& b)
+{
+    if (elimination) {
+        elimination->reduce(C, b, false, reduced);
+        solve_solved(reduced, false);
+        elimination->expand(C, reduced, b);
     } else {
-        b.array() *= scale.array();
-        klu.solve(b.data());
-        b.array() *= scale.array();
+        solve_solved(b, false);
     }
     if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
 }
 
 void Saddle::solve_constraints(Eigen::VectorXd& b)
 {
-    if (by_condensed) {
-        condensed->solve_constraints(b);
-        if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
+    if (elimination) {
+        elimination->reduce(C, b, true, reduced);
+        solve_solved(reduced, true);
+        elimination->expand(C, reduced, b);
     } else {
-        b.head(6 * bodies).setZero();
-        solve(b);
+        massless_part(b).setZero();
+        solve_solved(b, true);
     }
+    if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
 }
 
 void Saddle::solve_refined(Eigen::VectorXd& b)
@@ -174,8 +234,16 @@ void Saddle::multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const
         out.segment<3>(6 * b) *= system.mass().m[b];
         out.segment<3>(6 * b + 3) = system.mass().J_bar[b] * z.segment<3>(6 * b + 3);
     }
-    C.add_transpose(1, z.tail(m), out);
+    const auto lambda = z.segment(6 * bodies, m);
+    C.add_transpose(1, lambda, out);
     for (int k = 0; k < m; ++k) out[6 * bodies + k] = C.dot(k, z);
+    if (C.massless.empty()) return;
+    out.tail(unknowns).setZero();
+    C.add_massless_transpose(1, lambda, out.tail(unknowns));
+    int at = 6 * bodies + m;
+    for (const Rows::Massless& group : C.massless)
+        for (int c = 0; c < group.count; ++c, ++at)
+            for (int k = 0; k < group.rows; ++k) out[6 * bodies + group.first + k] += group.D(k, c) * z[at];
 }
 
 }  // namespace hilda::lie

@@ -8,12 +8,16 @@
 /// It gives the accelerations and multipliers of a state (Fang 2022, Eqs. 2.9, 2.17), and it is the frozen
 /// Newton matrix of the fully implicit scheme (3.23, force sensitivities dropped) and of both half-implicit
 /// ones (3.32, 3.51). It does not contain h.
+///
+/// With massless unknowns α there is Φ_α in the constraint rows and Φ_αᵀ under a zero diagonal block, as in Eq. 5.48;
+/// α stands last.
 
 #pragma once
 
 #include "lie/check.hpp"
 #include "lie/condensed.hpp"
 #include "lie/klu.hpp"
+#include "lie/massless.hpp"
 
 #include <memory>
 
@@ -27,9 +31,9 @@ enum class Metric {
 
 /// How K z = b is solved.
 enum class LinearSolver {
-    automatic,  ///< condensed where it takes fewer operations than klu
+    automatic,  ///< massless unknowns eliminated, the rest condensed where it takes fewer operations than klu
     klu,        ///< the whole of K by KLU
-    condensed   ///< the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
+    condensed  ///< massless unknowns eliminated; the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
 };
 
 class Saddle {
@@ -62,9 +66,14 @@ public:
     /// out = K z
     void multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const;
 
-    const Rows& rows() const { return C; }  ///< Φ_r, Π̄ as last assembled
-    int size() const { return 6 * bodies + m; }
-    Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const { return z.tail(m); }
+    const Rows& rows() const { return C; }  ///< Φ_r, Π̄, Φ_α as last assembled
+    int size() const { return 6 * bodies + m + unknowns; }
+    Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const
+    {
+        return z.segment(6 * bodies, m);
+    }
+    /// Of the massless unknowns, group by group
+    Eigen::VectorBlock<Eigen::VectorXd> massless_part(Eigen::VectorXd& z) const { return z.tail(unknowns); }
 
     /// KLU's estimate for the scaled matrix; of the condensed one its smallest pivot
     double reciprocal_condition() const
@@ -82,10 +91,17 @@ private:
     void fill();
     void factor(const State& x);
 
+    /// The rows that the factors are made of
+    const Rows& solved() const { return elimination ? elimination->reduced() : C; }
+    void solve_solved(Eigen::VectorXd& b, bool only_constraints);
+
     const System& system;
     const Metric metric;
-    int bodies, m;
+    int bodies, m, unknowns;
     Rows C;
+
+    std::unique_ptr<Elimination> elimination;  ///< of the massless unknowns; without, they stay in K
+    Eigen::VectorXd reduced;                   ///< right side and solution without them
 
     std::unique_ptr<Condensed> condensed;
     bool by_condensed = false;  ///< the factors in use

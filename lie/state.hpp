@@ -21,10 +21,12 @@ struct Motion {
 struct State {
     double t = 0;  ///< [s]
     std::vector<Motion> body;
+    Eigen::VectorXd alpha;   ///< unknowns without mass: the contact points of contacts that evolve
     Eigen::VectorXd lambda;  ///< multiplier of each constraint row
     /// Whole numbers that a system remembers from step to step: the branch of a driver, turns
     std::vector<int> memory;
-    /// Real numbers that it remembers: contact points, what friction has stored. Loads may depend on them, not constraints.
+    /// Real numbers that it remembers: contact points, what friction has stored. Loads may depend on them; constraints
+    /// may in how they are written, such as along which tangents, never in what they say.
     std::vector<double> remembered;
     /// What a scheme carries from step to step: half-step velocities, earlier increments. Empty at a start.
     Eigen::VectorXd history;

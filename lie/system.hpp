@@ -2,6 +2,9 @@
 /// What a constrained mechanical system is to a stepper:
 ///
 ///     M r̈ + Φ_rᵀ λ = F,    J̄ ω̄̇ + Π̄ᵀ λ = τ̄ = n̄ - ω̄ × J̄ ω̄,    Φ(r, A, t) = 0           Fang (2022), Eq. 3.4
+///
+/// Rows may bring unknowns α without mass, and then Φ(r, A, α, t) = 0 and Φ_αᵀ λ = 0 (5.33). The last rows may hold
+/// velocities alone, Φ_r ṙ + Π̄ ω̄ = ν, as rolling does: there is no Φ of them.
 
 #pragma once
 
@@ -39,10 +42,26 @@ struct Rows {
         Vec3 pi = Vec3::Zero();       ///< Π̄ of row k, for the body
     };
 
+    /// Unknowns α_first_alpha … without mass, in which rows first … first + rows - 1 are written and no others; fewer
+    /// than these rows.
+    struct Massless {
+        int first = 0, rows = 0, first_alpha = 0, count = 0;
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> D;  ///< ∂Φ/∂α, rows × count
+    };
+
     std::vector<int> start{0};
     std::vector<Entry> entry;
+    std::vector<Massless> massless;
+    int velocity_rows = 0;  ///< how many of the last rows hold velocities alone
 
     int rows() const { return static_cast<int>(start.size()) - 1; }
+    int position_rows() const { return rows() - velocity_rows; }
+    int unknowns() const  ///< without mass
+    {
+        int sum = 0;
+        for (const Massless& group : massless) sum += group.count;
+        return sum;
+    }
 
     /// Blocks (Φ_rᵀ λ, Π̄ᵀ λ), times a factor, added to q: six numbers a body.
     template <class Lambda, class Q>
@@ -54,6 +73,19 @@ struct Rows {
                 q.template segment<3>(6 * entry[n].body) += l * entry[n].r;
                 q.template segment<3>(6 * entry[n].body + 3) += l * entry[n].pi;
             }
+        }
+    }
+
+    /// Φ_αᵀ λ, times a factor, added to q: the massless unknowns one group after the other
+    template <class Lambda, class Q>
+    void add_massless_transpose(double factor, const Lambda& lambda, Q&& q) const
+    {
+        int at = 0;
+        for (const Massless& group : massless) {
+            for (int c = 0; c < group.count; ++c)
+                for (int k = 0; k < group.rows; ++k)
+                    q[at + c] += factor * group.D(k, c) * lambda[group.first + k];
+            at += group.count;
         }
     }
 
@@ -131,14 +163,17 @@ public:
 
     /// F and n̄ in the state x, written over what is there.
     virtual void loads(const State& x, Loads& out) const = 0;
-    /// Φ(r, A, t), one number a row
+    /// Φ(r, A, α, t), one number a row; 0 of a row that holds velocities
     virtual void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
-    /// Φ_r and Π̄, into a copy of pattern()
+    /// Φ_r, Π̄ and Φ_α, into a copy of pattern()
     virtual void variation(const State& x, Rows& out) const = 0;
     /// ν = -∂Φ/∂t: the rows of Φ_r ṙ + Π̄ ω̄ = ν                                                        Eq. 2.8
     virtual void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
-    /// γ: the rows of Φ_r r̈ + Π̄ ω̄̇ = γ                                                                 Eq. 2.9
+    /// γ: the rows of Φ_r r̈ + Π̄ ω̄̇ + Φ_α α̈ = γ                                                        Eq. 2.9
     virtual void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
+    /// Sets x.alpha to what belongs to the poses of the bodies, from what it is: for poses that are not quite on the
+    /// constraints, such as a stage of a Runge-Kutta step.
+    virtual void track(State& /*x*/) const {}
 
     /// What the exact Newton matrices are made of; schemes with a frozen matrix do without. As they stand here
     /// they are found by differences, good to about 1e-9 of the size of what is differentiated and not fast.

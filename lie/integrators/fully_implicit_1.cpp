@@ -31,7 +31,7 @@ public:
             set_residual(x, h);
             K.solve(e);
             z -= e;
-            if (converged(k, h * h * motion_part(e).norm(), K.constraint_part(e), h * h)) {
+            if (converged(k, h * h * length_of_motion(e), K.constraint_part(e), h * h)) {
                 place(x, h);
                 refuse_whole_turns(x, h, "rA-full-1");
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
@@ -49,6 +49,7 @@ private:
             z.segment<3>(6 * i + 3) = x_n.body[i].omegadot_bar;
         }
         K.constraint_part(z) = x_n.lambda;
+        K.massless_part(z).setZero();
     }
 
     /// Eq. 3.19
@@ -64,6 +65,7 @@ private:
             body.r = from.r + h * body.rdot;
             body.A = from.A * exp(h * body.omega_bar);
         }
+        place_massless(x, h * h);
         x.lambda = K.constraint_part(z);
     }
 
@@ -78,6 +80,8 @@ private:
             e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
         }
         C.add_transpose(1, x.lambda, e);
+        K.massless_part(e).setZero();
+        C.add_massless_transpose(1, x.lambda, K.massless_part(e));
         model.phi(x, K.constraint_part(e));
         K.constraint_part(e) /= h * h;
     }
@@ -90,7 +94,8 @@ const bool enrolled = enrol<FullyImplicit1>({.name = "rA-full-1",
                                              .order_lambda = 1,
                                              .formulation = "rA",
                                              .unknowns = "r'', omega', lambda",
-                                             .source = "Fang (2022), Sec. 3.4"});
+                                             .source = "Fang (2022), Sec. 3.4",
+                                             .massless = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -49,7 +49,7 @@ public:
             set_residual(x);
             K.solve(e);
             z -= e;
-            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 1)) {
+            if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 refuse_whole_turns(x, h, "rA-genalpha");
@@ -72,9 +72,11 @@ private:
             body.rdot += h * body.rddot;
             body.omega_bar += h * body.omegadot_bar;
         }
+        model.track(ahead);
         K.assemble(ahead);
         model.loads(ahead, loads);
         for (int i = 0; i < model.bodies(); ++i) e.segment<6>(6 * i) << loads.F[i], tau_bar(i, ahead.body[i]);
+        K.massless_part(e).setZero();
         model.gamma(ahead, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -92,6 +94,7 @@ private:
                 h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
         }
         K.constraint_part(z) = kappa * x_n.lambda;
+        K.massless_part(z).setZero();
     }
 
     void place(State& x, double h)
@@ -113,6 +116,7 @@ private:
             body.rdot = v.head<3>(), body.omega_bar = v.tail<3>();
             body.rddot = vdot.head<3>(), body.omegadot_bar = vdot.tail<3>();
         }
+        place_massless(x, 1);
         x.lambda = K.constraint_part(z) / kappa;
     }
 
@@ -126,6 +130,8 @@ private:
             e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
         }
         C.add_transpose(1, x.lambda, e);
+        K.massless_part(e).setZero();
+        C.add_massless_transpose(1, x.lambda, K.massless_part(e));
         e *= kappa;
         model.phi(x, K.constraint_part(e));
     }
@@ -140,7 +146,8 @@ const bool enrolled = enrol<GeneralisedAlpha>({.name = "rA-genalpha",
                                                .order_lambda = 2,
                                                .formulation = "rA",
                                                .unknowns = "increment of (r, A), beta' h^2 lambda",
-                                               .source = "Bruls, Cardona, Arnold (2012)"});
+                                               .source = "Bruls, Cardona, Arnold (2012)",
+                                               .massless = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -12,68 +12,27 @@
 /// alternating error of O(h) unless the start is at rest: the trapezoid rule never damps the velocity
 /// residual's parasitic root -1.
 
-#include "lie/newton_step.hpp"
+#include "lie/half_implicit_step.hpp"
 
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit2 final : public SaddleStep {
+class HalfImplicit2 final : public HalfImplicitStep {
 public:
     HalfImplicit2(const System& model, const Settings& settings)
-        : SaddleStep(model, settings), A_hat(model.bodies())
+        : HalfImplicitStep(model, settings, "rA-half-2", 1.5, 2), A_hat(model.bodies())
     {}
 
-    int step(State& x, double h) override
-    {
-        x_n = x;
-        Attempt attempt(x, x_n);
-        K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eq. 3.51)
-        set_known_part(h);
-        predict(h);
-        x.t = x_n.t + h;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
-            place(x);
-            correct(k, x, 2);
-            if (converged(k, length_of_motion(), K.constraint_part(e), 1 / 1.5)) {
-                accept(x, h);
-                return done(attempt, k);
-            }
-        }
-        no_convergence("rA-half-2", correction, x);
-    }
-
-    bool lags() const override { return true; }
-    void complete(State& node, const State& after) const override { take_loads(node, after); }
-
 private:
-    /// M (h ṙ_n - ½h² r̈_{n-1}) + 1.5h² F_n, likewise for the rotations; and Â of Eq. 3.44
-    void set_known_part(double h)
+    /// Â of Eq. 3.44
+    void begin(double h) override
     {
-        model.loads(x_n, loads);
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            b.segment<3>(6 * i) =
-                h * model.mass().m[i] * (body.rdot - 0.5 * h * body.rddot) + 1.5 * h * h * loads.F[i];
-            b.segment<3>(6 * i + 3) =
-                h * (model.mass().J_bar[i] * (body.omega_bar - 0.5 * h * body.omegadot_bar)) +
-                1.5 * h * h * tau_bar(i, body);
-            A_hat[i] = body.A * exp(0.5 * h * body.omega_bar);
-        }
-        K.constraint_part(b).setZero();
-    }
-
-    void predict(double h)
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            z.segment<3>(6 * i) = h * body.rdot + h * h * body.rddot;
-            z.segment<3>(6 * i + 3) = h * body.omega_bar + h * h * body.omegadot_bar;
-        }
-        K.constraint_part(z) = 1.5 * h * h * x_n.lambda;
         half_h = 0.5 * h;
+        for (int i = 0; i < model.bodies(); ++i)
+            A_hat[i] = x_n.body[i].A * exp(half_h * x_n.body[i].omega_bar);
     }
 
-    void place(State& x) const
+    void place(State& x) const override
     {
         for (int i = 0; i < model.bodies(); ++i) {
             x.body[i].r = x_n.body[i].r + half_h * x_n.body[i].rdot + 0.5 * z.segment<3>(6 * i);
@@ -81,32 +40,7 @@ private:
         }
     }
 
-    /// Length of the correction in r and θ̄, the unknowns of Eq. 3.43
-    double length_of_motion() const
-    {
-        double sum = 0;
-        for (int i = 0; i < model.bodies(); ++i)
-            sum += 0.25 * e.segment<3>(6 * i).squaredNorm() + e.segment<3>(6 * i + 3).squaredNorm();
-        return std::sqrt(sum);
-    }
-
-    void accept(State& x, double h)
-    {
-        place(x);
-        x.lambda = K.constraint_part(z) / (1.5 * h * h);
-        b.setZero();
-        K.rows().add_transpose(1, x.lambda, b);
-        for (int i = 0; i < model.bodies(); ++i) {
-            Motion& body = x.body[i];
-            body.A = orthonormalised(body.A);
-            body.rdot = z.segment<3>(6 * i) / h;
-            body.omega_bar = z.segment<3>(6 * i + 3) / h;
-            body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / model.mass().m[i];  // Eqs. 3.39, 3.40
-            body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, x_n.body[i]) - b.segment<3>(6 * i + 3));
-        }
-    }
-
-    std::vector<Mat3> A_hat;  ///< A_n exp(½h ω̄_n) Eq. 3.44
+    std::vector<Mat3> A_hat;  ///< A_n exp(½h ω̄_n)
     double half_h = 0;
 };
 
@@ -115,7 +49,8 @@ const bool enrolled = enrol<HalfImplicit2>({.name = "rA-half-2",
                                             .order_lambda = 1,
                                             .formulation = "rA",
                                             .unknowns = "r, h omega, h^2 lambda",
-                                            .source = "Fang (2022), Sec. 3.6"});
+                                            .source = "Fang (2022), Sec. 3.6",
+                                            .massless = true});
 
 }  // namespace
 }  // namespace hilda::lie

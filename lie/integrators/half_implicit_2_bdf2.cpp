@@ -15,44 +15,24 @@
 /// matrix is K. Start: r̈_{-1} = r̈_0, r_0 - r_{-1} = h ṙ_0 - ½h² r̈_0, ψ_0 = h ω̄_0 - ½h² ω̄̇_0. The state carries
 /// r_n - r_{n-1} and ψ_n of each body.
 
-#include "lie/newton_step.hpp"
+#include "lie/half_implicit_step.hpp"
 
 namespace hilda::lie {
 namespace {
 
-class HalfImplicit2Bdf2 final : public SaddleStep {
+class HalfImplicit2Bdf2 final : public HalfImplicitStep {
 public:
-    using SaddleStep::SaddleStep;
-
-    int step(State& x, double h) override
-    {
-        x_n = x;
-        Attempt attempt(x, x_n);
-        if (x_n.history.size() == 0)
-            start(h);
-        else
-            increments = x_n.history;
-        K.assemble(x_n);  // the Newton matrix, frozen at t_n
-        set_known_part(h);
-        predict(h);
-        x.t = x_n.t + h;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
-            place(x);
-            correct(k, x, 1.5);
-            if (converged(k, length_of_motion(), K.constraint_part(e), 1 / 1.5)) {
-                accept(x, h);
-                return done(attempt, k);
-            }
-        }
-        no_convergence("rA-half-2-bdf2", correction, x);
-    }
-
-    bool lags() const override { return true; }
-    void complete(State& node, const State& after) const override { take_loads(node, after); }
+    HalfImplicit2Bdf2(const System& model, const Settings& settings)
+        : HalfImplicitStep(model, settings, "rA-half-2-bdf2", 1.5, 1.5)
+    {}
 
 private:
-    void start(double h)
+    void begin(double h) override
     {
+        if (x_n.history.size() > 0) {
+            increments = x_n.history;
+            return;
+        }
         increments.resize(6 * model.bodies());
         for (int i = 0; i < model.bodies(); ++i) {
             const Motion& body = x_n.body[i];
@@ -61,70 +41,22 @@ private:
         }
     }
 
-    /// M (h ṙ_n - ½h² r̈_{n-1}) + 1.5h² F_n, likewise for the rotations
-    void set_known_part(double h)
-    {
-        model.loads(x_n, loads);
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            b.segment<3>(6 * i) =
-                h * model.mass().m[i] * (body.rdot - 0.5 * h * body.rddot) + 1.5 * h * h * loads.F[i];
-            b.segment<3>(6 * i + 3) =
-                h * (model.mass().J_bar[i] * (body.omega_bar - 0.5 * h * body.omegadot_bar)) +
-                1.5 * h * h * tau_bar(i, body);
-        }
-        K.constraint_part(b).setZero();
-    }
-
-    void predict(double h)
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            z.segment<3>(6 * i) = h * body.rdot + h * h * body.rddot;
-            z.segment<3>(6 * i + 3) = h * body.omega_bar + h * h * body.omegadot_bar;
-        }
-        K.constraint_part(z) = 1.5 * h * h * x_n.lambda;
-    }
-
     /// r_{n+1} - r_n and ψ_{n+1} of body i
-    Eigen::Matrix<double, 6, 1> advance(int i) const
-    {
-        return increments.segment<6>(6 * i) / 3 + z.segment<6>(6 * i) * (2.0 / 3);
-    }
+    Vec6 advance(int i) const { return increments.segment<6>(6 * i) / 3 + z.segment<6>(6 * i) * (2.0 / 3); }
 
-    void place(State& x) const
+    void place(State& x) const override
     {
         for (int i = 0; i < model.bodies(); ++i) {
-            const Eigen::Matrix<double, 6, 1> d = advance(i);
+            const Vec6 d = advance(i);
             x.body[i].r = x_n.body[i].r + d.head<3>();
             x.body[i].A = x_n.body[i].A * exp(d.tail<3>());
         }
     }
 
-    /// Length of the correction in r and θ̄, as for rA-half-2
-    double length_of_motion() const
+    void leave(State& x, double h) override
     {
-        double sum = 0;
-        for (int i = 0; i < model.bodies(); ++i)
-            sum += e.segment<3>(6 * i).squaredNorm() / 2.25 + e.segment<3>(6 * i + 3).squaredNorm();
-        return std::sqrt(sum);
-    }
-
-    void accept(State& x, double h)
-    {
-        place(x);
-        x.lambda = K.constraint_part(z) / (1.5 * h * h);
-        b.setZero();
-        K.rows().add_transpose(1, x.lambda, b);
-        for (int i = 0; i < model.bodies(); ++i) {
-            increments.segment<6>(6 * i) = advance(i);
-            Motion& body = x.body[i];
-            body.A = orthonormalised(body.A);
-            body.rdot = z.segment<3>(6 * i) / h;
-            body.omega_bar = z.segment<3>(6 * i + 3) / h;
-            body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / model.mass().m[i];
-            body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, x_n.body[i]) - b.segment<3>(6 * i + 3));
-        }
+        HalfImplicitStep::leave(x, h);
+        for (int i = 0; i < model.bodies(); ++i) increments.segment<6>(6 * i) = advance(i);
         x.history = increments;
     }
 
@@ -136,7 +68,8 @@ const bool enrolled = enrol<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",
                                                 .order_lambda = 2,
                                                 .formulation = "rA",
                                                 .unknowns = "r, h omega, h^2 lambda",
-                                                .source = "Fang (2022), Sec. 3.6, with BDF2 for positions"});
+                                                .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
+                                                .massless = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -44,7 +44,7 @@ public:
             K.constraint_part(e) *= -1;
             K.solve(e);
             z += e;
-            if (converged(k, motion_part(e).norm(), K.constraint_part(e), 1)) {
+            if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
                 place(x);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 set_velocities(x, h);
@@ -67,6 +67,7 @@ private:
                 h * (model.mass().J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
         }
         K.constraint_part(b).setZero();
+        K.massless_part(b).setZero();
     }
 
     void predict(double h)
@@ -77,14 +78,16 @@ private:
             z.segment<3>(6 * i + 3) = h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
         }
         K.constraint_part(z) = 0.5 * h * h * x_n.lambda;
+        K.massless_part(z).setZero();
     }
 
-    void place(State& x) const
+    void place(State& x)
     {
         for (int i = 0; i < model.bodies(); ++i) {
             x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
             x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
         }
+        place_massless(x, 1);
     }
 
     void set_velocities(State& x, double h)
@@ -101,6 +104,7 @@ private:
                                       0.5 * h * loads.n_bar[i];
         }
         assemble_once(x);
+        K.massless_part(e).setZero();
         model.nu(x, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -115,7 +119,8 @@ const bool enrolled = enrol<Rattle>({.name = "rA-rattle",
                                      .order_lambda = 2,
                                      .formulation = "rA",
                                      .unknowns = "r, h omega, h^2 lambda / 2",
-                                     .source = "Hante, Arnold (2021)"});
+                                     .source = "Hante, Arnold (2021)",
+                                     .massless = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -39,7 +39,7 @@ inline const lie::Scheme inner_steps = {
     .unknowns = "",
     .source = "",
     .adaptive = true,
-    .make = [](const lie::System& s, const lie::Settings& settings) -> std::unique_ptr<lie::Integrator> {
+    .construct = [](const lie::System& s, const lie::Settings& settings) -> std::unique_ptr<lie::Integrator> {
         return std::make_unique<InnerSteps>(s, settings);
     }};
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Two bodies that stay in contact, with the contact points as unknowns: no collision is looked for.
+///                                                                            Fang (2022), Secs. 5.1, 5.3
+
+#pragma once
+
+#include "contact/detection.hpp"
+#include "contact/detectors/common_normal.hpp"
+#include "contact/shape.hpp"
+#include "dae/model.hpp"
+
+namespace hilda::contact {
+
+/// Seven rows and six massless unknowns, the contact points ᾱ_i and ᾱ_j in the frames of their bodies:
+///
+///     Ψ = r_i + A_i ᾱ_i - r_j - A_j ᾱ_j             the contact points coincide, three rows            (5.12)
+///     N = L Tᵀ (A_i n̄_i + A_j n̄_j)                  the normals are opposite, two rows                 (5.17)
+///     G = G_i(ᾱ_i)/|∇G_i|,  G_j(ᾱ_j)/|∇G_j|         the points lie on the surfaces, two rows          (5.27)
+///
+/// One degree of freedom less, that along the normal. n̄ is the unit normal out of the body, σ ∇G/|∇G|. T is a tangent
+/// basis of A_i n̄_i at the last node, and L the smaller size of the two surfaces, so that all rows are lengths and
+/// conditioning does not depend on size. (5.17) projects on the global x and y instead, and is singular for a normal
+/// in that plane; NormalRows::fixed_xy shows it.
+///
+/// The multipliers (Ψ, N, G) are forces. Where the relative curvature K_i + K_j is regular in the tangent plane,
+///
+///     λ_N = 0,    λ_Ψ = F_N A_i n̄_i,    λ_G = -F_N (σ_i, σ_j)
+///
+/// with the normal force F_N, positive in compression: -λ_Ψ pushes body i. |λ_N| > 0 tells that the normals given are
+/// not those of the surface.
+class EvolvingContact final : public dae::Constraint {
+public:
+    enum class NormalRows { tangent, fixed_xy };
+    enum class Friction {
+        none,  ///< or one that a force adds
+        rolling  ///< ideal: the material points in contact have one velocity, two rows more           (non-holonomic)
+    };
+
+    /// Bodies i and j of the model, by `ground` for the fixed one. InvalidInput for shapes without a size, two planes.
+    EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
+                    Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent);
+
+    int rows() const override { return 7; }
+    int velocity_rows() const override { return friction == Friction::rolling ? 2 : 0; }
+    int unknowns() const override { return 6; }
+    int remembered() const override { return 6; }  ///< T by columns
+
+    void phi(const At& x, double* out) const override;
+    void variation(const At& x, Derivatives& out) const override;
+    void gamma(const At& x, double* out) const override;
+    unsigned nonzero(int row) const override;
+    void track(const At& x, bool afresh, double* alpha) const override;
+    void remember(const At& x, bool start, double* remembered) const override;
+    double position_error(const At& x) const override;
+    double velocity_error(const At& x) const override;
+    double allowance() const override { return 1e-6 * L; }
+    std::string objection(const At& x) const override;
+    std::string row_name(int row) const override;
+
+    /// The touch that α says: its points, the normal into body i, gap along it, shape operators
+    Touch touch(const At& x) const;
+    /// Multipliers of this contact out of those of a model: λ_Ψ [N, global], λ_N, λ_G, those of rolling [N]
+    struct Multipliers {
+        Vec3 Psi;
+        Eigen::Vector2d N, G, rolling;
+        double F_N;       ///< λ_Ψ · n_i [N]
+        Vec3 tangential;  ///< λ_Ψ - F_N n_i, zero but for rounding
+        Vec3 friction;    ///< of rolling, on body i [N, global]
+    };
+    Multipliers multipliers(const At& x, const Eigen::VectorXd& lambda) const;
+
+    const Shape shape_i, shape_j;
+    const double L;  ///< [m]
+    const Friction friction;
+    const NormalRows normal_rows;
+
+private:
+    struct Side;
+    using Mat32 = Eigen::Matrix<double, 3, 2>;
+    Mat32 tangents(const At& x) const;
+    /// T of the node, put into the plane across n
+    Mat32 tangents_across(const At& x, const Vec3& n) const;
+    Touch near_touch(const At& x) const;
+
+    CommonNormal common_normal;
+    std::unique_ptr<Detector> detector;
+};
+
+}  // namespace hilda::contact

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Several constraint rows between two bodies that bring unknowns of their own.
+
+#pragma once
+
+#include "dae/body.hpp"
+#include "lie/state.hpp"
+
+namespace hilda::dae {
+
+/// Φ(r, A, α) = 0 with massless unknowns α, fewer than the rows; and after these rows some that hold velocities alone.
+/// Derive for what two bodies do that no fixed row can say: a contact point that wanders over both of them.
+class Constraint {
+public:
+    Constraint(int i, int j) : i(i), j(j) {}
+    virtual ~Constraint() = default;
+
+    virtual int rows() const = 0;  ///< of positions; at most 8
+    virtual int velocity_rows() const { return 0; }
+    virtual int unknowns() const = 0;
+    /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
+    virtual int remembered() const { return 0; }
+
+    /// Where it is evaluated: its bodies, its own unknowns, what it remembers
+    struct At {
+        const Motion &bi, &bj;
+        double t;
+        const double *alpha, *remembered;
+    };
+    virtual void phi(const At& x, double* out) const = 0;
+    /// Derivatives of all rows: (r, π̄) of each body, and Φ_α of the rows of positions
+    struct Derivatives {
+        Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, 12, 6> of_i, of_j;
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> of_alpha;
+    };
+    /// Into matrices of their full size, all of whose entries are zero or of an earlier call
+    virtual void variation(const At& x, Derivatives& out) const = 0;
+    /// γ of all rows, with Φ_α α̈ on the left for rows of positions
+    virtual void gamma(const At& x, double* out) const = 0;
+    /// Bit c of the first twelve is clear where derivative c of this row, (r, pi) of body i and then of j, is always zero.
+    virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
+
+    /// α that belongs to the poses of the bodies, from what is there; `afresh`: from nothing
+    virtual void track(const At& x, bool afresh, double* alpha) const = 0;
+    /// What is remembered, at a start and once per accepted step. Throws lie::NumericalFailure where the constraint
+    /// cannot go on from here.
+    virtual void remember(const At& x, bool start, double* remembered) const = 0;
+
+    /// How far positions are off, α being that of track() [m], and velocities [m/s]
+    virtual double position_error(const At& x) const = 0;
+    virtual double velocity_error(const At& x) const = 0;
+    /// What a position may be off at a start [m]
+    virtual double allowance() const = 0;
+    /// Why it cannot be used from here, as "what is wrong, got value"; empty when it can
+    virtual std::string objection(const At& /*x*/) const { return {}; }
+    virtual std::string row_name(int row) const { return "row " + std::to_string(row + 1); }
+
+    int i, j;  ///< body numbers, or ground
+    std::string name;
+    int first_row = 0, first_velocity_row = 0;  ///< in the equations; these are set by the model
+    int first_alpha = 0, first_remembered = 0;  ///< in the state
+};
+
+}  // namespace hilda::dae

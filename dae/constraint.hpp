@@ -20,12 +20,15 @@ public:
     virtual int unknowns() const = 0;
     /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
     virtual int remembered() const { return 0; }
+    /// Whether it may be open for a while, and then holds nothing. Told by the first number of its memory: 1 while it is.
+    virtual bool opens() const { return false; }
 
     /// Where it is evaluated: its bodies, its own unknowns, what it remembers
     struct At {
         const Motion &bi, &bj;
         double t;
         const double *alpha, *remembered;
+        bool open;
     };
     virtual void phi(const At& x, double* out) const = 0;
     /// Derivatives of all rows: (r, π̄) of each body, and Φ_α of the rows of positions
@@ -58,7 +61,7 @@ public:
     int i, j;  ///< body numbers, or ground
     std::string name;
     int first_row = 0, first_velocity_row = 0;  ///< in the equations; these are set by the model
-    int first_alpha = 0, first_remembered = 0;  ///< in the state
+    int first_alpha = 0, first_memory = 0, first_remembered = 0;  ///< in the state
 };
 
 }  // namespace hilda::dae

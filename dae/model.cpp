@@ -134,9 +134,12 @@ void Model::prepare(State& x)
     for (const auto& c : with_unknowns) {
         c->first_alpha = alphas;
         alphas += c->unknowns();
+        c->first_memory = memory;
+        memory += c->opens();
         c->first_remembered = remembered;
         remembered += c->remembered();
     }
+    x.memory.assign(memory, 0);
     x.alpha = Eigen::VectorXd::Zero(alphas);
     x.remembered.assign(remembered, 0);
     for (const auto& c : with_unknowns) {
@@ -316,7 +319,11 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
         const Block& block = row[k].in_force(x);
         out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
     }
-    for (const auto& c : with_unknowns) c->phi(at(*c, x), out.data() + c->first_row);
+    for (const auto& c : with_unknowns)
+        if (open(*c, x))
+            out.segment(c->first_row, c->rows()).setZero();
+        else
+            c->phi(at(*c, x), out.data() + c->first_row);
     out.tail(rows_pattern.velocity_rows).setZero();
 }
 
@@ -343,7 +350,7 @@ void Model::variation(const State& x, lie::Rows& out) const
         d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_alpha.setZero(c.rows(), c.unknowns());
-        c.variation(at(c, x), d);
+        if (!open(c, x)) c.variation(at(c, x), d);
         fill(c, 0, c.first_row, c.rows());
         fill(c, c.rows(), c.first_velocity_row, c.velocity_rows());
         out.massless[n].D = d.of_alpha;
@@ -369,7 +376,8 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     }
     double of_c[12];
     for (const auto& c : with_unknowns) {
-        c->gamma(at(*c, x), of_c);
+        std::fill(of_c, of_c + 12, 0.0);
+        if (!open(*c, x)) c->gamma(at(*c, x), of_c);
         std::copy_n(of_c, c->rows(), out.data() + c->first_row);
         std::copy_n(of_c + c->rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
     }

@@ -59,8 +59,17 @@ public:
     /// Where one of them stands in a state
     Constraint::At at(const Constraint& c, const State& x) const
     {
-        return {motion(x, c.i), motion(x, c.j), x.t, x.alpha.data() + c.first_alpha,
-                x.remembered.data() + c.first_remembered};
+        return {motion(x, c.i),
+                motion(x, c.j),
+                x.t,
+                x.alpha.data() + c.first_alpha,
+                x.remembered.data() + c.first_remembered,
+                open(c, x)};
+    }
+    /// Whether it holds nothing at present. Its rows are then zero; lie::Selection leaves them out.
+    static bool open(const Constraint& c, const State& x)
+    {
+        return c.opens() && x.memory[c.first_memory] == 1;
     }
     std::string name_of(const Constraint& c) const;
 

@@ -79,11 +79,15 @@ Vec3 velocity(const Motion& body, const Vec3& arm)
 }  // namespace
 
 EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
-                                 NormalRows normal_rows)
+                                 NormalRows normal_rows, const Unilateral& unilateral)
     : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(smaller_size(shape_i, shape_j)),
-      friction(friction), normal_rows(normal_rows), common_normal(shape_i, shape_j),
+      friction(friction), normal_rows(normal_rows), unilateral(unilateral), common_normal(shape_i, shape_j),
       detector(make_detector(shape_i, shape_j))
-{}
+{
+    if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
+        lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",
+                    unilateral.restitution);
+}
 
 EvolvingContact::Mat32 EvolvingContact::tangents(const At& x) const
 {
@@ -229,7 +233,7 @@ void EvolvingContact::remember(const At& x, bool start, double* remembered) cons
     const double facing = (x.bi.A * (shape_i.orientation * n)).dot(at.n);
     if (!(facing < -0.5))
         fail("contact_lost", "the normals are no longer opposite, their product is", facing);
-    if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
+    if (const double least = least_curvature(at) * L; !x.open && !(least > least_relative_curvature))
         fail("contact_singular",
              "the surfaces fit each other too well for one contact point: the least sum of curvatures, times "
              "a size, is",
@@ -244,9 +248,8 @@ void EvolvingContact::remember(const At& x, bool start, double* remembered) cons
         T.col(1) = n_i.cross(T.col(0));
     }
     Mat32::Map(remembered) = T;
+    if (start) remembered[rebounded] = -std::numeric_limits<double>::infinity();
 }
-
-double EvolvingContact::position_error(const At& x) const { return std::abs(touch(x).gap); }
 
 double EvolvingContact::velocity_error(const At& x) const
 {

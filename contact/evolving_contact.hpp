@@ -11,6 +11,16 @@
 
 namespace hilda::contact {
 
+/// What happens where the bodies would be pulled together, and where they meet
+struct Unilateral {
+    bool opens = false;      ///< else the contact holds both ways and never ends
+    double restitution = 0;  ///< e, 0 … 1
+    enum class Impact {
+        newton,  ///< the velocity of separation is e times that of approach
+        poisson  ///< the impulse of restitution is e times that of compression
+    } impact = Impact::newton;
+};
+
 /// Seven rows and six massless unknowns, the contact points ᾱ_i and ᾱ_j in the frames of their bodies:
 ///
 ///     Ψ = r_i + A_i ᾱ_i - r_j - A_j ᾱ_j             the contact points coincide, three rows            (5.12)
@@ -36,14 +46,18 @@ public:
         rolling  ///< ideal: the material points in contact have one velocity, two rows more           (non-holonomic)
     };
 
-    /// Bodies i and j of the model, by `ground` for the fixed one. InvalidInput for shapes without a size, two planes.
+    /// Bodies i and j of the model, `ground` for the fixed one. InvalidInput for two planes, and for e outside 0 … 1.
     EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
-                    Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent);
+                    Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent,
+                    const Unilateral& unilateral = {});
 
     int rows() const override { return 7; }
     int velocity_rows() const override { return friction == Friction::rolling ? 2 : 0; }
     int unknowns() const override { return 6; }
-    int remembered() const override { return 6; }  ///< T by columns
+    /// T by columns, and when it last rebounded [s]
+    int remembered() const override { return 7; }
+    static constexpr int rebounded = 6;
+    bool opens() const override { return unilateral.opens; }
 
     void phi(const At& x, double* out) const override;
     void variation(const At& x, Derivatives& out) const override;
@@ -51,7 +65,7 @@ public:
     unsigned nonzero(int row) const override;
     void track(const At& x, bool afresh, double* alpha) const override;
     void remember(const At& x, bool start, double* remembered) const override;
-    double position_error(const At& x) const override;
+    double gap(const At& x) const override { return touch(x).gap; }
     double velocity_error(const At& x) const override;
     double allowance() const override { return 1e-6 * L; }
     std::string objection(const At& x) const override;
@@ -73,6 +87,7 @@ public:
     const double L;  ///< [m]
     const Friction friction;
     const NormalRows normal_rows;
+    const Unilateral unilateral;
 
 private:
     struct Side;

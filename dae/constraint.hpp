@@ -49,8 +49,9 @@ public:
     /// cannot go on from here.
     virtual void remember(const At& x, bool start, double* remembered) const = 0;
 
-    /// How far positions are off, α being that of track() [m], and velocities [m/s]
-    virtual double position_error(const At& x) const = 0;
+    /// Distance of the two bodies where the rows are not quite satisfied, negative for overlap, α being that of track()
+    /// [m]; and how far velocities are off [m/s]
+    virtual double gap(const At& x) const = 0;
     virtual double velocity_error(const At& x) const = 0;
     /// What a position may be off at a start [m]
     virtual double allowance() const = 0;

@@ -146,6 +146,8 @@ void Model::prepare(State& x)
         if (const std::string why = c->objection(at(*c, x)); !why.empty())
             throw lie::InvalidInput(name_of(*c) + ": " + why);
         c->track(at(*c, x), true, x.alpha.data() + c->first_alpha);
+        // one that may open starts open where there is a gap
+        if (c->opens() && c->gap(at(*c, x)) > c->allowance()) x.memory[c->first_memory] = 1;
     }
     for (const auto& f : force) {
         f->first_memory = memory;
@@ -153,7 +155,7 @@ void Model::prepare(State& x)
         f->first_remembered = remembered;
         remembered += f->remembered();
     }
-    x.memory.assign(memory, 0);
+    x.memory.resize(memory, 0);
     x.lambda = Eigen::VectorXd::Zero(rows());
     swap_drivers(x);  // one may start near its singular point
     remember_start(x);
@@ -219,12 +221,15 @@ void Model::set_pattern()
         add_to_pattern(*c, 0, c->rows());
         rows_pattern.massless.push_back({c->first_row, c->rows(), alphas, c->unknowns(), {}});
         rows_pattern.massless.back().D.setZero(c->rows(), c->unknowns());
+        if (c->opens()) rows_pattern.opening.push_back(c->first_row + c->rows() - 1);
         alphas += c->unknowns();
     }
     for (const auto& c : with_unknowns) {
         c->first_velocity_row = rows_pattern.rows();
         add_to_pattern(*c, c->rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
+        for (int k = 0; c->opens() && k < c->velocity_rows(); ++k)
+            rows_pattern.opening.push_back(c->first_velocity_row + k);
     }
 }
 
@@ -350,7 +355,10 @@ void Model::variation(const State& x, lie::Rows& out) const
         d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_alpha.setZero(c.rows(), c.unknowns());
-        if (!open(c, x)) c.variation(at(c, x), d);
+        if (open(c, x))
+            d.of_alpha.setIdentity();  // its unknowns stay as they are
+        else
+            c.variation(at(c, x), d);
         fill(c, 0, c.first_row, c.rows());
         fill(c, c.rows(), c.first_velocity_row, c.velocity_rows());
         out.massless[n].D = d.of_alpha;
@@ -385,7 +393,8 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 
 void Model::track(State& x) const
 {
-    for (const auto& c : with_unknowns) c->track(at(*c, x), false, x.alpha.data() + c->first_alpha);
+    for (const auto& c : with_unknowns)
+        if (!open(*c, x)) c->track(at(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
 void Model::second_variation(const State& x, lie::SecondVariation& out) const

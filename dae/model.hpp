@@ -66,7 +66,7 @@ public:
                 x.remembered.data() + c.first_remembered,
                 open(c, x)};
     }
-    /// Whether it holds nothing at present. Its rows are then zero; lie::Selection leaves them out.
+    /// Whether it holds nothing at present. Its rows are then empty.
     static bool open(const Constraint& c, const State& x)
     {
         return c.opens() && x.memory[c.first_memory] == 1;

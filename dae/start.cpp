@@ -48,6 +48,8 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
     const lie::Rows& C = contacts.reduced();
     const int m = C.rows(), n = 6 * model.bodies();
 
+    std::vector<bool> empty(m);
+
     cholmod_common common;
     cholmod_l_start(&common);
     common.print = 0;
@@ -72,6 +74,7 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
                 sum += v * v;
             }
         for (size_t e = first; e < triplets->nnz; ++e) value[e] /= std::sqrt(sum);
+        empty[k] = sum == 0;
     }
     cholmod_sparse* A = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, &common);
     cholmod_l_free_triplet(&triplets, &common);
@@ -91,7 +94,7 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
         for (int k = 0; k < m; ++k) {
             if (std::find(index + start[k], index + start[k + 1], steps) != index + start[k + 1])
                 ++steps;
-            else
+            else if (!empty[k])
                 dependent.push_back(k);
         }
     }
@@ -293,7 +296,8 @@ void check_contact_positions(const Model& model, const State& x, const StartOpti
                              StartReport& report)
 {
     for (const auto& c : model.evolving()) {
-        const double error = c->position_error(model.at(*c, x));
+        if (Model::open(*c, x)) continue;
+        const double error = std::abs(c->gap(model.at(*c, x)));
         if (!options.fix_initial && !(error <= c->allowance()))
             throw lie::InvalidInput(
                 model.name_of(*c) + ": not in contact at the start, a gap or overlap of " + number(error) +
@@ -309,6 +313,7 @@ void check_contact_velocities(const Model& model, const State& x, const StartOpt
                               StartReport& report)
 {
     for (const auto& c : model.evolving()) {
+        if (Model::open(*c, x)) continue;
         const double error = c->velocity_error(model.at(*c, x));
         if (!options.fix_initial && !(error <= options.tolerance))
             throw lie::InvalidInput(model.name_of(*c) + ": the initial velocities violate the contact by " +
@@ -347,6 +352,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     const std::vector<int> dropped = drop_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().unknowns();
+    for (const auto& c : model.evolving())
+        if (Model::open(*c, x)) report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
     lie::Saddle K(model);

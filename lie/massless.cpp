@@ -52,6 +52,11 @@ Elimination::Elimination(const Rows& pattern)
     }
     plain_until(pattern.rows());
     left.velocity_rows = pattern.velocity_rows;
+    for (const int k : pattern.opening)
+        for (const Group& g : group)
+            if (k >= g.first && k < g.first + g.rows)
+                left.opening.push_back(g.count == 0 ? g.reduced_first + k - g.first
+                                                    : g.reduced_first + g.rows - g.count - 1);
 }
 
 void Elimination::reflect(const Group& g, Few& v, bool transpose)

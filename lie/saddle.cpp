@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/saddle.hpp"
 
+#include <algorithm>
+
 namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
@@ -68,6 +70,10 @@ void Saddle::analyse()
             slot[s].upper = static_cast<int>(row_index.size());
             row_index.push_back(row);
         }
+        if (std::find(R.opening.begin(), R.opening.end(), k) != R.opening.end()) {
+            opening_slot.push_back(static_cast<int>(row_index.size()));
+            row_index.push_back(6 * bodies + k);
+        }
         end_column();
     }
     if (!R.massless.empty())
@@ -104,7 +110,8 @@ void Saddle::scale_rows()
     int alpha = 6 * bodies + R.rows();
     for (const Rows::Massless& group : R.massless) {
         auto of_rows = scale.segment(6 * bodies + group.first, group.rows);
-        of_rows.setConstant(of_rows.minCoeff());
+        const double factor = of_rows.minCoeff();
+        of_rows.setConstant(std::isfinite(factor) ? factor : 1);
         for (int c = 0; c < group.count; ++c) scale[alpha++] = 1 / of_rows[0];
     }
     for (int k = 0; k < R.rows(); ++k)
@@ -144,6 +151,8 @@ void Saddle::fill()
         for (int c = 0; c < group.count; ++c)
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
+    for (size_t n = 0; n < opening_slot.size(); ++n)  // an empty row leaves its multiplier alone
+        klu.value[opening_slot[n]] = solved().empty(solved().opening[n]) ? -1 : 0;
 }
 
 void Saddle::assemble(const State& x)

@@ -116,6 +116,7 @@ private:
     };
     std::vector<Slot> slot;
     std::vector<int> mass_slot;
+    std::vector<int> opening_slot;  ///< diagonal entries of the rows that may be empty
     Eigen::VectorXd work, residual, right_side;
 
     State pivot_state;

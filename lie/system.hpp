@@ -53,6 +53,19 @@ struct Rows {
     std::vector<Entry> entry;
     std::vector<Massless> massless;
     int velocity_rows = 0;  ///< how many of the last rows hold velocities alone
+    /// Rows that hold nothing in some states, where all their derivatives are zero and so is Φ: then their multipliers
+    /// stay as they are.
+    std::vector<int> opening;
+
+    /// Whether row k holds nothing in this state; of its massless unknowns only the last row of a group is asked.
+    bool empty(int k) const
+    {
+        for (int n = start[k]; n < start[k + 1]; ++n)
+            if (entry[n].r != Vec3::Zero() || entry[n].pi != Vec3::Zero()) return false;
+        for (const Massless& group : massless)
+            if (k == group.first + group.rows - 1) return group.D.bottomRows<1>().isZero(0);
+        return true;
+    }
 
     int rows() const { return static_cast<int>(start.size()) - 1; }
     int position_rows() const { return rows() - velocity_rows; }

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/unilateral.hpp"
+
+#include "dae/start.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+using lie::State;
+
+constexpr double touching = 1e-13;  // a gap, over the size of the contact, that is none
+constexpr int most_searches = 80;   // steps of regula falsi
+constexpr int most_events = 50;     // for each contact in one step
+constexpr int most_meetings = 3;    // of a contact in one step
+constexpr double rest = 1e-9;       // of a step, that is not worth a step
+
+}  // namespace
+
+UnilateralStep::UnilateralStep(const dae::Model& model, const lie::Scheme& scheme,
+                               const lie::Settings& settings)
+    : model(model), scheme(scheme.make(model, settings)), K(model, lie::Metric::mass, lie::LinearSolver::klu),
+      momentum(Eigen::VectorXd::Zero(6 * model.bodies())), v(K.size())
+{
+    for (size_t n = 0; n < model.evolving().size(); ++n) {
+        const auto* c = dynamic_cast<const EvolvingContact*>(model.evolving()[n].get());
+        if (c != nullptr && c->opens()) contact.push_back({c, static_cast<int>(n)});
+    }
+}
+
+void UnilateralStep::Contact::note(double t, double F_N)
+{
+    if (t == last.t) return;
+    before = last;
+    last = {t, F_N};
+}
+
+/// When F_N was zero on its way to this value at t
+double UnilateralStep::Contact::lift_off(double t, double F_N) const
+{
+    if (!(last.t < t) || !(last.F_N > 0)) return t;
+    const double slope = (F_N - last.F_N) / (t - last.t);
+    double s = -last.F_N / slope;  // after last.t, on the straight line
+    if (before.t < last.t) {
+        const double bend = (slope - (last.F_N - before.F_N) / (last.t - before.t)) / (t - before.t);
+        for (int k = 0; k < 5; ++k)
+            s -= (last.F_N + slope * s + bend * s * (s + last.t - t)) / (slope + bend * (2 * s + last.t - t));
+    }
+    return std::clamp(last.t + s, last.t, t);
+}
+
+void UnilateralStep::set_open(const Contact& c, State& x, bool is_open) const
+{
+    x.memory[c.contact->first_memory] = is_open;
+    x.lambda.segment(c.contact->first_row, c.contact->rows()).setZero();
+    x.lambda.segment(c.contact->first_velocity_row, c.contact->velocity_rows()).setZero();
+}
+
+/// F_N in the pose of x by these multipliers
+double UnilateralStep::force(const Contact& c, const State& x, const Eigen::VectorXd& lambda) const
+{
+    return c.contact->multipliers(model.at(*c.contact, x), lambda).F_N;
+}
+
+double UnilateralStep::gap(const Contact& c, const State& x) const
+{
+    return c.contact->gap(model.at(*c.contact, x));
+}
+
+/// Rate of the gap, from the velocities of the bodies
+double UnilateralStep::separation_speed(const Contact& c, const State& x) const
+{
+    const dae::Constraint::At at = model.at(*c.contact, x);
+    const Touch touch = c.contact->touch(at);
+    const auto velocity = [](const lie::Motion& body, const Vec3& C) {
+        return Vec3(body.rdot + (body.A * body.omega_bar).cross(C - body.r));
+    };
+    return touch.n.dot(velocity(at.bi, touch.C_i) - velocity(at.bj, touch.C_j));
+}
+
+bool UnilateralStep::overlaps(const Contact& c, const State& x) const
+{
+    return open(c, x) && gap(c, x) < -touching * c.contact->L;
+}
+
+/// The nearest points of the open contacts
+void UnilateralStep::track(State& x) const
+{
+    for (const Contact& c : contact)
+        if (open(c, x))
+            c.contact->track(model.at(*c.contact, x), false, x.alpha.data() + c.contact->first_alpha);
+}
+
+int UnilateralStep::step(State& x, double h)
+{
+    struct Restore {
+        State &x, &from;
+        std::vector<ContactEvent>& happened;
+        const size_t events;
+        bool done = false;
+        ~Restore()
+        {
+            if (done) return;
+            x = from;
+            happened.resize(events);
+        }
+    } restore{x, begin = x, happened, happened.size()};
+    const int iterations = advance(x, h);
+    restore.done = true;
+    return iterations;
+}
+
+void UnilateralStep::complete(State& node, const State&) const
+{
+    for (size_t b = 0; b < node.body.size(); ++b) {
+        const lie::Motion& from = known.body[b];
+        lie::Motion& to = node.body[b];
+        to.rdot = from.rdot, to.omega_bar = from.omega_bar;
+        to.rddot = from.rddot, to.omegadot_bar = from.omegadot_bar;
+    }
+    node.lambda = known.lambda;
+}
+
+/// From t_n to t_n + h, with all that happens on the way
+int UnilateralStep::advance(State& x, double h)
+{
+    int iterations = 0;
+    const int most = most_events * static_cast<int>(contact.size() + 1);
+    for (Contact& c : contact) c.held = false, c.meetings = 0;
+    double left = h;
+    for (int part = 0; part < most; ++part) {
+        node = x;
+        // a scheme that lags and has a history finds the forces of this node with the step
+        const bool forces_known = !scheme->lags() || node.history.size() == 0;
+        if (forces_known && release_pulling(node)) restart(node);
+        int k = try_step(node, trial, left);
+        while (!forces_known) {
+            node.lambda = trial.lambda;
+            if (!release_pulling(node)) break;
+            k += try_step(node, trial, left);
+        }
+        iterations = std::max(iterations, k);
+
+        anew = node;
+        if (!forces_known) scheme->complete(anew, trial);
+        anew.history.resize(0);
+        if (part == 0) known = anew;
+        for (Contact& c : contact)
+            if (!open(c, node)) c.note(node.t, force(c, node, anew.lambda));
+
+        Contact* meeting = nullptr;
+        const double taken = find_meeting(trial, left, meeting);
+        if (meeting == nullptr) {
+            x = trial;
+            if (part > 0) restart(x);  // its history is of another step
+            return iterations;
+        }
+        if (taken > 0) model.accepted(node, trial);
+        collide(trial, *meeting, h);
+        x = trial;
+        left -= taken;
+        if (left <= rest * h) return iterations;
+    }
+    throw lie::NumericalFailure("too_many_impacts", "contacts open and close without end within one step");
+}
+
+/// One step of the scheme, and the points of what is open after it
+int UnilateralStep::try_step(const State& from, State& to, double h)
+{
+    to = from;
+    const int k = scheme->step(to, h);
+    to.t = from.t + h;
+    track(to);
+    return k;
+}
+
+/// Accelerations and multipliers of a node, from which a scheme is to start anew
+void UnilateralStep::restart(State& x)
+{
+    x.history.resize(0);
+    do dae::solve_accelerations(model, K, x);
+    while (release_pulling(x));
+}
+
+/// Opens the closed contact that pulls most, by the multipliers in x, if there is one.
+bool UnilateralStep::release_pulling(State& x)
+{
+    Contact* worst = nullptr;
+    double least = 0;
+    for (Contact& c : contact)
+        if (!open(c, x) && !c.held)
+            if (const double F_N = force(c, x, x.lambda); F_N < least) worst = &c, least = F_N;
+    if (worst == nullptr) return false;
+    happened.push_back(
+        {.kind = ContactEvent::Kind::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
+    set_open(*worst, x, true);
+    return true;
+}
+
+/// Of the contacts that overlap in `to` and did not in `from`, the one whose gap a straight line has zero first
+UnilateralStep::Contact* UnilateralStep::first_to_meet(const State& from, const State& to)
+{
+    Contact* next = nullptr;
+    double earliest = 2;
+    for (Contact& c : contact) {
+        if (!overlaps(c, to)) continue;
+        const double g = std::max(gap(c, from), 0.), part = g / (g - gap(c, to));
+        if (part < earliest) earliest = part, next = &c;
+    }
+    return next;
+}
+
+/// How long a step from `anew` takes to where the first gap is zero; `to` is then there. h, and no contact, where none
+/// overlaps in `to`.
+double UnilateralStep::find_meeting(State& to, double h, Contact*& first)
+{
+    first = nullptr;
+    while (Contact* next = first_to_meet(anew, to)) {
+        first = next;
+        h = zero_of_gap(*next, to, h);
+        if (!(h > 0)) {
+            next->held = true;  // it opened at this node and does not leave
+            to = anew;
+            return 0;
+        }
+    }
+    return h;
+}
+
+/// The length of step, up to h, after which the gap of c is zero, where it is negative after h; 0 where it is none to
+/// begin with and does not open.
+double UnilateralStep::zero_of_gap(const Contact& c, State& to, double h)
+{
+    const double none = touching * c.contact->L;
+    double a = 0, g_a = gap(c, anew), b = h, g_b = gap(c, to);
+    for (int halving = 0; g_a <= none; ++halving) {  // it leaves and comes back
+        if (halving == 6 || !(separation_speed(c, anew) > 0)) return 0;
+        a = halving == 0 ? 0.5 * h : 0.5 * a;
+        try_step(anew, to, a);
+        g_a = gap(c, to);
+        if (g_a < -none) b = a, g_b = g_a;
+    }
+    double s = b;
+    for (int k = 0, last = 0; k < most_searches; ++k) {
+        s = (a * g_b - b * g_a) / (g_b - g_a);
+        if (!(s > a && s < b)) s = 0.5 * (a + b);
+        try_step(anew, to, s);
+        const double g = gap(c, to);
+        if (std::abs(g) <= none || !(b - a > 1e-15 * h)) break;
+        // regula falsi; the end that stays twice counts half ("Illinois")
+        if (g < 0) {
+            b = s, g_b = g;
+            if (last < 0) g_a /= 2;
+            last = -1;
+        } else {
+            a = s, g_a = g;
+            if (last > 0) g_b /= 2;
+            last = 1;
+        }
+    }
+    return s;
+}
+
+/// The velocities of x jump where contact c meets, h being the length of a whole step.
+void UnilateralStep::collide(State& x, Contact& c, double h)
+{
+    const Unilateral& how = c.contact->unilateral;
+    const double approach = std::max(0., -separation_speed(c, x));
+    if (++c.meetings == most_meetings) c.held = true;
+    set_open(c, x, false);
+    dae::project_positions(model, K, x);
+    before = x;
+    jump(x, nullptr, 0);  // compression
+    const double compression = force(c, x, x.lambda);
+    dae::solve_accelerations(model, K, x);
+    const double F_N = force(c, x, x.lambda);
+
+    // Free of c, the gap would have the acceleration -F_N/m with m = compression/approach.
+    double& rebounded = x.remembered[c.contact->first_remembered + EvolvingContact::rebounded];
+    const double rebound = c.held || x.t - rebounded < h ? 0 : how.restitution * approach;
+    const bool flies = rebound > 0 && 2 * rebound * compression > h * approach * F_N;
+    if (flies) {
+        if (how.impact == Unilateral::Impact::newton) {
+            x = before;
+            jump(x, &c, rebound);
+        }
+        set_open(c, x, true);
+        if (how.impact == Unilateral::Impact::poisson) {
+            before = x;
+            push(c, how.restitution * compression, before);
+            jump(x, nullptr, 0);
+        }
+    }
+    happened.push_back({.kind = flies ? ContactEvent::Kind::impact : ContactEvent::Kind::closing,
+                        .t = x.t,
+                        .contact = c.number,
+                        .speed = approach});
+    c.last = c.before = {};
+    if (flies) rebounded = x.t;
+    restart(x);
+}
+
+/// An impulse along the normal, which the next jump takes with it
+void UnilateralStep::push(const Contact& c, double impulse, const State& x)
+{
+    const dae::Constraint::At at = model.at(*c.contact, x);
+    const Touch touch = c.contact->touch(at);
+    const auto add = [&](int body, const lie::Motion& motion, const Vec3& C, double sign) {
+        if (body == dae::ground) return;
+        const Vec3 P = sign * impulse * touch.n;
+        momentum.segment<3>(6 * body) += P;
+        momentum.segment<3>(6 * body + 3) += motion.A.transpose() * (C - motion.r).cross(P);
+    };
+    add(c.contact->i, at.bi, touch.C_i, 1);
+    add(c.contact->j, at.bj, touch.C_j, -1);
+}
+
+/// The velocities of x jump so that all closed contacts and other constraints hold them, but for the one that rebounds,
+/// which separates at this speed. Contacts that would have to pull are opened. x.lambda are the impulses.
+void UnilateralStep::jump(State& x, const Contact* rebounding, double speed)
+{
+    constexpr double rounding = 1e-10;  // of the largest impulse
+    for (Contact* pulling = nullptr;; pulling = nullptr) {
+        K.assemble(x);
+        v.setZero();
+        for (int b = 0; b < model.bodies(); ++b)
+            v.segment<6>(6 * b) << model.mass().m[b] * x.body[b].rdot,
+                model.mass().J_bar[b] * x.body[b].omega_bar;
+        v.head(momentum.size()) += momentum;
+        model.nu(x, K.constraint_part(v));
+        if (rebounding != nullptr)
+            K.constraint_part(v).segment<3>(rebounding->contact->first_row) +=
+                speed * rebounding->contact->touch(model.at(*rebounding->contact, x)).n;
+        K.solve_refined(v);
+        x.lambda = K.constraint_part(v);
+        double largest = 0, least = 0;
+        for (Contact& c : contact) {
+            if (open(c, x)) continue;
+            const double P = force(c, x, x.lambda);
+            largest = std::max(largest, std::abs(P));
+            if (&c != rebounding && !c.held && P < least) least = P, pulling = &c;
+        }
+        if (pulling == nullptr || least > -rounding * largest) break;
+        set_open(*pulling, x, true);
+        happened.push_back(
+            {.kind = ContactEvent::Kind::lift_off, .t = x.t, .contact = pulling->number, .speed = 0});
+    }
+    for (int b = 0; b < model.bodies(); ++b) {
+        x.body[b].rdot = v.segment<3>(6 * b);
+        x.body[b].omega_bar = v.segment<3>(6 * b + 3);
+    }
+    momentum.setZero();
+}
+
+std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const lie::Scheme& scheme,
+                                                 const lie::Settings& settings)
+{
+    for (const auto& c : model.evolving())
+        if (c->opens()) return std::make_unique<UnilateralStep>(model, scheme, settings);
+    return scheme.make(model, settings);
+}
+
+}  // namespace hilda::contact

@@ -131,6 +131,7 @@ ContactForce::Instant ContactForce::at(const lie::State& x) const
 
 void ContactForce::add(const lie::State& x, lie::Loads& out) const
 {
+    if (!works(x)) return;
     const Instant now = at(x);
     const Meeting& m = now.meeting;
     if (!(m.N > 0)) return;
@@ -142,21 +143,27 @@ void ContactForce::add(const lie::State& x, lie::Loads& out) const
 
 Wrench ContactForce::friction(const lie::State& x) const
 {
+    if (!works(x)) return {};
     const Instant now = at(x);
     const Meeting& m = now.meeting;
     if (!(m.N > 0)) return {};
     return contact.load(m, rates(m.touch, m.slip, motion(x, i), motion(x, j)), now.memory);
 }
 
-void ContactForce::remember(lie::State& x) const { keep(at(x), x); }
+void ContactForce::remember(lie::State& x) const
+{
+    if (works(x)) keep(at(x), x);
+}
 
 double ContactForce::potential_energy(const lie::State& x) const
 {
+    if (!works(x)) return 0;
     return contact.energy(at(x).meeting, motion(x, i), motion(x, j));
 }
 
 std::string ContactForce::objection(const lie::State& x) const
 {
+    if (replaced != nullptr) return {};  // whether the surfaces fit it is asked when it works
     return contact.objection(motion(x, i), motion(x, j));
 }
 

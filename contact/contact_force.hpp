@@ -49,6 +49,9 @@ public:
     Instant at(const lie::State& x) const;
     Wrench friction(const lie::State& x) const;  ///< for figures
 
+    /// Makes it stand by for a constraint: there is nothing of it until that has handed over.
+    void stand_by(const dae::Constraint& c) { replaced = &c; }
+
     const int i, j;
     const Contact contact;
 
@@ -59,8 +62,14 @@ private:
     /// Throws what went wrong in `x`, with the bodies and the time.
     [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
 
+    bool works(const lie::State& x) const
+    {
+        return replaced == nullptr || dae::Model::mode(*replaced, x) == dae::Constraint::handed_over;
+    }
+
     const std::string name_i, name_j;
     const dae::Model& model;
+    const dae::Constraint* replaced = nullptr;
 };
 
 }  // namespace hilda::contact

@@ -220,35 +220,38 @@ void EvolvingContact::track(const At& x, bool afresh, double* alpha) const
     Vec3::Map(alpha + 3) = a_j;
 }
 
-void EvolvingContact::remember(const At& x, bool start, double* remembered) const
+bool EvolvingContact::remember(const At& x, bool start, double* remembered) const
 {
     const Touch at = touch(x);
     const auto fail = [&](const std::string& status, const std::string& what, double value) {
+        if (fallback) return false;
         std::ostringstream text;
         text.precision(3);
         text << "contact '" << name << "': " << what << ' ' << value;
         throw lie::NumericalFailure(status, text.str());
     };
-    const Vec3 n = shape_i.surface->normal(shape_i.to_surface(Vec3::Map(x.alpha)));
-    const double facing = (x.bi.A * (shape_i.orientation * n)).dot(at.n);
-    if (!(facing < -0.5))
-        fail("contact_lost", "the normals are no longer opposite, their product is", facing);
-    if (const double least = least_curvature(at) * L; !x.open && !(least > least_relative_curvature))
-        fail("contact_singular",
-             "the surfaces fit each other too well for one contact point: the least sum of curvatures, times "
-             "a size, is",
-             least);
+    const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
+    if (!x.open) {
+        if (const double facing = n_i.dot(at.n); !(facing < -0.5))
+            return fail("contact_lost", "the normals are no longer opposite, their product is", facing);
+        if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
+            return fail("contact_singular",
+                        "the surfaces fit each other too well for one contact point: the least sum of "
+                        "curvatures, times "
+                        "a size, is",
+                        least);
+    }
     Mat32 T;
-    const Vec3 n_i = -at.n;
     if (start) {
         T = tangent_basis(n_i);
+        remembered[rebounded] = -std::numeric_limits<double>::infinity();
     } else {
         const Mat32 before = Mat32::Map(remembered);
         T.col(0) = (before.col(0) - n_i * n_i.dot(before.col(0))).normalized();
         T.col(1) = n_i.cross(T.col(0));
     }
     Mat32::Map(remembered) = T;
-    if (start) remembered[rebounded] = -std::numeric_limits<double>::infinity();
+    return true;
 }
 
 double EvolvingContact::velocity_error(const At& x) const

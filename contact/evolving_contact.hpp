@@ -57,14 +57,15 @@ public:
     /// T by columns, and when it last rebounded [s]
     int remembered() const override { return 7; }
     static constexpr int rebounded = 6;
-    bool opens() const override { return unilateral.opens; }
+    bool opens() const override { return unilateral.opens || fallback; }
+    bool hands_over() const override { return fallback; }
 
     void phi(const At& x, double* out) const override;
     void variation(const At& x, Derivatives& out) const override;
     void gamma(const At& x, double* out) const override;
     unsigned nonzero(int row) const override;
     void track(const At& x, bool afresh, double* alpha) const override;
-    void remember(const At& x, bool start, double* remembered) const override;
+    bool remember(const At& x, bool start, double* remembered) const override;
     double gap(const At& x) const override { return touch(x).gap; }
     double velocity_error(const At& x) const override;
     double allowance() const override { return 1e-6 * L; }
@@ -88,6 +89,9 @@ public:
     const Friction friction;
     const NormalRows normal_rows;
     const Unilateral unilateral;
+    /// Whether a ContactForce stands by where there is no single contact point, or where the force of this contact is not
+    /// determined: to be set before the contact becomes part of a model.
+    bool fallback = false;
 
 private:
     struct Side;

@@ -51,13 +51,6 @@ double UnilateralStep::Contact::lift_off(double t, double F_N) const
     return std::clamp(last.t + s, last.t, t);
 }
 
-void UnilateralStep::set_open(const Contact& c, State& x, bool is_open) const
-{
-    x.memory[c.contact->first_memory] = is_open;
-    x.lambda.segment(c.contact->first_row, c.contact->rows()).setZero();
-    x.lambda.segment(c.contact->first_velocity_row, c.contact->velocity_rows()).setZero();
-}
-
 /// F_N in the pose of x by these multipliers
 double UnilateralStep::force(const Contact& c, const State& x, const Eigen::VectorXd& lambda) const
 {
@@ -107,9 +100,17 @@ int UnilateralStep::step(State& x, double h)
             happened.resize(events);
         }
     } restore{x, begin = x, happened, happened.size()};
-    const int iterations = advance(x, h);
-    restore.done = true;
-    return iterations;
+    for (;;) try {
+            const int iterations = advance(x, h);
+            restore.done = true;
+            return iterations;
+        } catch (const lie::NumericalFailure&) {
+            x = begin;
+            happened.resize(restore.events);
+            if (!hand_over_flattest(x)) throw;
+            restart(x);
+            begin = x;
+        }
 }
 
 void UnilateralStep::complete(State& node, const State&) const
@@ -148,7 +149,7 @@ int UnilateralStep::advance(State& x, double h)
         anew.history.resize(0);
         if (part == 0) known = anew;
         for (Contact& c : contact)
-            if (!open(c, node)) c.note(node.t, force(c, node, anew.lambda));
+            if (closed(c, node)) c.note(node.t, force(c, node, anew.lambda));
 
         Contact* meeting = nullptr;
         const double taken = find_meeting(trial, left, meeting);
@@ -176,6 +177,29 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
     return k;
 }
 
+/// Hands over the closed contact whose surfaces fit each other best, if there is one that may be. Where a step fails,
+/// that is the one to blame.
+bool UnilateralStep::hand_over_flattest(State& x)
+{
+    Contact* flattest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (Contact& c : contact)
+        if (closed(c, x) && c.contact->hands_over())
+            if (const double k = least_curvature(c.contact->touch(model.at(*c.contact, x))) * c.contact->L;
+                k < least)
+                flattest = &c, least = k;
+    if (flattest == nullptr) return false;
+    hand_over(*flattest, x, 0);
+    return true;
+}
+
+void UnilateralStep::hand_over(const Contact& c, State& x, double speed)
+{
+    dae::Model::set_mode(*c.contact, x, dae::Constraint::handed_over);
+    happened.push_back(
+        {.kind = ContactEvent::Kind::handed_over, .t = x.t, .contact = c.number, .speed = speed});
+}
+
 /// Accelerations and multipliers of a node, from which a scheme is to start anew
 void UnilateralStep::restart(State& x)
 {
@@ -190,12 +214,12 @@ bool UnilateralStep::release_pulling(State& x)
     Contact* worst = nullptr;
     double least = 0;
     for (Contact& c : contact)
-        if (!open(c, x) && !c.held)
+        if (closed(c, x) && c.contact->unilateral.opens && !c.held)
             if (const double F_N = force(c, x, x.lambda); F_N < least) worst = &c, least = F_N;
     if (worst == nullptr) return false;
     happened.push_back(
         {.kind = ContactEvent::Kind::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
-    set_open(*worst, x, true);
+    dae::Model::set_mode(*worst->contact, x, dae::Constraint::is_open);
     return true;
 }
 
@@ -269,7 +293,14 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
     const Unilateral& how = c.contact->unilateral;
     const double approach = std::max(0., -separation_speed(c, x));
     if (++c.meetings == most_meetings) c.held = true;
-    set_open(c, x, false);
+    dae::Model::set_mode(*c.contact, x, dae::Constraint::holds);
+    if (!determined(c, x)) {
+        dae::Model::set_mode(*c.contact, x, dae::Constraint::handed_over);
+        happened.push_back(
+            {.kind = ContactEvent::Kind::handed_over, .t = x.t, .contact = c.number, .speed = approach});
+        restart(x);
+        return;
+    }
     dae::project_positions(model, K, x);
     before = x;
     jump(x, nullptr, 0);  // compression
@@ -286,7 +317,7 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
             x = before;
             jump(x, &c, rebound);
         }
-        set_open(c, x, true);
+        dae::Model::set_mode(*c.contact, x, dae::Constraint::is_open);
         if (how.impact == Unilateral::Impact::poisson) {
             before = x;
             push(c, how.restitution * compression, before);
@@ -300,6 +331,25 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
     c.last = c.before = {};
     if (flies) rebounded = x.t;
     restart(x);
+}
+
+/// Whether the force of c is determined together with those of all that is closed
+bool UnilateralStep::determined(const Contact& c, State& x)
+{
+    constexpr double singular = 1e-11;  // reciprocal condition of the scaled K
+    double condition = 0;
+    try {
+        K.assemble(x);
+        condition = K.reciprocal_condition();
+    } catch (const lie::SingularMatrix&) {
+    }
+    if (condition > singular) return true;
+    if (!c.contact->hands_over())
+        throw lie::NumericalFailure("contact_rank",
+                                    "contact '" + c.contact->name +
+                                        "' presses where other constraints hold already, so that its "
+                                        "force is not determined");
+    return false;
 }
 
 /// An impulse along the normal, which the next jump takes with it
@@ -337,13 +387,14 @@ void UnilateralStep::jump(State& x, const Contact* rebounding, double speed)
         x.lambda = K.constraint_part(v);
         double largest = 0, least = 0;
         for (Contact& c : contact) {
-            if (open(c, x)) continue;
+            if (!closed(c, x)) continue;
             const double P = force(c, x, x.lambda);
             largest = std::max(largest, std::abs(P));
-            if (&c != rebounding && !c.held && P < least) least = P, pulling = &c;
+            if (&c != rebounding && c.contact->unilateral.opens && !c.held && P < least)
+                least = P, pulling = &c;
         }
         if (pulling == nullptr || least > -rounding * largest) break;
-        set_open(*pulling, x, true);
+        dae::Model::set_mode(*pulling->contact, x, dae::Constraint::is_open);
         happened.push_back(
             {.kind = ContactEvent::Kind::lift_off, .t = x.t, .contact = pulling->number, .speed = 0});
     }

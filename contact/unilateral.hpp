@@ -10,7 +10,7 @@ namespace hilda::contact {
 
 /// What happened to a contact, and when
 struct ContactEvent {
-    enum class Kind { lift_off, impact, closing } kind = Kind::lift_off;
+    enum class Kind { lift_off, impact, closing, handed_over } kind = Kind::lift_off;
     double t = 0;      ///< [s]
     int contact = 0;   ///< its number in Model::evolving()
     double speed = 0;  ///< of approach at an impact and a closing [m/s]
@@ -29,6 +29,8 @@ struct ContactEvent {
 ///   length of the step, started anew from t_n), the velocities jump there, and the rest of the step follows.
 ///   Normal impulses, without friction: Newton, v⁺ = -e v⁻ along the normal; Poisson, the impulse of compression, with
 ///   v = 0 after it, and e times it after that. Other closed contacts hold in an impact if they press, else they open.
+/// - Handing over, where that is allowed: of a contact whose force would not be determined with those that are closed,
+///   when it meets (else lie::NumericalFailure "contact_rank"); of the flattest contact, where a step fails.
 /// - Closing: where e is 0, or where the rebound would be or was shorter than a step, the contact closes.
 ///
 /// A gap that closes and opens again within one step is not seen. A contact that meets for the third time in one step,
@@ -58,15 +60,16 @@ private:
         };
         Known last = {},
               before = {};  ///< nodes where it was closed, for the time of a lift-off; none where t is NaN
-        int meetings = 0;              ///< in the step
-        bool held = false;             ///< stays closed for the rest of the step
+        int meetings = 0;   ///< in the step
+        bool held = false;  ///< stays closed for the rest of the step
 
         void note(double t, double F_N);
         double lift_off(double t, double F_N) const;
     };
 
-    bool open(const Contact& c, const lie::State& x) const { return dae::Model::open(*c.contact, x); }
-    void set_open(const Contact& c, lie::State& x, bool is_open) const;
+    static int mode(const Contact& c, const lie::State& x) { return dae::Model::mode(*c.contact, x); }
+    static bool open(const Contact& c, const lie::State& x) { return mode(c, x) == dae::Constraint::is_open; }
+    static bool closed(const Contact& c, const lie::State& x) { return mode(c, x) == dae::Constraint::holds; }
     double force(const Contact& c, const lie::State& x, const Eigen::VectorXd& lambda) const;
     double gap(const Contact& c, const lie::State& x) const;
     double separation_speed(const Contact& c, const lie::State& x) const;
@@ -81,6 +84,9 @@ private:
     double find_meeting(lie::State& to, double h, Contact*& first);
     double zero_of_gap(const Contact& c, lie::State& to, double h);
     void collide(lie::State& x, Contact& c, double h);
+    bool determined(const Contact& c, lie::State& x);
+    void hand_over(const Contact& c, lie::State& x, double speed);
+    bool hand_over_flattest(lie::State& x);
     void jump(lie::State& x, const Contact* rebounding, double speed);
     void push(const Contact& c, double impulse, const lie::State& x);
 

@@ -20,8 +20,16 @@ public:
     virtual int unknowns() const = 0;
     /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
     virtual int remembered() const { return 0; }
-    /// Whether it may be open for a while, and then holds nothing. Told by the first number of its memory: 1 while it is.
+    /// What it does, as State::memory has it
+    enum Mode {
+        holds = 0,
+        is_open = 1,     ///< holds nothing for a while
+        handed_over = 2  ///< holds nothing: a force does what it cannot do any more
+    };
+    /// Whether it is ever in another mode than the first
     virtual bool opens() const { return false; }
+    /// Whether a force stands by for it, so that it hands over instead of failing
+    virtual bool hands_over() const { return false; }
 
     /// Where it is evaluated: its bodies, its own unknowns, what it remembers
     struct At {
@@ -45,9 +53,9 @@ public:
 
     /// α that belongs to the poses of the bodies, from what is there; `afresh`: from nothing
     virtual void track(const At& x, bool afresh, double* alpha) const = 0;
-    /// What is remembered, at a start and once per accepted step. Throws lie::NumericalFailure where the constraint
-    /// cannot go on from here.
-    virtual void remember(const At& x, bool start, double* remembered) const = 0;
+    /// What is remembered, at a start and once per accepted step. Where the constraint cannot go on from here it throws
+    /// lie::NumericalFailure, or returns false if it hands over.
+    virtual bool remember(const At& x, bool start, double* remembered) const = 0;
 
     /// Distance of the two bodies where the rows are not quite satisfied, negative for overlap, α being that of track()
     /// [m]; and how far velocities are off [m/s]

@@ -143,11 +143,14 @@ void Model::prepare(State& x)
     x.alpha = Eigen::VectorXd::Zero(alphas);
     x.remembered.assign(remembered, 0);
     for (const auto& c : with_unknowns) {
-        if (const std::string why = c->objection(at(*c, x)); !why.empty())
-            throw lie::InvalidInput(name_of(*c) + ": " + why);
+        if (const std::string why = c->objection(at(*c, x)); !why.empty()) {
+            if (!c->hands_over()) throw lie::InvalidInput(name_of(*c) + ": " + why);
+            x.memory[c->first_memory] = Constraint::handed_over;
+            continue;
+        }
         c->track(at(*c, x), true, x.alpha.data() + c->first_alpha);
         // one that may open starts open where there is a gap
-        if (c->opens() && c->gap(at(*c, x)) > c->allowance()) x.memory[c->first_memory] = 1;
+        if (c->opens() && c->gap(at(*c, x)) > c->allowance()) x.memory[c->first_memory] = Constraint::is_open;
     }
     for (const auto& f : force) {
         f->first_memory = memory;
@@ -165,8 +168,7 @@ void Model::remember_start(State& x) const
 {
     for (const auto& f : force) std::fill_n(x.memory.begin() + f->first_memory, f->memory(), 0);
     x.remembered.assign(remembered, 0);
-    for (const auto& c : with_unknowns)
-        c->remember(at(*c, x), true, x.remembered.data() + c->first_remembered);
+    remember_contacts(x, true);
     for (const auto& f : force) f->remember(x);
 }
 
@@ -491,9 +493,23 @@ double Model::potential_energy(const State& x) const
 void Model::accepted(const State&, State& after) const
 {
     swap_drivers(after);
-    for (const auto& c : with_unknowns)
-        c->remember(at(*c, after), false, after.remembered.data() + c->first_remembered);
+    remember_contacts(after, false);
     for (const auto& f : force) f->remember(after);
+}
+
+void Model::remember_contacts(State& x, bool start) const
+{
+    for (const auto& c : with_unknowns)
+        if (mode(*c, x) != Constraint::handed_over &&
+            !c->remember(at(*c, x), start, x.remembered.data() + c->first_remembered))
+            set_mode(*c, x, Constraint::handed_over);
+}
+
+void Model::set_mode(const Constraint& c, State& x, Constraint::Mode mode)
+{
+    x.memory[c.first_memory] = mode;
+    x.lambda.segment(c.first_row, c.rows()).setZero();
+    x.lambda.segment(c.first_velocity_row, c.velocity_rows()).setZero();
 }
 
 void Model::swap_drivers(State& x) const

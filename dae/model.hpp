@@ -67,10 +67,13 @@ public:
                 open(c, x)};
     }
     /// Whether it holds nothing at present. Its rows are then empty.
-    static bool open(const Constraint& c, const State& x)
+    static bool open(const Constraint& c, const State& x) { return mode(c, x) != Constraint::holds; }
+    static int mode(const Constraint& c, const State& x)
     {
-        return c.opens() && x.memory[c.first_memory] == 1;
+        return c.opens() ? x.memory[c.first_memory] : Constraint::holds;
     }
+    /// Takes its multipliers out of the state, too.
+    static void set_mode(const Constraint& c, State& x, Constraint::Mode mode);
     std::string name_of(const Constraint& c) const;
 
     void load(std::unique_ptr<Force> force);
@@ -152,6 +155,7 @@ public:
 
 private:
     void swap_drivers(State& x) const;
+    void remember_contacts(State& x, bool start) const;
     void set_pattern();
     void add_to_pattern(const Row& row);
     void add_to_pattern(const Constraint& c, int first, int rows);

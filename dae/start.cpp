@@ -25,21 +25,21 @@ std::string number(double value)
 }
 
 /// The contact that row k of the reduced rows belongs to
-std::string contact_of(const Model& model, int k)
+const Constraint& contact_of(const Model& model, int k)
 {
     int row = static_cast<int>(model.active_rows().size());
     for (const bool of_velocities : {false, true})
         for (const auto& c : model.evolving()) {
             row += of_velocities ? c->velocity_rows() : c->rows() - c->unknowns();
-            if (k < row) return "'" + c->name + "'";
+            if (k < row) return *c;
         }
-    return "row " + std::to_string(k);
+    throw std::logic_error("no contact has this row");
 }
 
 /// The rows that add less than `tolerance` to those before them, as numbers into model.active_rows(). In the
-/// metric of the mass, so that the answer does not depend on units. lie::NumericalFailure "contact_rank" where a contact
-/// is among them: its force would not be determined.
-std::vector<int> dependent_rows(const Model& model, const State& x, double tolerance)
+/// metric of the mass, so that the answer does not depend on units. A contact among them has a force that is not
+/// determined: it is handed over in x, and lie::NumericalFailure "contact_rank" tells of those that cannot be.
+std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
     lie::Rows whole = model.pattern();
     model.variation(x, whole);
@@ -107,7 +107,11 @@ std::vector<int> dependent_rows(const Model& model, const State& x, double toler
         throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
     std::string names;
     while (!dependent.empty() && dependent.back() >= static_cast<int>(model.active_rows().size())) {
-        names = contact_of(model, dependent.back()) + (names.empty() ? "" : ", ") + names;
+        const Constraint& c = contact_of(model, dependent.back());
+        if (c.hands_over())
+            Model::set_mode(c, x, Constraint::handed_over);
+        else
+            names = "'" + c.name + "'" + (names.empty() ? "" : ", ") + names;
         dependent.pop_back();
     }
     if (!names.empty())

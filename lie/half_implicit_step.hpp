@@ -25,10 +25,12 @@ public:
         set_known_part(h);
         predict(h);
         x.t = x_n.t + h;
+        refreshed = false;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
             place_massless(x, 1 / q);
-            correct(k, x);
+            if (k > patience) refresh(x);
+            correct(refreshed ? 1 : k, x);
             if (converged(k, length(), K.constraint_part(e), 1 / w)) {
                 accept(x, h);
                 return done(attempt, k);
@@ -44,7 +46,7 @@ protected:
     using Vec6 = Eigen::Matrix<double, 6, 1>;
 
     HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q)
-        : SaddleStep(model, settings), name(std::move(name)), w(w), q(q)
+        : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern())
     {}
 
     /// Readies what the scheme carries from step to step, out of x_n.history or at a start
@@ -75,7 +77,19 @@ protected:
                     (velocity(i).tail<3>() - (w - 1) * h * x_n.body[i].omegadot_bar)) +
                w * h * h * tau_bar(i, node().body[i]);
     }
-    virtual void correct(int k, const State& x) { SaddleStep::correct(k, x, q); }
+    /// The k-th correction of z, as in SaddleStep; k = 1 where more than Φ is left
+    virtual void correct(int k, const State& x)
+    {
+        if (k == 1) set_linear_residual(rows_of_node());
+        set_constraint_residual(k, x, q);
+        if (k == 1)
+            K.solve(e);
+        else
+            K.solve_constraints(e);
+        z += e;
+    }
+    /// Those of t_n, along which the multipliers act, whatever K has been refreshed with
+    const Rows& rows_of_node() const { return refreshed ? C_n : K.rows(); }
 
     const std::string name;
     const double w, q;
@@ -128,13 +142,21 @@ private:
         return std::sqrt(sum);
     }
 
+    /// The rows change too fast for K of t_n: from here on it is that of each iterate.
+    void refresh(const State& x)
+    {
+        if (!refreshed) C_n = K.rows();
+        refreshed = true;
+        K.assemble(x);
+    }
+
     void accept(State& x, double h)
     {
         place(x);
         place_massless(x, 1 / q);
         x.lambda = K.constraint_part(z) / (w * h * h);
         b.setZero();
-        K.rows().add_transpose(1, x.lambda, b);
+        rows_of_node().add_transpose(1, x.lambda, b);
         for (int i = 0; i < model.bodies(); ++i) {
             Motion& body = x.body[i];
             body.A = orthonormalised(body.A);
@@ -143,6 +165,10 @@ private:
         }
         leave(x, h);
     }
+
+    static constexpr int patience = 10;  ///< corrections with K of t_n
+    bool refreshed = false;
+    Rows C_n;
 };
 
 }  // namespace hilda::lie

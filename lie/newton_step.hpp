@@ -201,9 +201,10 @@ protected:
     }
 
     /// e = b - K z
-    void set_linear_residual()
+    void set_linear_residual() { set_linear_residual(K.rows()); }
+    void set_linear_residual(const Rows& C)
     {
-        K.multiply(z, e);
+        K.multiply(C, z, e);
         e = b - e;
         of_velocities = velocity_part(e);
     }

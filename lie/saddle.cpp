@@ -235,7 +235,7 @@ void Saddle::solve_refined(Eigen::VectorXd& b)
     b += work;
 }
 
-void Saddle::multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const
+void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& out) const
 {
     for (int b = 0; b < bodies; ++b) {
         out.segment<6>(6 * b) = z.segment<6>(6 * b);

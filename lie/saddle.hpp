@@ -64,7 +64,9 @@ public:
     void solve_refined(Eigen::VectorXd& b);
 
     /// out = K z
-    void multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const;
+    void multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const { multiply(C, z, out); }
+    /// The same with these rows in the place of those assembled
+    void multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& out) const;
 
     const Rows& rows() const { return C; }  ///< Φ_r, Π̄, Φ_α as last assembled
     int size() const { return 6 * bodies + m + unknowns; }

@@ -52,7 +52,7 @@ private:
 
     void correct(int k, const State& x) override
     {
-        set_linear_residual();
+        set_linear_residual(rows_of_node());
         for (int i = 0; i < model.bodies(); ++i) {
             const Vec3 theta = z.segment<3>(6 * i + 3);
             e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;

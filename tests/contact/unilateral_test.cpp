@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/unilateral.hpp"
+#include "contact/contact_force.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
 #include "dae/start.hpp"
 #include "lie/trajectory.hpp"
 
@@ -277,5 +279,79 @@ TEST_CASE("a run through impacts goes on from any node as if it had not stopped"
             REQUIRE(x.memory == resumed.memory);
         }
         CHECK(whole.events().size() > 2);
+    }
+}
+
+TEST_CASE("contacts whose forces are not determined are named, or handed over to a compliant force",
+          "[contact][unilateral]")
+{
+    // four walls of a pyramid hold a ball that three of them hold already
+    const double R = 0.2, lean = 0.6;
+    for (const bool fallback : {false, true}) {
+        dae::Model model;
+        model.add({"ball", 1, 0.4 * R * R * Mat3::Identity()});
+        for (int k = 0; k < 4; ++k) {
+            const Mat3 A = lie::exp(Vec3(0, 0, k * M_PI / 2)) * lie::exp(Vec3(0, lean, 0));
+            const std::string name = "wall " + std::to_string(k);
+            auto c = std::make_unique<EvolvingContact>(0, ball(R), dae::ground,
+                                                       Shape{plane.surface, Vec3::Zero(), A});
+            if (fallback) {
+                auto force = std::make_unique<contact::ContactForce>(
+                    name, model, 0, ball(R), dae::ground, c->shape_j,
+                    std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                    contact::frictionless());
+                c->fallback = true;
+                force->stand_by(*c);
+                model.load(std::move(force));
+            }
+            model.constrain(name, std::move(c));
+        }
+        State x;
+        x.body.resize(1);
+        x.body[0].r = Vec3(0, 0, R / std::cos(lean));
+        if (!fallback) {
+            CHECK_THROWS_WITH(dae::start(model, x), Catch::Contains("not determined: 'wall 3'"));
+            continue;
+        }
+        CHECK(dae::start(model, x).rank == 3);
+        CHECK(x.memory[model.evolving()[3]->first_memory] == dae::Constraint::handed_over);
+        const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
+        const State end = lie::march(x, *step, lie::Grid::over(1, 1e-3)).row.back();
+        CHECK((end.body[0].r - x.body[0].r).norm() < 1e-9);
+    }
+}
+
+TEST_CASE("a contact that becomes too flat for one point is handed over on the way", "[contact][unilateral]")
+{
+    // the fourth-power superquadric is flat on top of its axes: it rolls there from the side
+    const Shape block{std::make_shared<contact::Superquadric>(Vec3(0.3, 0.3, 0.2), 4)};
+    for (const bool fallback : {false, true}) {
+        dae::Model model;
+        model.add({"block", 1, Vec3(0.02, 0.02, 0.03).asDiagonal()});
+        auto c = std::make_unique<EvolvingContact>(0, block, dae::ground, plane);
+        if (fallback) {
+            auto force = std::make_unique<contact::ContactForce>(
+                "floor", model, 0, block, dae::ground, plane,
+                std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                contact::frictionless());
+            c->fallback = true;
+            force->stand_by(*c);
+            model.load(std::move(force));
+        }
+        model.constrain("floor", std::move(c));
+        State x;
+        x.body.resize(1);
+        x.body[0].A = lie::exp(Vec3(0.4, 0.3, 0));
+        x.body[0].r = Vec3(0, 0, 0.3);
+        dae::start(model, x, {.fix_initial = true});
+        const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
+        const lie::Grid grid = lie::Grid::over(1, 1e-3);
+        if (!fallback) {
+            CHECK_THROWS_AS(lie::march(x, *step, grid), lie::NumericalFailure);
+            continue;
+        }
+        const State end = lie::march(x, *step, grid).row.back();
+        CHECK(end.memory[model.evolving()[0]->first_memory] == dae::Constraint::handed_over);
+        CHECK(end.body[0].r.z() > 0.19);
     }
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What every motion in contact must satisfy, whatever it was made from.
+
+#pragma once
+
+#include "reference/contact_instant.hpp"
+#include "tests/support/finite_difference.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <vector>
+
+namespace hilda::tests {
+
+using reference::ContactInstant;
+using reference::Mat3;
+using reference::Vec3;
+
+/// t - 2h … t + 2h
+inline std::vector<double> five(double t, double h) { return {t - 2 * h, t - h, t, t + h, t + 2 * h}; }
+
+/// Five instants h apart: rates are derivatives, Newton's and Euler's equations hold under gravity along -z, and the
+/// contact point is one point. With h times the rate of change near 4e-3, differences leave 1e-11 of truncation
+/// and less of rounding. Rates are judged by what is lost in a time of 1/rate.
+inline void check_motion(const std::vector<ContactInstant>& x, double h, double m, const Mat3& J_bar,
+                         double g, double rate)
+{
+    REQUIRE(x.size() == 5);
+    const auto derivative = [&](auto member) {
+        return tests::derivative([&](double s) { return member(x[2 + std::lround(s / h)]); }, h);
+    };
+    const ContactInstant& c = x[2];
+    const Vec3 rdot = derivative([](const ContactInstant& k) { return k.body.r; });
+    const Vec3 rddot = derivative([](const ContactInstant& k) { return k.body.rdot; });
+    const Mat3 Adot = derivative([](const ContactInstant& k) { return k.body.A; });
+    const Vec3 omegadot_bar = derivative([](const ContactInstant& k) { return k.body.omega_bar; });
+    INFO("t = " << c.t);
+    CHECK((rdot - c.body.rdot).norm() < 1e-9 * (1 + c.body.rdot.norm()));
+    CHECK((rddot - c.body.rddot).norm() < 1e-9 * rate * (1 + c.body.rdot.norm()));
+    CHECK((c.body.A.transpose() * Adot - lie::tilde(c.body.omega_bar)).norm() < 1e-9 * rate);
+    CHECK((omegadot_bar - c.body.omegadot_bar).norm() < 1e-9 * rate * rate);
+
+    const Vec3 weight(0, 0, -m * g), moment = c.body.A.transpose() * c.moment;
+    const double scale = weight.norm() + c.F().norm();
+    CHECK((m * c.body.rddot - weight - c.F()).norm() < 1e-13 * scale);
+    CHECK((J_bar * c.body.omegadot_bar + c.body.omega_bar.cross(J_bar * c.body.omega_bar) -
+           c.a_bar.cross(c.body.A.transpose() * c.F()) - moment)
+              .norm() < 1e-12 * scale * c.a_bar.norm());
+
+    CHECK((c.body.r + c.body.A * c.a_bar - c.p).norm() < 1e-15 * (1 + 10 * c.p.norm()));
+    CHECK(c.n.norm() == Approx(1).epsilon(1e-14));
+    CHECK(std::abs(c.n.dot(c.F_t)) < 1e-13 * scale);
+    CHECK(lie::orthogonality_error(c.body.A) < 1e-14);
+}
+
+}  // namespace hilda::tests

@@ -14,7 +14,7 @@ namespace hilda::reference {
 namespace {
 
 // A leg is at most about this long [rad]; the chart exp(θ̃) reaches to 2π.
-constexpr double leg_angle = 0.5;
+constexpr double leg_angle = 1;
 
 /// The ellipsoid where it touches, at ē and ω̄
 struct Place {

@@ -15,7 +15,7 @@ namespace {
 constexpr int most_trials = 100;
 
 /// Leaves t, y at the fall of g between the look (t_a, y_a, g_a > 0) and (t, y, g_b ≤ 0).
-void find(Ode& ode, double t_a, const Eigen::VectorXd& y_a, double g_a, double& t, VectorRef y, double g_b,
+void find(Ode& ode, double t_a, const Eigen::VectorXd& y_a, double g_a, double& t, VectorRef& y, double g_b,
           const Event& g)
 {
     double left = t_a, right = t;

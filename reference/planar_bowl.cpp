@@ -76,6 +76,7 @@ struct PlanarMotion {
     {
         return bowl.m * (v * psidot(here, v) - bowl.gravity().dot(here.n));
     }
+
     ContactInstant instant(double t) const
     {
         const Place here(bowl, y[phi]);
@@ -107,7 +108,7 @@ struct PlanarMotion {
         return run;
     }
 
-    void rates(const ConstVectorRef& x, VectorRef xdot) const
+    void rates(const ConstVectorRef& x, VectorRef& xdot) const
     {
         const Place here(bowl, x[phi]);
         const Action action = law(here, x, F_N(here, x[v]));

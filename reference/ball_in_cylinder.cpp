@@ -18,8 +18,7 @@ void check(const BallInCylinder& c)
     for (const double positive : {c.rho, c.R, c.m, c.J})
         if (!(positive > 0))
             lie::reject("reference::BallInCylinder", "lengths, mass and inertia must be positive", positive);
-    if (!(c.R < c.rho))
-        lie::reject("reference::BallInCylinder", "the ball must fit into the cylinder", c.R);
+    if (!(c.R < c.rho)) lie::reject("reference::BallInCylinder", "the ball must fit into the cylinder", c.R);
     if (c.Omega == 0) lie::reject("reference::BallInCylinder", "the ball must go round", c.Omega);
 }
 
@@ -60,8 +59,7 @@ struct Rolling {
         zddot = -c.zdot * nu * s + z_eq * nu * nu * std::cos(nu * t);
         const Vec3 outwards = e_r(c, t), onwards = Vec3::UnitZ().cross(outwards);
         const double omega_r = -c.spin + c.Omega * z / c.R, omega_theta = zdot / c.R;
-        omega = omega_r * outwards + omega_theta * onwards -
-                (c.rho - c.R) * c.Omega / c.R * Vec3::UnitZ();
+        omega = omega_r * outwards + omega_theta * onwards - (c.rho - c.R) * c.Omega / c.R * Vec3::UnitZ();
         // ω̇_r - Ω ω_θ = 0 is the part along e_r
         omegadot = (zddot / c.R + c.Omega * omega_r) * onwards;
     }
@@ -82,6 +80,7 @@ std::vector<ContactInstant> BallInCylinder::slide(const std::vector<double>& ins
     check(*this);
     const Vec3 omega = -spin * Vec3::UnitX();
     std::vector<ContactInstant> run;
+    run.reserve(instants.size());
     for (const double t : instants)
         run.push_back(instant(*this, t, t * (zdot - g * t / 2), zdot - g * t, -g, lie::exp(t * omega), omega,
                               Vec3::Zero()));

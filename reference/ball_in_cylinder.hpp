@@ -36,7 +36,8 @@ struct BallInCylinder {
     /// All but the attitude in rolling is closed; that is ω(t) integrated. At these instants [s], ascending, none
     /// negative; A = 1, z = 0, θ = 0 at t = 0. InvalidInput for numbers that make no sense.
     std::vector<ContactInstant> slide(const std::vector<double>& instants) const;
-    std::vector<ContactInstant> roll(const std::vector<double>& instants, const OdeTolerance& tolerance = {}) const;
+    std::vector<ContactInstant> roll(const std::vector<double>& instants,
+                                     const OdeTolerance& tolerance = {}) const;
 };
 
 }  // namespace hilda::reference

@@ -14,9 +14,10 @@ namespace hilda::reference {
 /// ā go on to be those nearest to the sphere.
 struct Departure {
     std::vector<ContactInstant> instant;
-    double t_slip = std::numeric_limits<double>::infinity();  ///< [s], infinite when it does not begin to slip
-    double t = 0;                                             ///< of lift-off [s]
-    Motion body;                                              ///< then
+    double t_slip =
+        std::numeric_limits<double>::infinity();  ///< [s], infinite when it does not begin to slip
+    double t = 0;                                 ///< of lift-off [s]
+    Motion body;                                  ///< then
 };
 
 /// The sphere is at the origin; the ball starts on top of it at v_0 towards y. With the angle θ from the top,
@@ -29,6 +30,10 @@ struct Departure {
 ///     slide        F_t = 0                       leaves at cos θ = 2/3 + v_0²/(3 g (R + r))
 ///     roll         F_t = J/(J + m r²) m g sin θ,  (3 + k) cos θ = 2 + (1 + k) v_0²/(g (R + r)),  k = J/(m r²)
 ///     stick_slip   rolls while F_t ≤ μ F_N, then F_t = μ F_N as v - rω > 0, and leaves at F_N = 0
+///
+/// In slip the equation for v is linear in v² over θ, so that with a constant C
+///
+///     v² = C e^(2μθ) - 2 g (R + r) ((1 - 2μ²) cos θ + 3μ sin θ)/(1 + 4μ²)
 ///
 /// The friction that rolling needs grows as F_N falls to zero, so that with a finite μ it always slips first, for
 /// good: v - rω only grows. Then free fall, ω constant. The start is at t = 0 with A = 1.
@@ -49,7 +54,8 @@ struct BallOnSphere {
     /// At these instants [s], ascending, none negative. InvalidInput for numbers that make no sense.
     Departure slide(const std::vector<double>& instants, const OdeTolerance& tolerance = {}) const;
     Departure roll(const std::vector<double>& instants, const OdeTolerance& tolerance = {}) const;
-    Departure stick_slip(double mu, const std::vector<double>& instants, const OdeTolerance& tolerance = {}) const;
+    Departure stick_slip(double mu, const std::vector<double>& instants,
+                         const OdeTolerance& tolerance = {}) const;
 };
 
 }  // namespace hilda::reference

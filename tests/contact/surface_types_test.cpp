@@ -2,13 +2,17 @@
 /// Surfaces of a model file: what is read, what is refused and where, and that the canonical text says the same.
 
 #include "contact/surface_types.hpp"
+#include "contact/surfaces/cone.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/paraboloid.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "lie/check.hpp"
 
 #include <catch2/catch.hpp>
+
+#include <map>
 
 using namespace hilda;
 using namespace hilda::contact;
@@ -42,12 +46,16 @@ std::string refusal(const std::string& shape)
 }
 
 /// An example of every kind of surface; add the next one here.
-const std::pair<std::string, std::string> examples[] = {
+const std::map<std::string, std::string> examples = {
+    {"cone", R"({"type": "cone", "half_angle": 0.5, "axis": [0, 1, 0]})"},
     {"cylinder", R"({"type": "cylinder", "radius": 0.5, "axis": [1, 0, 0]})"},
     {"disk", R"({"type": "disk", "radius": 0.5})"},
     {"ellipsoid", R"({"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "concave": true})"},
     {"foot", R"({"type": "foot", "position": [0, 0, -0.5], "normal": [0, 0, -1]})"},
+    {"paraboloid", R"({"type": "paraboloid", "radii": [0.5, 2], "concave": true, "axis": [0, 0, 2]})"},
     {"plane", R"({"type": "plane", "normal": [0, 3, 4]})"},
+    {"quadric",
+     R"({"type": "quadric", "Q": [[1, 0.5, 0], [0.5, 1, 0], [0, 0, -1]], "b": [0, 0, 0.25], "c": -4})"},
     {"sphere", R"({"type": "sphere", "radius": 0.2, "position": [1, 2, 3], "axis_angle": [0, 0, 1, 0.5]})"},
     {"superquadric", R"({"type": "superquadric", "semi_axes": [0.3, 0.2, 0.1], "exponent": 4})"},
     {"torus", R"({"type": "torus", "ring_radius": 0.5, "tube_radius": 0.1, "p": [1, 0, 0, 0]})"},
@@ -57,12 +65,11 @@ const std::pair<std::string, std::string> examples[] = {
 
 TEST_CASE("every kind of surface is read and written the same", "[contact][surface_types]")
 {
-    REQUIRE(surface_types().size() >= std::size(examples));
+    REQUIRE(surface_types().size() >= examples.size());
     for (const SurfaceType& type : surface_types()) {
         INFO(type.name);
-        const auto* example = std::find_if(std::begin(examples), std::end(examples),
-                                           [&](const auto& e) { return e.first == type.name; });
-        REQUIRE(example != std::end(examples));
+        const auto example = examples.find(type.name);
+        REQUIRE(example != examples.end());
         const Read once = read(example->second), twice = read(once.canonical);
         CHECK(once.shape.surface->name() == type.name);
         CHECK(twice.canonical == once.canonical);
@@ -77,20 +84,24 @@ TEST_CASE("every kind of surface is read and written the same", "[contact][surfa
 
 TEST_CASE("what a model file says of a surface is what it is", "[contact][surface_types]")
 {
-    const Shape ball = read(examples[5].second).shape;
+    const Shape ball = read(examples.at("sphere")).shape;
     CHECK(dynamic_cast<const Sphere&>(*ball.surface).R == 0.2);
     CHECK_FALSE(dynamic_cast<const Sphere&>(*ball.surface).concave);
     CHECK(ball.position == Vec3(1, 2, 3));
     CHECK((ball.orientation - lie::exp({0, 0, 0.5})).norm() < 1e-15);
 
-    const Shape hollow = read(examples[2].second).shape;
+    const Shape hollow = read(examples.at("ellipsoid")).shape;
     CHECK(dynamic_cast<const Ellipsoid&>(*hollow.surface).semi_axes == Vec3(0.3, 0.2, 0.1));
     CHECK(hollow.surface->sigma() == -1);
     CHECK(hollow.orientation == Mat3::Identity());
 
-    CHECK((read(examples[4].second).shape.orientation.col(2) - Vec3(0, 0.6, 0.8)).norm() < 1e-15);
-    CHECK(dynamic_cast<const Superquadric&>(*read(examples[6].second).shape.surface).q == 4);
-    CHECK(dynamic_cast<const Torus&>(*read(examples[7].second).shape.surface).r == 0.1);
+    CHECK((read(examples.at("plane")).shape.orientation.col(2) - Vec3(0, 0.6, 0.8)).norm() < 1e-15);
+    CHECK(dynamic_cast<const Superquadric&>(*read(examples.at("superquadric")).shape.surface).q == 4);
+    CHECK(dynamic_cast<const Torus&>(*read(examples.at("torus")).shape.surface).r == 0.1);
+    CHECK(dynamic_cast<const Cone&>(*read(examples.at("cone")).shape.surface).half_angle == 0.5);
+    CHECK(dynamic_cast<const Paraboloid&>(*read(examples.at("paraboloid")).shape.surface).R_y == 2);
+    const Shape hyperboloid = read(examples.at("quadric")).shape;
+    CHECK(std::abs(hyperboloid.surface->value({2, 0, 0.5})) < 1e-15);  // 4 - 0.25 + 0.25 - 4
     CHECK(read(R"({"type": "plane"})").canonical ==
           "{\n  \"type\": \"plane\",\n  \"position\": [0, 0, 0],\n"
           "  \"A\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n}");
@@ -122,6 +133,14 @@ TEST_CASE("a bad surface is refused with its place and value", "[contact][surfac
          "(/on_i/exponent): exponent must be between 2 and 100, got 1.5");
     says(R"({"type": "superquadric", "semi_axes": [1, 1, 1], "exponent": 4, "exponent_z": 1000})",
          "(/on_i/exponent_z): exponent_z must be between 2 and 100, got 1000");
+    says(R"({"type": "cone", "half_angle": 1.6})",
+         "(/on_i/half_angle): half_angle must be between 0 and pi/2, got 1.6");
+    says(R"({"type": "paraboloid", "radii": [1, 0]})", "(/on_i/radii): radii must be positive, got [1, 0]");
+    says(R"({"type": "paraboloid", "radii": 1})", "(/on_i/radii): radii must be a list of 2 numbers, got 1");
+    says(R"({"type": "quadric", "Q": [[1, 1, 0], [0, 1, 0], [0, 0, 1]], "c": -1})",
+         "(/on_i/Q): of a quadric, its Q must be symmetric");
+    says(R"({"type": "quadric", "Q": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "c": 1})",
+         "(/on_i/Q): of a quadric, it must have points: G has one sign");
     says(R"({"type": "plane", "normal": [0, 0, 0]})",
          "(/on_i/normal): normal must have a direction, got [0, 0, 0] of length 0");
     says(R"({"type": "plane", "normal": [0, 0, 1], "axis_angle": [0, 0, 1, 2]})",

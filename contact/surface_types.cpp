@@ -79,4 +79,28 @@ Vec3 read_semi_axes(dae::ObjectReader& o)
     return semi_axes;
 }
 
+Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width)
+{
+    const dae::Json::List& rows = o.list(key, true);
+    if (rows.empty()) o.fail(key, std::string(key) + " must not be empty");
+    const auto named = [&](std::size_t i) { return std::string(key) + "[" + std::to_string(i) + "]"; };
+    if (!width) width = rows[0].list() != nullptr ? rows[0].list()->size() : 1;
+    Eigen::MatrixXd all(rows.size(), *width);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const dae::Json::List* row = rows[i].list();
+        if (row == nullptr || row->size() != *width)
+            o.fail(key, named(i) + " must be a list of " + std::to_string(*width) + " numbers, got " +
+                            dae::described(rows[i]));
+        for (std::size_t j = 0; j < *width; ++j) {
+            const double* x = (*row)[j].number();
+            if (x == nullptr)
+                o.fail(key, named(i) + "[" + std::to_string(j) + "] must be a number, got " +
+                                dae::described((*row)[j]));
+            all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *x;
+        }
+    }
+    o.keep(key, {.value = rows});
+    return all;
+}
+
 }  // namespace hilda::contact

@@ -37,4 +37,8 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key);
 /// Three positive lengths, for who reads an ellipsoid
 Vec3 read_semi_axes(dae::ObjectReader& o);
 
+/// A list of lists of numbers, all of one length, as the rows of a matrix; for who reads samples or a mesh. `width` is
+/// that length, where it must be a certain one.
+Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width = {});
+
 }  // namespace hilda::contact

@@ -52,6 +52,9 @@ const std::map<std::string, std::string> examples = {
     {"disk", R"({"type": "disk", "radius": 0.5})"},
     {"ellipsoid", R"({"type": "ellipsoid", "semi_axes": [0.3, 0.2, 0.1], "concave": true})"},
     {"foot", R"({"type": "foot", "position": [0, 0, -0.5], "normal": [0, 0, -1]})"},
+    {"height-map",
+     R"({"type": "height-map", "heights": [[0, 0.5, 0, 0, 1], [0, 1, 0.25, 0, 0], [0, 0, 0, 0, 0],
+                      [1, 2, 3, 4, 5]], "spacing": [0.5, 0.25], "corner": [-1, 2]})"},
     {"paraboloid", R"({"type": "paraboloid", "radii": [0.5, 2], "concave": true, "axis": [0, 0, 2]})"},
     {"plane", R"({"type": "plane", "normal": [0, 3, 4]})"},
     {"quadric",
@@ -102,6 +105,9 @@ TEST_CASE("what a model file says of a surface is what it is", "[contact][surfac
     CHECK(dynamic_cast<const Paraboloid&>(*read(examples.at("paraboloid")).shape.surface).R_y == 2);
     const Shape hyperboloid = read(examples.at("quadric")).shape;
     CHECK(std::abs(hyperboloid.surface->value({2, 0, 0.5})) < 1e-15);  // 4 - 0.25 + 0.25 - 4
+    const Shape terrain = read(examples.at("height-map")).shape;
+    CHECK(std::abs(terrain.surface->value({-0.5, 2.25, 1})) < 1e-15);
+    CHECK(std::abs(terrain.surface->value({0.5, 3, 5})) < 1e-14);
     CHECK(read(R"({"type": "plane"})").canonical ==
           "{\n  \"type\": \"plane\",\n  \"position\": [0, 0, 0],\n"
           "  \"A\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n}");
@@ -154,6 +160,25 @@ TEST_CASE("a bad surface is refused with its place and value", "[contact][surfac
          "(/on_i/axis_angle): the axis of axis_angle must have length 1, got 2; at most 1e-06 off is mended");
     says(R"({"type": "disk", "radius": 1, "position": [0, 0]})",
          "(/on_i/position): position must be a list of 3 numbers, got [0, 0]");
+}
+
+TEST_CASE("a bad height map is refused with its place and value", "[contact][surface_types]")
+{
+    const auto says = [](const std::string& heights, const std::string& rest, const std::string& what) {
+        CHECK_THAT(refusal("{\"type\": \"height-map\", \"heights\": " + heights + rest + "}"),
+                   Catch::StartsWith("model.json:1:") && Catch::EndsWith(what));
+    };
+    const std::string row = "[0, 1, 0, 1]", four = "[" + row + ", " + row + ", " + row + ", " + row + "]";
+    says("[]", "", "(/on_i/heights): heights must not be empty");
+    says("[1, 2]", "", "(/on_i/heights): heights[0] must be a list of 1 numbers, got 1");
+    says("[" + row + ", [0, 1]]", "", "(/on_i/heights): heights[1] must be a list of 4 numbers, got [0, 1]");
+    says("[" + row + ", [0, 1, 2, \"x\"]]", "", "(/on_i/heights): heights[1][3] must be a number, got \"x\"");
+    says("[" + row + ", " + row + "]", "",
+         "(/on_i/heights): heights must have at least 4 rows of at least 4 numbers, got 2 of 4");
+    says(four, "", "(/on_i): missing key 'spacing'");
+    says(four, R"(, "spacing": [1, 0])", "(/on_i/spacing): spacing must be positive, got [1, 0]");
+    says(four, R"(, "spacing": [1, 1], "corner": [0])",
+         "(/on_i/corner): corner must be a list of 2 numbers, got [0]");
 }
 
 TEST_CASE("two kinds of surface with one name are refused", "[contact][surface_types]")

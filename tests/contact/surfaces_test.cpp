@@ -8,6 +8,7 @@
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/height_map.hpp"
 #include "contact/surfaces/paraboloid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/quadric.hpp"
@@ -26,6 +27,7 @@
 
 using namespace hilda;
 using namespace hilda::contact;
+using Eigen::Vector2d;
 using tests::derivative;
 using tests::Random;
 
@@ -59,6 +61,11 @@ Mat3 askew(double a, double b, double c)
     return 0.5 * (Q + Q.transpose());
 }
 
+double cubic(double x, double y)
+{
+    return 0.2 + 0.1 * x - 0.03 * x * x + 0.02 * x * y - 1e-3 * x * y * y * y;
+}
+
 using Surfaces = std::vector<std::pair<std::string, std::unique_ptr<Surface>>>;
 
 /// Every kind of surface, convex and hollow; add the next one here.
@@ -87,6 +94,7 @@ Surfaces surfaces()
     add("ellipsoid askew", Quadric(askew(1, 2, 0.7), Vec3(0.1, -0.2, 0.3), -0.8));
     add("hyperboloid", Quadric(askew(1, 1.5, -0.4), Vec3(0.1, 0, 0.2), -0.6));
     add("saddle", Quadric(askew(0.8, -0.5, 0), Vec3(0.3, 0.4, -0.5), 0.1, true));
+    add("height map", HeightMap::sampled(cubic, Vector2d(-8, -9), Vector2d(9, 8), 9, 12));
     add("superquadric 2", Superquadric(D, 2));
     add("superquadric 5.5", Superquadric(D, 5.5));
     add("superquadric 2 6", Superquadric(D, 2, 6));

@@ -9,6 +9,7 @@
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "lie/check.hpp"
+#include "tests/support/icosphere.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -45,6 +46,19 @@ std::string refusal(const std::string& shape)
     return "accepted";
 }
 
+/// A sphere of 162 vertices: of an icosahedron cut into four again and again, the coarsest that is smooth
+std::string mesh_example()
+{
+    const tests::Triangles sphere = tests::icosphere(2);
+    std::string vertices, triangles;
+    const auto row = [](const auto& x) {
+        return "[" + dae::shortest(x[0]) + ", " + dae::shortest(x[1]) + ", " + dae::shortest(x[2]) + "]";
+    };
+    for (const Vec3& v : sphere.vertices) vertices += (vertices.empty() ? "" : ", ") + row(v);
+    for (const Triangle& t : sphere.triangles) triangles += (triangles.empty() ? "" : ", ") + row(t);
+    return "{\"type\": \"mesh\", \"vertices\": [" + vertices + "], \"triangles\": [" + triangles + "]}";
+}
+
 /// An example of every kind of surface; add the next one here.
 const std::map<std::string, std::string> examples = {
     {"cone", R"({"type": "cone", "half_angle": 0.5, "axis": [0, 1, 0]})"},
@@ -55,6 +69,7 @@ const std::map<std::string, std::string> examples = {
     {"height-map",
      R"({"type": "height-map", "heights": [[0, 0.5, 0, 0, 1], [0, 1, 0.25, 0, 0], [0, 0, 0, 0, 0],
                       [1, 2, 3, 4, 5]], "spacing": [0.5, 0.25], "corner": [-1, 2]})"},
+    {"mesh", mesh_example()},
     {"paraboloid", R"({"type": "paraboloid", "radii": [0.5, 2], "concave": true, "axis": [0, 0, 2]})"},
     {"plane", R"({"type": "plane", "normal": [0, 3, 4]})"},
     {"quadric",
@@ -179,6 +194,28 @@ TEST_CASE("a bad height map is refused with its place and value", "[contact][sur
     says(four, R"(, "spacing": [1, 0])", "(/on_i/spacing): spacing must be positive, got [1, 0]");
     says(four, R"(, "spacing": [1, 1], "corner": [0])",
          "(/on_i/corner): corner must be a list of 2 numbers, got [0]");
+}
+
+TEST_CASE("a bad mesh is refused with its place", "[contact][surface_types]")
+{
+    const auto says = [](const std::string& vertices, const std::string& triangles, const std::string& what) {
+        CHECK_THAT(refusal("{\"type\": \"mesh\", \"vertices\": [" + vertices + "], \"triangles\": [" +
+                           triangles + "]}"),
+                   Catch::StartsWith("model.json:1:") && Catch::EndsWith(what));
+    };
+    const std::string corners = "[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]";
+    const std::string three = "[0, 2, 1], [0, 1, 3], [0, 3, 2]";
+    says("[0, 0]", three, "(/on_i/vertices): vertices[0] must be a list of 3 numbers, got [0, 0]");
+    says(corners, "[0, 1, 4]",
+         "(/on_i/triangles): triangles[0][2] must be the number of a vertex, from 0 to 3, got 4");
+    says(corners, "[0, 1, 0.5]",
+         "(/on_i/triangles): triangles[0][2] must be the number of a vertex, from 0 to 3, got 0.5");
+    says(corners, three,
+         "(/on_i/triangles): the edge of the vertices 1 and 2 is open: it has triangle 0 only");
+    says(corners, three + ", [1, 2, 3]",
+         "(/on_i/vertices): the mesh is too coarse to be smooth: the 4 vertices near vertex 0 do not "
+         "determine a "
+         "cubic");
 }
 
 TEST_CASE("two kinds of surface with one name are refused", "[contact][surface_types]")

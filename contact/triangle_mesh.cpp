@@ -270,8 +270,9 @@ TriangleMesh read_obj(std::istream& text, const std::string& name)
     std::string line;
     for (int number = 1; std::getline(text, line); ++number) {
         const auto refuse = [&](const std::string& what) {
-            throw lie::InvalidInput("contact::read_obj: " + name + ":" + std::to_string(number) + ": " +
-                                    what);
+            std::ostringstream told;
+            told << "contact::read_obj: " << name << ":" << number << ": " << what;
+            throw lie::InvalidInput(told.str());
         };
         std::istringstream words(line);
         std::string word;

@@ -43,7 +43,7 @@ public:
         Vec3 point;
         double distance;
     };
-    /// In time that grows with the logarithm of the number of triangles
+    /// In time that grows with the logarithm of the number of triangles; a must be finite
     Nearest nearest(const Vec3& a) const;
     /// That of a to one triangle
     double distance(int triangle, const Vec3& a) const;

@@ -124,6 +124,7 @@ HeightMap::Height HeightMap::at(const Vector2d& x) const
 
 Surface::Derivatives HeightMap::derivatives(const Vec3& a) const
 {
+    if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
     const Vector2d beyond =
         ((a.head<2>() - corner - 0.5 * extent()).cwiseAbs() - 0.5 * extent()).cwiseQuotient(spacing);
     if (!(beyond.maxCoeff() <= on_the_edge))

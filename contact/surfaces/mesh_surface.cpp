@@ -19,7 +19,6 @@ namespace {
 // over the longest edge at a vertex
 constexpr double fit_reach = 2.5;    // of the vertices to which its patch is fitted
 constexpr double blend_reach = 1.5;  // of the patch: everywhere on the mesh some vertex is within 0.6
-constexpr double band = 0.5;         // of G about the mesh
 
 constexpr int terms = 10;            // of a cubic
 constexpr int enough = 14;           // vertices to fit one to
@@ -126,7 +125,7 @@ double MeshSurface::half_edge(int triangle) const
 {
     const auto& [a, b, c] = mesh.triangles[triangle];
     const std::vector<Vec3>& x = mesh.vertices;
-    return band * std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
+    return 0.5 * std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
 }
 
 /// Least squares with weights (1 - r²/R²)², which let a vertex at the reach R come and go unnoticed. Lengths are over
@@ -185,6 +184,7 @@ Surface::Derivatives MeshSurface::Patch::at(const Vec3& a) const
 
 Surface::Derivatives MeshSurface::derivatives(const Vec3& a) const
 {
+    if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
     const TriangleMesh::Nearest near = mesh.nearest(a);
     if (!(near.distance <= half_edge(near.triangle))) return distance(a, near);
 

@@ -159,7 +159,8 @@ TEST_CASE("beyond its grid a height map says where it was asked", "[contact][hei
     CHECK_THROWS_AS(map.value({2.001, 0, 0}), lie::NumericalFailure);
     CHECK_THROWS_WITH(map.normal({0, -1.5, 7}),
                       "a height map has no height beyond its grid, at (0, -1.5, 7)");
-    CHECK_THROWS_AS(map.value({std::nan(""), 0, 0}), lie::NumericalFailure);
+    CHECK(std::isnan(map.value({std::nan(""), 0, 0})));
+    CHECK_THROWS_AS(map.normal({0, 0, std::nan("")}), lie::NumericalFailure);
     CHECK_THROWS_WITH(map.project({5, 0, 1}),
                       "the nearest point of a height map is on the edge of its grid, from (5, 0, 1)");
 }

@@ -167,6 +167,24 @@ TEST_CASE("far from a mesh the surface is as far as its triangles", "[contact][m
     }
 }
 
+TEST_CASE("a mesh surface turns and grows with its mesh", "[contact][mesh]")
+{
+    Random random(GENERATE(range(0u, 5u)));
+    const Mat3 A = random.rotation();
+    const Vec3 D(1, 0.85, 1.15), o = random.vector(3);
+    const double grown = std::exp(random.number(-5, 5));
+    const MeshSurface s(ellipsoid_mesh(D, 2));
+    const MeshSurface moved(
+        image(icosphere(2), [&](const Vec3& v) { return Vec3(o + grown * A * D.cwiseProduct(v)); }));
+    for (int k = 0; k < 10; ++k) {
+        const Vec3 a = D.cwiseProduct(random.unit()) + random.vector(0.05), there = o + grown * A * a;
+        CHECK(moved.value(there) == Approx(grown * s.value(a)).margin(1e-13 * (grown + o.norm())));
+        CHECK((moved.normal(there) - A * s.normal(a)).norm() < 1e-12 * (1 + o.norm() / grown));
+        CHECK((grown * moved.shape_operator(there) - A * s.shape_operator(a) * A.transpose()).norm() <
+              1e-11 * (1 + o.norm() / grown));
+    }
+}
+
 TEST_CASE("sheets that are nearer than an edge do not feel each other", "[contact][mesh]")
 {
     const Triangles one = icosphere(3);
@@ -211,6 +229,8 @@ TEST_CASE("a hollow mesh looks inward", "[contact][mesh]")
     CHECK(body.normal(a).dot(a) > 0.99);
     CHECK(body.mean_curvature(a) == Approx(1).epsilon(0.1));
     CHECK(hollow.mean_curvature(a) == -body.mean_curvature(a));
+    CHECK(std::isnan(body.value({0, std::nan(""), 0})));
+    CHECK_THROWS_AS(body.normal({0, 0, INFINITY}), lie::NumericalFailure);
 }
 
 TEST_CASE("evaluating a mesh surface takes nothing from the heap", "[contact][mesh][allocation]")

@@ -4,6 +4,8 @@
 #include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/height_map.hpp"
+#include "contact/surfaces/mesh_surface.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "lie/check.hpp"
@@ -119,6 +121,15 @@ Mesh ring(double R, double r)
     return mesh;
 }
 
+/// As it was given
+Mesh facets(const contact::TriangleMesh& given)
+{
+    Mesh mesh;
+    mesh.point = given.vertices;
+    for (const auto& [a, b, c] : given.triangles) mesh.polygon.push_back({a, b, c});
+    return mesh;
+}
+
 /// Where the ray from the origin along u leaves G < 0
 std::optional<Vec3> way_out(const Surface& surface, const Vec3& u)
 {
@@ -164,6 +175,7 @@ Mesh outward(const Surface& surface, const Reach& reach)
     if (const auto* cylinder = dynamic_cast<const contact::Cylinder*>(&surface))
         return tube(cylinder->R, reach);
     if (const auto* torus = dynamic_cast<const contact::Torus*>(&surface)) return ring(torus->R, torus->r);
+    if (const auto* mesh = dynamic_cast<const contact::MeshSurface*>(&surface)) return facets(mesh->mesh);
     const auto or_nowhere = [](const auto& find) {
         return [find](const Vec3& at) {
             try {
@@ -183,8 +195,10 @@ Mesh outward(const Surface& surface, const Reach& reach)
 bool endless(const Surface& surface)
 {
     if (surface.convex() || dynamic_cast<const contact::Disk*>(&surface) != nullptr ||
-        dynamic_cast<const contact::Torus*>(&surface) != nullptr)
+        dynamic_cast<const contact::Torus*>(&surface) != nullptr ||
+        dynamic_cast<const contact::MeshSurface*>(&surface) != nullptr)
         return false;
+    if (dynamic_cast<const contact::HeightMap*>(&surface) != nullptr) return true;
     for (const double sign : {-1., 1.})
         for (int k = 0; k < 3; ++k)
             if (!way_out(surface, sign * Vec3::Unit(k))) return true;

@@ -27,7 +27,7 @@ bool endless(const contact::Surface& surface);
 
 /// In the frame of the surface; a few hundred points. A convex surface by its support, so that it is fine where it
 /// is curved; one that is a formula along rays from its origin, or over z = 0 of its frame where it has no end.
-/// What cannot be found is left open.
+/// A mesh is drawn as its triangles. What cannot be found is left open.
 Mesh tessellated(const contact::Surface& surface, const Reach& reach);
 
 }  // namespace hilda::studies

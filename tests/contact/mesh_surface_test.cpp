@@ -33,7 +33,7 @@ TriangleMesh ellipsoid_mesh(const Vec3& D, int levels)
 
 /// How a mesh differs from the ellipsoid on which its vertices lie, each moved along it by up to `jitter` of an edge:
 /// the root mean squares of the errors of position, normal and shape operator
-Vec3 errors(const Vec3& D, int levels, double jitter = 0)
+Vec3 errors(const Vec3& D, int levels, double jitter)
 {
     Random random(1);
     const double edge = 1.2 * std::pow(0.5, levels);
@@ -71,23 +71,15 @@ Triangles tetrahedron()
 
 TEST_CASE("a mesh surface converges in position and normal and curvature", "[contact][mesh]")
 {
-    struct Case {
-        Vec3 D;
-        double jitter;
-    };
-    for (const auto& [D, jitter] : {Case{Vec3(1, 1, 1), 0}, Case{Vec3(1, 0.85, 1.15), 0.1}}) {
-        const Vec3 coarse = errors(D, 3, jitter), fine = errors(D, 4, jitter);
-        const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
-        INFO("semi-axes " << D.transpose() << ", vertices off by " << jitter << " of an edge; errors "
-                          << coarse.transpose() << " and " << fine.transpose() << ", orders "
-                          << order.transpose());
-        CHECK(order[0] == Approx(4).margin(0.3));
-        CHECK(order[1] == Approx(3).margin(0.4));
-        CHECK(order[2] == Approx(2).margin(0.3));
-        CHECK(fine[0] < 2e-5);
-        CHECK(fine[1] < 1e-4);
-        CHECK(fine[2] < 1e-2);
-    }
+    const Vec3 coarse = errors({1, 0.9, 1.1}, 2, 0.1), fine = errors({1, 0.9, 1.1}, 3, 0.1);
+    const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
+    INFO("errors " << coarse.transpose() << " and " << fine.transpose() << ", orders " << order.transpose());
+    CHECK(order[0] == Approx(4).margin(0.2));
+    CHECK(order[1] == Approx(3).margin(0.2));
+    CHECK(order[2] == Approx(2).margin(0.2));
+    CHECK(fine[0] < 2e-4);
+    CHECK(fine[1] < 1e-3);
+    CHECK(fine[2] < 2e-2);
 }
 
 TEST_CASE("the derivatives of a mesh surface are those of its G", "[contact][mesh]")
@@ -115,7 +107,7 @@ TEST_CASE("normal and curvature of a mesh surface do not jump from triangle to t
     const MeshSurface s(mesh);
     constexpr double step = 1e-9;
     double most = 0;
-    for (size_t k = 0; k < mesh.triangles.size(); k += 7) {
+    for (size_t k = 0; k < mesh.triangles.size(); k += 23) {
         const auto& [a, b, c] = mesh.triangles[k];
         const Vec3 edge = mesh.vertices[b] - mesh.vertices[a], middle = mesh.vertices[a] + 0.4 * edge;
         const Vec3 across = mesh.face_normal[k].cross(edge).normalized();
@@ -187,7 +179,7 @@ TEST_CASE("a mesh surface turns and grows with its mesh", "[contact][mesh]")
 
 TEST_CASE("sheets that are nearer than an edge do not feel each other", "[contact][mesh]")
 {
-    const Triangles one = icosphere(3);
+    const Triangles one = icosphere(2);
     const Vec3 apart(2.05, 0, 0);
     Triangles two = one;
     const int n = static_cast<int>(one.vertices.size());

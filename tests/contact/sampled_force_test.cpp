@@ -17,7 +17,7 @@ using namespace hilda::contact;
 
 namespace {
 
-const Vec3 D(2.5, 3, 2), gravity(0, 0, -9.81);
+const Vec3 D(2.5, 2.7, 2.3), gravity(0, 0, -9.81);
 constexpr double R = 0.5, m = 1;
 
 /// The centre of a ball that touches the bowl with semi-axes D from inside, on a curve around its bottom
@@ -52,7 +52,7 @@ Difference difference(const Surface& bowl)
 {
     const Ellipsoid exact(D, true);
     Difference d{0, 0, 0};
-    constexpr int instants = 300;
+    constexpr int instants = 200;
     for (int k = 0; k < instants; ++k) {
         const double t = 2 * std::numbers::pi * k / instants;
         const Vec3 c = centre(t), cdot = tests::derivative([&](double tau) { return centre(t + tau); });
@@ -109,5 +109,5 @@ TEST_CASE("the force on a mesh converges with order 2 and without peaks", "[cont
             tests::image(tests::icosphere(levels), [](const Vec3& v) { return Vec3(D.cwiseProduct(v)); }),
             true);
     };
-    check_order(difference(meshed(3)), difference(meshed(4)), 2);  // longest edges 0.49 and 0.25
+    check_order(difference(meshed(2)), difference(meshed(3)), 2);  // longest edges 0.87 and 0.44
 }

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "contact/contact.hpp"
+#include "contact/crowd.hpp"
 
 namespace hilda::contact {
 
@@ -24,6 +24,14 @@ public:
     int add(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
             std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction);
 
+    /// A kind of bodies, of which any two that come near each other are in contact, and its number
+    int add(const Kind& kind);
+    /// A body of a kind
+    int enter(int kind, const Motion& start);
+    /// The contact that two bodies of these kinds have, or two of one. Its memory lasts while they are near.
+    void between(const std::string& name, int kind_i, int kind_j, std::shared_ptr<const NormalLaw> law,
+                 std::shared_ptr<const FrictionModel> friction);
+
     /// lie::NumericalFailure where a contact finds no touch; the scene then stands between two steps.
     void step(double h);
 
@@ -39,12 +47,23 @@ public:
         Wrench wrench = {};
     };
 
+    /// What two bodies of a crowd keep while they are near
+    struct Encounter {
+        Memory memory = {};
+        Meeting meeting = {};
+        Wrench wrench = {};
+    };
+
     double t = 0;  ///< [s]
     std::vector<Motion> body;
     std::vector<Pair> pair;
+    Crowd<Contact, Encounter> crowd;  ///< what add(Kind) made; the force on body i is meeting.N n + wrench.F
     double kinetic_energy() const;
 
 private:
+    template <class Kept>
+    void touch(const Contact& contact, int i, int j, Kept& kept, double h);
+
     struct Inverse {
         double m;
         Mat3 J_bar;

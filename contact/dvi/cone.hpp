@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The Coulomb cone of one contact.
+
+#pragma once
+
+#include "lie/so3.hpp"
+
+namespace hilda::contact {
+
+using lie::Mat3;
+using lie::Vec3;
+
+/// The point nearest to γ = (γ_n, γ_u, γ_w) of the cone
+///
+///     K = {γ: |γ_t| ≤ μ γ_n},   γ_t = (γ_u, γ_w)
+///
+/// within which it stays, to whose apex it goes where it lies in the polar cone μ |γ_t| ≤ -γ_n, and to whose side it
+/// goes otherwise, along the normal of that side (Anitescu and Tasora 2010). For μ = 0 the cone is the half line γ_n ≥ 0.
+inline Vec3 project_on_cone(const Vec3& gamma, double mu)
+{
+    const double n = gamma[0], t = std::hypot(gamma[1], gamma[2]);
+    if (t <= mu * n) return gamma;
+    if (mu * t <= -n) return Vec3::Zero();
+    const double side = (n + mu * t) / (1 + mu * mu), scale = mu * side / t;
+    return t > 0 ? Vec3(side, scale * gamma[1], scale * gamma[2]) : Vec3(side, 0, 0);
+}
+
+}  // namespace hilda::contact

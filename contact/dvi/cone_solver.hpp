@@ -36,9 +36,9 @@ public:
 ///     max_c g_c |γ_c - Π_K(γ_c - u_c/g_c)|  [m/s],     u = N γ + r
 class ConeSolver {
 public:
-    double tolerance = 1e-8;  ///< of the residual [m/s]
+    double tolerance = 1e-6;  ///< of the residual [m/s]; an impulse is wrong by about the mass times this
     int max_iterations = 10000;
-    int max_passes = 100;  ///< of solve_coulomb()
+    int max_passes = 200;  ///< of solve_coulomb()
 
     struct Outcome {
         int iterations = 0;   ///< all together
@@ -55,8 +55,10 @@ public:
     ///
     ///     r_n + μ s  in place of  r_n,      s_{k+1} = |u_t| of its solution
     ///
-    /// until μ |s_{k+1} - s_k| is within the tolerance too. Nothing is relaxed where no contact slides. s [m/s] is where to
-    /// begin, and the result; from s = 0 the first pass is the relaxation. r is as it was when it returns.
+    /// until the residual and μ |s_{k+1} - s_k| together are within the tolerance. Where a pass gains less than a half, the
+    /// next ones go half as far. Nothing is relaxed where no contact slides. s [m/s] is where to begin, and the result; from
+    /// s = 0 the first pass is the relaxation. r is as it was when it returns. Unlike the cone problem the law may have many
+    /// solutions or none, and the fixed point need not be found: ConeNoConvergence.
     Outcome solve_coulomb(ConeProblem& problem, std::vector<Vec3>& gamma, std::vector<double>& s);
 
     /// u = N γ + r of what was solved last [m/s]

@@ -233,7 +233,7 @@ TEST_CASE("one contact has the impulse of sticking or sliding or parting in clos
     problem.body = {{1 / m, Mat3::Zero()}, {}};
     problem.contact.push_back({0, 1, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), mu, Vec3::Zero()});
     ConeSolver solver;
-    solver.tolerance = 1e-15;
+    solver.tolerance = 1e-13;
     std::vector<Vec3> gamma;
     std::vector<double> s;
     const auto solution = [&](const Vec3& r, bool coulomb) -> Vec3 {
@@ -247,17 +247,17 @@ TEST_CASE("one contact has the impulse of sticking or sliding or parting in clos
         return gamma[0];
     };
     for (const bool coulomb : {false, true}) {
-        CHECK((solution({-1, 0.3, 0.4}, coulomb) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-14);  // sticks
+        CHECK((solution({-1, 0.3, 0.4}, coulomb) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-12);  // sticks
         CHECK(solution({0.6, 0.3, 0.4}, coulomb) == Vec3::Zero());                            // parts
     }
     // slides: by Coulomb's law u_n = 0 and γ_t = -μ γ_n; relaxed u_n = μ |u_t|
-    CHECK((solution({-1, 3, 4}, true) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-13);
-    CHECK(s[0] == Approx(5 - mu).epsilon(1e-13));
+    CHECK((solution({-1, 3, 4}, true) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-12);
+    CHECK(s[0] == Approx(5 - mu).epsilon(1e-12));
     CHECK(problem.contact[0].r == Vec3(-1, 3, 4));
     const double relaxed = m * (1 + mu * 5) / (1 + mu * mu);
-    CHECK((solution({-1, 3, 4}, false) - relaxed * Vec3(1, -0.3, -0.4)).norm() < 1e-13);
+    CHECK((solution({-1, 3, 4}, false) - relaxed * Vec3(1, -0.3, -0.4)).norm() < 1e-12);
     CHECK(solver.velocities()[0][0] ==
-          Approx(mu * std::hypot(solver.velocities()[0][1], solver.velocities()[0][2])).epsilon(1e-12));
+          Approx(mu * std::hypot(solver.velocities()[0][1], solver.velocities()[0][2])).epsilon(1e-11));
 }
 
 TEST_CASE("the fixed point solves Coulomb's law where the cone problem relaxes it", "[contact][dvi][solver]")
@@ -348,7 +348,8 @@ DviScene on_floor(const Vec3& v, double mu, double height = 0)
     scene.add(ball(2, 0.3), at({0, 0, 0.3 + height}, v));
     scene.add(Inertia{}, Motion{});
     scene.add("floor", 0, sphere(0.3), 1, plane, {.mu = mu});
-    scene.solver.tolerance = 1e-13;
+    scene.options.sliding = DviOptions::coulomb;
+    scene.solver.tolerance = 1e-12;
     return scene;
 }
 
@@ -364,7 +365,7 @@ TEST_CASE("a ball at rest stays so and its weight is the normal force", "[contac
     DviScene scene = on_floor(Vec3::Zero(), 0.4);
     run(scene, 1e-2, 1);
     CHECK((scene.body[0].r - Vec3(0, 0, 0.3)).norm() < 1e-14);
-    CHECK(scene.pair[0].state.N() == Approx(2 * g).epsilon(1e-11));  // 2 kg of the tolerance in a step
+    CHECK(scene.pair[0].state.N() == Approx(2 * g).epsilon(1e-10));  // 2 kg times the tolerance in a step
 }
 
 TEST_CASE("a ball that starts to slide ends rolling at five sevenths of its speed", "[contact][dvi][scene]")

@@ -24,7 +24,7 @@ using tests::Random;
 
 namespace {
 
-/// Two layers of two bodies on a fixed one, falling on each other: gaps of up to `apart` [m/s] in r
+/// Two layers of two bodies on a fixed one, falling on each other [m/s]
 ConeProblem falling(Random& random, int contacts, double mu, double fall, double slip)
 {
     constexpr int bodies = 5;

@@ -161,6 +161,10 @@ private:
         hanging.setZero(C.rows());
         for (int k = 0; k < C.rows(); ++k)
             if (C.start[k] < C.start[k + 1]) hanging[k] = 4 * mass[first(C.entry[C.start[k]].body)];
+        for (const Rows::Massless& some : C.massless) {  // rows without a body have the forces of the others
+            auto of_rows = hanging.segment(some.first, some.rows);
+            of_rows.setConstant(of_rows.maxCoeff());
+        }
     }
 
     long steps = 0, iterations = 0;

@@ -144,7 +144,7 @@ void Elimination::reduce(const Rows& full, const Eigen::VectorXd& whole, bool on
             reduced[body_part + g.reduced_first + k] = sum;
         }
         g.of_p.setZero();
-        if (only_g) continue;
+        if (only_g || p_part.segment(g.alpha, g.count).isZero(0)) continue;
         for (int c = 0; c < g.count; ++c) {  // R⁻ᵀ p
             double sum = p_part[g.alpha + c];
             for (int r = 0; r < c; ++r) sum -= g.QR(r, c) * g.of_p[r];

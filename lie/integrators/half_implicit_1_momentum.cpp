@@ -58,9 +58,10 @@ private:
         LeapfrogStep::begin(step);
     }
 
-    void correct(int /*k*/, const State& x) override
+    void correct(int k, const State& x) override
     {
         set_linear_residual(rows_of_node());
+        if (k > 1) K.massless_part(e).setZero();  // Φ_αᵀ λ = 0 is linear, and holds
         for (int i = 0; i < model.bodies(); ++i) {
             const Vec3 theta = z.segment<3>(6 * i + 3);
             e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;

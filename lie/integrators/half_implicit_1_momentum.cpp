@@ -81,7 +81,7 @@ private:
             beyond.segment<3>(6 * i + 3) =
                 J_bar_inverse[i] * (momentum(i, theta) - momentum(i, -before)) - theta - before;
         }
-        const Rows& C = K.rows();
+        const Rows& C = rows_of_node();
         for (int k = C.position_rows(); k < C.rows(); ++k) K.constraint_part(e)[k] -= C.dot(k, beyond);
     }
 

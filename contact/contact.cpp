@@ -3,9 +3,6 @@
 
 #include "lie/check.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include <algorithm>
 
 namespace hilda::contact {
@@ -13,33 +10,11 @@ namespace hilda::contact {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double longest_lever = 10;    // of rolling, over the size of the smaller body
 constexpr double nearby = 1e-6;         // a gap, over the same, that is none
 constexpr double deepest = 0.1;         // overlap at a start, over a radius of curvature
 constexpr double no_curvature = 1e-12;  // over the size of the curvatures: rounding
 
-/// The smaller size of two surfaces, of which a plane has none
-double smaller_size(const Shape& i, const Shape& j)
-{
-    double smaller = infinite;
-    for (const Shape* s : {&i, &j})
-        if (s->surface->size() > 0) smaller = std::min(smaller, s->surface->size());
-    return smaller;
-}
-
 Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
-
-/// nᵀ J n and the mean over the tangents
-struct Moments {
-    double normal, tangential;
-};
-Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
-{
-    if (!body.turns()) return {infinite, infinite};
-    const Vec3 n_bar = A.transpose() * n;
-    const double normal = n_bar.dot(body.J_bar * n_bar);
-    return {normal, 0.5 * (body.J_bar.trace() - normal)};
-}
 
 /// "what, got value unit"
 std::string got(const std::string& what, double value, const std::string& unit)
@@ -52,14 +27,12 @@ std::string got(const std::string& what, double value, const std::string& unit)
 
 }  // namespace
 
-Mat3 Inertia::J_bar_inverse() const { return turns() ? Mat3(J_bar.inverse()) : Mat3(Mat3::Zero()); }
-
 Contact::Contact(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
                  std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction)
-    : name(std::move(name)), i(std::move(i)), j(std::move(j)), of_i(std::move(of_i)), of_j(std::move(of_j)),
-      law(std::move(law)), friction(std::move(friction)), detector(make_detector(this->i, this->j)),
-      m(this->friction->fictitious(this->of_i.m, this->of_j.m)),
-      m_normal(reduced(this->of_i.m, this->of_j.m)), length(smaller_size(this->i, this->j))
+    : FrictionPair(std::move(name), std::move(i), std::move(j), std::move(of_i), std::move(of_j),
+                   std::move(friction)),
+      law(std::move(law)), detector(make_detector(this->i, this->j)),
+      m_normal(reduced(this->of_i.m, this->of_j.m))
 {}
 
 Pressing Contact::pressing(const Touch& touch, const Motion& bi, const Motion& bj) const
@@ -81,20 +54,6 @@ Touch Contact::find(const Motion& bi, const Motion& bj, const Memory& memory) co
     }
 }
 
-void Contact::rethrow(const lie::NumericalFailure& e) const
-{
-    throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
-}
-
-void Contact::set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const
-{
-    now.m = m;
-    now.lever = longest_lever * length;
-    const Moments a = moments(of_i, bi.A, now.touch.n), b = moments(of_j, bj.A, now.touch.n);
-    now.I_roll = friction->fictitious(a.tangential, b.tangential);
-    now.I_spin = friction->fictitious(a.normal, b.normal);
-}
-
 Meeting Contact::without_slip(const Touch& touch, const Motion& bi, const Motion& bj) const
 {
     Meeting now;
@@ -107,18 +66,8 @@ Meeting Contact::without_slip(const Touch& touch, const Motion& bi, const Motion
 
 Meeting Contact::meet(const Motion& bi, const Motion& bj, const Memory& memory) const
 {
-    Meeting now;
-    now.touch = find(bi, bj, memory);
-    now.N = law->force(pressing(now.touch, bi, bj));
-    if (!(now.N > 0)) return now;
-    try {
-        now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())
-                                   : no_slip(now.touch, now.touch.n.unitOrthogonal());
-    } catch (const lie::NumericalFailure& e) {
-        rethrow(e);
-    }
-    set_fictitious(now, bi, bj);
-    return now;
+    const Touch touch = find(bi, bj, memory);
+    return meeting(touch, law->force(pressing(touch, bi, bj)), bi, bj, memory);
 }
 
 bool Contact::close(const Motion& bi, const Motion& bj, const Memory& memory) const
@@ -150,18 +99,6 @@ Meeting Contact::hardest(const Motion& bi, const Motion& bj, const Memory& memor
     touch.gap = -upper;
     const Motion still_i{.r = bi.r, .A = bi.A}, still_j{.r = bj.r, .A = bj.A};
     return without_slip(touch, still_i, still_j);
-}
-
-void Contact::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const
-{
-    const bool touching = now.N > 0;
-    if (!touching)
-        memory.history = {};
-    else if (memory.touching)
-        friction->advance(now, memory.history);
-    memory.track = track(now.touch, touching ? now.slip.u : now.touch.n.unitOrthogonal(), bi, bj);
-    memory.found = true;
-    memory.touching = touching;
 }
 
 std::string Contact::objection(const Motion& bi, const Motion& bj) const
@@ -208,45 +145,9 @@ std::string Contact::objection(const Motion& bi, const Motion& bj) const
 double Contact::stable_step(const Meeting& now, const Motion& bi, const Motion& bj, int contacts_of_i,
                             int contacts_of_j) const
 {
-    using Mat6 = Eigen::Matrix<double, 6, 6>;
-    using Rows = Eigen::Matrix<double, 6, 3>;
-    const Springs springs = friction->springs(now);
     const Pressing p = pressing(now.touch, bi, bj);
-    const Vec3 n = now.touch.n, u = n.unitOrthogonal(), w = n.cross(u);
-
-    // Rows: sliding along u and w, pressing along n, rolling about u and w, spinning about n
-    Rows linear = Rows::Zero();
-    linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
-    Mat6 W = Mat6::Zero();
-    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int contacts) {
-        if (!body.moves()) return;
-        const Vec3 s = C - motion.r;
-        Rows angular = Rows::Zero();
-        angular << s.cross(u).transpose(), s.cross(w).transpose(), s.cross(n).transpose(), u.transpose(),
-            w.transpose(), n.transpose();
-        const Rows in_body = angular * motion.A;
-        W += contacts *
-             (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
-    };
-    add(of_i, bi, now.touch.C_i, contacts_of_i);
-    add(of_j, bj, now.touch.C_j, contacts_of_j);
-    Eigen::Matrix<double, 6, 1> K, D;
-    K << springs.K_slide, springs.K_slide, law->stiffness(p), springs.K_roll, springs.K_roll, springs.K_spin;
-    D << springs.D_slide, springs.D_slide, p.overlap > 0 ? law->damping(p) : 0, springs.D_roll,
-        springs.D_roll, springs.D_spin;
-    const auto stable = [&](double h) {
-        const Eigen::Matrix<double, 6, 1> root = (2 * h * D + h * h * K).cwiseSqrt();
-        const Mat6 scaled = root.asDiagonal() * W * root.asDiagonal();
-        return Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
-               4;
-    };
-    double lower = 1e-15, upper = 1e6;  // [s]
-    if (stable(upper)) return std::numeric_limits<double>::infinity();
-    while (upper > lower * (1 + 1e-12)) {
-        const double middle = std::sqrt(lower * upper);
-        (stable(middle) ? lower : upper) = middle;
-    }
-    return lower;
+    return FrictionPair::stable_step(now, {.K = law->stiffness(p), .D = p.overlap > 0 ? law->damping(p) : 0},
+                                     bi, bj, contacts_of_i, contacts_of_j);
 }
 
 }  // namespace hilda::contact

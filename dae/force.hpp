@@ -33,6 +33,8 @@ public:
     /// Brings both up to date: at a start, where all are zero, and once per accepted step, for the state after
     /// it, which comes with what was remembered in the state before. Allocates nothing.
     virtual void remember(State& /*x*/) const {}
+    /// Whether remember() reads the multipliers of x. A start then repeats itself until they and the loads agree.
+    virtual bool remembers_multipliers() const { return false; }
     int first_memory = 0, first_remembered = 0;  ///< where they begin; set by the model
 
     /// The largest step [s] with which a scheme that takes this force as it is at the beginning of the step is

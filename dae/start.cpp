@@ -251,6 +251,38 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
 
 namespace {
 
+/// Accelerations and multipliers at a start, and what the forces remember of it
+void settle(const Model& model, lie::Saddle& K, State& x)
+{
+    const auto once = [&] {
+        model.remember_start(x);
+        solve_accelerations(model, K, x);
+    };
+    once();
+    const auto& forces = model.forces();
+    if (std::none_of(forces.begin(), forces.end(), [](const auto& f) { return f->remembers_multipliers(); }))
+        return;
+    // λ goes by w times what a pass makes of it, with the w of Aitken's extrapolation: passes alone diverge where much
+    // friction has a long lever against the normal force.
+    constexpr int most = 200;
+    Eigen::VectorXd from, R, before;
+    double w = 1;
+    for (int k = 0; k < most && x.lambda.allFinite(); ++k) {
+        from = x.lambda;
+        once();
+        R = x.lambda - from;
+        if (R.norm() <= (k < most / 2 ? 1e-13 : 1e-10) * x.lambda.norm()) return;  // rounding may be more
+        if (k > 0) w *= -before.dot(R - before) / (R - before).squaredNorm();
+        x.lambda = from + w * R;
+        before = R;
+    }
+    throw lie::NumericalFailure(
+        "start_not_converged",
+        "friction and the normal forces that it depends on do not settle at the start; "
+        "the multipliers still change by " +
+            number(R.norm()));
+}
+
 /// Readies the model at x without the rows that add less than `tolerance` to those before them, and projects
 /// positions onto the others. Returns the numbers of the rows left out.
 std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
@@ -377,8 +409,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
-    model.remember_start(x);  // what prepare() let them remember is of a start not yet on the constraints
-    solve_accelerations(model, K, x);
+    settle(model, K, x);  // what prepare() let them remember is of a start not yet on the constraints
     for (const int k : dropped) check_agreement(model, model.all_rows()[k], x);
     return report;
 }

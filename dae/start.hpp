@@ -36,7 +36,9 @@ struct StartReport {
 /// Readies model and state: finds the rank of the constraints (SuiteSparseQR), drops redundant rows,
 /// projects, and solves for accelerations and multipliers. Data within the tolerance are moved onto the
 /// constraints too, which changes them by less than it. Throws lie::InvalidInput, naming the rows, for data
-/// off the constraints and for rows that contradict the others in position, velocity or acceleration.
+/// off the constraints and for rows that contradict the others in position, velocity or acceleration. Where a force
+/// goes by multipliers, as friction goes by the normal force of a contact, both are found together;
+/// lie::NumericalFailure "start_not_converged" where they do not settle.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
 
 /// Throws lie::NumericalFailure "constraint_drift" when a row that was dropped as redundant is off by more than

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The contacts of a model file: an element of "contacts" becomes a ContactForce.
+/// The contacts of a model file: an element of "contacts" becomes a ContactForce, or, where its normal is a constraint,
+/// an EvolvingContact.
 ///
 ///     {"name": "ball-floor", "body_i": "ball", "body_j": "ground",
 ///      "surface_i": {"type": "sphere", "radius": 0.2}, "surface_j": {"type": "plane"},
 ///      "normal": {"type": "hertz", "E_star": 1e6, "restitution": 0.5},
 ///      "friction": {"law": "slide-roll-spin", "mu_s": 0.3, "K_E": 1e5}}
 ///
+///     "normal": {"type": "constraint", "unilateral": false, "rows": "tangent"}, "friction": {"law": "rolling"}
+///
 /// Only what is given enters the canonical text where a default depends on other keys.
 
 #include "contact/contact_force.hpp"
+#include "contact/evolving_contact.hpp"
 #include "contact/surface_types.hpp"
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/foot.hpp"
 #include "dae/model_file_types.hpp"
 
 namespace hilda::contact {
@@ -17,6 +23,8 @@ namespace hilda::contact {
 namespace {
 
 using dae::ObjectReader;
+
+constexpr const char* rolling = "rolling";
 
 double from_zero_to_one(ObjectReader& o, std::string_view key, double fallback)
 {
@@ -56,16 +64,11 @@ std::shared_ptr<const NormalLaw> read_hooke(ObjectReader& o)
     return std::make_shared<Hooke>(stiffness, o.not_negative("damping", 0));
 }
 
-std::shared_ptr<const NormalLaw> read_normal(ObjectReader& contact)
+std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string& type)
 {
-    ObjectReader o = contact.object("normal");
-    const std::string type = o.one_of("type", {"hertz", "hooke", "given"});
-    std::shared_ptr<const NormalLaw> law;
-    if (type == "hertz") law = read_hertz(o);
-    if (type == "hooke") law = read_hooke(o);
-    if (type == "given") law = std::make_shared<GivenForce>(o.not_negative("force"));
-    contact.keep("normal", o.finish());
-    return law;
+    if (type == "hertz") return read_hertz(o);
+    if (type == "hooke") return read_hooke(o);
+    return std::make_shared<GivenForce>(o.not_negative("force"));
 }
 
 std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
@@ -74,6 +77,9 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
     ObjectReader o = contact.object("friction");
     std::vector<std::string> laws;
     for (const FrictionLaw& law : friction_laws()) laws.push_back(law.name);
+    if (const dae::Json* law = o.look("law");
+        law != nullptr && law->string() != nullptr && *law->string() == rolling)
+        o.fail("law", "ideal rolling is of a contact whose normal is a constraint, got \"rolling\"");
     const std::string law = o.one_of("law", laws, "slide-roll-spin");
     const std::string preset = o.one_of("preset", {"balanced", "dissertation"}, "balanced");
     FrictionParameters p;
@@ -97,12 +103,74 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
     return model;
 }
 
-std::unique_ptr<dae::Force> read_contact(ObjectReader& o, const dae::ContactPair& pair)
+/// What "normal" says of a contact that is a constraint
+struct HeldNormal {
+    bool unilateral = false;  ///< pushes and never pulls
+    double restitution = 0;   ///< of the impact with which it closes
+    EvolvingContact::NormalRows rows = EvolvingContact::NormalRows::tangent;
+};
+
+HeldNormal read_held_normal(ObjectReader& o)
+{
+    HeldNormal held;
+    held.unilateral = o.flag("unilateral", false);
+    const bool given = o.look("restitution") != nullptr;
+    if (held.unilateral || given) held.restitution = from_zero_to_one(o, "restitution", 0);
+    if (given && !held.unilateral)
+        o.fail("restitution", "restitution is of a contact that may open, \"unilateral\": true; got " +
+                                  dae::shortest(held.restitution) + " of one that never does");
+    if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
+        held.rows = EvolvingContact::NormalRows::fixed_xy;
+    return held;
+}
+
+EvolvingContact::Friction read_held_friction(ObjectReader& contact)
+{
+    if (!contact.has("friction")) return EvolvingContact::Friction::none;
+    ObjectReader o = contact.object("friction");
+    std::vector<std::string> laws = {rolling};
+    for (const FrictionLaw& law : friction_laws()) laws.push_back(law.name);
+    if (const std::string law = o.one_of("law", laws); law != rolling)
+        o.fail(
+            "law",
+            "on a contact that is a constraint this build has no law but \"rolling\", ideal rolling; got \"" +
+                law + "\"");
+    contact.keep("friction", o.finish());
+    return EvolvingContact::Friction::rolling;
+}
+
+/// A contact point that wanders over a surface needs one without edges.
+void check_smooth(const ObjectReader& o, std::string_view key, const Shape& shape)
+{
+    if (dynamic_cast<const Disk*>(shape.surface.get()) != nullptr ||
+        dynamic_cast<const Foot*>(shape.surface.get()) != nullptr)
+        o.fail(key, "a contact that is a constraint needs a smooth surface, got a " + shape.surface->name());
+}
+
+void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& pair, const Shape& i,
+                  const Shape& j)
+{
+    const HeldNormal held = read_held_normal(normal);
+    if (held.unilateral)
+        normal.fail("unilateral", "in this build a contact that is a constraint holds both ways, got true");
+    o.keep("normal", normal.finish());
+    const EvolvingContact::Friction friction = read_held_friction(o);
+    check_smooth(o, "surface_i", i);
+    check_smooth(o, "surface_j", j);
+    pair.model.constrain(pair.name,
+                         std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, friction, held.rows));
+}
+
+void read_contact(ObjectReader& o, const dae::ContactPair& pair)
 {
     const Shape i = read_shape(o, "surface_i"), j = read_shape(o, "surface_j");
-    const std::shared_ptr<const NormalLaw> law = read_normal(o);
-    return std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law,
-                                          read_friction(o, *law));
+    ObjectReader normal = o.object("normal");
+    const std::string type = normal.one_of("type", {"hertz", "hooke", "given", "constraint"});
+    if (type == "constraint") return add_evolving(o, std::move(normal), pair, i, j);
+    const std::shared_ptr<const NormalLaw> law = read_normal(normal, type);
+    o.keep("normal", normal.finish());
+    pair.model.load(std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law,
+                                                   read_friction(o, *law)));
 }
 
 const bool enrolled = dae::enrol_contacts(read_contact);

@@ -142,15 +142,23 @@ void Model::prepare(State& x)
     x.memory.assign(memory, 0);
     x.alpha = Eigen::VectorXd::Zero(alphas);
     x.remembered.assign(remembered, 0);
-    for (const auto& c : with_unknowns) {
-        if (const std::string why = c->objection(at(*c, x)); !why.empty()) {
-            if (!c->hands_over()) throw lie::InvalidInput(name_of(*c) + ": " + why);
-            x.memory[c->first_memory] = Constraint::handed_over;
-            continue;
+    for (size_t k = 0; k < with_unknowns.size(); ++k) {
+        const Constraint& c = *with_unknowns[k];
+        const auto refuse = [&](const std::string& why) {
+            throw ContactError(name_of(c) + ": " + why, static_cast<int>(k));
+        };
+        try {
+            if (const std::string why = c.objection(at(c, x)); !why.empty()) {
+                if (!c.hands_over()) refuse(why);
+                x.memory[c.first_memory] = Constraint::handed_over;
+                continue;
+            }
+            c.track(at(c, x), true, x.alpha.data() + c.first_alpha);
+        } catch (const lie::NumericalFailure& e) {  // of a start, that it is a wrong one
+            refuse(e.what());
         }
-        c->track(at(*c, x), true, x.alpha.data() + c->first_alpha);
         // one that may open starts open where there is a gap
-        if (c->opens() && c->gap(at(*c, x)) > c->allowance()) x.memory[c->first_memory] = Constraint::is_open;
+        if (c.opens() && c.gap(at(c, x)) > c.allowance()) x.memory[c.first_memory] = Constraint::is_open;
     }
     for (const auto& f : force) {
         f->first_memory = memory;

@@ -31,6 +31,14 @@ public:
     int force;  ///< its number in the model, from 0
 };
 
+/// Input that one constraint with unknowns, a contact that evolves, cannot work with. what() names it.
+class ContactError : public lie::InvalidInput {
+public:
+    ContactError(const std::string& what, int contact) : InvalidInput(what), contact(contact) {}
+
+    int contact;  ///< its number in Model::evolving(), from 0
+};
+
 class Model final : public lie::System {
 public:
     Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global
@@ -83,8 +91,8 @@ public:
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
 
     /// Readies the model for a run from x: puts dropped rows back, asks every body whether its orientation is
-    /// one and every block and every force whether it can be used there (ConstraintError, ForceError), gives
-    /// DP1 drivers their complement, and sets x.memory, x.remembered, x.alpha and the size of x.lambda. Called
+    /// one and every block, every force and every contact whether it can be used there (ConstraintError, ForceError,
+    /// ContactError), gives DP1 drivers their complement, and sets x.memory, x.remembered, x.alpha and the size of x.lambda. Called
     /// by start().
     void prepare(State& x);
     /// Lets the forces remember a start in x, whatever they remembered before. Called by prepare(), and by

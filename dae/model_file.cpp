@@ -263,14 +263,12 @@ private:
         ObjectReader o(source, v, at);
         const std::string name = name_of_its_own(o, "contact", contact_names);
         const auto [i, j] = pair(o);
-        std::unique_ptr<Force> force = placed(o, [&, i = i, j = j] {
-            return read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
+        placed(o, [&, i = i, j = j] {
+            read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
         });
-        force->name = name;
-        Json kept = o.finish();
-        model.load(std::move(force));
-        out.force_place.push_back(o.place());
-        return kept;
+        out.force_place.resize(model.forces().size(), o.place());
+        out.contact_place.resize(model.evolving().size(), o.place());
+        return o.finish();
     }
 
     std::unique_ptr<Force> prescribed(ObjectReader& o, const std::string& type)
@@ -361,6 +359,10 @@ StartReport start(Description& description, const StartOptions& options)
     } catch (const ConstraintError& e) {
         throw ConstraintError(
             description.constraint_place[static_cast<size_t>(e.constraint)] + ": " + e.what(), e.constraint);
+    } catch (const ContactError& e) {
+        const auto k = static_cast<size_t>(e.contact);
+        if (k >= description.contact_place.size()) throw;  // one that is not from the file
+        throw ContactError(description.contact_place[k] + ": " + e.what(), e.contact);
     } catch (const ForceError& e) {
         const auto k = static_cast<size_t>(e.force);
         if (k >= description.force_place.size()) throw;  // one that is not from the file

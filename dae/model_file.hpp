@@ -19,6 +19,7 @@ struct Description {
     std::vector<std::string> warnings;          ///< one line each, with the place
     std::vector<std::string> constraint_place;  ///< "FILE:LINE:COL (/constraints/3)" of each constraint
     std::vector<std::string> force_place;       ///< the same of each force of the model
+    std::vector<std::string> contact_place;     ///< the same of each of Model::evolving()
 };
 
 /// Reads a model file. `file` is its name in messages. Each of `set` is "/json/pointer=VALUE" (VALUE is JSON,

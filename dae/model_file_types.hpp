@@ -22,18 +22,19 @@ const std::vector<std::string>& pair_force_types();
 std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o, int i, int j,
                                        const State& x);
 
-/// Between whom a contact is: its name, two different bodies, the model with all its bodies and constraints, and
-/// the start
+/// Between whom a contact is: its name, two different bodies, the model with all its bodies and joints and the contacts
+/// before this one, and the start
 struct ContactPair {
     const std::string& name;
     int i, j;
-    const Model& model;
+    Model& model;
     const State& start;
 };
 
-/// Reads the keys of an element of "contacts" but for name, body_i and body_j. Throws PlacedError, and without
-/// a place lie::InvalidInput or ExpressionError for what the contact itself refuses.
-using ReadContact = std::unique_ptr<Force> (*)(ObjectReader& o, const ContactPair& pair);
+/// Reads the keys of an element of "contacts" but for name, body_i and body_j, and adds what it is to the model: forces,
+/// constraints with unknowns, under its name. Throws PlacedError, and without a place lie::InvalidInput or
+/// ExpressionError for what the contact itself refuses.
+using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
 
 /// Makes this the reader of contacts; there is one at most, the last, and none after a nullptr. Called while
 /// the program starts: const bool enrolled = enrol_contacts(...);

@@ -311,6 +311,8 @@ std::vector<int> drop_and_project(Model& model, State& x, double residual)
             if (!complete && !(model.largest_residual(mended).value < agreement)) continue;
         } catch (const lie::NumericalFailure&) {
             continue;
+        } catch (const ContactError&) {
+            continue;
         }
         x = mended;
         break;
@@ -331,13 +333,15 @@ namespace {
 void check_contact_positions(const Model& model, const State& x, const StartOptions& options,
                              StartReport& report)
 {
-    for (const auto& c : model.evolving()) {
+    for (size_t k = 0; k < model.evolving().size(); ++k) {
+        const auto& c = model.evolving()[k];
         if (Model::open(*c, x)) continue;
         const double error = std::abs(c->gap(model.at(*c, x)));
         if (!options.fix_initial && !(error <= c->allowance()))
-            throw lie::InvalidInput(
-                model.name_of(*c) + ": not in contact at the start, a gap or overlap of " + number(error) +
-                " m, more than " + number(c->allowance()) + " m; --fix-initial closes it");
+            throw ContactError(model.name_of(*c) + ": not in contact at the start, a gap or overlap of " +
+                                   number(error) + " m, more than " + number(c->allowance()) +
+                                   " m; --fix-initial closes it",
+                               static_cast<int>(k));
         if (error > report.position_residual) {
             report.position_residual = error;
             report.worst_position = model.name_of(*c);
@@ -348,13 +352,15 @@ void check_contact_positions(const Model& model, const State& x, const StartOpti
 void check_contact_velocities(const Model& model, const State& x, const StartOptions& options,
                               StartReport& report)
 {
-    for (const auto& c : model.evolving()) {
+    for (size_t k = 0; k < model.evolving().size(); ++k) {
+        const auto& c = model.evolving()[k];
         if (Model::open(*c, x)) continue;
         const double error = c->velocity_error(model.at(*c, x));
         if (!options.fix_initial && !(error <= options.tolerance))
-            throw lie::InvalidInput(model.name_of(*c) + ": the initial velocities violate the contact by " +
-                                    number(error) + " m/s, more than " + number(options.tolerance) +
-                                    "; --fix-initial tries to move them");
+            throw ContactError(model.name_of(*c) + ": the initial velocities violate the contact by " +
+                                   number(error) + " m/s, more than " + number(options.tolerance) +
+                                   "; --fix-initial tries to move them",
+                               static_cast<int>(k));
         if (error > report.velocity_residual) {
             report.velocity_residual = error;
             report.worst_velocity = model.name_of(*c);

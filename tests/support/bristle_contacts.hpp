@@ -19,14 +19,16 @@ struct BristleContacts {
 
     /// Stiffness is by default as many N/m as body i has kg, and the length is a tenth of the distance at the
     /// start.
-    static std::unique_ptr<dae::Force> read(dae::ObjectReader& o, const dae::ContactPair& pair)
+    static void read(dae::ObjectReader& o, const dae::ContactPair& pair)
     {
         const auto r = [&](int b) { return b == dae::ground ? lie::Vec3(0, 0, 0) : pair.start.body[b].r; };
         const double mass = pair.i == dae::ground ? 1 : pair.model.mass().m[pair.i];
         const double stiffness = o.positive("stiffness", mass);
         const double most = o.number("most", 0.1 * (r(pair.j) - r(pair.i)).norm());
         if (most > 10) lie::reject("bristle", "the length must be at most 10 m", most);
-        return std::make_unique<Bristle>(pair.i, pair.j, stiffness, most);
+        auto bristle = std::make_unique<Bristle>(pair.i, pair.j, stiffness, most);
+        bristle->name = pair.name;
+        pair.model.load(std::move(bristle));
     }
 };
 

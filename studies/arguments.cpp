@@ -116,6 +116,11 @@ std::string preset(const std::string& option, const std::string& text)
     return one_of(option, text, std::vector<std::string>{"balanced", "dissertation"});
 }
 
+std::string normal_rows(const std::string& option, const std::string& text)
+{
+    return one_of(option, text, std::vector<std::string>{"tangent", "fixed-xy"});
+}
+
 int positive_count(const std::string& option, const std::string& text)
 {
     const std::optional<int> value = whole<int>(text);

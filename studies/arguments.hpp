@@ -30,6 +30,8 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
 std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words);
 /// balanced or dissertation
 std::string preset(const std::string& option, const std::string& text);
+/// tangent or fixed-xy
+std::string normal_rows(const std::string& option, const std::string& text);
 /// A whole number, at least 1
 int positive_count(const std::string& option, const std::string& text);
 /// The same, of frames that can be told apart by their names

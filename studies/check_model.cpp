@@ -2,6 +2,7 @@
 #include "studies/check_model.hpp"
 
 #include "contact/contact_force.hpp"
+#include "studies/contact_rows.hpp"
 #include "studies/message.hpp"
 #include "studies/named_model.hpp"
 #include "studies/output.hpp"
@@ -15,6 +16,9 @@
 namespace hilda::studies {
 
 namespace {
+
+/// For contacts that are constraints
+constexpr const char* recommended = "rA-half-1-momentum";
 
 /// A quantity at its largest, and the body it is at
 struct Largest {
@@ -101,19 +105,100 @@ std::string in_words(const Touching& c)
                                                     : "stable with any step");
 }
 
+/// A contact that is a constraint, at the start
+struct Evolving {
+    std::string name, friction, normal_rows;
+    int rows, velocity_rows, unknowns;
+    lie::Vec3 C, n, alpha_i,
+        alpha_j;                     ///< where it touches, the normal into body i [m, global]; on both bodies
+    double gap, F_N;                 ///< [m], [N]
+    contact::Curvatures of_i, of_j;  ///< principal [1/m]
+    double
+        least_curvature;  ///< smaller one of their sum, times the size L: how far from a touch along a line
+};
+
+std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
+{
+    using contact::EvolvingContact;
+    std::vector<Evolving> all;
+    for (const EvolvingContact* c : evolving_contacts(model)) {
+        const dae::Constraint::At at = model.at(*c, x);
+        const contact::Touch touch = c->touch(at);
+        all.push_back(
+            {.name = c->name,
+             .friction = c->friction == EvolvingContact::Friction::rolling ? "rolling" : "none",
+             .normal_rows = c->normal_rows == EvolvingContact::NormalRows::tangent ? "tangent" : "fixed-xy",
+             .rows = c->rows(),
+             .velocity_rows = c->velocity_rows(),
+             .unknowns = c->unknowns(),
+             .C = touch.C(),
+             .n = touch.n,
+             .alpha_i = lie::Vec3::Map(at.alpha),
+             .alpha_j = lie::Vec3::Map(at.alpha + 3),
+             .gap = touch.gap,
+             .F_N = c->multipliers(at, x.lambda).F_N,
+             .of_i = contact::principal_curvatures(touch.K_i, touch.n),
+             .of_j = contact::principal_curvatures(touch.K_j, touch.n),
+             .least_curvature = contact::least_curvature(touch) * c->L});
+    }
+    return all;
+}
+
+nlohmann::ordered_json as_json(const lie::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::ordered_json as_json(const Evolving& c)
+{
+    return {{"name", c.name},
+            {"rows", c.rows},
+            {"velocity_rows", c.velocity_rows},
+            {"unknowns", c.unknowns},
+            {"normal_rows", c.normal_rows},
+            {"friction", c.friction},
+            {"point", as_json(c.C)},
+            {"normal", as_json(c.n)},
+            {"alpha_i", as_json(c.alpha_i)},
+            {"alpha_j", as_json(c.alpha_j)},
+            {"gap", c.gap},
+            {"normal_force", c.F_N},
+            {"curvatures_i", {c.of_i.least, c.of_i.most}},
+            {"curvatures_j", {c.of_j.least, c.of_j.most}},
+            {"least_relative_curvature", c.least_curvature}};
+}
+
+std::vector<std::string> in_words(const Evolving& c)
+{
+    const auto vector = [](const lie::Vec3& v) {
+        return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z());
+    };
+    return {
+        fmt::format("{} rows, {} unknowns{}{}", c.rows, c.unknowns,
+                    c.velocity_rows > 0 ? fmt::format(", {} rows of rolling", c.velocity_rows) : "",
+                    c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
+        fmt::format("at {} m, normal {} into the first, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
+        fmt::format("normal force {:.10g} N{}", c.F_N, c.F_N < 0 ? ": it pulls" : ""),
+        fmt::format("curvatures {:.4g}, {:.4g} and {:.4g}, {:.4g} 1/m; least of the sum, times size, {:.3g}",
+                    c.of_i.least, c.of_i.most, c.of_j.least, c.of_j.most, c.least_curvature)};
+}
+
 nlohmann::ordered_json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
 }  // namespace
 
 int check_model(const CheckOptions& options)
 {
-    dae::Description d = named_model(options.model, options.set);
+    dae::Description d =
+        named_model(options.model, normal_rows(options.model, options.set, options.normal_rows));
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
     const dae::Model& model = *d.model;
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<Touching> touching = contacts(model, d.x);
+    const std::vector<Evolving> held = evolving(model, d.x);
+    const int of_contacts = contact_rank(model);
+    lie::Saddle K(model);
+    K.assemble(d.x);
+    const double condition = 1 / K.reciprocal_condition();
     const size_t other_forces = model.forces().size() - touching.size();
     const Change moved = change(model, given, d.x);
 
@@ -125,6 +210,7 @@ int check_model(const CheckOptions& options)
             {"constraints", model.constraints()},
             {"forces", other_forces},
             {"contacts", nlohmann::ordered_json::array()},
+            {"evolving_contacts", nlohmann::ordered_json::array()},
             {"rows", start.rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
@@ -137,6 +223,8 @@ int check_model(const CheckOptions& options)
             {"end", d.end},
             {"warnings", d.warnings}};
         for (const Touching& c : touching) out["contacts"].push_back(as_json(c));
+        for (const Evolving& c : held) out["evolving_contacts"].push_back(as_json(c));
+        if (!held.empty()) out.update({{"condition", condition}, {"recommended_integrator", recommended}});
         if (options.fix_initial)
             out["fix_initial"] = {{"projected", start.projected},
                                   {"r", as_json(moved.r)},
@@ -160,15 +248,29 @@ int check_model(const CheckOptions& options)
     };
     line("model", d.name);
     line("bodies", std::to_string(model.bodies()));
-    line("constraints",
-         fmt::format("{} with {} rows of rank {}", model.constraints(), start.rows, start.rank));
+    line("constraints", fmt::format("{} with {} rows of rank {}", model.constraints(), start.rows,
+                                    start.rank - of_contacts));
     line("forces", std::to_string(other_forces));
     if (!touching.empty()) line("contacts", std::to_string(touching.size()));
+    if (!held.empty()) {
+        line("contacts held", fmt::format("{}, of rank {}", held.size(), of_contacts));
+        for (const Evolving& c : held) {
+            std::string head = "  " + c.name + ' ';
+            for (const std::string& words : in_words(c)) line(head.c_str(), words), head.clear();
+        }
+    }
     for (const Touching& c : touching) line(("  " + c.name + " ").c_str(), in_words(c));
     line("degrees of freedom", std::to_string(start.degrees_of_freedom));
     for (const std::string& row : start.dropped) line("redundant", row);
     line("position residual", residual(start.position_residual, "m or rad", start.worst_position));
     line("velocity residual", residual(start.velocity_residual, "m/s or rad/s", start.worst_velocity));
+    if (!held.empty()) {
+        line("condition", fmt::format("{:.1e} of the saddle matrix, rows scaled", condition));
+        line("recommended",
+             fmt::format("--integrator {}: second order in motion and normal force; rA-half-1, the "
+                         "default, is the text of the dissertation",
+                         recommended));
+    }
     line("energy", fmt::format("{:.6e} J", energy));
     line("largest reaction", at(loads.F, "N") + ", " + at(loads.T, "N m"));
     line("end", fmt::format("{:g} s", d.end));

@@ -11,6 +11,7 @@ namespace hilda::studies {
 struct CheckOptions {
     std::string model;             ///< a built-in name or a path
     std::vector<std::string> set;  ///< /json/pointer=VALUE
+    std::string normal_rows;       ///< of contacts that are constraints; "": as the model has it
     bool fix_initial = false;      ///< also say what the projection onto the constraints would change
     bool json = false, quiet = false;
 };

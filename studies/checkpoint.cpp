@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'C', 'K', 'P'};
-constexpr std::uint64_t format = 3;
+constexpr std::uint64_t format = 4;
 constexpr size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint32_t);
 
 /// CRC-32 as in zlib and PNG
@@ -93,6 +93,7 @@ void pass(Archive& a, lie::State& x)
     static_assert(sizeof(lie::Motion) == 24 * sizeof(double), "a motion is 24 numbers and nothing else");
     pass(a, x.t);
     pass_list(a, x.body);
+    pass_list(a, x.alpha);
     pass_list(a, x.lambda);
     pass_list(a, x.memory);
     pass_list(a, x.remembered);
@@ -116,6 +117,7 @@ void pass(Archive& a, Checkpoint& c)
                       &c.invariants.constraint_norm, &c.invariants.orthogonality, &c.wall_seconds,
                       &c.last_step.correction})
         pass(a, *v);
+    pass_list(a, c.invariants.contact);
     pass(a, c.trajectory_bytes);
     pass(a, c.steps_bytes);
 }

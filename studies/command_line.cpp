@@ -181,7 +181,9 @@ private:
         c->add_option("MODEL", o.model, "path of a model file, or name of a built-in model")
             ->required()
             ->type_name("");
-        values(c, "--integrator", "NAME[,NAME...]", "one run each, by default rA-half-1",
+        values(c, "--integrator", "NAME[,NAME...]",
+               "one run each, by default rA-half-1; with contacts that are constraints rA-half-1-momentum is "
+               "recommended",
                append(chosen_integrators, integrators));
         value(c, "--step", "H", "step size in s, by default 1e-3; not for ida-rp, which chooses its own",
               assign(o.step, positive_number));
@@ -191,6 +193,11 @@ private:
         add_settings(c, o.settings);
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
+        value(c, "--normal-rows", "tangent|fixed-xy",
+              "what the normals of contacts that are constraints are projected on, by default as the model "
+              "has it; "
+              "fixed-xy fails where a normal lies in the plane of x and y",
+              assign(o.normal_rows, normal_rows));
         c->add_flag("--fix-initial", o.fix_initial, "project initial data that violate the constraints");
         value(c, "--output", "DIR", "by default out/NAME", assign(o.output, path));
         c->add_flag("--force", o.force,
@@ -222,6 +229,7 @@ private:
             ->type_name("");
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
+        value(c, "--normal-rows", "tangent|fixed-xy", "as in run", assign(o.normal_rows, normal_rows));
         c->add_flag("--fix-initial", o.fix_initial, "say what projecting the initial data would change");
         c->add_flag("--json", o.json, "the result as JSON");
         c->add_flag("--quiet", o.quiet, "only the exit code");
@@ -271,6 +279,9 @@ private:
         value(c, "--reference-rtol", "R", "its tolerance where it chooses its own steps, by default 1e-12",
               assign(o.reference_rtol, relative_tolerance));
         value(c, "--preset", "balanced|dissertation", "of the friction", assign(o.preset, preset));
+        value(c, "--normal-rows", "tangent|fixed-xy",
+              "of contacts that are constraints, by default tangent; fixed-xy shows where it fails",
+              assign(o.normal_rows, normal_rows));
         c->add_flag("--check", o.check,
                     "do all that a study is judged by; exit with 6 where something does not come out");
         value(c, "--against", "FILE", "a CSV table to compare the result with", assign(o.against, path));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/csv_steps.hpp"
 
+#include "studies/contact_rows.hpp"
 #include "studies/csv.hpp"
 
 namespace hilda::studies {
@@ -29,7 +30,7 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
         field(h);
         field(static_cast<long>(iterations));
         field(last.correction);
-        field(model.largest_residual(x).value);
+        field(largest_residual(model, x));
         field(lie::energy(model, x));
         field(last.factorizations);
         append_number(row, last.wall_ns);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/csv_trajectory.hpp"
 
+#include "studies/contact_rows.hpp"
 #include "studies/csv.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +12,11 @@ namespace hilda::studies {
 
 TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file,
                              bool with_reactions)
-    : model(model), grid(grid), file(file), with_reactions(with_reactions), C(model.pattern())
-{}
+    : model(model), grid(grid), file(file), with_reactions(with_reactions),
+      contacts(evolving_contacts(model)), C(model.pattern())
+{
+    invariants.contact.resize(contacts.size());
+}
 
 void TrajectoryCsv::write_header()
 {
@@ -37,13 +41,18 @@ void TrajectoryCsv::write_header()
             const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
             row += ',' + csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
         }
+        for (const contact::EvolvingContact* c : contacts) {
+            columns(c->name,
+                    {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z", "lambda_N"});
+            if (c->velocity_rows() > 0) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
+        }
     }
     row += '\n';
 }
 
 void TrajectoryCsv::accepted(const lie::State& x, long n, int)
 {
-    const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
+    const double energy = lie::energy(model, x), constraint_norm = largest_residual(model, x);
     note(x, energy, constraint_norm);
     if (!grid.is_row(n)) return dae::check_dropped_rows(model, x);
     ++invariants.rows;
@@ -67,12 +76,31 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
             append_vector(row, on.F);
             append_vector(row, on.T);
         }
-        append_vector(row, x.lambda);
+        append_vector(row, x.lambda.head(static_cast<Eigen::Index>(model.active_rows().size())));
+        write_contacts(x);
     }
     row += '\n';
     file.flush_when_full();
 
     dae::check_dropped_rows(model, x);
+}
+
+/// F_N, the contact point, where it is on both bodies, |λ_N|, friction of rolling on body i
+void TrajectoryCsv::write_contacts(const lie::State& x)
+{
+    std::string& row = file.buffer;
+    for (const contact::EvolvingContact* c : contacts) {
+        const dae::Constraint::At at = model.at(*c, x);
+        const contact::EvolvingContact::Multipliers of = c->multipliers(at, x.lambda);
+        row += ',';
+        append_number(row, of.F_N);
+        append_vector(row, c->touch(at).C());
+        append_vector(row, lie::Vec3::Map(at.alpha));
+        append_vector(row, lie::Vec3::Map(at.alpha + 3));
+        row += ',';
+        append_number(row, of.N.norm());
+        if (c->velocity_rows() > 0) append_vector(row, of.friction);
+    }
 }
 
 void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_norm)
@@ -83,6 +111,13 @@ void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_n
     invariants.constraint_norm = std::max(invariants.constraint_norm, constraint_norm);
     for (const lie::Motion& body : x.body)
         invariants.orthogonality = std::max(invariants.orthogonality, lie::orthogonality_error(body.A));
+    for (size_t k = 0; k < contacts.size(); ++k) {
+        const auto of = contacts[k]->multipliers(model.at(*contacts[k], x), x.lambda);
+        ContactExtremes& extremes = invariants.contact[k];
+        extremes.F_N_least = std::min(extremes.F_N_least, of.F_N);
+        extremes.F_N_most = std::max(extremes.F_N_most, of.F_N);
+        extremes.lambda_N = std::max(extremes.lambda_N, of.N.norm());
+    }
 }
 
 }  // namespace hilda::studies

@@ -3,11 +3,28 @@
 
 #pragma once
 
+#include "contact/evolving_contact.hpp"
 #include "dae/start.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/output_file.hpp"
 
+#include <limits>
+
 namespace hilda::studies {
+
+/// What became of a contact that evolves, over every node of the run
+struct ContactExtremes {
+    double F_N_least = std::numeric_limits<double>::infinity();
+    double F_N_most = -std::numeric_limits<double>::infinity();  ///< [N]
+    double lambda_N = 0;  ///< largest |λ_N| [N]: what the normals lack of being those of the surfaces
+
+    /// λ_N above this part of F_N is no rounding.
+    static constexpr double allowed = 1e-6;
+    bool normals_differ() const
+    {
+        return lambda_N > allowed * std::max(std::abs(F_N_least), std::abs(F_N_most));
+    }
+};
 
 /// Over every node of the run
 struct Invariants {
@@ -16,6 +33,7 @@ struct Invariants {
     double energy_drift = 0;                  ///< largest |E - E_0| [J]
     double constraint_norm = 0;               ///< largest scaled residual, also of dropped rows [m or rad]
     double orthogonality = 0;                 ///< largest ‖AᵀA - I‖
+    std::vector<ContactExtremes> contact;     ///< of each contact that evolves
 };
 
 /// Writes those nodes that are rows of the grid. Throws lie::NumericalFailure "constraint_drift"
@@ -31,11 +49,13 @@ public:
 
 private:
     void note(const lie::State& x, double energy, double constraint_norm);
+    void write_contacts(const lie::State& x);
 
     const dae::Model& model;
     const lie::Grid& grid;
     OutputFile& file;
     const bool with_reactions;
+    std::vector<const contact::EvolvingContact*> contacts;
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };

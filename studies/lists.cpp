@@ -66,6 +66,16 @@ int write_model(const std::string& name, const std::string& file)
     return exit_code::done;
 }
 
+namespace {
+
+std::string contacts_of(const lie::Scheme& s)
+{
+    if (!s.massless) return "-";
+    return s.velocities ? "evolve, roll" : "evolve";
+}
+
+}  // namespace
+
 int list_integrators(bool json)
 {
     if (json) {
@@ -76,18 +86,26 @@ int list_integrators(bool json)
                            {"order_lambda",
                             s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
                            {"adaptive", s.adaptive},
+                           {"evolving_contacts", s.massless},
+                           {"rolling_contacts", s.massless && s.velocities},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"source", s.source}});
         std::cout << as_text(all);
         return exit_code::done;
     }
-    std::vector<Line> lines = {{"name", "order", "of lambda", "formulation", "unknowns", "source"}};
+    std::vector<Line> lines = {
+        {"name", "order", "of lambda", "contacts", "formulation", "unknowns", "source"}};
     for (const lie::Scheme& s : lie::schemes())
         lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
-                         s.adaptive ? "-" : std::to_string(s.order_lambda), s.formulation, s.unknowns,
-                         s.source});
+                         s.adaptive ? "-" : std::to_string(s.order_lambda), contacts_of(s), s.formulation,
+                         s.unknowns, s.source});
     print_aligned(lines);
+    std::cout << "\ncontacts: what it takes of contacts that are constraints; evolve: frictionless or with "
+                 "friction "
+                 "as a force,\nroll: ideal rolling too. For these rA-half-1-momentum is recommended; "
+                 "rA-half-1 is the "
+                 "text of the dissertation.\n";
     return exit_code::done;
 }
 

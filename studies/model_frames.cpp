@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/model_frames.hpp"
 
+#include "studies/contact_rows.hpp"
+
 namespace hilda::studies {
 
-ModelFrames::ModelFrames(const dae::Model& model, const lie::Grid& grid) : grid(grid)
+ModelFrames::ModelFrames(const dae::Model& model, const lie::Grid& grid)
+    : model(model), grid(grid), evolving(evolving_contacts(model))
 {
     for (const auto& force : model.forces())
         if (const auto* c = dynamic_cast<const contact::ContactForce*>(force.get())) {
@@ -11,6 +14,10 @@ ModelFrames::ModelFrames(const dae::Model& model, const lie::Grid& grid) : grid(
             snapshots.show(c->i, c->contact.i);
             snapshots.show(c->j, c->contact.j);
         }
+    for (const contact::EvolvingContact* c : evolving) {
+        snapshots.show(c->i, c->shape_i);
+        snapshots.show(c->j, c->shape_j);
+    }
 }
 
 void ModelFrames::accepted(const lie::State& x, long n, int)
@@ -23,6 +30,20 @@ void ModelFrames::accepted(const lie::State& x, long n, int)
         if (now.meeting.N > 0)
             touches.push_back(
                 Snapshots::touch(static_cast<int>(k), c.i, now.meeting, c.friction(x), now.memory.history));
+    }
+    for (size_t k = 0; k < evolving.size(); ++k) {
+        const contact::EvolvingContact& c = *evolving[k];
+        if (dae::Model::open(c, x)) continue;
+        const dae::Constraint::At at = model.at(c, x);
+        const contact::Touch touch = c.touch(at);
+        const contact::EvolvingContact::Multipliers of = c.multipliers(at, x.lambda);
+        touches.push_back({.contact = static_cast<int>(contacts.size() + k),
+                           .i = c.i,
+                           .C = touch.C(),
+                           .N = of.F_N * touch.n,
+                           .F = of.friction,
+                           .slipping = c.velocity_rows() == 0,
+                           .rolling = c.velocity_rows() > 0});
     }
     snapshots.add(x.t, x.body, std::move(touches));
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/contact_force.hpp"
+#include "contact/evolving_contact.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/vtk.hpp"
 
@@ -16,13 +17,15 @@ public:
     ModelFrames(const dae::Model& model, const lie::Grid& grid);
 
     void accepted(const lie::State& x, long n, int iterations) override;
-    bool has_contacts() const { return !contacts.empty(); }
+    bool has_contacts() const { return !contacts.empty() || !evolving.empty(); }
 
     Snapshots snapshots;
 
 private:
+    const dae::Model& model;
     const lie::Grid grid;
     std::vector<const contact::ContactForce*> contacts;
+    std::vector<const contact::EvolvingContact*> evolving;  ///< counted after those
 };
 
 }  // namespace hilda::studies

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/named_model.hpp"
 
+#include "studies/exit_codes.hpp"
 #include "studies/problem.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -32,6 +35,23 @@ dae::Description named_model(const std::string& name_or_path, std::span<const st
     if (is_model_path(name_or_path)) return dae::load_model(name_or_path, set);
     const Problem built_in = problem(name_or_path);
     return dae::read_model(built_in.model, built_in.name, set);
+}
+
+std::vector<std::string> normal_rows(const std::string& name_or_path, const std::vector<std::string>& set,
+                                     const std::string& rows)
+{
+    std::vector<std::string> with = set;
+    if (rows.empty()) return with;
+    const dae::Description d = named_model(name_or_path, set);
+    const nlohmann::json model = nlohmann::json::parse(d.text);
+    const auto contacts = model.find("contacts");
+    for (size_t k = 0; contacts != model.end() && k < contacts->size(); ++k)
+        if ((*contacts)[k]["normal"]["type"] == "constraint")
+            with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
+    if (with.size() == set.size())
+        throw UsageError("--normal-rows is for contacts whose normal is a constraint; " + d.name +
+                         " has none");
+    return with;
 }
 
 std::string short_name(const std::string& name_or_path)

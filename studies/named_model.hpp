@@ -19,6 +19,11 @@ bool is_model_path(const std::string& name_or_path);
 /// and problem().
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set);
 
+/// The settings `set`, and besides --normal-rows `rows` for each contact whose normal is a constraint; "": none. UsageError
+/// where there is no such contact.
+std::vector<std::string> normal_rows(const std::string& name_or_path, const std::vector<std::string>& set,
+                                     const std::string& rows);
+
 /// The name of its output directory below out/
 std::string short_name(const std::string& name_or_path);
 

@@ -18,6 +18,8 @@ struct RunOptions {
     std::optional<double> end, every;  ///< [s]; the model's end, a thousandth of the end
     lie::Settings settings;
     std::vector<std::string> set;  ///< /json/pointer=VALUE
+    std::string
+        normal_rows;  ///< of contacts that are constraints: tangent or fixed-xy; "": as the model has it
     bool fix_initial = false;
 
     std::string output;  ///< "": out/NAME

@@ -41,6 +41,7 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
     idle(options.repeats > 0, takes::repeats, "--repeats");
     idle(!options.bars.empty(), takes::bars, "--bars");
     idle(!options.preset.empty(), takes::preset, "--preset");
+    idle(!options.normal_rows.empty(), takes::normal_rows, "--normal-rows");
     idle(!options.against.empty(), takes::against, "--against");
     idle(options.check, takes::check, "--check");
     idle(!options.grid.empty(), takes::grid, "--grid");

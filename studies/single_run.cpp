@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/single_run.hpp"
 
+#include "studies/contact_rows.hpp"
 #include "studies/diagnosis.hpp"
 #include "studies/interrupt.hpp"
 #include "studies/message.hpp"
@@ -76,7 +77,8 @@ Result SingleRun::go()
 
 void SingleRun::read()
 {
-    description = named_model(options.model, options.set);
+    const std::vector<std::string> set = normal_rows(options.model, options.set, options.normal_rows);
+    description = named_model(options.model, set);
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
@@ -106,8 +108,10 @@ void SingleRun::read()
     }
     result.bodies = description.model->bodies();
     result.constraints = description.model->constraints();
+    for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
+        result.contacts.push_back(c->name);
     result.warnings = description.warnings;
-    result.set = options.set;
+    result.set = set;
     result.command_line = options.command_line;
     result.threads = 1;  // what was used, for any --threads
     result.directory = directory;
@@ -201,6 +205,29 @@ void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoin
     advance(march, integrator, recorder);
     result.invariants = recorder.invariants();
     recorder.flush();
+    judge_contacts();
+}
+
+// Where λ_N is not zero, the normals that a surface gives are not those of its points; where a contact pulls, the bodies
+// would have parted.
+void SingleRun::judge_contacts()
+{
+    const auto tell = [&](const std::string& what) {
+        warn(what);
+        result.warnings.push_back(what);
+    };
+    for (size_t k = 0; k < result.contacts.size(); ++k) {
+        const ContactExtremes& c = result.invariants.contact[k];
+        if (c.normals_differ())
+            tell(fmt::format(
+                "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
+                "its surfaces are not those of their points",
+                result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
+        if (c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+            tell(fmt::format(
+                "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
+                result.contacts[k], -c.F_N_least));
+    }
 }
 
 void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)

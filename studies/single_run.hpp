@@ -43,6 +43,7 @@ private:
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
+    void judge_contacts();
     void failed(const lie::NumericalFailure& failure, const lie::March& march);
     void finish();
 

@@ -32,9 +32,10 @@ struct StudyOptions {
 
     std::string reference;                                 ///< an integrator; "": the truth of each problem
     std::optional<double> reference_step, reference_rtol;  ///< [s], 1
-    std::string preset;   ///< of the friction: balanced or dissertation; "": the default of the study
-    std::string against;  ///< a CSV file to compare with; "": none
-    std::string grid;     ///< of a sweep, by a name that the study knows; "": its default
+    std::string preset;       ///< of the friction: balanced or dissertation; "": the default of the study
+    std::string normal_rows;  ///< of contacts that are constraints: tangent or fixed-xy; "": tangent
+    std::string against;      ///< a CSV file to compare with; "": none
+    std::string grid;         ///< of a sweep, by a name that the study knows; "": its default
 
     int vtk = 0;      ///< frames of each run for ParaView; 0: none
     int repeats = 0;  ///< of what is timed; 0: the default of studies that time
@@ -60,7 +61,8 @@ enum : unsigned {
     against = 32,
     grid = 64,
     check = 128,
-    vtk = 256
+    vtk = 256,
+    normal_rows = 512
 };
 }  // namespace takes
 

@@ -57,6 +57,16 @@ nlohmann::ordered_json summary(const Result& r)
                          {"energy_end", r.invariants.energy_end},
                          {"energy_drift", r.invariants.energy_drift},
                          {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
+    if (!r.contacts.empty()) {
+        out["contacts"] = nlohmann::ordered_json::array();
+        for (size_t k = 0; k < r.invariants.contact.size(); ++k) {
+            const ContactExtremes& c = r.invariants.contact[k];
+            out["contacts"].push_back({{"name", r.contacts[k]},
+                                       {"normal_force_least", c.F_N_least},
+                                       {"normal_force_most", c.F_N_most},
+                                       {"lambda_N", c.lambda_N}});
+        }
+    }
     out["files"] = r.files;
     out["timing"] = {{"setup_seconds", r.setup_seconds},
                      {"wall_seconds", r.wall_seconds},
@@ -73,9 +83,11 @@ void print(const Result& r, std::ostream& out)
         out << fmt::format("{:<14}{}\n", what, text);
     };
     line("model",
-         fmt::format("{}: {}, {}, {}", r.model, r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
+         fmt::format("{}: {}, {}, {}{} of freedom", r.model,
+                     r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
                      count(r.start.rows, "constraint row"),
-                     fmt::format("{} of freedom", count(r.start.degrees_of_freedom, "degree"))));
+                     r.contacts.empty() ? "" : count(static_cast<long>(r.contacts.size()), "contact") + ", ",
+                     count(r.start.degrees_of_freedom, "degree")));
     const std::string grain = r.rtol > 0
                                   ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
                                   : fmt::format("step {} s", step_text(r.step));
@@ -88,6 +100,10 @@ void print(const Result& r, std::ostream& out)
          fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest change {:.1e} J",
                      r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
     line("constraints", fmt::format("{:.1e} m or rad, largest residual", r.invariants.constraint_norm));
+    for (size_t k = 0; k < r.invariants.contact.size(); ++k)
+        line(k == 0 ? "contacts" : "",
+             fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k], r.invariants.contact[k].F_N_least,
+                         r.invariants.contact[k].F_N_most));
     line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));
     line("wall time",
          fmt::format("{:.3f} s, {:.0f} steps/s", r.wall_seconds,

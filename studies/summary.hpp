@@ -25,6 +25,7 @@ struct Result {
     double t = 0;     ///< reached [s]
 
     int bodies = 0, constraints = 0;
+    std::vector<std::string> contacts;  ///< those that evolve
     dae::StartReport start;
     std::vector<std::string> warnings, set;
 

@@ -18,6 +18,7 @@ Checkpoint some_checkpoint()
     c.node.t = 0.1;
     c.node.body.resize(2);
     c.node.body[1].r = {1, 2, 3};
+    c.node.alpha = Eigen::VectorXd::LinSpaced(6, -1, 2);
     c.node.lambda = Eigen::VectorXd::LinSpaced(5, 0, 1);
     c.node.memory = {1, -2};
     c.node.remembered = {0.1, -1e-300, 7};
@@ -25,7 +26,7 @@ Checkpoint some_checkpoint()
     c.iterations = 3;
     c.pivots = c.node;
     c.statistics = {100, 250, 3, 97, 0};
-    c.invariants = {100, 11, 1.5, 1.25, 0.25, 1e-12, 1e-15};
+    c.invariants = {100, 11, 1.5, 1.25, 0.25, 1e-12, 1e-15, {{1, 2, 3e-15}, {-4, 5, 6}}};
     c.last_step = {1, 2000, 3e-11};
     c.trajectory_bytes = 12345;
     c.steps_bytes = 678;
@@ -42,6 +43,7 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.settings == c.settings);
     CHECK(back.node.t == c.node.t);
     CHECK(back.node.body[1].r == c.node.body[1].r);
+    CHECK(back.node.alpha == c.node.alpha);
     CHECK(back.node.lambda == c.node.lambda);
     CHECK(back.node.memory == c.node.memory);
     CHECK(back.node.remembered == c.node.remembered);
@@ -49,6 +51,8 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.statistics.refactorizations == c.statistics.refactorizations);
     CHECK(back.invariants.energy_drift == c.invariants.energy_drift);
     CHECK(back.invariants.nodes == c.invariants.nodes);
+    REQUIRE(back.invariants.contact.size() == 2);
+    CHECK(back.invariants.contact[1].F_N_least == -4);
     CHECK(back.last_step.correction == c.last_step.correction);
     CHECK(back.trajectory_bytes == c.trajectory_bytes);
     CHECK(back.wall_seconds == c.wall_seconds);

@@ -2,9 +2,8 @@
 /// Bodies that touch: a ball that slides until it rolls, an ellipsoid that bounces, an edge mill. What contacts remember
 /// leaves no equations of motion between the steps, so the truth is a run with small ones.
 
+#include "studies/evolving_truth.hpp"
 #include "studies/problem.hpp"
-
-#include "dae/start.hpp"
 
 namespace hilda::studies {
 
@@ -12,24 +11,9 @@ namespace {
 
 constexpr double fine = 2e-6;  // [s]
 
-lie::Trajectory run_with_small_steps(dae::Description& d, const std::vector<double>& instants)
+lie::Trajectory truth(dae::Description& d, const std::vector<double>& instants)
 {
-    const auto integrator = lie::scheme("rA-rattle").make(*d.model, {.tolerance = 1e-13});
-    lie::Saddle K(*d.model);
-    lie::Trajectory run;
-    lie::State x = d.x;
-    for (const double instant : instants) {
-        const double steps = std::ceil((instant - x.t) / fine - 1e-6);
-        if (steps > 0) {
-            lie::March march(x, *integrator, (instant - x.t) / steps);
-            while (march.number() < static_cast<long>(steps)) march.advance({});
-            x = march.node();
-            x.t = instant;
-        }
-        dae::solve_accelerations(*d.model, K, x);
-        run.row.push_back(x);
-    }
-    return run;
+    return run_with_small_steps(d, instants, lie::scheme("rA-rattle"), fine);
 }
 
 constexpr const char* truth_name = "rA-rattle at h = 2e-6 s";
@@ -51,7 +35,7 @@ const bool ball = enrol({.name = "rolling_ball",
 }
 )",
                          .truth_name = truth_name,
-                         .truth = run_with_small_steps,
+                         .truth = truth,
                          .watched = {.body = "ball", .component = "vx"}});
 
 const bool ellipsoid = enrol(
@@ -73,7 +57,7 @@ const bool ellipsoid = enrol(
 }
 )",
      .truth_name = truth_name,
-     .truth = run_with_small_steps,
+     .truth = truth,
      .watched = {.body = "egg", .component = "rz"}});
 
 const bool mill = enrol(
@@ -101,7 +85,7 @@ const bool mill = enrol(
 }
 )",
      .truth_name = truth_name,
-     .truth = run_with_small_steps,
+     .truth = truth,
      .watched = {.body = "ball", .component = "ry"}});
 
 }  // namespace

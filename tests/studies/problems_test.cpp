@@ -93,14 +93,25 @@ TEST_CASE("every built-in problem starts on its constraints", "[studies][problem
 
 TEST_CASE("the benchmark mechanisms have their degrees of freedom", "[studies][problems]")
 {
-    const std::pair<const char*, int> freedoms[] = {{"single_pendulum", 0},   {"slider_crank", 0},
-                                                    {"four_link", 0},         {"four_link_table33", 0},
-                                                    {"double_pendulum", 2},   {"double_pendulum_w005", 2},
-                                                    {"n_pendulum", 6},        {"double_pendulum_moving", 2},
-                                                    {"n_pendulum_2_spin", 6}, {"n_pendulum_8", 24},
-                                                    {"free_top", 6},          {"heavy_top", 3},
-                                                    {"rolling_ball", 6},      {"bouncing_ellipsoid", 6},
-                                                    {"edge_mill", 3}};
+    const std::pair<const char*, int> freedoms[] = {{"single_pendulum", 0},
+                                                    {"slider_crank", 0},
+                                                    {"four_link", 0},
+                                                    {"four_link_table33", 0},
+                                                    {"double_pendulum", 2},
+                                                    {"double_pendulum_w005", 2},
+                                                    {"n_pendulum", 6},
+                                                    {"double_pendulum_moving", 2},
+                                                    {"n_pendulum_2_spin", 6},
+                                                    {"n_pendulum_8", 24},
+                                                    {"free_top", 6},
+                                                    {"heavy_top", 3},
+                                                    {"rolling_ball", 6},
+                                                    {"bouncing_ellipsoid", 6},
+                                                    {"edge_mill", 3},
+                                                    {"ball_in_bowl", 5},
+                                                    {"rolling_ball_in_bowl", 3},
+                                                    {"rocking_ellipsoid", 5},
+                                                    {"rattleback", 3}};
     for (const auto& [name, freedom] : freedoms) {
         INFO(name);
         dae::Description d = dae::read_model(studies::problem(name).model, name);

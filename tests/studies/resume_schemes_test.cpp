@@ -16,7 +16,7 @@ bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() 
 
 bool same(const lie::State& a, const lie::State& b)
 {
-    bool all = a.t == b.t && same(a.lambda, b.lambda) && a.memory == b.memory &&
+    bool all = a.t == b.t && same(a.alpha, b.alpha) && same(a.lambda, b.lambda) && a.memory == b.memory &&
                a.remembered == b.remembered && same(a.history, b.history);
     for (size_t k = 0; k < a.body.size(); ++k) {
         const lie::Motion &x = a.body[k], &y = b.body[k];
@@ -32,14 +32,16 @@ bool same(const lie::State& a, const lie::State& b)
 // way.
 TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studies][resume]")
 {
-    const std::string name = GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill");
+    const std::string name =
+        GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill", "ball_in_bowl_xy", "rattleback");
     dae::Description d = dae::read_model(studies::problem(name).model, name);
     const int last = d.model->bodies() - 1;
     d.model->load(tests::Bristle(dae::ground, last, 0.5, 10));
-    d.model->load(tests::Bristle(0, last, 2, 1e-4));
+    if (last > 0) d.model->load(tests::Bristle(0, last, 2, 1e-4));
     dae::start(d);
     for (const lie::Scheme& scheme : lie::schemes()) {
         if (scheme.adaptive) continue;
+        if (!d.model->evolving().empty() && !(scheme.massless && scheme.velocities)) continue;
         const lie::Settings settings{.reparametrise = true};
         constexpr double h = 2e-3;
         constexpr long half = 150;
@@ -63,11 +65,11 @@ TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studi
         while (resumed.number() < 2 * half) resumed.advance({});
         INFO(scheme.name << " on " << name);
         CHECK(same(resumed.node(), whole.node()));
-        CHECK(read.node.remembered != d.x.remembered);
+        if (last > 0) CHECK(read.node.remembered != d.x.remembered);
 
         // and needs the numbers that the forces remember
         lie::State forgetful = read.node;
-        forgetful.remembered[1] += 1e-3;
+        forgetful.remembered[d.model->forces()[0]->first_remembered + 1] += 1e-3;
         lie::March other(forgetful, *fresh, h, read.number, read.iterations);
         while (other.number() < 2 * half) other.advance({});
         CHECK(!same(other.node().lambda, whole.node().lambda));

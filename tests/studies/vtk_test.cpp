@@ -390,6 +390,24 @@ TEST_CASE("frames of a model with contacts", "[studies][vtk]")
     CHECK(files(in / "out/vtk") == 0);
 }
 
+TEST_CASE("frames of a contact that is a constraint", "[studies][vtk][evolving]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"run", "rolling_ball_in_bowl", "--end", "0.1", "--vtk", "0.05", "--output", "out"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const std::vector<Data> listed = collection(in / "out/run.pvd");
+    REQUIRE(listed.size() == 3);
+    const Frame frame(in / ("out/" + listed[0].file));
+    REQUIRE(frame.vertex.size() == 1);
+    CHECK((frame.point[frame.vertex[0][0]] - Vec3(0, 1.5, -1.7320508)).norm() < 1e-6);
+    CHECK(frame.N[0].normalized().z() == Approx(0.9332565).epsilon(1e-6));
+    CHECK(frame.F[0].norm() == Approx(1.0068160).epsilon(1e-3));
+    CHECK(frame.slipping[0] == 0);
+    CHECK(frame.rolling[0] == 1);
+}
+
 TEST_CASE("frames of a run are refused where nothing would come of them", "[studies][vtk][run]")
 {
     const Scratch in;

@@ -16,6 +16,7 @@ MARKERS = "osD^vP*X"
 STYLES = {
     "rA-full-1": ("#d55e00", "s"), "rA-full-1-exact": ("#f4a582", "D"),
     "rA-half-1": ("#0072b2", "o"), "rA-half-1-kick": ("#56b4e9", "^"),
+    "rA-half-1-momentum": ("#009988", ">"),
     "rA-half-2": ("#009e73", "v"), "rA-half-2-bdf2": ("#66c2a5", "<"),
     "rA-genalpha": ("#cc79a7", "P"), "rA-rattle": ("#8c6bb1", "X"), "rA-rkmk-4": ("#e69f00", "*"),
     "ida-rp": ("#000000", "h"), "ida-rp-baumgarte": ("#444444", "H"), "ida-rp-index1": ("#888888", "8"),

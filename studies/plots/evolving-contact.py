@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ball in a bowl with the contact points as unknowns, one figure for each scene.            Fang (2022), Figs. 5.2-5.6
+
+    evolving-contact.py DIR     reads DIR/SCENE.csv, writes DIR/evolving-contact-SCENE.png
+"""
+import os
+
+from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
+
+DASHES = ["-", "--", ":", "-."]
+
+
+def positive(values):
+    return [v if v > 0 else float("nan") for v in values]
+
+
+def path(axes, rows, of, colour, dash, planar):
+    across, up = (of + "_y", of + "_z") if planar else (of + "_x", of + "_y")
+    axes.plot(numbers(rows, across), numbers(rows, up), dash, color=colour, lw=1)
+    axes.set_xlabel(f"{across[-1]} [m]")
+    axes.set_ylabel(f"{up[-1]} [m]")
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def draw(folder, scene, rows):
+    planar = not scene.startswith("xy")
+    figure, axes = plt.subplots(2, 3, figsize=(14, 7.8))
+    lines = []
+    for k, run in enumerate(distinct(rows, "run")):
+        mine, colour, dash = where(rows, run=run), COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
+        lines.append(Line2D([], [], color=colour, ls=dash, label=run))
+        t = numbers(mine, "t")
+        path(axes[0][0], mine, "aj", colour, dash, planar)
+        path(axes[0][1], mine, "ai", colour, dash, planar)
+        axes[0][2].plot(t, numbers(mine, "F_N"), dash, color=colour, lw=1)
+        residual = [max(number(row[c]) for c in ("Psi", "N", "G")) for row in mine]
+        axes[1][0].semilogy(t, positive(residual), dash, color=colour, lw=0.8)
+        multiplier = [max(number(row[c]) for c in ("lambda_N", "lambda_t")) for row in mine]
+        axes[1][1].semilogy(t, positive(multiplier), dash, color=colour, lw=0.8)
+        axes[1][2].plot(t, numbers(mine, "energy_change"), dash, color=colour, lw=1)
+    titles = (r"contact point on the bowl $\bar\alpha_j$", r"contact point on the ball $\bar\alpha_i$", "normal force $F_N$ [N]",
+              r"residual: largest of $\Psi$, $N$, $G$ [m]", r"$|\lambda_N|$ and tangential part of $\lambda_\Psi$ [N]",
+              "change of energy [J]")
+    for ax, title in zip(axes.flat, titles):
+        ax.set_title(title, fontsize=10)
+        grid(ax)
+    for ax in (axes[0][2], *axes[1]):
+        ax.set_xlabel("$t$ [s]")
+    figure.suptitle(f"{scene}: a ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
+    figure.legend(handles=lines, loc="lower center", ncol=len(lines), frameon=False, fontsize=9)
+    save(figure, folder, f"evolving-contact-{scene}.png", 0.04)
+
+
+def main():
+    folder = directory()
+    for scene in distinct(read(folder, "study.csv"), "scene"):
+        if os.path.exists(os.path.join(folder, scene + ".csv")):
+            draw(folder, scene, read(folder, scene + ".csv"))
+
+
+if __name__ == "__main__":
+    main()

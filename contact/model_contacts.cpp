@@ -105,20 +105,19 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
 
 /// What "normal" says of a contact that is a constraint
 struct HeldNormal {
-    bool unilateral = false;  ///< pushes and never pulls
-    double restitution = 0;   ///< of the impact with which it closes
+    Unilateral unilateral;
     EvolvingContact::NormalRows rows = EvolvingContact::NormalRows::tangent;
 };
 
 HeldNormal read_held_normal(ObjectReader& o)
 {
     HeldNormal held;
-    held.unilateral = o.flag("unilateral", false);
+    held.unilateral.opens = o.flag("unilateral", false);
     const bool given = o.look("restitution") != nullptr;
-    if (held.unilateral || given) held.restitution = from_zero_to_one(o, "restitution", 0);
-    if (given && !held.unilateral)
+    if (held.unilateral.opens || given) held.unilateral.restitution = from_zero_to_one(o, "restitution", 0);
+    if (given && !held.unilateral.opens)
         o.fail("restitution", "restitution is of a contact that may open, \"unilateral\": true; got " +
-                                  dae::shortest(held.restitution) + " of one that never does");
+                                  dae::shortest(held.unilateral.restitution) + " of one that never does");
     if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
         held.rows = EvolvingContact::NormalRows::fixed_xy;
     return held;
@@ -151,14 +150,12 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& 
                   const Shape& j)
 {
     const HeldNormal held = read_held_normal(normal);
-    if (held.unilateral)
-        normal.fail("unilateral", "in this build a contact that is a constraint holds both ways, got true");
     o.keep("normal", normal.finish());
     const EvolvingContact::Friction friction = read_held_friction(o);
     check_smooth(o, "surface_i", i);
     check_smooth(o, "surface_j", j);
-    pair.model.constrain(pair.name,
-                         std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, friction, held.rows));
+    pair.model.constrain(pair.name, std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, friction,
+                                                                      held.rows, held.unilateral));
 }
 
 void read_contact(ObjectReader& o, const dae::ContactPair& pair)

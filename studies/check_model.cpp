@@ -110,7 +110,8 @@ struct Evolving {
     std::string name, friction, normal_rows;
     int rows, velocity_rows, unknowns;
     lie::Vec3 C, n, alpha_i,
-        alpha_j;                     ///< where it touches, the normal into body i [m, global]; on both bodies
+        alpha_j;  ///< where it touches, the normal into body i [m, global]; on both bodies
+    bool opens, open;
     double gap, F_N;                 ///< [m], [N]
     contact::Curvatures of_i, of_j;  ///< principal [1/m]
     double
@@ -135,8 +136,10 @@ std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
              .n = touch.n,
              .alpha_i = lie::Vec3::Map(at.alpha),
              .alpha_j = lie::Vec3::Map(at.alpha + 3),
+             .opens = c->opens(),
+             .open = dae::Model::open(*c, x),
              .gap = touch.gap,
-             .F_N = c->multipliers(at, x.lambda).F_N,
+             .F_N = forces(model, *c, x).F_N,
              .of_i = contact::principal_curvatures(touch.K_i, touch.n),
              .of_j = contact::principal_curvatures(touch.K_j, touch.n),
              .least_curvature = contact::least_curvature(touch) * c->L});
@@ -158,6 +161,8 @@ nlohmann::ordered_json as_json(const Evolving& c)
             {"normal", as_json(c.n)},
             {"alpha_i", as_json(c.alpha_i)},
             {"alpha_j", as_json(c.alpha_j)},
+            {"unilateral", c.opens},
+            {"open", c.open},
             {"gap", c.gap},
             {"normal_force", c.F_N},
             {"curvatures_i", {c.of_i.least, c.of_i.most}},
@@ -175,7 +180,11 @@ std::vector<std::string> in_words(const Evolving& c)
                     c.velocity_rows > 0 ? fmt::format(", {} rows of rolling", c.velocity_rows) : "",
                     c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
         fmt::format("at {} m, normal {} into the first, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
-        fmt::format("normal force {:.10g} N{}", c.F_N, c.F_N < 0 ? ": it pulls" : ""),
+        fmt::format("normal force {:.10g} N{}", c.F_N,
+                    c.open       ? ": it is open"
+                    : c.F_N >= 0 ? ""
+                    : c.opens    ? ": it opens"
+                                 : ": it pulls"),
         fmt::format("curvatures {:.4g}, {:.4g} and {:.4g}, {:.4g} 1/m; least of the sum, times size, {:.3g}",
                     c.of_i.least, c.of_i.most, c.of_j.least, c.of_j.most, c.least_curvature)};
 }

@@ -12,6 +12,17 @@ std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model&
     return all;
 }
 
+contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
+                                             const lie::State& x)
+{
+    if (!dae::Model::open(c, x)) return c.multipliers(model.at(c, x), x.lambda);
+    contact::EvolvingContact::Multipliers none;
+    none.Psi.setZero(), none.tangential.setZero(), none.friction.setZero();
+    none.N.setZero(), none.G.setZero(), none.rolling.setZero();
+    none.F_N = 0;
+    return none;
+}
+
 double largest_residual(const dae::Model& model, const lie::State& x)
 {
     double largest = model.largest_residual(x).value;

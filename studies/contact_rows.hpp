@@ -10,6 +10,10 @@ namespace hilda::studies {
 /// Those of a model, in their order
 std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model& model);
 
+/// Its multipliers in x, all zero while it is open
+contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
+                                             const lie::State& x);
+
 /// The largest scaled residual of a model in x, in m or rad: of all its rows, also the dropped ones, and of the rows of
 /// its contacts, which are lengths
 double largest_residual(const dae::Model& model, const lie::State& x);

@@ -45,6 +45,7 @@ void TrajectoryCsv::write_header()
             columns(c->name,
                     {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z", "lambda_N"});
             if (c->velocity_rows() > 0) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
+            if (c->opens()) columns(c->name, {"gap"});
         }
     }
     row += '\n';
@@ -91,7 +92,7 @@ void TrajectoryCsv::write_contacts(const lie::State& x)
     std::string& row = file.buffer;
     for (const contact::EvolvingContact* c : contacts) {
         const dae::Constraint::At at = model.at(*c, x);
-        const contact::EvolvingContact::Multipliers of = c->multipliers(at, x.lambda);
+        const contact::EvolvingContact::Multipliers of = forces(model, *c, x);
         row += ',';
         append_number(row, of.F_N);
         append_vector(row, c->touch(at).C());
@@ -100,6 +101,9 @@ void TrajectoryCsv::write_contacts(const lie::State& x)
         row += ',';
         append_number(row, of.N.norm());
         if (c->velocity_rows() > 0) append_vector(row, of.friction);
+        if (!c->opens()) continue;
+        row += ',';
+        append_number(row, c->touch(at).gap);
     }
 }
 
@@ -112,7 +116,7 @@ void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_n
     for (const lie::Motion& body : x.body)
         invariants.orthogonality = std::max(invariants.orthogonality, lie::orthogonality_error(body.A));
     for (size_t k = 0; k < contacts.size(); ++k) {
-        const auto of = contacts[k]->multipliers(model.at(*contacts[k], x), x.lambda);
+        const auto of = forces(model, *contacts[k], x);
         ContactExtremes& extremes = invariants.contact[k];
         extremes.F_N_least = std::min(extremes.F_N_least, of.F_N);
         extremes.F_N_most = std::max(extremes.F_N_most, of.F_N);

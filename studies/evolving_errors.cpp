@@ -25,8 +25,7 @@ void AgainstTruth::accepted(const lie::State& x, long n, int)
     take(evolving_norm::A, d.A);
     take(evolving_norm::alpha, (x.alpha - truth.alpha).norm());
     for (const contact::EvolvingContact* of : contacts)
-        take(evolving_norm::F_N, std::abs(of->multipliers(model.at(*of, x), x.lambda).F_N -
-                                          of->multipliers(model.at(*of, truth), truth.lambda).F_N));
+        take(evolving_norm::F_N, std::abs(forces(model, *of, x).F_N - forces(model, *of, truth).F_N));
 }
 
 }  // namespace hilda::studies

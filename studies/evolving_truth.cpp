@@ -4,6 +4,7 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "contact/unilateral.hpp"
 #include "dae/start.hpp"
 #include "reference/ball_in_bowl.hpp"
 #include "reference/ellipsoid_on_plane.hpp"
@@ -132,7 +133,7 @@ lie::Trajectory evolving_truth(dae::Description& d, const std::vector<double>& i
 lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vector<double>& instants,
                                      const lie::Scheme& scheme, double h)
 {
-    const auto integrator = scheme.make(*d.model, {.tolerance = 1e-13});
+    const auto integrator = contact::make_integrator(*d.model, scheme, {.tolerance = 1e-13});
     lie::Saddle K(*d.model);
     lie::Trajectory run;
     lie::State x = d.x;

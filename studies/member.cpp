@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/member.hpp"
 
+#include "contact/unilateral.hpp"
 #include "studies/diagnosis.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ void march(Member& member, const lie::Settings& of_study, std::span<lie::Observe
         member.message = message;
     };
     try {
-        integrator = member.scheme->make(*d.model, settings_of(member, of_study));
+        integrator = contact::make_integrator(*d.model, *member.scheme, settings_of(member, of_study));
         lie::March march(d.x, *integrator, member.h);
         const lie::Grid grid = lie::Grid::over(member.c->end, member.h);
         while (march.number() < grid.steps) march.advance(observers);

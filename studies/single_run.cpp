@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/single_run.hpp"
 
+#include "contact/unilateral.hpp"
 #include "studies/contact_rows.hpp"
 #include "studies/diagnosis.hpp"
 #include "studies/interrupt.hpp"
@@ -37,6 +38,15 @@ lie::Grid grid_of(const RunOptions& options, double end, bool adaptive)
     }
 }
 
+std::string in_words(contact::ContactEvent::Kind kind)
+{
+    using Kind = contact::ContactEvent::Kind;
+    return kind == Kind::lift_off  ? "lift-off"
+           : kind == Kind::impact  ? "impact"
+           : kind == Kind::closing ? "closing"
+                                   : "handed over";
+}
+
 /// Not above the number itself, so that a step of what is printed is taken
 std::string in_three_digits(double positive)
 {
@@ -65,12 +75,17 @@ Result SingleRun::go()
     read();
     lie::Settings told = options.settings;
     told.stop = [] { return Interrupt::caught() != 0; };
-    const std::unique_ptr<lie::Integrator> integrator = scheme.make(*description.model, told);
+    const std::unique_ptr<lie::Integrator> integrator =
+        contact::make_integrator(*description.model, scheme, told);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
     judge_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, from);
+    if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
+        for (const contact::ContactEvent& e : events->events())
+            result.events.push_back({e.t, description.model->evolving()[static_cast<size_t>(e.contact)]->name,
+                                     in_words(e.kind), e.speed});
     finish();
     return std::move(result);
 }
@@ -223,7 +238,7 @@ void SingleRun::judge_contacts()
                 "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
                 "its surfaces are not those of their points",
                 result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
-        if (c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+        if (!description.model->evolving()[k]->opens() && c.F_N_least < -1e-9 * std::abs(c.F_N_most))
             tell(fmt::format(
                 "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
                 result.contacts[k], -c.F_N_least));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/stopwatch.hpp"
 
+#include "contact/unilateral.hpp"
+
 #include "studies/pool.hpp"
 #include "studies/table.hpp"
 
@@ -46,7 +48,8 @@ double seconds_of_march(const Member& member, const lie::Settings& of_study)
     double seconds = 0;
     long runs = 0;
     while (seconds < long_enough) {
-        const auto integrator = member.scheme->make(*d.model, settings);  // a new one: it may remember a run
+        const auto integrator =
+            contact::make_integrator(*d.model, *member.scheme, settings);  // a new one: it may remember a run
         lie::March march(d.x, *integrator, member.h);
         const double begin = thread_seconds();
         while (march.number() < grid.steps) march.advance({});

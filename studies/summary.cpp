@@ -67,6 +67,15 @@ nlohmann::ordered_json summary(const Result& r)
                                        {"lambda_N", c.lambda_N}});
         }
     }
+    if (!r.events.empty()) {
+        constexpr size_t most = 1000;  // of a ball that comes to rest by bouncing there are many
+        out["contact_events"] = {{"count", r.events.size()}, {"first", nlohmann::ordered_json::array()}};
+        for (size_t k = 0; k < std::min(most, r.events.size()); ++k) {
+            const Result::Event& e = r.events[k];
+            out["contact_events"]["first"].push_back(
+                {{"t", e.t}, {"contact", e.contact}, {"what", e.what}, {"speed", e.speed}});
+        }
+    }
     out["files"] = r.files;
     out["timing"] = {{"setup_seconds", r.setup_seconds},
                      {"wall_seconds", r.wall_seconds},

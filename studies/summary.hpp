@@ -26,6 +26,13 @@ struct Result {
 
     int bodies = 0, constraints = 0;
     std::vector<std::string> contacts;  ///< those that evolve
+    /// What happened to those that open, since the run began or went on
+    struct Event {
+        double t;  ///< [s]
+        std::string contact, what;
+        double speed;  ///< of approach [m/s]
+    };
+    std::vector<Event> events;
     dae::StartReport start;
     std::vector<std::string> warnings, set;
 

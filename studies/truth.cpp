@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/truth.hpp"
 
+#include "contact/unilateral.hpp"
 #include "studies/diagnosis.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/pool.hpp"
@@ -110,7 +111,7 @@ lie::Trajectory Reference::by_integrator(const Case& c) const
         grid.every = std::lround(c.instants.dt / grid.h);
         grid.steps = c.instants.count * grid.every;
     }
-    const auto integrator = scheme->make(*c.started->model, settings);
+    const auto integrator = contact::make_integrator(*c.started->model, *scheme, settings);
     return lie::march(c.started->x, *integrator, grid);
 }
 

@@ -109,6 +109,21 @@ TEST_CASE("a gap at the start is closed along the normal by fix-initial", "[cont
     CHECK(normal_force(d) == Approx(9.81).epsilon(1e-13));
 }
 
+TEST_CASE("a contact that may open is read with its restitution and may start open",
+          "[contact][model_file][evolving]")
+{
+    const std::string opens = R"({"type": "constraint", "unilateral": true, "restitution": 0.5})";
+    dae::Description d = dae::read_model(model(ball, flat, opens, "", "0, 0, 0.6", "0, 0, -2"), "m.json");
+    CHECK(first(d).unilateral.opens);
+    CHECK(first(d).unilateral.restitution == 0.5);
+    CHECK_THAT(d.text, Catch::Contains(R"("restitution": 0.5)"));
+    CHECK(dae::read_model(d.text, "again.json").text == d.text);
+    const dae::StartReport report = dae::start(d);
+    CHECK(report.degrees_of_freedom == 6);
+    CHECK(dae::Model::open(first(d), d.x));
+    CHECK(d.x.body[0].rdot.z() == -2);
+}
+
 TEST_CASE("a contact that is a constraint and is none is refused at its place",
           "[contact][model_file][evolving]")
 {

@@ -155,6 +155,32 @@ TEST_CASE("a contact that pulls is told of", "[studies][evolving]")
     CHECK_THAT(call(in, {"check", "dome.json"}).out, Contains("it pulls"));
 }
 
+TEST_CASE("a ball that bounces is told of, event by event", "[studies][evolving]")
+{
+    const Scratch in;
+    // falls by 0.1 m, rebounds with half of its speed
+    write(in / "m.json", R"({"hilda_model": 1, "name": "m", "end": 0.5, "gravity": [0, 0, -9.8],
+ "bodies": [{"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [0, 0, 0.6]}],
+ "contacts": [{"name": "ball-floor", "body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.5},
+  "surface_j": {"type": "plane"}, "normal": {"type": "constraint", "unilateral": true, "restitution": 0.5}}]})");
+    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("it is open") && Contains("6\n"));
+    const Ended ended = call(in, {"run", "m.json", "--integrator", "rA-half-1-momentum", "--step", "1e-2",
+                                  "--reactions", "--output", "a"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const ordered_json summary = ordered_json::parse(read(in / "a/summary.json"));
+    const ordered_json& events = summary["contact_events"];
+    REQUIRE(events["count"].get<int>() >= 2);
+    const double t = std::sqrt(2 * 0.1 / 9.8);  // the fall is a parabola, which the scheme has exactly
+    CHECK(events["first"][0]["what"] == "impact");
+    CHECK(events["first"][0]["t"].get<double>() == Approx(t).epsilon(1e-9));
+    CHECK(events["first"][0]["speed"].get<double>() == Approx(9.8 * t).epsilon(1e-9));
+    CHECK(events["first"][1]["t"].get<double>() == Approx(2 * t).epsilon(1e-9));
+    const auto rows = csv(in / "a/trajectory.csv");
+    CHECK(number(rows[5], "ball-floor.gap") == Approx(0.1 - 0.5 * 9.8 * 0.05 * 0.05));
+    CHECK(number(rows[5], "ball-floor.F_N") == 0);
+}
+
 TEST_CASE("a lambda_N above a millionth of the normal force is no rounding", "[studies][evolving]")
 {
     CHECK(studies::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 1.1e-5}.normals_differ());

@@ -21,7 +21,7 @@ constexpr double rest = 1e-9;       // of a step, that is not worth a step
 
 UnilateralStep::UnilateralStep(const dae::Model& model, const lie::Scheme& scheme,
                                const lie::Settings& settings)
-    : model(model), scheme(scheme.make(model, settings)), K(model, lie::Metric::mass, lie::LinearSolver::klu),
+    : model(model), scheme(scheme.make(model, settings)), K(model, lie::Metric::mass, settings.linear_solver),
       momentum(Eigen::VectorXd::Zero(6 * model.bodies())), v(K.size())
 {
     for (size_t n = 0; n < model.evolving().size(); ++n) {

@@ -24,12 +24,19 @@ std::string number(double value)
     return text.str();
 }
 
-/// The contact that row k of the reduced rows belongs to
-const Constraint& contact_of(const Model& model, int k)
+/// KLU, whose digits count at a start, but for many contacts, of which only those that are closed are then factored
+lie::LinearSolver solver_of(const Model& model)
+{
+    return model.evolving().empty() ? lie::LinearSolver::klu : lie::LinearSolver::automatic;
+}
+
+/// The contact that row k of the reduced rows belongs to, of which those that are open have none
+const Constraint& contact_of(const Model& model, const State& x, int k)
 {
     int row = static_cast<int>(model.active_rows().size());
     for (const bool of_velocities : {false, true})
         for (const auto& c : model.evolving()) {
+            if (Model::open(*c, x)) continue;
             row += of_velocities ? c->velocity_rows() : c->rows() - c->unknowns();
             if (k < row) return *c;
         }
@@ -43,12 +50,12 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
     lie::Rows whole = model.pattern();
     model.variation(x, whole);
-    lie::Elimination contacts(whole);  // a contact is the one row that is left of it
+    std::vector<char> empty(whole.rows(), 0);
+    for (const int k : whole.opening) empty[k] = whole.empty(k);
+    lie::Elimination contacts(whole, empty);  // a contact is the one row that is left of it
     contacts.factor(whole);
     const lie::Rows& C = contacts.reduced();
     const int m = C.rows(), n = 6 * model.bodies();
-
-    std::vector<bool> empty(m);
 
     cholmod_common common;
     cholmod_l_start(&common);
@@ -74,7 +81,6 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
                 sum += v * v;
             }
         for (size_t e = first; e < triplets->nnz; ++e) value[e] /= std::sqrt(sum);
-        empty[k] = sum == 0;
     }
     cholmod_sparse* A = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, &common);
     cholmod_l_free_triplet(&triplets, &common);
@@ -94,7 +100,7 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
         for (int k = 0; k < m; ++k) {
             if (std::find(index + start[k], index + start[k + 1], steps) != index + start[k + 1])
                 ++steps;
-            else if (!empty[k])
+            else
                 dependent.push_back(k);
         }
     }
@@ -105,15 +111,17 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     cholmod_l_finish(&common);
     if (rank < 0 || rank != steps)
         throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
-    std::string names;
+    std::vector<const Constraint*> contacts_too_many;
     while (!dependent.empty() && dependent.back() >= static_cast<int>(model.active_rows().size())) {
-        const Constraint& c = contact_of(model, dependent.back());
-        if (c.hands_over())
-            Model::set_mode(c, x, Constraint::handed_over);
-        else
-            names = "'" + c.name + "'" + (names.empty() ? "" : ", ") + names;
+        contacts_too_many.insert(contacts_too_many.begin(), &contact_of(model, x, dependent.back()));
         dependent.pop_back();
     }
+    std::string names;
+    for (const Constraint* c : contacts_too_many)
+        if (c->hands_over())
+            Model::set_mode(*c, x, Constraint::handed_over);
+        else
+            names += (names.empty() ? "'" : ", '") + c->name + "'";
     if (!names.empty())
         throw lie::NumericalFailure(
             "contact_rank",
@@ -291,7 +299,7 @@ std::vector<int> project_without_redundant(Model& model, State& x, double tolera
     const std::vector<int> redundant = dependent_rows(model, x, tolerance);
     for (const int k : redundant) model.drop(k);
     if (model.rows() > 0) {
-        lie::Saddle K(model);
+        lie::Saddle K(model, lie::Metric::mass, solver_of(model));
         project_positions(model, K, x);
     }
     return redundant;
@@ -398,7 +406,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         if (Model::open(*c, x)) report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
-    lie::Saddle K(model);
+    lie::Saddle K(model, lie::Metric::mass, solver_of(model));
     if (report.rows > 0) {
         // the velocities given belong to the positions given; they are judged where these are now
         const Model::Residual velocity = model.largest_velocity_residual(x);

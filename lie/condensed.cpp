@@ -195,10 +195,6 @@ void Condensed::analyse(const Rows& pattern)
     }
     column.push_back(static_cast<int>(block.size()));
     value.resize(size);
-    for (const int k : pattern.opening)
-        for (const Group& g : group)
-            if (k >= g.first && k < g.first + g.rows)
-                opening.push_back({k, g.diagonal + (k - g.first) * (g.rows + 1)});
     fill = static_cast<long>(block.size()) - met / 2;
 
     for (const auto& [body, all] : at_body)
@@ -249,8 +245,6 @@ bool Condensed::factor(const Rows& C)
     for (const Term& t : term) add_product(&value[t.at], &W[t.w_of], &W[t.w_by], t.of, t.by, 6, 1);
     for (const Group& g : group)
         for (int k = 0; k < g.rows; ++k) diagonal[g.first + k] = value[g.diagonal + k * g.rows + k];
-    for (const Opening& o : opening)  // an empty row leaves its multiplier alone
-        if (diagonal[o.row] == 0) diagonal[o.row] = value[o.at] = 1;
 
     smallest = 1;
     for (size_t p = 0; p < order.size(); ++p) {

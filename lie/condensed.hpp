@@ -72,10 +72,6 @@ private:
     std::vector<int> column, update_start;  ///< by position in `order`, into `block` and `update`
     std::vector<Block> block;
     std::vector<Update> update;
-    struct Opening {
-        int row, at;  ///< a row that may be empty, its diagonal entry in `value`
-    };
-    std::vector<Opening> opening;
     std::vector<double> W, value, diagonal;  ///< diagonal: of S, to judge pivots
     Eigen::VectorXd y;
     double smallest = 1, flops = 0;

@@ -48,6 +48,8 @@ void Klu::analyse(std::vector<int> columns, std::vector<int> rows)
     column_start = std::move(columns);
     row_index = std::move(rows);
     value.assign(row_index.size(), 0);
+    klu_free_numeric(&klu->numeric, &klu->common);
+    have_pivots = false;
     klu_free_symbolic(&klu->symbolic, &klu->common);
     klu->symbolic = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
     if (klu->symbolic == nullptr)

@@ -14,13 +14,20 @@ constexpr double worst_diagonal = 1e-13;
 
 }  // namespace
 
-Elimination::Elimination(const Rows& pattern)
+Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
 {
     int row = 0, alpha = 0;
     const auto plain_until = [&](int end) {
-        if (row == end) return;
-        group.push_back({row, end - row, 0, left.rows(), 0, -1, {}, {}, {}, {}});
+        bool begun = false;
         for (; row < end; ++row) {
+            if (empty[row]) {
+                left_out.push_back({row, 1, 0, 0});
+                begun = false;
+                continue;
+            }
+            if (!begun) group.push_back({row, 0, 0, left.rows(), 0, -1, {}, {}, {}, {}});
+            begun = true;
+            ++group.back().rows;
             left.entry.insert(left.entry.end(), pattern.entry.begin() + pattern.start[row],
                               pattern.entry.begin() + pattern.start[row + 1]);
             left.start.push_back(static_cast<int>(left.entry.size()));
@@ -29,6 +36,12 @@ Elimination::Elimination(const Rows& pattern)
     for (size_t n = 0; n < pattern.massless.size(); ++n) {
         const Rows::Massless& m = pattern.massless[n];
         plain_until(m.first);
+        if (empty[m.first + m.rows - 1]) {
+            left_out.push_back({m.first, m.rows, alpha, m.count});
+            row += m.rows;
+            alpha += m.count;
+            continue;
+        }
         group.push_back({m.first, m.rows, m.count, left.rows(), alpha, static_cast<int>(n), {}, {}, {}, {}});
         Group& g = group.back();
         g.QR.setZero(m.rows, m.count);
@@ -51,12 +64,7 @@ Elimination::Elimination(const Rows& pattern)
         alpha += m.count;
     }
     plain_until(pattern.rows());
-    left.velocity_rows = pattern.velocity_rows;
-    for (const int k : pattern.opening)
-        for (const Group& g : group)
-            if (k >= g.first && k < g.first + g.rows)
-                left.opening.push_back(g.count == 0 ? g.reduced_first + k - g.first
-                                                    : g.reduced_first + g.rows - g.count - 1);
+    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !empty[k];
 }
 
 void Elimination::reflect(const Group& g, Few& v, bool transpose)
@@ -165,6 +173,10 @@ void Elimination::expand(const Rows& full, const Eigen::VectorXd& reduced, Eigen
     whole.head(body_part) = reduced.head(body_part);
     auto g_part = whole.segment(body_part, full.rows());
     auto alpha_part = whole.tail(full.unknowns());
+    for (const LeftOut& l : left_out) {
+        g_part.segment(l.first, l.rows).setZero();
+        alpha_part.segment(l.alpha, l.count).setZero();
+    }
     for (const Group& g : group) {
         if (g.count == 0) {
             g_part.segment(g.first, g.rows) = reduced.segment(body_part + g.reduced_first, g.rows);

@@ -11,7 +11,7 @@
 ///     λ = Q_1 R⁻ᵀ p + Z μ,    M x + (Zᵀ B)ᵀ μ = f - Bᵀ Q_1 R⁻ᵀ p,    Zᵀ B x = Zᵀ g,    α = R⁻¹ Q_1ᵀ (g - B x)
 ///
 /// A contact that evolves has seven rows and six unknowns, so that one row and one multiplier are left of it, the
-/// normal force. The iterates are those of the whole system.
+/// normal force. The iterates are those of the whole system. Of empty rows nothing is left.
 
 #pragma once
 
@@ -21,9 +21,10 @@ namespace hilda::lie {
 
 class Elimination {
 public:
-    explicit Elimination(const Rows& pattern);
+    /// The rows with empty[k] hold nothing; of a group its last one tells.
+    explicit Elimination(const Rows& pattern, const std::vector<char>& empty);
 
-    /// The rows that are left. Rows of no group stay as they are; of a group Zᵀ B.
+    /// The rows that are left. Rows of no group stay as they are; of a group Zᵀ B; and what is not empty.
     const Rows& reduced() const { return left; }
 
     /// Eliminates with these values. SingularMatrix where the rows of a group do not determine its unknowns.
@@ -51,8 +52,13 @@ private:
 
     static void reflect(const Group& g, Few& v, bool transpose);  ///< v ← Q v or Qᵀ v
 
+    struct LeftOut {
+        int first, rows, alpha, count;
+    };
+
     Rows left;
     std::vector<Group> group;
+    std::vector<LeftOut> left_out;  ///< what is empty: its multipliers and unknowns stay as they are
     int bodies = 0;
 };
 

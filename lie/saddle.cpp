@@ -6,16 +6,25 @@
 namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
-    : system(system), metric(metric), bodies(system.bodies()), m(system.rows()),
-      unknowns(system.pattern().unknowns()), C(system.pattern()), work(size()), residual(size()),
+    : system(system), metric(metric), solver(solver), bodies(system.bodies()), m(system.rows()),
+      unknowns(system.pattern().unknowns()), C(system.pattern()), empty(m, 0), work(size()), residual(size()),
       right_side(size())
 {
+    // which of the rows are empty is known with the first state
+    if (solver == LinearSolver::klu || unknowns == 0 || C.opening.empty()) choose_solver();
+}
+
+void Saddle::choose_solver()
+{
     if (unknowns > 0 && solver != LinearSolver::klu) {
-        elimination = std::make_unique<Elimination>(C);
+        elimination = std::make_unique<Elimination>(C, empty);
         reduced.resize(6 * bodies + elimination->reduced().rows());
     }
     scale = Eigen::VectorXd::Ones(elimination ? reduced.size() : size());
+    scaled = false;
     analyse();
+    chosen = true;
+    condensed = nullptr;
     if (solver == LinearSolver::klu) return;
     Mass unit;
     unit.m.assign(bodies, 1);
@@ -24,10 +33,23 @@ Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
     if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
 }
 
+/// Rows that are empty in the state last evaluated are not part of what is factored.
+void Saddle::leave_out_empty()
+{
+    if (chosen && !elimination) return;
+    for (const int k : C.opening)
+        if (const char now = C.empty(k); now != empty[k]) {
+            empty[k] = now;
+            chosen = false;
+        }
+    if (!chosen) choose_solver();
+}
+
 void Saddle::analyse()
 {
     const Rows& R = solved();
     const int rows = R.rows();
+    slot.clear(), mass_slot.clear(), opening_slot.clear();
     // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
     std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
     std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
@@ -152,12 +174,13 @@ void Saddle::fill()
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
     for (size_t n = 0; n < opening_slot.size(); ++n)  // an empty row leaves its multiplier alone
-        klu.value[opening_slot[n]] = solved().empty(solved().opening[n]) ? -1 : 0;
+        klu.value[opening_slot[n]] = C.empty(C.opening[n]) ? -1 : 0;
 }
 
 void Saddle::assemble(const State& x)
 {
     system.variation(x, C);
+    leave_out_empty();
     if (elimination) elimination->factor(C);
     by_condensed = condensed != nullptr && condensed->factor(solved());
     if (by_condensed) {
@@ -172,6 +195,7 @@ void Saddle::assemble(const State& x)
 void Saddle::choose_pivots(const State& x)
 {
     system.variation(x, C);
+    leave_out_empty();
     if (elimination) elimination->factor(C);
     by_condensed = false;
     factor(x);

@@ -38,7 +38,8 @@ enum class LinearSolver {
 
 class Saddle {
 public:
-    /// Analyses the pattern once. The system must outlive the saddle matrix.
+    /// Analyses the pattern once; where rows may be empty, and the solver is not klu, whenever others are than before. The
+    /// system must outlive the saddle matrix.
     explicit Saddle(const System& system, Metric metric = Metric::mass,
                     LinearSolver solver = LinearSolver::klu);
 
@@ -89,6 +90,8 @@ public:
 
 private:
     void analyse();
+    void choose_solver();
+    void leave_out_empty();
     void scale_rows();
     void fill();
     void factor(const State& x);
@@ -99,10 +102,13 @@ private:
 
     const System& system;
     const Metric metric;
+    const LinearSolver solver;
     int bodies, m, unknowns;
     Rows C;
 
     std::unique_ptr<Elimination> elimination;  ///< of the massless unknowns; without, they stay in K
+    std::vector<char> empty;                   ///< of the rows, when that was made
+    bool chosen = false;                       ///< what K is solved with, for these rows
     Eigen::VectorXd reduced;                   ///< right side and solution without them
 
     std::unique_ptr<Condensed> condensed;

@@ -10,6 +10,7 @@
 
 #include "lie/state.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace hilda::lie {
@@ -57,14 +58,16 @@ struct Rows {
     /// stay as they are.
     std::vector<int> opening;
 
-    /// Whether row k holds nothing in this state; of its massless unknowns only the last row of a group is asked.
+    /// Whether row k holds nothing in this state; of a group with massless unknowns the last row is asked.
     bool empty(int k) const
     {
         for (int n = start[k]; n < start[k + 1]; ++n)
             if (entry[n].r != Vec3::Zero() || entry[n].pi != Vec3::Zero()) return false;
-        for (const Massless& group : massless)
-            if (k == group.first + group.rows - 1) return group.D.bottomRows<1>().isZero(0);
-        return true;
+        const auto group =
+            std::lower_bound(massless.begin(), massless.end(), k,
+                             [](const Massless& m, int row) { return m.first + m.rows - 1 < row; });
+        return group == massless.end() || group->first + group->rows - 1 != k ||
+               group->D.bottomRows<1>().isZero(0);
     }
 
     int rows() const { return static_cast<int>(start.size()) - 1; }

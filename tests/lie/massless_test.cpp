@@ -142,7 +142,7 @@ TEST_CASE("the rows that are left are those in which massless unknowns cannot he
     const unsigned seed = GENERATE(4u, 5u);
     for (const Case& c : cases()) {
         const Patchwork system(c.bodies, c.patches, seed);
-        lie::Elimination elimination(system.pattern());
+        lie::Elimination elimination(system.pattern(), std::vector<char>(system.rows(), 0));
         elimination.factor(system.values);
         const lie::Rows& left = elimination.reduced();
         const auto dense = [&](const lie::Rows& rows) {
@@ -170,7 +170,7 @@ TEST_CASE("unknowns that their rows do not determine are refused", "[lie][massle
 {
     for (const int dependent : {0, 3, 5}) {
         Patchwork system(1, {{0, -1, 7, 6, 2}}, 6);
-        lie::Elimination elimination(system.pattern());
+        lie::Elimination elimination(system.pattern(), std::vector<char>(system.rows(), 0));
         CHECK_NOTHROW(elimination.factor(system.values));
         auto& D = system.values.massless[0].D;
         D.col(dependent) = D.col((dependent + 1) % 6) - 2 * D.col((dependent + 2) % 6);

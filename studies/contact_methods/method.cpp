@@ -98,6 +98,7 @@ public:
         scene.options.stabilised = how.stabilised;
         scene.options.half_kick = how.half_kick;
         scene.solver.tolerance = how.tolerance;
+        scene.solver.max_iterations = how.most_iterations;
     }
     void step(double h) override
     {

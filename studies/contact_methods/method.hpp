@@ -39,6 +39,7 @@ struct Rigid {
     bool stabilised = true;
     bool half_kick = true;
     double tolerance = 1e-10;
+    int most_iterations = 10000;
 };
 std::unique_ptr<Method> rigid(const ContactScene& of, const Rigid& how);
 

@@ -26,6 +26,21 @@ double smaller_size(const Shape& i, const Shape& j)
 
 }  // namespace
 
+namespace {
+
+/// |∇G| at a point of a surface
+double length(const Vec3& gradient, const Vec3& a)
+{
+    const double g = gradient.norm();
+    if (g > 0) return g;
+    std::ostringstream what;
+    what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z()
+         << "), in its own frame";
+    throw lie::NumericalFailure("contact_lost", what.str());
+}
+
+}  // namespace
+
 /// One body's part of the contact at its point ᾱ, in global axes
 struct EvolvingContact::Side {
     Vec3 arm;  // A ᾱ
@@ -35,7 +50,7 @@ struct EvolvingContact::Side {
     Side(const Shape& shape, const Motion& body, const double* alpha)
     {
         const Vec3 a = shape.to_surface(Vec3::Map(alpha)), gradient = shape.surface->gradient(a);
-        const double g = gradient.norm();
+        const double g = length(gradient, a);
         arm = body.A * Vec3::Map(alpha);
         n = shape.surface->sigma() / g * (body.A * (shape.orientation * gradient));
         G = shape.surface->value(a) / g;
@@ -57,7 +72,7 @@ struct CurvedSide {
     {
         a = shape.to_surface(Vec3::Map(alpha));
         const Surface::Derivatives d = shape.surface->derivatives(a);
-        g = d.gradient.norm();
+        g = length(d.gradient, a);
         axes = body.A * shape.orientation;
         sigma = shape.surface->sigma();
         arm = body.A * Vec3::Map(alpha);
@@ -247,11 +262,18 @@ bool EvolvingContact::remember(const At& x, bool start, double* remembered) cons
         remembered[rebounded] = -std::numeric_limits<double>::infinity();
     } else {
         const Mat32 before = Mat32::Map(remembered);
-        T.col(0) = (before.col(0) - n_i * n_i.dot(before.col(0))).normalized();
+        const Vec3 along = before.col(0) - n_i * n_i.dot(before.col(0));
+        T.col(0) = along.norm() > 0.1 ? Vec3(along.normalized()) : Vec3(tangent_basis(n_i).col(0));
         T.col(1) = n_i.cross(T.col(0));
     }
     Mat32::Map(remembered) = T;
     return true;
+}
+
+double EvolvingContact::separation_speed(const At& x) const
+{
+    const Touch at = touch(x);
+    return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
 }
 
 double EvolvingContact::velocity_error(const At& x) const

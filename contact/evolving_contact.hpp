@@ -67,6 +67,8 @@ public:
     void track(const At& x, bool afresh, double* alpha) const override;
     bool remember(const At& x, bool start, double* remembered) const override;
     double gap(const At& x) const override { return touch(x).gap; }
+    double separation_speed(const At& x) const override;
+    bool one_sided() const override { return unilateral.opens; }
     double velocity_error(const At& x) const override;
     double allowance() const override { return 1e-6 * L; }
     std::string objection(const At& x) const override;

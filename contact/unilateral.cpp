@@ -62,15 +62,9 @@ double UnilateralStep::gap(const Contact& c, const State& x) const
     return c.contact->gap(model.at(*c.contact, x));
 }
 
-/// Rate of the gap, from the velocities of the bodies
 double UnilateralStep::separation_speed(const Contact& c, const State& x) const
 {
-    const dae::Constraint::At at = model.at(*c.contact, x);
-    const Touch touch = c.contact->touch(at);
-    const auto velocity = [](const lie::Motion& body, const Vec3& C) {
-        return Vec3(body.rdot + (body.A * body.omega_bar).cross(C - body.r));
-    };
-    return touch.n.dot(velocity(at.bi, touch.C_i) - velocity(at.bj, touch.C_j));
+    return c.contact->separation_speed(model.at(*c.contact, x));
 }
 
 bool UnilateralStep::overlaps(const Contact& c, const State& x) const
@@ -99,15 +93,18 @@ int UnilateralStep::step(State& x, double h)
             x = from;
             happened.resize(events);
         }
-    } restore{x, begin = x, happened, happened.size()};
+    } restore{x, first = x, happened, happened.size()};
+    begin = x;
+    size_t kept = happened.size();
     for (;;) try {
             const int iterations = advance(x, h);
             restore.done = true;
             return iterations;
         } catch (const lie::NumericalFailure&) {
             x = begin;
-            happened.resize(restore.events);
+            happened.resize(kept);
             if (!hand_over_flattest(x)) throw;
+            kept = happened.size();
             restart(x);
             begin = x;
         }
@@ -134,7 +131,8 @@ int UnilateralStep::advance(State& x, double h)
     for (int part = 0; part < most; ++part) {
         node = x;
         // a scheme that lags and has a history finds the forces of this node with the step
-        const bool forces_known = !scheme->lags() || node.history.size() == 0;
+        const bool anew_here = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
+        const bool forces_known = !scheme->lags() || anew_here;
         if (forces_known && release_pulling(node)) restart(node);
         int k = try_step(node, trial, left);
         while (!forces_known) {
@@ -162,9 +160,17 @@ int UnilateralStep::advance(State& x, double h)
         collide(trial, *meeting, h);
         x = trial;
         left -= taken;
-        if (left <= rest * h) return iterations;
+        if (left <= rest * h) {
+            x.t = begin.t + h;
+            return iterations;
+        }
     }
-    throw lie::NumericalFailure("too_many_impacts", "contacts open and close without end within one step");
+    std::string last;
+    for (const Contact& c : contact)
+        if (c.meetings >= most_meetings) last += (last.empty() ? "'" : ", '") + c.contact->name + "'";
+    throw lie::NumericalFailure("too_many_impacts",
+                                "contacts open and close without end within one step, more than " +
+                                    std::to_string(most) + " times: " + last);
 }
 
 /// One step of the scheme, and the points of what is open after it
@@ -245,7 +251,7 @@ double UnilateralStep::find_meeting(State& to, double h, Contact*& first)
         first = next;
         h = zero_of_gap(*next, to, h);
         if (!(h > 0)) {
-            next->held = true;  // it opened at this node and does not leave
+            if (!(separation_speed(*next, anew) < 0)) next->held = true;  // it opened here and does not leave
             to = anew;
             return 0;
         }
@@ -303,6 +309,7 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
     }
     dae::project_positions(model, K, x);
     before = x;
+    const size_t told = happened.size();
     jump(x, nullptr, 0);  // compression
     const double compression = force(c, x, x.lambda);
     dae::solve_accelerations(model, K, x);
@@ -315,6 +322,7 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
     if (flies) {
         if (how.impact == Unilateral::Impact::newton) {
             x = before;
+            happened.resize(told);
             jump(x, &c, rebound);
         }
         dae::Model::set_mode(*c.contact, x, dae::Constraint::is_open);
@@ -324,10 +332,11 @@ void UnilateralStep::collide(State& x, Contact& c, double h)
             jump(x, nullptr, 0);
         }
     }
-    happened.push_back({.kind = flies ? ContactEvent::Kind::impact : ContactEvent::Kind::closing,
-                        .t = x.t,
-                        .contact = c.number,
-                        .speed = approach});
+    happened.insert(happened.begin() + static_cast<std::ptrdiff_t>(told),
+                    {.kind = flies ? ContactEvent::Kind::impact : ContactEvent::Kind::closing,
+                     .t = x.t,
+                     .contact = c.number,
+                     .speed = approach});
     c.last = c.before = {};
     if (flies) rebounded = x.t;
     restart(x);

@@ -33,6 +33,10 @@ struct ContactEvent {
 ///   when it meets (else lie::NumericalFailure "contact_rank"); of the flattest contact, where a step fails.
 /// - Closing: where e is 0, or where the rebound would be or was shorter than a step, the contact closes.
 ///
+/// At each of them the scheme starts anew from the node: rA-half-1, which takes v_0 as v_{-½}, loses about h times the
+/// acceleration of free flight with every impact. Impulses are without friction, also of contacts that roll; of contacts
+/// that meet at once, one after the other.
+///
 /// A gap that closes and opens again within one step is not seen. A contact that meets for the third time in one step,
 /// as in a groove whose walls it strikes in turns, ever more often, is held closed until the next.
 class UnilateralStep final : public lie::Integrator {
@@ -43,6 +47,7 @@ public:
     int step(lie::State& x, double h) override;
     bool lags() const override { return scheme->lags(); }
     void complete(lie::State& node, const lie::State& after) const override;
+    bool keeps_history() const override { return scheme->keeps_history(); }
     const lie::State* pivots() const override { return scheme->pivots(); }
     void choose_pivots(const lie::State& x) override { scheme->choose_pivots(x); }
     const lie::System& system() const override { return model; }
@@ -95,6 +100,7 @@ private:
     lie::Saddle K;  ///< for impacts and restarts
     std::vector<Contact> contact;
     std::vector<ContactEvent> happened;
+    lie::State first;          ///< the state to go back to where the step fails ...
     lie::State begin;          ///< of the step, to go back to
     lie::State node, trial;    ///< of a part of it, and where that leads
     lie::State anew;           ///< the node in full and without a history

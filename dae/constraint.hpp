@@ -58,8 +58,11 @@ public:
     virtual bool remember(const At& x, bool start, double* remembered) const = 0;
 
     /// Distance of the two bodies where the rows are not quite satisfied, negative for overlap, α being that of track()
-    /// [m]; and how far velocities are off [m/s]
+    /// [m]
     virtual double gap(const At& x) const = 0;
+    /// Rate of the gap [m/s]; and whether it may open by itself, so that at a start it need not be zero
+    virtual double separation_speed(const At& x) const = 0;
+    virtual bool one_sided() const { return false; }
     virtual double velocity_error(const At& x) const = 0;
     /// What a position may be off at a start [m]
     virtual double allowance() const = 0;

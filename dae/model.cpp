@@ -157,8 +157,13 @@ void Model::prepare(State& x)
         } catch (const lie::NumericalFailure& e) {  // of a start, that it is a wrong one
             refuse(e.what());
         }
-        // one that may open starts open where there is a gap
-        if (c.opens() && c.gap(at(c, x)) > c.allowance()) x.memory[c.first_memory] = Constraint::is_open;
+        // one that may open starts open where there is a gap, or where it leaves or meets at once
+        constexpr double still = 1e-9;  // [m/s]
+        const Constraint::At there = at(c, x);
+        const double gap = c.gap(there);
+        if (c.one_sided() &&
+            (gap > c.allowance() || (gap > -c.allowance() && std::abs(c.separation_speed(there)) > still)))
+            x.memory[c.first_memory] = Constraint::is_open;
     }
     for (const auto& f : force) {
         f->first_memory = memory;

@@ -53,6 +53,8 @@ public:
     /// they belong to.
     virtual bool lags() const { return false; }
     virtual void complete(State& /*node*/, const State& /*after*/) const {}
+    /// Whether it keeps something in x.history. An empty one then means a start, at which λ, r̈, ω̄̇ of x are those of x.
+    virtual bool keeps_history() const { return false; }
 
     /// Pivots are all that a scheme may remember outside the state, and they decide on last digits. The state
     /// at which those in use were chosen, and how a new integrator gets them there; none for a scheme that

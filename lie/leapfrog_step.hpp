@@ -11,6 +11,7 @@ namespace hilda::lie {
 /// The state carries ṙ_{n-½}, ω̄_{n-½} of all bodies, then ṙ_{n-3/2}, ω̄_{n-3/2}.
 class LeapfrogStep : public HalfImplicitStep {
 public:
+    bool keeps_history() const override { return true; }
     /// What the step found at t_n, and the velocities between those on both sides of it
     void complete(State& node, const State& after) const override
     {

@@ -36,13 +36,16 @@ void Saddle::choose_solver()
 /// Rows that are empty in the state last evaluated are not part of what is factored.
 void Saddle::leave_out_empty()
 {
-    if (chosen && !elimination) return;
+    bool changed = false;
     for (const int k : C.opening)
         if (const char now = C.empty(k); now != empty[k]) {
             empty[k] = now;
-            chosen = false;
+            changed = true;
         }
-    if (!chosen) choose_solver();
+    if (!chosen || (changed && elimination))
+        choose_solver();
+    else if (changed)
+        scaled = false;
 }
 
 void Saddle::analyse()

@@ -42,8 +42,13 @@ private:
         for (int k = 0; k < settings.max_iterations; ++k) {
             const Vec3 d = J_bar_inverse[i] * (wanted + momentum(i, -theta));
             theta += d;
-            if (d.norm() < 1e-16 + 1e-15 * theta.norm()) break;
+            if (d.norm() < 1e-16 + 1e-15 * theta.norm()) return theta / h;
         }
+        if (const double last = J_bar_inverse[i].norm() * (wanted + momentum(i, -theta)).norm();
+            !(last < settings.tolerance))
+            throw NumericalFailure("newton_diverged",
+                                   name + ": the half kick at the start finds no angular velocity for " +
+                                       model.body_name(i) + ": a smaller step is needed");
         return theta / h;
     }
 

@@ -26,6 +26,8 @@ public:
         : HalfImplicitStep(model, settings, "rA-half-2-bdf2", 1.5, 1.5)
     {}
 
+    bool keeps_history() const override { return true; }
+
 private:
     void begin(double h) override
     {

@@ -355,3 +355,88 @@ TEST_CASE("a contact that becomes too flat for one point is handed over on the w
         CHECK(end.body[0].r.z() > 0.19);
     }
 }
+
+TEST_CASE("an impact that falls on a node is an impact like any other", "[contact][unilateral]")
+{
+    // 0.5 g t² = 0.2 m at t = 0.2 s, the 20th node
+    const double R = 0.1, up = 9.8;
+    for (const char* scheme : {"rA-half-1-momentum", "rA-rattle"}) {
+        INFO(scheme);
+        dae::Model model;
+        model.gravity = Vec3(0, 0, -up);
+        model.add({"ball", 1, 0.004 * Mat3::Identity()});
+        model.constrain(
+            "floor", std::make_unique<EvolvingContact>(
+                         0, ball(R), dae::ground, plane, EvolvingContact::Friction::none,
+                         EvolvingContact::NormalRows::tangent, Unilateral{.opens = true, .restitution = 1}));
+        State x;
+        x.body.resize(1);
+        x.body[0].r = Vec3(0, 0, R + 0.5 * up * 0.2 * 0.2);
+        dae::start(model, x);
+        const double before = lie::energy(model, x);
+        contact::UnilateralStep step(model, lie::scheme(scheme), {.tolerance = 1e-13});
+        const State end = lie::march(x, step, lie::Grid::over(4, 1e-2)).row.back();
+        CHECK(step.events().size() == 10);
+        for (const ContactEvent& e : step.events()) CHECK(e.kind == ContactEvent::Kind::impact);
+        CHECK(lie::energy(model, end) == Approx(before).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("a contact that may open has the forces, node by node, of one that may not",
+          "[contact][unilateral]")
+{
+    const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
+    const Vec3 from(0, 1.3203946979732251, -1.2654225449401855);
+    for (const lie::Scheme& s : lie::schemes()) {
+        if (!s.massless) continue;
+        INFO(s.name);
+        std::vector<State> of[2];
+        for (const bool opens : {false, true}) {
+            const Ball b(0.5, 1, bowl, from, Vec3::Zero(), {.opens = opens});
+            const auto step = contact::make_integrator(b.model, s, {.tolerance = 1e-13});
+            of[opens] = lie::march(b.x, *step, lie::Grid::over(0.1, 5e-3)).row;
+        }
+        for (size_t n = 0; n < of[0].size(); ++n) {
+            CHECK((of[0][n].lambda - of[1][n].lambda).norm() < 1e-9 * of[0][n].lambda.norm());
+            CHECK((of[0][n].body[0].rddot - of[1][n].body[0].rddot).norm() < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("what leaves or meets at the start is not held", "[contact][unilateral]")
+{
+    const double R = 0.1;
+    for (const double v : {2., -2.}) {
+        const Ball b(R, 1, plane, Vec3(0, 0, R), Vec3(0, 0, v), {true, 1});
+        CHECK(b.x.memory[0] == dae::Constraint::is_open);
+        const Run r = run(b, "rA-half-1-momentum", 0.1, 1e-3);
+        CHECK(r.node.back().body[0].r.z() == Approx(R + 0.2 - 0.5 * g * 0.01).epsilon(1e-10));
+        CHECK(r.events.size() == (v < 0 ? 1 : 0));
+    }
+}
+
+TEST_CASE("a step that fails among contacts that open leaves the state as it was", "[contact][unilateral]")
+{
+    // a step so long that the ball turns out of the bowl's reach
+    const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
+    dae::Model model;
+    model.add({"ball", 1, 0.1 * Mat3::Identity()});
+    auto c =
+        std::make_unique<EvolvingContact>(0, ball(0.5), dae::ground, bowl, EvolvingContact::Friction::none,
+                                          EvolvingContact::NormalRows::tangent, Unilateral{.opens = true});
+    model.constrain("contact", std::move(c));
+    State x;
+    x.body.resize(1);
+    x.body[0].r = Vec3(0, 1.3203946979732251, -1.2654225449401855);
+    dae::start(model, x);
+    contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"),
+                                 {.tolerance = 1e-300, .max_iterations = 2});
+    const State before = x;
+    CHECK_THROWS_AS(step.step(x, 1e-2), lie::NumericalFailure);
+    CHECK(x.body[0].r == before.body[0].r);
+    CHECK(x.lambda == before.lambda);
+    CHECK(x.alpha == before.alpha);
+    CHECK(x.memory == before.memory);
+    CHECK(x.remembered == before.remembered);
+    CHECK(step.events().empty());
+}

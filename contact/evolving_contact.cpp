@@ -285,12 +285,16 @@ double EvolvingContact::velocity_error(const At& x) const
 
 std::string EvolvingContact::objection(const At& x) const
 {
+    if (const std::string why = common_normal.misfit(x.bi, x.bj); !why.empty()) return why;
     Touch at;
     try {
         at = detector->detect(x.bi, x.bj, nullptr);
     } catch (const NoSingleTouch& e) {
         return e.what();
     }
+    // where there is none, this throws
+    shape_i.surface->normal(shape_i.to_surface(x.bi.A.transpose() * (at.C_i - x.bi.r)));
+    shape_j.surface->normal(shape_j.to_surface(x.bj.A.transpose() * (at.C_j - x.bj.r)));
     const double least = least_curvature(at);
     if (least * L > least_relative_curvature) return {};
     std::ostringstream what;

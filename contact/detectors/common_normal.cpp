@@ -182,13 +182,59 @@ Touch CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* fro
     if (const auto touch = apart(bi, bj, origin)) return *touch;
 
     std::ostringstream what;
+    if (const std::string why = misfit(bi, bj); !why.empty()) throw NoSingleTouch(why);
     what << "no touch of two surfaces: " << best.trouble;
     if (best.touch.n.allFinite())
         what << ", least sum of their curvatures " << least_curvature(best.touch) << " 1/m";
-    what << "; correction " << best.correction << " m, gap " << best.touch.gap << " m, after "
-         << best.iterations << " iterations";
+    if (best.iterations == 0)
+        what << why_no_beginning(bi, bj);
+    else if (std::isfinite(best.correction) && std::isfinite(best.touch.gap))
+        what << "; correction " << best.correction << " m, gap " << best.touch.gap << " m, after "
+             << best.iterations << " iterations";
+    else
+        what << "; the search for the points leads nowhere";
     if (best.no_fit) throw NoSingleTouch(what.str());
     throw lie::NumericalFailure("contact_not_converged", what.str());
+}
+
+/// What the first projection meets with
+std::string CommonNormal::why_no_beginning(const Motion& bi, const Motion& bj) const
+{
+    try {
+        Pair p = placed(bi, bj);
+        alternate(p, 1, Vec3::Zero());
+    } catch (const lie::NumericalFailure& e) {
+        return std::string(", ") + e.what();
+    }
+    return {};
+}
+
+std::string CommonNormal::misfit(const Motion& bi, const Motion& bj) const
+{
+    const bool i_hollow = i.surface->sigma() < 0;
+    const Shape &body = i_hollow ? j : i, &bowl = i_hollow ? i : j;
+    if (!fills(*body.surface) || !bowl.surface->convex() || bowl.surface->sigma() > 0) return {};
+    const Pair p = placed(bi, bj);
+    const Mat3 &of_body = i_hollow ? p.j.axes : p.i.axes, &of_bowl = i_hollow ? p.i.axes : p.j.axes;
+    const auto width = [](const Surface& s, const Vec3& along) {
+        try {
+            return along.dot(*s.support(along) - *s.support(-along));
+        } catch (const lie::NumericalFailure&) {  // the furthest points are many
+            return std::nan("");
+        }
+    };
+    double most_over = 0, across = 0, room = 0;
+    for (const Mat3& axes : {of_body, of_bowl})
+        for (int k = 0; k < 3; ++k) {
+            const double b = width(*body.surface, of_body.transpose() * axes.col(k)),
+                         w = width(*bowl.surface, of_bowl.transpose() * axes.col(k));
+            if (b - w > most_over) most_over = b - w, across = b, room = w;
+        }
+    if (!(most_over > 0)) return {};
+    std::ostringstream what;
+    what << "the body is larger than the bowl it should lie in: " << across
+         << " m across, where there is room for " << room << " m";
+    return what.str();
 }
 
 /// Whether what looks like overlap is none, as where the normals of two rings are opposite across their holes:

@@ -41,12 +41,17 @@ public:
     /// larger displacement of the two points [m], not finite where the equations are singular.
     double improve(Pair& p) const;
 
+    /// Says where a body is wider than the bowl that it should lie in, along an axis of either. Empty where it is not, and
+    /// where neither is a bowl.
+    std::string misfit(const Motion& bi, const Motion& bj) const;
+
 private:
     struct Outcome;
     Outcome solve(Pair& p, const Vec3& origin) const;
     void turn_normal(Pair& p) const;
     void alternate(Pair& p, int projections, const Vec3& corner) const;
     bool supported() const;
+    std::string why_no_beginning(const Motion& bi, const Motion& bj) const;
     bool crossed(const Pair& p, double gap) const;
     std::optional<Touch> apart(const Motion& bi, const Motion& bj, const Vec3& origin) const;
 

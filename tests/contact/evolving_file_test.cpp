@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "contact/evolving_contact.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/plane.hpp"
 #include "dae/model_file.hpp"
 
 #include <filesystem>
@@ -179,6 +181,14 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
                R"({"type": "ellipsoid", "semi_axes": [0.5, 0.5, 0.5], "concave": true})", held, "",
                "0, 0, 0"),
          place + "contact 'c'; bodies 'ball', 'ground': "},
+        {model(R"({"type": "sphere", "radius": 2.5})", bowl, held, "", "0, 0, 0.1"),
+         place + "contact 'c'; bodies 'ball', 'ground': the body is larger than the bowl it should lie in: 5 "
+                 "m across, where there is room for 4 m"},
+        {model(R"({"type": "cone", "half_angle": 0.5, "axis": [0, 0, 1]})",
+               R"({"type": "sphere", "radius": 0.5, "position": [0, 0, -0.5]})", held, "", "0, 0, 0"),
+         place + "contact 'c'; bodies 'ball', 'ground': no touch of two surfaces: there is no point to begin "
+                 "from, "
+                 "the axis of a cone has no nearest point"},
         {model(ball, R"({"type": "sphere", "radius": 2, "concave": true})", held, "", "0, 0, 0"),
          place + "contact 'c'; bodies 'ball', 'ground': the centres of two spheres coincide"},
     };
@@ -189,6 +199,47 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
     CHECK(refusal(normal(held)) == "accepted");
     CHECK(refusal(model(ball, flat, held, "", "0, 0, 0.5000001")) == "accepted");
     CHECK(refusal(model(ball, flat, held, "", "0, 0, 0.6", "0, 0, 1"), true) == "accepted");
+}
+
+namespace {
+
+/// G³ of an ellipsoid: the same body, and no gradient anywhere on its surface
+class Cubed final : public contact::Surface {
+public:
+    double value(const lie::Vec3& a) const override { return std::pow(once.value(a), 3); }
+    lie::Vec3 gradient(const lie::Vec3& a) const override
+    {
+        return 3 * std::pow(once.value(a), 2) * once.gradient(a);
+    }
+    lie::Mat3 hessian(const lie::Vec3& a) const override
+    {
+        const double G = once.value(a);
+        return 6 * G * once.gradient(a) * once.gradient(a).transpose() + 3 * G * G * once.hessian(a);
+    }
+    bool convex() const override { return true; }
+    std::optional<lie::Vec3> support(const lie::Vec3& u) const override { return once.support(u); }
+    double size() const override { return once.size(); }
+
+private:
+    const contact::Ellipsoid once{lie::Vec3(0.3, 0.25, 0.15)};
+};
+
+}  // namespace
+
+TEST_CASE("a surface without a normal at the contact is refused at the start", "[contact][evolving]")
+{
+    dae::Model model;
+    model.add({.name = "egg", .m = 2, .J_bar = lie::Vec3(0.034, 0.045, 0.061).asDiagonal()});
+    model.constrain("egg-floor", std::make_unique<EvolvingContact>(
+                                     0, contact::Shape{std::make_shared<Cubed>()}, dae::ground,
+                                     contact::Shape{std::make_shared<contact::Plane>()}));
+    lie::State x;
+    x.body.resize(1);
+    x.body[0].r.z() = 0.15;
+    CHECK_THROWS_AS(dae::start(model, x), dae::ContactError);
+    CHECK_THROWS_WITH(dae::start(model, x),
+                      Catch::StartsWith("contact 'egg-floor'; bodies 'egg', 'ground': ") &&
+                          Catch::Contains("a surface has no normal at (0, "));
 }
 
 TEST_CASE("two contacts of one name or of the name of a joint are refused", "[contact][model_file][evolving]")

@@ -17,7 +17,7 @@ Meeting ContactForce::meet(const lie::State& x, const Memory& memory) const
 
 bool ContactForce::close(const lie::State& x) const
 {
-    return contact.close(motion(x, i), motion(x, j), recall(x));
+    return works(x) && contact.close(motion(x, i), motion(x, j), recall(x));
 }
 
 double ContactForce::potential_energy(const lie::State& x) const

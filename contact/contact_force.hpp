@@ -25,6 +25,11 @@ public:
 
     /// Makes it stand by for a constraint: there is nothing of it until that has handed over.
     void stand_by(const dae::Constraint& c) { replaced = &c; }
+    bool works(const lie::State& x) const override
+    {
+        return replaced == nullptr || dae::Model::mode(*replaced, x) == dae::Constraint::handed_over;
+    }
+    const dae::Constraint* held_by() const override { return replaced; }
 
     const Contact contact;
 
@@ -33,10 +38,6 @@ private:
     Meeting meet(const lie::State& x, const Memory& memory) const override;
     bool presses() const override { return true; }
     bool close(const lie::State& x) const override;
-    bool works(const lie::State& x) const override
-    {
-        return replaced == nullptr || dae::Model::mode(*replaced, x) == dae::Constraint::handed_over;
-    }
 
     const dae::Constraint* replaced = nullptr;
 };

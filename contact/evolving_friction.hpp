@@ -39,6 +39,8 @@ public:
     double stable_step(const lie::State& x) const override;
 
     double normal_force(const lie::State& x) const;  ///< that friction goes by [N]
+    bool works(const lie::State& x) const override { return !dae::Model::open(contact, x); }
+    const dae::Constraint* held_by() const override { return &contact; }
 
     const EvolvingContact& contact;
 
@@ -47,7 +49,6 @@ private:
     Meeting meet(const lie::State& x, const Memory& memory) const override;
     bool presses() const override { return false; }
     bool close(const lie::State& x) const override { return works(x); }
-    bool works(const lie::State& x) const override { return !dae::Model::open(contact, x); }
     Rates speeds(const Instant& now, const lie::State& x) const override;
     Touch touch(const lie::State& x) const;
 

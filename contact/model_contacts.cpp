@@ -7,12 +7,17 @@
 ///      "normal": {"type": "hertz", "E_star": 1e6, "restitution": 0.5},
 ///      "friction": {"law": "slide-roll-spin", "mu_s": 0.3, "K_E": 1e5}}
 ///
-///     "normal": {"type": "constraint", "unilateral": false, "rows": "tangent"}, "friction": {"law": "rolling"}
+///     "normal": {"type": "constraint", "unilateral": true, "restitution": 0.5, "impact": "newton",
+///                "rows": "tangent", "fallback": {"type": "hooke", "stiffness": 1e5}},
+///     "friction": {"law": "rolling"}
+///
+/// There friction is ideal rolling, or an EvolvingFriction of one of the laws, and "fallback" a ContactForce with the same
+/// law that stands by.
 ///
 /// Only what is given enters the canonical text where a default depends on other keys.
 
 #include "contact/contact_force.hpp"
-#include "contact/evolving_contact.hpp"
+#include "contact/evolving_friction.hpp"
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
@@ -24,7 +29,7 @@ namespace {
 
 using dae::ObjectReader;
 
-constexpr const char* rolling = "rolling";
+constexpr const char *rolling = "rolling", *slide_roll_spin = "slide-roll-spin";
 
 double from_zero_to_one(ObjectReader& o, std::string_view key, double fallback)
 {
@@ -71,16 +76,10 @@ std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string&
     return std::make_shared<GivenForce>(o.not_negative("force"));
 }
 
-std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
+/// The law of "friction" and its keys; `law` is its name, which has been read.
+std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string& law,
+                                              const NormalLaw& normal)
 {
-    if (!contact.has("friction")) return frictionless();
-    ObjectReader o = contact.object("friction");
-    std::vector<std::string> laws;
-    for (const FrictionLaw& law : friction_laws()) laws.push_back(law.name);
-    if (const dae::Json* law = o.look("law");
-        law != nullptr && law->string() != nullptr && *law->string() == rolling)
-        o.fail("law", "ideal rolling is of a contact whose normal is a constraint, got \"rolling\"");
-    const std::string law = o.one_of("law", laws, "slide-roll-spin");
     const std::string preset = o.one_of("preset", {"balanced", "dissertation"}, "balanced");
     FrictionParameters p;
     if (preset == "dissertation") p = p.as_in_dissertation();
@@ -97,8 +96,25 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
         if (o.look(key) != nullptr) *D = o.not_negative(key);
     p.tracking.beta = o.number("beta", p.tracking.beta);
     const FrictionLaw& kind = friction_law(law);
-    std::shared_ptr<const FrictionModel> model =
-        kind.read != nullptr ? kind.read(o, p, normal) : kind.make(p);
+    return kind.read != nullptr ? kind.read(o, p, normal) : kind.make(p);
+}
+
+std::vector<std::string> names_of_laws()
+{
+    std::vector<std::string> names;
+    for (const FrictionLaw& law : friction_laws()) names.push_back(law.name);
+    return names;
+}
+
+std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
+{
+    if (!contact.has("friction")) return frictionless();
+    ObjectReader o = contact.object("friction");
+    if (const dae::Json* law = o.look("law");
+        law != nullptr && law->string() != nullptr && *law->string() == rolling)
+        o.fail("law", "ideal rolling is of a contact whose normal is a constraint, got \"rolling\"");
+    const std::string law = o.one_of("law", names_of_laws(), slide_roll_spin);
+    std::shared_ptr<const FrictionModel> model = read_law(o, law, normal);
     contact.keep("friction", o.finish());
     return model;
 }
@@ -107,35 +123,59 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
 struct HeldNormal {
     Unilateral unilateral;
     EvolvingContact::NormalRows rows = EvolvingContact::NormalRows::tangent;
+    std::shared_ptr<const NormalLaw> fallback;  ///< none: nullptr
 };
 
 HeldNormal read_held_normal(ObjectReader& o)
 {
     HeldNormal held;
-    held.unilateral.opens = o.flag("unilateral", false);
-    const bool given = o.look("restitution") != nullptr;
-    if (held.unilateral.opens || given) held.unilateral.restitution = from_zero_to_one(o, "restitution", 0);
-    if (given && !held.unilateral.opens)
+    Unilateral& how = held.unilateral;
+    how.opens = o.flag("unilateral", false);
+    const auto of_one_that_opens = [&](const char* key) {
+        const bool given = o.look(key) != nullptr;
+        return how.opens || given;
+    };
+    if (of_one_that_opens("restitution")) how.restitution = from_zero_to_one(o, "restitution", 0);
+    if (!how.opens && o.has("restitution"))
         o.fail("restitution", "restitution is of a contact that may open, \"unilateral\": true; got " +
-                                  dae::shortest(held.unilateral.restitution) + " of one that never does");
+                                  dae::shortest(how.restitution) + " of one that never does");
+    if (of_one_that_opens("impact") && o.one_of("impact", {"newton", "poisson"}, "newton") == "poisson")
+        how.impact = Unilateral::Impact::poisson;
+    if (!how.opens && o.has("impact"))
+        o.fail("impact",
+               "impact is of a contact that may open, \"unilateral\": true; got one that never does");
     if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
         held.rows = EvolvingContact::NormalRows::fixed_xy;
+    if (o.has("fallback")) {
+        ObjectReader law = o.object("fallback");
+        held.fallback = read_normal(law, law.one_of("type", {"hertz", "hooke"}));
+        o.keep("fallback", law.finish());
+    }
     return held;
 }
 
-EvolvingContact::Friction read_held_friction(ObjectReader& contact)
+/// What "friction" says of it: neither rolling nor a law is none
+struct HeldFriction {
+    bool rolls = false;
+    std::shared_ptr<const FrictionModel> law;
+};
+
+HeldFriction read_held_friction(ObjectReader& contact, const HeldNormal& normal)
 {
-    if (!contact.has("friction")) return EvolvingContact::Friction::none;
+    if (!contact.has("friction")) return {};
     ObjectReader o = contact.object("friction");
-    std::vector<std::string> laws = {rolling};
-    for (const FrictionLaw& law : friction_laws()) laws.push_back(law.name);
-    if (const std::string law = o.one_of("law", laws); law != rolling)
-        o.fail(
-            "law",
-            "on a contact that is a constraint this build has no law but \"rolling\", ideal rolling; got \"" +
-                law + "\"");
+    std::vector<std::string> laws = names_of_laws();
+    laws.insert(laws.begin(), rolling);
+    const std::string law = o.one_of("law", laws, slide_roll_spin);
+    HeldFriction held{.rolls = law == rolling, .law = nullptr};
+    if (held.rolls && normal.fallback != nullptr)
+        o.fail("law",
+               "a contact with a fallback needs a law that the fallback can have too, with mu_s and K_E; got "
+               "\"rolling\", which would end where it hands over");
+    if (!held.rolls)  // the constraint has no modulus, and the friction of the fallback is the same
+        held.law = read_law(o, law, GivenForce(0));
     contact.keep("friction", o.finish());
-    return EvolvingContact::Friction::rolling;
+    return held;
 }
 
 /// A contact point that wanders over a surface needs one without edges.
@@ -151,11 +191,23 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& 
 {
     const HeldNormal held = read_held_normal(normal);
     o.keep("normal", normal.finish());
-    const EvolvingContact::Friction friction = read_held_friction(o);
+    const HeldFriction friction = read_held_friction(o, held);
     check_smooth(o, "surface_i", i);
     check_smooth(o, "surface_j", j);
-    pair.model.constrain(pair.name, std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, friction,
-                                                                      held.rows, held.unilateral));
+    auto constraint = std::make_unique<EvolvingContact>(
+        pair.i, i, pair.j, j,
+        friction.rolls ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none, held.rows,
+        held.unilateral);
+    const EvolvingContact& contact = *constraint;
+    constraint->fallback = held.fallback != nullptr;
+    pair.model.constrain(pair.name, std::move(constraint));
+    if (friction.law != nullptr)
+        pair.model.load(std::make_unique<EvolvingFriction>(pair.model, contact, friction.law));
+    if (held.fallback == nullptr) return;
+    auto force = std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, held.fallback,
+                                                friction.law != nullptr ? friction.law : frictionless());
+    force->stand_by(contact);
+    pair.model.load(std::move(force));
 }
 
 void read_contact(ObjectReader& o, const dae::ContactPair& pair)

@@ -164,6 +164,8 @@ int TrackedForce::contacts_of(int body, const lie::State& x) const
     for (const auto& force : model.forces()) {
         const auto* other = dynamic_cast<const TrackedForce*>(force.get());
         if (other == nullptr || (other->i != body && other->j != body)) continue;
+        if (other != this && other->held_by() != nullptr && other->held_by() == held_by())
+            continue;  // of the same contact, of which one works at a time
         if (other == this || other->close(x)) ++count;
     }
     return std::max(1, count);

@@ -38,6 +38,10 @@ public:
     };
     Instant at(const lie::State& x) const;
     Wrench friction(const lie::State& x) const;  ///< for figures
+    /// Whether there is anything of it at present
+    virtual bool works(const lie::State&) const { return true; }
+    /// The constraint that is the normal force of the same contact; nullptr where there is none
+    virtual const dae::Constraint* held_by() const { return nullptr; }
 
     const int i, j;
 
@@ -51,8 +55,6 @@ protected:
     virtual Rates speeds(const Instant& now, const lie::State& x) const;
     /// Whether the normal force is a load; else a constraint has it
     virtual bool presses() const = 0;
-    /// Whether there is anything of it at present
-    virtual bool works(const lie::State&) const { return true; }
     /// Whether the bodies of another contact touch, or are about to
     virtual bool close(const lie::State& x) const = 0;
 

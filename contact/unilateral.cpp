@@ -82,6 +82,7 @@ void UnilateralStep::track(State& x) const
 
 int UnilateralStep::step(State& x, double h)
 {
+    tell_of_handed_over(x);
     struct Restore {
         State &x, &from;
         std::vector<ContactEvent>& happened;
@@ -197,6 +198,21 @@ bool UnilateralStep::hand_over_flattest(State& x)
     if (flattest == nullptr) return false;
     hand_over(*flattest, x, 0);
     return true;
+}
+
+/// A contact may have handed over in the start, or when the step to x was accepted.
+void UnilateralStep::tell_of_handed_over(const State& x)
+{
+    for (Contact& c : contact) {
+        if (c.gone || mode(c, x) != dae::Constraint::handed_over) continue;
+        c.gone = true;
+        const auto told = [&](const ContactEvent& e) {
+            return e.contact == c.number && e.kind == ContactEvent::Kind::handed_over;
+        };
+        if (std::none_of(happened.begin(), happened.end(), told))
+            happened.push_back(
+                {.kind = ContactEvent::Kind::handed_over, .t = x.t, .contact = c.number, .speed = 0});
+    }
 }
 
 void UnilateralStep::hand_over(const Contact& c, State& x, double speed)

@@ -67,6 +67,7 @@ private:
               before = {};  ///< nodes where it was closed, for the time of a lift-off; none where t is NaN
         int meetings = 0;   ///< in the step
         bool held = false;  ///< stays closed for the rest of the step
+        bool gone = false;  ///< handed over, and told of
 
         void note(double t, double F_N);
         double lift_off(double t, double F_N) const;
@@ -92,6 +93,7 @@ private:
     bool determined(const Contact& c, lie::State& x);
     void hand_over(const Contact& c, lie::State& x, double speed);
     bool hand_over_flattest(lie::State& x);
+    void tell_of_handed_over(const lie::State& x);
     void jump(lie::State& x, const Contact* rebounding, double speed);
     void push(const Contact& c, double impulse, const lie::State& x);
 

@@ -53,9 +53,9 @@ TEST_CASE("every kind of contact is read, starts, and is written the same", "[co
         lie::Loads loads(d.model->bodies());
         d.model->loads(d.x, loads);
         for (const auto& force : d.model->forces()) {
-            const auto& contact = dynamic_cast<const ContactForce&>(*force);
-            CHECK(contact.contact.name == contact.name);
-            CHECK(contact.stable_step(d.x) > 1e-5);
+            const auto* pressing = dynamic_cast<const ContactForce*>(force.get());
+            if (pressing != nullptr) CHECK(pressing->contact.name == pressing->name);
+            CHECK(dynamic_cast<const contact::TrackedForce&>(*force).stable_step(d.x) > 1e-5);
             ++contacts;
         }
     }

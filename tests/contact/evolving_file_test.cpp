@@ -2,7 +2,8 @@
 // Contacts of a model file whose normal is a constraint: what is read, what is written, what is refused where.
 #include <catch2/catch.hpp>
 
-#include "contact/evolving_contact.hpp"
+#include "contact/contact_force.hpp"
+#include "contact/evolving_friction.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "dae/model_file.hpp"
@@ -10,7 +11,9 @@
 #include <filesystem>
 
 using namespace hilda;
+using contact::ContactForce;
 using contact::EvolvingContact;
+using contact::EvolvingFriction;
 
 namespace {
 
@@ -126,6 +129,68 @@ TEST_CASE("a contact that may open is read with its restitution and may start op
     CHECK(d.x.body[0].rdot.z() == -2);
 }
 
+TEST_CASE("tracked friction of a model file is that of the contact it stands in",
+          "[contact][model_file][evolving][friction]")
+{
+    dae::Description d = dae::load_model((models / "contacts" / "evolving_friction.json").string());
+    REQUIRE(d.model->evolving().size() == 3);
+    const auto of = [&](size_t k) -> const EvolvingContact& {
+        return dynamic_cast<const EvolvingContact&>(*d.model->evolving()[k]);
+    };
+    const auto& force = d.model->forces();
+    REQUIRE(force.size() == 5);  // three of friction, two that stand by
+    CHECK(d.force_place.size() == 5);
+    CHECK(d.force_place[2] == d.contact_place[1]);
+    const auto* first_friction = dynamic_cast<const EvolvingFriction*>(force[0].get());
+    REQUIRE(first_friction != nullptr);
+    CHECK(&first_friction->contact == &of(0));
+    CHECK(first_friction->name == "ball-bowl");
+    for (const auto& [k, contact] : {std::pair(2, 1), {4, 2}}) {
+        const auto* standing_by = dynamic_cast<const ContactForce*>(force[k].get());
+        REQUIRE(standing_by != nullptr);
+        CHECK(standing_by->held_by() == &of(contact));
+        CHECK(of(contact).fallback);
+        const auto& friction = dynamic_cast<const EvolvingFriction&>(*force[k - 1]);
+        CHECK(friction.held_by() == &of(contact));
+    }
+    CHECK_FALSE(of(0).fallback);
+    CHECK_FALSE(of(0).unilateral.opens);
+    CHECK(of(1).unilateral.opens);
+    CHECK(of(1).unilateral.restitution == 0.4);
+    CHECK(of(1).unilateral.impact == contact::Unilateral::Impact::poisson);
+    CHECK_THAT(d.text, Catch::Contains(R"("impact": "poisson")") && Catch::Contains(R"("fallback": {)") &&
+                           Catch::Contains(R"("law": "slide-roll-spin")") &&
+                           Catch::Contains(R"("preset": "dissertation")"));
+    CHECK(dae::read_model(d.text, "again.json").text == d.text);
+
+    dae::start(d);
+    // of all that lies here, the ball in the bowl is alone with the springs of Table 5.1: h = (sqrt(d² + 4 k) - d)/k
+    const double q = 1 / 1. + 0.25 / 0.1, D = 100 * q, k = 1e4 * q;
+    CHECK(first_friction->stable_step(d.x) == Approx((std::sqrt(D * D + 4 * k) - D) / k).epsilon(1e-9));
+    CHECK(first_friction->normal_force(d.x) == Approx(normal_force(d)).epsilon(1e-12));
+    // what stands by does nothing, and lends no mass
+    const auto& standing_by = dynamic_cast<const ContactForce&>(*force[2]);
+    CHECK_FALSE(standing_by.works(d.x));
+    lie::Loads out(3);
+    standing_by.add(d.x, out);
+    CHECK(out.F[1].norm() + out.n_bar[1].norm() == 0);
+    dae::Model::set_mode(of(1), d.x, dae::Constraint::handed_over);
+    CHECK(standing_by.works(d.x));
+    CHECK(force[1]->stable_step(d.x) == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("a fallback halves no step of the friction that it stands by for",
+          "[contact][model_file][evolving][friction]")
+{
+    const std::string friction = R"({"mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100})";
+    const auto bound = [&](const std::string& normal) {
+        dae::Description d = dae::read_model(model(ball, flat, normal, friction), "m.json");
+        dae::start(d);
+        return d.model->forces()[0]->stable_step(d.x);
+    };
+    CHECK(bound(R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1e4}})") == bound(held));
+}
+
 TEST_CASE("a contact that is a constraint and is none is refused at its place",
           "[contact][model_file][evolving]")
 {
@@ -141,6 +206,27 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
          "m.json:6:59 (/contacts/0/normal/restitution): restitution must be from 0 to 1, got -0.1"},
         {normal(R"({"type": "constraint", "restitution": 0.5})"),
          "m.json:6:39 (/contacts/0/normal/restitution): restitution is of a contact that may open"},
+        {normal(R"({"type": "constraint", "impact": "poisson"})"),
+         "m.json:6:34 (/contacts/0/normal/impact): impact is of a contact that may open"},
+        {normal(R"({"type": "constraint", "unilateral": true, "impact": "Newton"})"),
+         "m.json:6:54 (/contacts/0/normal/impact): unknown impact \"Newton\"; did you mean 'newton'?"},
+        {normal(R"({"type": "constraint", "fallback": {"type": "given", "force": 1}})"),
+         "m.json:6:45 (/contacts/0/normal/fallback/type): unknown type \"given\""},
+        {normal(R"({"type": "constraint", "fallback": {"type": "hooke"}})"),
+         "m.json:6:36 (/contacts/0/normal/fallback): missing key 'stiffness'"},
+        {normal(R"({"type": "constraint", "fallback": {"type": "hertz", "E_star": -1}})"),
+         "m.json:6:64 (/contacts/0/normal/fallback/E_star): E_star must be positive, got -1"},
+        {normal(R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1, "fallback": {}}})"),
+         "m.json:6:70 (/contacts/0/normal/fallback/fallback): unknown key \"fallback\""},
+        {model(ball, flat, R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1}})",
+               R"({"law": "rolling"})"),
+         "m.json:7:9 (/contacts/0/friction/law): a contact with a fallback needs a law that the fallback can "
+         "have too"},
+        {model(ball, flat, held, R"({"mu_s": 0.3})"), "m.json:7:1 (/contacts/0/friction): missing key 'K_E'"},
+        {model(ball, flat, held, R"({"mu_s": 0.3, "mu_k": 0.4, "K_E": 1e4})"),
+         "m.json:7:23 (/contacts/0/friction/mu_k): mu_k must not be above mu_s, 0.3, got 0.4"},
+        {model(ball, flat, held, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})"),
+         "m.json:7:1 (/contacts/0/friction): missing key 'E_star'"},
         {normal(R"({"type": "constraint", "unilateral": 1})"),
          "m.json:6:38 (/contacts/0/normal/unilateral): unilateral must be true or false, got 1"},
         {normal(R"({"type": "constraint", "stiffness": 1})"),

@@ -77,7 +77,7 @@ std::vector<Touching> contacts(const dae::Model& model, const lie::State& x)
     std::vector<Touching> all;
     for (const auto& force : model.forces()) {
         const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
-        if (contact == nullptr) continue;
+        if (contact == nullptr || contact->held_by() != nullptr) continue;
         const contact::Meeting m = contact->at(x).meeting;
         all.push_back({.name = contact->name,
                        .gap = m.touch.gap,
@@ -88,21 +88,30 @@ std::vector<Touching> contacts(const dae::Model& model, const lie::State& x)
     return all;
 }
 
+/// null where it is any step, or none
+nlohmann::ordered_json finite_or_null(double stable_step)
+{
+    return std::isfinite(stable_step) ? nlohmann::ordered_json(stable_step) : nullptr;
+}
+
+std::string stable_in_words(double step)
+{
+    return std::isfinite(step) ? fmt::format("stable up to {:.3g} s", step) : "stable with any step";
+}
+
 nlohmann::ordered_json as_json(const Touching& c)
 {
     return {{"name", c.name},
             {"gap", c.gap},
             {"normal_force", c.N},
             {"curvature", c.curvature},
-            {"stable_step", std::isfinite(c.stable_step) ? nlohmann::ordered_json(c.stable_step) : nullptr}};
+            {"stable_step", finite_or_null(c.stable_step)}};
 }
 
 std::string in_words(const Touching& c)
 {
     return fmt::format("{} {:.3e} m, {:.3e} N, curvature {:.4g} 1/m, {}", c.gap > 0 ? "gap" : "overlap",
-                       std::abs(c.gap), c.N, c.curvature,
-                       std::isfinite(c.stable_step) ? fmt::format("stable up to {:.3g} s", c.stable_step)
-                                                    : "stable with any step");
+                       std::abs(c.gap), c.N, c.curvature, stable_in_words(c.stable_step));
 }
 
 /// A contact that is a constraint, at the start
@@ -111,11 +120,14 @@ struct Evolving {
     int rows, velocity_rows, unknowns;
     lie::Vec3 C, n, alpha_i,
         alpha_j;  ///< where it touches, the normal into body i [m, global]; on both bodies
-    bool opens, open;
+    bool opens, open, handed_over;
     double gap, F_N;                 ///< [m], [N]
     contact::Curvatures of_i, of_j;  ///< principal [1/m]
     double
         least_curvature;  ///< smaller one of their sum, times the size L: how far from a touch along a line
+    double F_f;           ///< of friction [N]
+    /// Largest that friction and what stands by are stable with [s]; infinite for any, NaN where there is none
+    double stable_step = std::nan(""), stable_fallback = std::nan("");
 };
 
 std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
@@ -124,25 +136,34 @@ std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
     std::vector<Evolving> all;
     for (const EvolvingContact* c : evolving_contacts(model)) {
         const dae::Constraint::At at = model.at(*c, x);
-        const contact::Touch touch = c->touch(at);
+        const ContactForces beside = forces_of(model, *c);
+        const bool handed_over = dae::Model::mode(*c, x) == dae::Constraint::handed_over;
+        const contact::Touch touch = handed_over ? beside.fallback->at(x).meeting.touch : c->touch(at);
+        const OnBodyI acts = on_body_i(model, *c, beside, x);
         all.push_back(
             {.name = c->name,
-             .friction = c->friction == EvolvingContact::Friction::rolling ? "rolling" : "none",
+             .friction = c->friction == EvolvingContact::Friction::rolling ? "rolling"
+                         : beside.friction != nullptr                      ? "tracked"
+                                                                           : "none",
              .normal_rows = c->normal_rows == EvolvingContact::NormalRows::tangent ? "tangent" : "fixed-xy",
              .rows = c->rows(),
              .velocity_rows = c->velocity_rows(),
              .unknowns = c->unknowns(),
              .C = touch.C(),
              .n = touch.n,
-             .alpha_i = lie::Vec3::Map(at.alpha),
-             .alpha_j = lie::Vec3::Map(at.alpha + 3),
-             .opens = c->opens(),
-             .open = dae::Model::open(*c, x),
+             .alpha_i = at.bi.A.transpose() * (touch.C_i - at.bi.r),
+             .alpha_j = at.bj.A.transpose() * (touch.C_j - at.bj.r),
+             .opens = c->unilateral.opens,
+             .open = dae::Model::mode(*c, x) == dae::Constraint::is_open,
+             .handed_over = handed_over,
              .gap = touch.gap,
-             .F_N = forces(model, *c, x).F_N,
+             .F_N = acts.F_N,
              .of_i = contact::principal_curvatures(touch.K_i, touch.n),
              .of_j = contact::principal_curvatures(touch.K_j, touch.n),
-             .least_curvature = contact::least_curvature(touch) * c->L});
+             .least_curvature = contact::least_curvature(touch) * c->L,
+             .F_f = acts.friction.norm()});
+        if (beside.friction != nullptr) all.back().stable_step = beside.friction->stable_step(x);
+        if (beside.fallback != nullptr) all.back().stable_fallback = beside.fallback->stable_step(x);
     }
     return all;
 }
@@ -163,11 +184,16 @@ nlohmann::ordered_json as_json(const Evolving& c)
             {"alpha_j", as_json(c.alpha_j)},
             {"unilateral", c.opens},
             {"open", c.open},
+            {"handed_over", c.handed_over},
             {"gap", c.gap},
             {"normal_force", c.F_N},
             {"curvatures_i", {c.of_i.least, c.of_i.most}},
             {"curvatures_j", {c.of_j.least, c.of_j.most}},
-            {"least_relative_curvature", c.least_curvature}};
+            {"least_relative_curvature", c.least_curvature},
+            {"friction_force", c.F_f},
+            {"stable_step", finite_or_null(c.stable_step)},
+            {"fallback", !std::isnan(c.stable_fallback)},
+            {"fallback_stable_step", finite_or_null(c.stable_fallback)}};
 }
 
 std::vector<std::string> in_words(const Evolving& c)
@@ -175,18 +201,24 @@ std::vector<std::string> in_words(const Evolving& c)
     const auto vector = [](const lie::Vec3& v) {
         return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z());
     };
-    return {
+    std::vector<std::string> all = {
         fmt::format("{} rows, {} unknowns{}{}", c.rows, c.unknowns,
                     c.velocity_rows > 0 ? fmt::format(", {} rows of rolling", c.velocity_rows) : "",
                     c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
         fmt::format("at {} m, normal {} into the first, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
         fmt::format("normal force {:.10g} N{}", c.F_N,
-                    c.open       ? ": it is open"
-                    : c.F_N >= 0 ? ""
-                    : c.opens    ? ": it opens"
-                                 : ": it pulls"),
+                    c.handed_over ? ": of the fallback, to which it has handed over"
+                    : c.open      ? ": it is open"
+                    : c.F_N >= 0  ? ""
+                    : c.opens     ? ": it opens"
+                                  : ": it pulls"),
         fmt::format("curvatures {:.4g}, {:.4g} and {:.4g}, {:.4g} 1/m; least of the sum, times size, {:.3g}",
                     c.of_i.least, c.of_i.most, c.of_j.least, c.of_j.most, c.least_curvature)};
+    if (!std::isnan(c.stable_step))
+        all.push_back(fmt::format("friction {:.6g} N, {}", c.F_f, stable_in_words(c.stable_step)));
+    if (!std::isnan(c.stable_fallback))
+        all.push_back("a fallback stands by, " + stable_in_words(c.stable_fallback));
+    return all;
 }
 
 nlohmann::ordered_json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
@@ -204,11 +236,13 @@ int check_model(const CheckOptions& options)
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<Touching> touching = contacts(model, d.x);
     const std::vector<Evolving> held = evolving(model, d.x);
-    const int of_contacts = contact_rank(model);
+    const int of_contacts = contact_rank(model, d.x);
     lie::Saddle K(model);
     K.assemble(d.x);
     const double condition = 1 / K.reciprocal_condition();
-    const size_t other_forces = model.forces().size() - touching.size();
+    const auto other_forces = std::count_if(
+        model.forces().begin(), model.forces().end(),
+        [](const auto& force) { return dynamic_cast<const contact::TrackedForce*>(force.get()) == nullptr; });
     const Change moved = change(model, given, d.x);
 
     if (options.json) {

@@ -60,6 +60,12 @@ void refuse_schemes(const std::string& kind, const StudyOptions& options)
     idle(!options.set.empty(), "--set");
 }
 
+void check_vtk(const std::string& kind, const StudyOptions& options)
+{
+    if (options.vtk > 0 && options.output.empty())
+        throw UsageError("study " + kind + ": --vtk writes files; with --json it needs --output");
+}
+
 void refuse_models(const std::string& kind, const StudyOptions& options)
 {
     if (!options.problems.empty())

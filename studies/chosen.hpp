@@ -22,6 +22,9 @@ std::vector<double> steps_or(const StudyOptions& options, std::vector<double> ot
 /// The one of --steps, or else this; UsageError for several.
 double one_step(const std::string& kind, const StudyOptions& options, double otherwise);
 
+/// UsageError where --vtk has nowhere to write to.
+void check_vtk(const std::string& kind, const StudyOptions& options);
+
 /// UsageError where a model, an integrator or a setting of a model is named: the study has bodies of its own.
 void refuse_models(const std::string& kind, const StudyOptions& options);
 /// The same where --problem has a meaning of its own

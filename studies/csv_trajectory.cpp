@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/csv_trajectory.hpp"
 
-#include "studies/contact_rows.hpp"
 #include "studies/csv.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@ TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, Out
       contacts(evolving_contacts(model)), C(model.pattern())
 {
     invariants.contact.resize(contacts.size());
+    for (const contact::EvolvingContact* c : contacts) beside.push_back(forces_of(model, *c));
 }
 
 void TrajectoryCsv::write_header()
@@ -41,10 +41,11 @@ void TrajectoryCsv::write_header()
             const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
             row += ',' + csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
         }
-        for (const contact::EvolvingContact* c : contacts) {
+        for (size_t k = 0; k < contacts.size(); ++k) {
+            const contact::EvolvingContact* c = contacts[k];
             columns(c->name,
                     {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z", "lambda_N"});
-            if (c->velocity_rows() > 0) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
+            if (rubs(k)) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
             if (c->opens()) columns(c->name, {"gap"});
         }
     }
@@ -86,21 +87,28 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
     dae::check_dropped_rows(model, x);
 }
 
-/// F_N, the contact point, where it is on both bodies, |λ_N|, friction of rolling on body i
+/// Whether there is friction, by multipliers or by a force
+bool TrajectoryCsv::rubs(size_t k) const
+{
+    return contacts[k]->velocity_rows() > 0 || beside[k].friction != nullptr;
+}
+
+/// F_N, the contact point, where it is on both bodies, |λ_N|, friction on body i
 void TrajectoryCsv::write_contacts(const lie::State& x)
 {
     std::string& row = file.buffer;
-    for (const contact::EvolvingContact* c : contacts) {
+    for (size_t k = 0; k < contacts.size(); ++k) {
+        const contact::EvolvingContact* c = contacts[k];
         const dae::Constraint::At at = model.at(*c, x);
-        const contact::EvolvingContact::Multipliers of = forces(model, *c, x);
+        const OnBodyI acts = on_body_i(model, *c, beside[k], x);
         row += ',';
-        append_number(row, of.F_N);
+        append_number(row, acts.F_N);
         append_vector(row, c->touch(at).C());
         append_vector(row, lie::Vec3::Map(at.alpha));
         append_vector(row, lie::Vec3::Map(at.alpha + 3));
         row += ',';
-        append_number(row, of.N.norm());
-        if (c->velocity_rows() > 0) append_vector(row, of.friction);
+        append_number(row, forces(model, *c, x).N.norm());
+        if (rubs(k)) append_vector(row, acts.friction);
         if (!c->opens()) continue;
         row += ',';
         append_number(row, c->touch(at).gap);

@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include "contact/evolving_contact.hpp"
 #include "dae/start.hpp"
 #include "lie/trajectory.hpp"
+#include "studies/contact_rows.hpp"
 #include "studies/output_file.hpp"
 
 #include <limits>
@@ -50,12 +50,14 @@ public:
 private:
     void note(const lie::State& x, double energy, double constraint_norm);
     void write_contacts(const lie::State& x);
+    bool rubs(size_t k) const;
 
     const dae::Model& model;
     const lie::Grid& grid;
     OutputFile& file;
     const bool with_reactions;
     std::vector<const contact::EvolvingContact*> contacts;
+    std::vector<ContactForces> beside;  ///< the constraints of these contacts
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };

@@ -65,8 +65,7 @@ std::vector<Chosen> chosen(const StudyOptions& options)
 void check_vtk(const StudyOptions& options, const std::vector<Chosen>& all)
 {
     if (options.vtk == 0) return;
-    if (options.output.empty())
-        throw UsageError("study friction: --vtk writes files; with --json it needs --output");
+    studies::check_vtk(kind, options);
     if (std::any_of(all.begin(), all.end(), [](const Chosen& c) { return c.experiment->in_space; })) return;
     std::string those;
     for (const Experiment& e : experiments())

@@ -3,10 +3,11 @@
 
 #pragma once
 
-#include "contact/contact_force.hpp"
-#include "contact/evolving_contact.hpp"
 #include "lie/trajectory.hpp"
+#include "studies/contact_rows.hpp"
 #include "studies/vtk.hpp"
+
+#include <functional>
 
 namespace hilda::studies {
 
@@ -15,6 +16,7 @@ class ModelFrames final : public lie::Observer {
 public:
     /// A frame at each row of the grid
     ModelFrames(const dae::Model& model, const lie::Grid& grid);
+    ModelFrames(const dae::Model& model, EvenChoice chosen);
 
     void accepted(const lie::State& x, long n, int iterations) override;
     bool has_contacts() const { return !contacts.empty() || !evolving.empty(); }
@@ -22,10 +24,13 @@ public:
     Snapshots snapshots;
 
 private:
+    ModelFrames(const dae::Model& model, std::function<bool(long)> takes);
+
     const dae::Model& model;
-    const lie::Grid grid;
+    const std::function<bool(long)> takes;  ///< node n
     std::vector<const contact::ContactForce*> contacts;
     std::vector<const contact::EvolvingContact*> evolving;  ///< counted after those
+    std::vector<ContactForces> beside;
 };
 
 }  // namespace hilda::studies

@@ -48,10 +48,10 @@ std::string in_words(contact::ContactEvent::Kind kind)
 }
 
 /// Not above the number itself, so that a step of what is printed is taken
-std::string in_three_digits(double positive)
+std::string in_four_digits(double positive)
 {
-    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 2);
-    return fmt::format("{:.3g}", std::floor(positive / unit) * unit);
+    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 3);
+    return fmt::format("{:.4g}", std::floor(positive / unit) * unit);
 }
 
 }  // namespace
@@ -175,7 +175,7 @@ void SingleRun::judge_step(bool resumed) const
     if (!(grid.h > stable.h)) return;
     const std::string what = fmt::format(
         "the step {} s is above {} s, the largest at which {} is stable with an explicit step", grid.h,
-        in_three_digits(stable.h), model.forces()[static_cast<size_t>(stable.force)]->in_words());
+        in_four_digits(stable.h), model.forces()[static_cast<size_t>(stable.force)]->in_words());
     if (!options.force && !resumed) throw UsageError("run: " + what + "; --force overrides");
     warn(what);
 }
@@ -231,6 +231,7 @@ void SingleRun::judge_contacts()
         warn(what);
         result.warnings.push_back(what);
     };
+    const auto contacts = evolving_contacts(*description.model);
     for (size_t k = 0; k < result.contacts.size(); ++k) {
         const ContactExtremes& c = result.invariants.contact[k];
         if (c.normals_differ())
@@ -238,7 +239,7 @@ void SingleRun::judge_contacts()
                 "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
                 "its surfaces are not those of their points",
                 result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
-        if (!description.model->evolving()[k]->opens() && c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+        if (!contacts[k]->unilateral.opens && c.F_N_least < -1e-9 * std::abs(c.F_N_most))
             tell(fmt::format(
                 "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
                 result.contacts[k], -c.F_N_least));

@@ -85,6 +85,18 @@ struct Cells {
 
 }  // namespace
 
+bool EvenChoice::takes(long n)
+{
+    if (chosen == count || n != next()) return false;
+    while (chosen < count && next() <= n) ++chosen;
+    return true;
+}
+
+long EvenChoice::next() const
+{
+    return count == 1 ? 0 : std::lround(static_cast<double>(steps) * chosen / (count - 1));
+}
+
 void Snapshots::show(int body, const contact::Shape& shape)
 {
     const auto same = [&](const Shown& s) {

@@ -11,6 +11,21 @@
 
 namespace hilda::studies {
 
+/// `count` of the nodes 0 … steps, in turn: the first, the last and evenly between
+class EvenChoice {
+public:
+    EvenChoice(int count, long steps) : count(count), steps(steps) {}
+
+    bool takes(long n);
+
+private:
+    long next() const;
+
+    int count;
+    long steps;
+    int chosen = 0;
+};
+
 /// What there is to see of a run: the surfaces of its bodies, and instants. They are kept until the run has ended,
 /// for only then it is known how much of a plane must be drawn.
 ///

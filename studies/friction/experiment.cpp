@@ -14,29 +14,6 @@ std::vector<Experiment>& list()
     return all;
 }
 
-/// `count` of the nodes 0 … steps, in turn
-class Choice {
-public:
-    Choice(int count, long steps) : count(count), steps(steps) {}
-
-    bool takes(long n)
-    {
-        if (chosen == count || n != next()) return false;
-        while (chosen < count && next() <= n) ++chosen;
-        return true;
-    }
-
-private:
-    long next() const
-    {
-        return count == 1 ? 0 : std::lround(static_cast<double>(steps) * chosen / (count - 1));
-    }
-
-    const int count;
-    const long steps;
-    int chosen = 0;
-};
-
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
     std::vector<Snapshots::Touch> touches;
@@ -76,7 +53,7 @@ Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::
 {
     Series series(std::move(columns));
     const long steps = std::lround(end / h);
-    Choice choice(frames != nullptr ? frames->count : 0, steps);
+    EvenChoice choice(frames != nullptr ? frames->count : 0, steps);
     if (frames != nullptr)
         for (const contact::Scene::Pair& p : scene.pair) {
             frames->snapshots.show(p.i, p.contact.i);

@@ -5,7 +5,7 @@
 /// friction or rolls. SCENE.csv has the contact points on both bodies, the residuals of Ψ, N and G, the normal force, the
 /// multipliers that must vanish and the change of energy at every node. The scene `loop` throws the ball right round the
 /// ellipsoid, through normals that lie in the plane of x and y, with N projected on the tangents and, as (5.16) has it, on
-/// the global x and y. The table sets what comes out beside closed forms; --check does runs at half of the step too, and
+/// the global x and y. --vtk N writes frames for ParaView. The table sets what comes out beside closed forms; --check does runs at half of the step too, and
 /// exits with 6 where a demand is not met.
 
 #include "studies/arguments.hpp"
@@ -15,6 +15,7 @@
 #include "studies/evolving_errors.hpp"
 #include "studies/evolving_truth.hpp"
 #include "studies/exit_codes.hpp"
+#include "studies/model_frames.hpp"
 #include "studies/named_model.hpp"
 #include "studies/pool.hpp"
 #include "studies/study_output.hpp"
@@ -158,12 +159,21 @@ void compute(Run& run, const StudyOptions& options)
 {
     AgainstTruth against(*run.c, run.h);
     Watch watch(run, run.scheme->name == text);
-    lie::Observer* observers[] = {&watch, &against};
+    std::vector<lie::Observer*> observers = {&watch, &against};
+    std::optional<ModelFrames> frames;
+    if (options.vtk > 0 && !run.for_check) {
+        frames.emplace(*run.c->started->model, EvenChoice(options.vtk, std::lround(run.c->end / run.h)));
+        observers.push_back(&*frames);
+    }
     lie::Settings settings = options.settings;
     settings.tolerance = std::min(settings.tolerance, 1e-14);  // residuals are shown down to rounding
     march(run, settings, observers);
     run.error = against.error;
     if (run.failed()) run.error.fill(std::nan(""));
+    const std::string name =
+        run.scene->name + '-' + run.scheme->name + (run.rows == "tangent" ? "" : '-' + run.rows);
+    if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
+    if (frames) frames->snapshots.write(options.output, name);
 }
 
 /// Of a quantity at its largest node, by a parabola through it and its neighbours
@@ -384,6 +394,7 @@ Case case_of(const Scene& s, const StudyOptions& options, const std::string& row
 int study(const StudyOptions& options)
 {
     check_keys(kind, options, std::vector<std::string>{"r", "alpha", "F_N", "energy"});
+    check_vtk(kind, options);
     const double h = one_step(kind, options, usual_step);
     const Schemes schemes = fixed_step_schemes(kind, options, {text, recommended});
     const std::string rows = options.normal_rows.empty() ? "tangent" : options.normal_rows;
@@ -458,7 +469,7 @@ int study(const StudyOptions& options)
 const bool enrolled =
     enrol(Study{.kind = kind,
                 .answers = "ball in a bowl with the contact points as unknowns (Figs. 5.2-5.6)",
-                .also = takes::reference | takes::check | takes::normal_rows,
+                .also = takes::reference | takes::check | takes::vtk | takes::normal_rows,
                 .run = study});
 
 }  // namespace

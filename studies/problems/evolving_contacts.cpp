@@ -91,6 +91,28 @@ const bool rolling_xy = enrol({.name = "rolling_ball_in_bowl_xy",
                                .truth = evolving_truth,
                                .watched = {.body = "ball", .component = "ry"}});
 
+const bool braked =
+    enrol({.name = "braked_ball_in_bowl",
+           .what = "ball that rolls in the same bowl by friction, and comes to rest (Fang 2022, Sec. 5.5.2)",
+           .model = R"({"hilda_model": 1, "name": "braked_ball_in_bowl",
+  "note": "Table 5.1; homogeneous; let go at the contact point 0, 1.5, -1.7321; stands steps up to 3.26e-3 s, without eta_r 4.64e-3 s",
+  "gravity": [0, 0, -9.81], "end": 10,
+  "bodies": [
+    {"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [0, 1.320394697973225, -1.265422544940186]}
+  ],
+  "contacts": [
+    {"name": "ball-bowl", "body_i": "ball", "body_j": "ground",
+      "surface_i": {"type": "sphere", "radius": 0.5},
+      "surface_j": {"type": "ellipsoid", "semi_axes": [4, 3, 2], "concave": true},
+      "normal": {"type": "constraint"},
+      "friction": {"law": "slide-roll-spin", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100, "eta_r": 0.1}}
+  ]
+}
+)",
+           .truth_name = evolving_truth_name,
+           .truth = evolving_truth,
+           .watched = {.body = "ball", .component = "ry"}});
+
 const bool rocking = enrol({.name = "rocking_ellipsoid",
                             .what = "ellipsoid that rocks on a smooth floor, with a period of 0.7120300728 s",
                             .model = R"({"hilda_model": 1, "name": "rocking_ellipsoid",

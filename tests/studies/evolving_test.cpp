@@ -229,6 +229,118 @@ TEST_CASE("the study of contacts that are constraints meets its demands", "[stud
     CHECK(call(in, {"study", "energy", "--normal-rows", "tangent"}).code == 2);
 }
 
+TEST_CASE("a step that the friction of a contact does not stand is refused with the bound of the text's data",
+          "[studies][evolving][friction]")
+{
+    const Scratch in;
+    const auto run = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"run",          "braked_ball_in_bowl",
+                                          "--set",        "/contacts/0/friction/eta_r=0",
+                                          "--integrator", "rA-half-1-momentum",
+                                          "--end",        "0.5",
+                                          "--output",     "a"};
+        words.insert(words.end(), more.begin(), more.end());
+        return call(in, words);
+    };
+    const Ended refused = run({"--step", "5e-3"});
+    CHECK(refused.code == 2);
+    // (sqrt(d² + 4 k) - d)/k, d = 350, k = 35000: 4.64e-3 s, cut so that it is stable itself
+    CHECK_THAT(refused.err, Contains("the step 0.005 s is above 0.004638 s, the largest at which contact "
+                                     "'ball-bowl' is stable"));
+    CHECK_FALSE(fs::exists(in / "a"));
+    CHECK(run({"--step", "4.638e-3", "--every", "0"}).code == 0);
+    const Ended forced = run({"--step", "5e-3", "--force"});
+    CHECK(forced.code == 0);
+    CHECK_THAT(forced.err, Contains("0.004638 s"));
+
+    const Ended told = call(in, {"check", "braked_ball_in_bowl"});
+    CHECK(told.code == 0);
+    CHECK_THAT(told.out,
+               Contains("friction 0 N, stable up to 0.00326 s") && Contains("forces              0"));
+    const ordered_json facts =
+        ordered_json::parse(call(in, {"check", "braked_ball_in_bowl", "--json"}).out)["evolving_contacts"][0];
+    CHECK(facts["friction"] == "tracked");
+    CHECK(facts["stable_step"].get<double>() == Approx(3.26e-3).epsilon(2e-3));
+    CHECK(facts["fallback"] == false);
+    CHECK(facts["fallback_stable_step"].is_null());
+}
+
+TEST_CASE("a run writes the friction of a contact that is a constraint", "[studies][evolving][friction]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"run", "braked_ball_in_bowl", "--integrator", "rA-half-1-momentum", "--step", "2.5e-3",
+                  "--end", "1", "--every", "0.05", "--reactions", "--vtk", "0.5", "--output", "a"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const auto rows = csv(in / "a/trajectory.csv");
+    REQUIRE(rows.size() == 21);
+    for (const CsvRow& row : rows) {
+        const Vec3 F_f = vector(row, "ball-bowl.", {"Ff_x", "Ff_y", "Ff_z"}),
+                   C = vector(row, "ball-bowl.", {"Cx", "Cy", "Cz"}),
+                   r = vector(row, "ball.", {"rx", "ry", "rz"});
+        const double F_N = number(row, "ball-bowl.F_N");
+        CHECK(std::abs(F_f.dot((r - C).normalized())) < 1e-9);
+        CHECK(F_f.norm() < 0.25 * F_N);
+        if (number(row, "t") > 0.1) CHECK(F_f.norm() > 0);
+        // all that moves the ball: weight, normal force, friction
+        const Vec3 lack =
+            vector(row, "ball.", {"ax", "ay", "az"}) - Vec3(0, 0, -9.81) - F_N * (r - C).normalized() - F_f;
+        if (number(row, "t") > 0.1)
+            CHECK(lack.norm() < 0.05);  // F_f is that of the nodes, a leapfrog between
+    }
+    CHECK_THAT(read(in / "a/vtk/run-000001.vtp"), Contains("\"rolling\""));
+}
+
+TEST_CASE("a contact that hands over is told of and goes on", "[studies][evolving][friction]")
+{
+    const Scratch in;
+    // a block of the fourth power is flat on top of its axes: it rolls there from the side
+    const std::string block = R"({"type": "superquadric", "semi_axes": [0.3, 0.3, 0.2], "exponent": 4})";
+    const auto model = [&](const std::string& pose, const std::string& fallback) {
+        return R"({"hilda_model": 1, "name": "m", "end": 1,
+ "bodies": [{"name": "block", "mass": 1, "inertia": [0.02, 0.02, 0.03], )" +
+               pose + R"(}],
+ "contacts": [{"name": "block-floor", "body_i": "block", "body_j": "ground", "surface_i": )" +
+               block + R"(, "surface_j": {"type": "plane"}, "normal": {"type": "constraint")" + fallback +
+               R"(}, "friction": {"mu_s": 0.3, "K_E": 1e4}}]})";
+    };
+    const std::string rolls = R"("r": [0, 0, 0.3], "axis_angle": [0.8, 0.6, 0, 0.5])",
+                      lies = R"("r": [0, 0, 0.2])",
+                      fallback = R"(, "fallback": {"type": "hooke", "stiffness": 1e5, "restitution": 0.2})";
+    const auto run = [&](const std::string& text) {
+        write(in / "m.json", text);
+        return call(in, {"run", "m.json", "--integrator", "rA-half-1-momentum", "--step", "5e-4",
+                         "--reactions", "--force", "--output", "a"});
+    };
+    const Ended alone = run(model(rolls, R"(, "unilateral": true)"));
+    CAPTURE(alone.err);
+    CHECK(alone.code == studies::exit_code::numerical_failure);
+    const Ended ended = run(model(rolls, fallback));
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const ordered_json events = ordered_json::parse(read(in / "a/summary.json"))["contact_events"];
+    REQUIRE(events["count"] == 2);  // it falls a little first
+    CHECK(events["first"][0]["what"] == "closing");
+    CHECK(events["first"][1]["what"] == "handed over");
+    CHECK(events["first"][1]["contact"] == "block-floor");
+    const double t = events["first"][1]["t"].get<double>();
+    CHECK(t > 0);
+    CHECK(t < 1);
+    for (const CsvRow& row : csv(in / "a/trajectory.csv"))
+        if (number(row, "t") > t + 0.01 && number(row, "block-floor.gap") < -1e-6)
+            CHECK(number(row, "block-floor.F_N") > 0);  // of what has taken over
+
+    write(in / "m.json", model(lies, fallback));
+    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("to which it has handed over"));
+    const Ended from_start = run(model(lies, fallback));
+    REQUIRE(from_start.code == 0);
+    const ordered_json first = ordered_json::parse(read(in / "a/summary.json"))["contact_events"]["first"][0];
+    CHECK(first["what"] == "handed over");
+    CHECK(first["t"] == 0);
+    CHECK(run(model(lies, "")).code == 3);
+}
+
 TEST_CASE("the study of orders tells first from second order", "[studies][evolving]")
 {
     const Scratch in;
@@ -242,4 +354,46 @@ TEST_CASE("the study of orders tells first from second order", "[studies][evolvi
     CHECK(study("rA-half-1-momentum", "2").code == 0);
     CHECK(study("rA-half-1-momentum", "1").code == studies::exit_code::expectation_failed);
     CHECK(call(in, {"study", "evolving-order", "--problem", "double_pendulum"}).code == 2);
+}
+
+TEST_CASE("the study of friction in the bowl meets its demands and refuses the step of the text",
+          "[studies][evolving][friction]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"study", "evolving-friction", "--problem", "eta-0.3", "--check", "--no-plot", "--vtk", "3",
+                  "--output", "a", "--expect", "rest=-0.325+-1e-3"});
+    CAPTURE(ended.err, ended.out);
+    CHECK(ended.code == 0);
+    const auto rows = csv(in / "a/study.csv");
+    REQUIRE(rows.size() == 1);
+    CHECK(number(rows[0], "bound") == Approx(2.55e-3).epsilon(5e-3));
+    CHECK(csv(in / "a/curves.csv").size() == 4001 + 1001);
+    CHECK(fs::exists(in / "a/vtk/eta-0.3-rA-half-1-momentum-2.5e-3-000002.vtp"));
+
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
+        std::vector<std::string> words = {"study", "evolving-friction"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended e = call(in, words);
+        CHECK(e.code == 2);
+        CHECK_THAT(e.err, Contains(why));
+    };
+    refused({"--steps", "5e-3"}, "eta-0: the step 0.005 s is above 0.00464 s");
+    refused({"--problem", "eta-0.1", "--steps", "4e-3"}, "eta-0.1: the step 0.004 s is above 0.00326 s");
+    refused({"--problem", "eta-0.4"}, "unknown scene");
+    CHECK(call(in, {"study", "evolving-friction", "--problem", "eta-0", "--end", "2.5", "--no-plot",
+                    "--output", "b", "--expect", "F_f=1.007+-5e-3"})
+              .code == 0);
+}
+
+TEST_CASE("studies of contacts that are constraints write frames", "[studies][evolving][vtk]")
+{
+    const Scratch in;
+    CHECK(call(in, {"study", "evolving-contact", "--problem", "planar-roll", "--end", "0.5", "--vtk", "4",
+                    "--no-plot", "--output", "a"})
+              .code == 0);
+    CHECK(fs::exists(in / "a/planar-roll-rA-half-1.pvd"));
+    CHECK(fs::exists(in / "a/vtk/planar-roll-rA-half-1-momentum-000003.vtp"));
+    CHECK_FALSE(fs::exists(in / "a/vtk/planar-roll-rA-half-1-momentum-000004.vtp"));
+    CHECK(call(in, {"study", "evolving-contact", "--vtk", "2", "--json"}).code == 2);
 }

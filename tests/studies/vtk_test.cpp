@@ -357,7 +357,8 @@ TEST_CASE("snapshots are refused where nothing would come of them", "[studies][v
     for (const std::string text : {"0", "-1", "1.5", "1000001", "many"})
         refused({"study", "friction", "--vtk", text},
                 "--vtk: must be a whole number from 1 to 1000000, got '" + text + "'");
-    refused({"study", "energy", "--vtk", "3"}, "study energy: --vtk is for friction");
+    refused({"study", "energy", "--vtk", "3"},
+            "study energy: --vtk is for evolving-contact, evolving-friction, friction");
     refused({"study", "friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
             "study friction: --vtk is for disk, ellipsoid, incline, spin, spin-ellipsoid, turntable");
     CHECK_FALSE(tests::fs::exists(in / "new"));

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ball in a bowl that friction brings to rest.                                            Fang (2022), Figs. 5.7, 5.8
+
+    evolving-friction.py DIR    reads DIR/curves.csv, writes DIR/evolving-friction-point.png and -forces.png
+"""
+from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
+
+DASHES = ["-", "--", "-.", (0, (1, 1))]
+IDEAL = {"color": "black", "lw": 0.7, "ls": ":"}
+
+
+def sets(rows):
+    """The runs that were made of each resistance, as pairs of integrator and step"""
+    return list(dict.fromkeys((row["run"], row["h"]) for row in rows if row["run"] != "ideal"))
+
+
+def legend(figure, rows, etas):
+    lines = [Line2D([], [], color=COLOURS[k], label=rf"$\eta_r$ = {number(eta):g}") for k, eta in enumerate(etas)]
+    of = sets(rows)
+    lines += [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"{run}, h = {number(h):g} s")
+              for k, (run, h) in enumerate(of)]
+    if any(row["run"] == "ideal" for row in rows):
+        lines.append(Line2D([], [], label="ideal limit: no slip, no spring", **IDEAL))
+    figure.legend(handles=lines, loc="lower center", ncol=len(lines) if len(lines) < 8 else 5, frameon=False, fontsize=9)
+
+
+def draw(axes, rows, etas, across, up):
+    for k, eta in enumerate(etas):
+        for m, (run, h) in enumerate(sets(rows)):
+            mine = where(rows, eta_r=eta, run=run, h=h)
+            axes.plot(numbers(mine, across), numbers(mine, up), ls=DASHES[m % len(DASHES)], color=COLOURS[k], lw=1)
+        ideal = where(rows, eta_r=eta, run="ideal")
+        axes.plot(numbers(ideal, across), numbers(ideal, up), zorder=3, **IDEAL)
+    grid(axes)
+
+
+def point(folder, rows, etas):
+    figure, axes = plt.subplots(1, 2, figsize=(13, 4.8))
+    draw(axes[0], rows, etas, "t", "y")
+    axes[0].set_xlabel("$t$ [s]")
+    axes[0].set_ylabel("$y$ of the contact point [m]")
+    # one above the other, or they would hide each other on the same ellipse
+    for k, eta in enumerate(etas):
+        for m, (run, h) in enumerate(sets(rows)):
+            mine = where(rows, eta_r=eta, run=run, h=h)
+            lifted = [z + 0.12 * k for z in numbers(mine, "z")]
+            axes[1].plot(numbers(mine, "y"), lifted, ls=DASHES[m % len(DASHES)], color=COLOURS[k], lw=1)
+            axes[1].plot(number(mine[-1]["y"]), lifted[-1], "o", color=COLOURS[k], ms=4)
+    axes[1].set_xlabel("$y$ [m]")
+    axes[1].set_ylabel(r"$z$ [m], each $\eta_r$ 0.12 m above the one before")
+    axes[1].set_aspect("equal", adjustable="datalim")
+    grid(axes[1])
+    figure.suptitle("contact point on the bowl", fontsize=11)
+    legend(figure, rows, etas)
+    save(figure, folder, "evolving-friction-point.png", 0.07)
+
+
+def forces(folder, rows, etas):
+    figure, axes = plt.subplots(5, 1, figsize=(11, 12), sharex=True)
+    names = {"F_N": "$|F_N|$ [N]", "F_f": "$|F_f|$ [N]", "torque": "rolling torque [N m]", "v": "$|v|$ [m/s]",
+             "omega": r"$|\omega|$ [rad/s]"}
+    for ax, (column, name) in zip(axes, names.items()):
+        draw(ax, rows, etas, "t", column)
+        ax.set_ylabel(name)
+    # the jolt of the release is told of in the text
+    late = [number(row["F_f"]) for row in rows if row["run"] != "ideal" and number(row["t"]) > 0.1]
+    axes[1].set_ylim(0, 1.1 * max(late, default=1))
+    axes[-1].set_xlabel("$t$ [s]")
+    legend(figure, rows, etas)
+    save(figure, folder, "evolving-friction-forces.png", 0.03)
+
+
+def main():
+    folder = directory()
+    rows = read(folder, "curves.csv")
+    etas = distinct(rows, "eta_r")
+    point(folder, rows, etas)
+    forces(folder, rows, etas)
+
+
+if __name__ == "__main__":
+    main()

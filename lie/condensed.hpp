@@ -7,7 +7,8 @@
 /// M is block diagonal and never changes, so it is factored once and for all, M = L Lᵀ, and S = W Wᵀ with W = C
 /// L⁻ᵀ. Rows between the same bodies form a group; S is a matrix of blocks, one for each pair of groups that
 /// share a body, and its Cholesky factors are found by blocks in an order of minimum degree that is fixed with
-/// the pattern. For a chain or a tree of joints nothing fills in: a chain is block tridiagonal.
+/// the pattern. For a chain or a tree of joints nothing fills in: a chain is block tridiagonal. The softness of rows that give way stands on
+/// the diagonal of S besides.
 
 #pragma once
 
@@ -72,6 +73,10 @@ private:
     std::vector<int> column, update_start;  ///< by position in `order`, into `block` and `update`
     std::vector<Block> block;
     std::vector<Update> update;
+    struct Soft {
+        int row, at;  ///< a row that gives way, its diagonal entry in `value`
+    };
+    std::vector<Soft> soft;
     std::vector<double> W, value, diagonal;  ///< diagonal: of S, to judge pivots
     Eigen::VectorXd y;
     double smallest = 1, flops = 0;

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "lie/give_way.hpp"
 #include "lie/newton_step.hpp"
 
 namespace hilda::lie {
@@ -21,20 +22,20 @@ public:
         x_n = x;
         Attempt attempt(x, x_n);
         begin(h);
-        K.assemble(x_n);  // the Newton matrix, frozen at t_n (Eqs. 3.32, 3.51)
+        within_bounds.all_stick(K);
+        K.assemble(x_n, h);  // the Newton matrix, frozen at t_n (Eqs. 3.32, 3.51)
         set_known_part(h);
         predict(h);
         x.t = x_n.t + h;
         refreshed = false;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
-            place(x);
-            place_massless(x, 1 / q);
-            if (k > patience) refresh(x);
-            correct(refreshed ? 1 : k, x);
-            if (converged(k, length(), K.constraint_part(e), 1 / w)) {
+        int corrections = 0;
+        for (int solved = 0; solved <= most_solved; ++solved) {
+            corrections += solve(x, h);
+            if (within_bounds(K, rows_of_node(), z, x)) {
                 accept(x, h);
-                return done(attempt, k);
+                return done(attempt, corrections);
             }
+            if (refreshed) soften_as_K(C_n, h);
         }
         no_convergence(name, correction, x);
     }
@@ -46,7 +47,8 @@ protected:
     using Vec6 = Eigen::Matrix<double, 6, 1>;
 
     HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q)
-        : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern())
+        : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()),
+          within_bounds(model.pattern())
     {}
 
     /// Readies what the scheme carries from step to step, out of x_n.history or at a start
@@ -95,6 +97,19 @@ protected:
     const double w, q;
 
 private:
+    /// Newton's iteration from the z that is there; returns how many corrections it took
+    int solve(State& x, double h)
+    {
+        for (int k = 1; k <= settings.max_iterations; ++k) {
+            place(x);
+            place_massless(x, 1 / q);
+            if (k > patience) refresh(x, h);
+            correct(refreshed ? 1 : k, x);
+            if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
+        }
+        no_convergence(name, correction, x);
+    }
+
     void set_known_part(double h)
     {
         model.loads(node(), loads);
@@ -107,6 +122,8 @@ private:
         K.constraint_part(b).setZero();
         K.massless_part(b).setZero();
         if (K.rows().velocity_rows > 0) hold_mean_velocity(h);
+        for (const Rows::Compliant& c : K.rows().compliant)
+            K.constraint_part(b).segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
     }
 
     /// C_n (v + v_{n+1}) = 2 ν for the rows that hold velocities: second order where v and v_{n+1} are half a step
@@ -143,11 +160,18 @@ private:
     }
 
     /// The rows change too fast for K of t_n: from here on it is that of each iterate.
-    void refresh(const State& x)
+    void refresh(const State& x, double h)
     {
         if (!refreshed) C_n = K.rows();
         refreshed = true;
-        K.assemble(x);
+        K.assemble(x, h);
+    }
+
+    /// The rows of t_n, as much softer than they are as those of K
+    void soften_as_K(Rows& C, double h) const
+    {
+        for (size_t n = 0; n < C.compliant.size(); ++n) C.compliant[n].p = K.rows().compliant[n].p;
+        C.soften(h);
     }
 
     void accept(State& x, double h)
@@ -166,9 +190,11 @@ private:
         leave(x, h);
     }
 
-    static constexpr int patience = 10;  ///< corrections with K of t_n
+    static constexpr int patience = 10;     ///< corrections with K of t_n
+    static constexpr int most_solved = 50;  ///< until all that gives way is within its bound
     bool refreshed = false;
     Rows C_n;
+    GiveWay within_bounds;
 };
 
 }  // namespace hilda::lie

@@ -39,6 +39,7 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
     };
     const Rows& rows = system.pattern();
     if (!rows.massless.empty()) refuse_unless(&Scheme::massless, "contacts that evolve");
+    if (!rows.compliant.empty()) refuse_unless(&Scheme::compliant, "friction in the equations of its step");
     if (rows.velocity_rows > 0) refuse_unless(&Scheme::velocities, "rolling without slip");
     return construct(system, settings);
 }

@@ -79,6 +79,7 @@ struct Scheme {
     bool adaptive = false;
     bool massless = false;    ///< takes systems with massless unknowns: contacts that evolve
     bool velocities = false;  ///< takes rows that hold velocities alone: rolling
+    bool compliant = false;   ///< takes rows that give way: friction in the equations of the step
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
 
     /// InvalidInput for a system with unknowns or rows that the scheme does not take

@@ -65,6 +65,13 @@ Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
     }
     plain_until(pattern.rows());
     for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !empty[k];
+    for (size_t n = 0; n < pattern.compliant.size(); ++n)
+        for (const Group& g : group)
+            if (const int k = pattern.compliant[n].first - g.first; k >= 0 && k < g.rows) {
+                soft.push_back(static_cast<int>(n));
+                left.compliant.push_back(pattern.compliant[n]);
+                left.compliant.back().first = g.reduced_first + k;
+            }
 }
 
 void Elimination::reflect(const Group& g, Few& v, bool transpose)
@@ -81,6 +88,7 @@ void Elimination::reflect(const Group& g, Few& v, bool transpose)
 
 void Elimination::factor(const Rows& full)
 {
+    for (size_t n = 0; n < soft.size(); ++n) left.compliant[n].softness = full.compliant[soft[n]].softness;
     for (Group& g : group) {
         if (g.count == 0) {
             std::copy(full.entry.begin() + full.start[g.first],

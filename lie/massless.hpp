@@ -24,7 +24,7 @@ public:
     /// The rows with empty[k] hold nothing; of a group its last one tells.
     explicit Elimination(const Rows& pattern, const std::vector<char>& empty);
 
-    /// The rows that are left. Rows of no group stay as they are; of a group Zᵀ B; and what is not empty.
+    /// The rows that are left. Rows of no group stay as they are, with their softness; of a group Zᵀ B; and what is not empty.
     const Rows& reduced() const { return left; }
 
     /// Eliminates with these values. SingularMatrix where the rows of a group do not determine its unknowns.
@@ -59,6 +59,7 @@ private:
     Rows left;
     std::vector<Group> group;
     std::vector<LeftOut> left_out;  ///< what is empty: its multipliers and unknowns stay as they are
+    std::vector<int> soft;          ///< of the rows that give way, those that are left
     int bodies = 0;
 };
 

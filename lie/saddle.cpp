@@ -52,7 +52,7 @@ void Saddle::analyse()
 {
     const Rows& R = solved();
     const int rows = R.rows();
-    slot.clear(), mass_slot.clear(), opening_slot.clear();
+    slot.clear(), mass_slot.clear(), opening_slot.clear(), soft_slot.clear();
     // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
     std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
     std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
@@ -98,6 +98,10 @@ void Saddle::analyse()
         if (std::find(R.opening.begin(), R.opening.end(), k) != R.opening.end()) {
             opening_slot.push_back(static_cast<int>(row_index.size()));
             row_index.push_back(6 * bodies + k);
+        }
+        if (R.gives_way(k)) {
+            if (row_index.back() != 6 * bodies + k) row_index.push_back(6 * bodies + k);
+            soft_slot.push_back(static_cast<int>(row_index.size()) - 1);
         }
         end_column();
     }
@@ -176,13 +180,34 @@ void Saddle::fill()
         for (int c = 0; c < group.count; ++c)
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
+    const Rows& R = solved();
     for (size_t n = 0; n < opening_slot.size(); ++n)  // an empty row leaves its multiplier alone
         klu.value[opening_slot[n]] = C.empty(C.opening[n]) ? -1 : 0;
+    if (R.opening.empty())  // what gives way is left out where it is empty
+        for (const int at : soft_slot) klu.value[at] = 0;
+    for (size_t n = 0; n < soft_slot.size(); ++n) {
+        const Rows::Compliant& c = R.compliant[n / 2];
+        const double of_row = scale[6 * bodies + c.first + static_cast<int>(n % 2)];
+        klu.value[soft_slot[n]] -= of_row * of_row * c.softness;
+    }
 }
 
-void Saddle::assemble(const State& x)
+void Saddle::assemble(const State& x, double step)
 {
+    h = step;
     system.variation(x, C);
+    C.soften(h);
+    factor_rows(x);
+}
+
+void Saddle::give_way(const State& x)
+{
+    C.soften(h);
+    factor_rows(x);
+}
+
+void Saddle::factor_rows(const State& x)
+{
     leave_out_empty();
     if (elimination) elimination->factor(C);
     by_condensed = condensed != nullptr && condensed->factor(solved());
@@ -198,6 +223,7 @@ void Saddle::assemble(const State& x)
 void Saddle::choose_pivots(const State& x)
 {
     system.variation(x, C);
+    C.soften(h);
     leave_out_empty();
     if (elimination) elimination->factor(C);
     by_condensed = false;
@@ -273,6 +299,8 @@ void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& 
     const auto lambda = z.segment(6 * bodies, m);
     C.add_transpose(1, lambda, out);
     for (int k = 0; k < m; ++k) out[6 * bodies + k] = C.dot(k, z);
+    for (const Rows::Compliant& c : C.compliant)
+        for (int k = 0; k < 2; ++k) out[6 * bodies + c.first + k] -= c.softness * lambda[c.first + k];
     if (C.massless.empty()) return;
     out.tail(unknowns).setZero();
     C.add_massless_transpose(1, lambda, out.tail(unknowns));

@@ -7,7 +7,7 @@
 ///
 /// It gives the accelerations and multipliers of a state (Fang 2022, Eqs. 2.9, 2.17), and it is the frozen
 /// Newton matrix of the fully implicit scheme (3.23, force sensitivities dropped) and of both half-implicit
-/// ones (3.32, 3.51). It does not contain h.
+/// ones (3.32, 3.51). It does not contain h, but on the diagonal of rows that give way: Rows::soften.
 ///
 /// With massless unknowns α there is Φ_α in the constraint rows and Φ_αᵀ under a zero diagonal block, as in Eq. 5.48;
 /// α stands last.
@@ -48,8 +48,12 @@ public:
     /// With KLU the pivot order of the last full factorisation
     /// is kept while it serves (klu_refactor); when the reciprocal condition says that it no longer does,
     /// pivots are chosen anew. Throws SingularMatrix when that does not help, NonFinite when the rows are not
-    /// finite.
-    void assemble(const State& x);
+    /// finite. Rows that give way do so over a step h.
+    void assemble(const State& x, double h = 0);
+    /// How much softer than they are those rows are taken: p of each, by the next assemble() or give_way()
+    void set_softer(int n, double p) { C.compliant[n].p = p; }
+    /// Factors K anew with those, of the rows and the h of the last assemble(); x as there
+    void give_way(const State& x);
 
     /// The state at which KLU's pivots in use were chosen; without bodies where there are none.
     const State& pivots() const { return pivot_state; }
@@ -95,6 +99,7 @@ private:
     void scale_rows();
     void fill();
     void factor(const State& x);
+    void factor_rows(const State& x);
 
     /// The rows that the factors are made of
     const Rows& solved() const { return elimination ? elimination->reduced() : C; }
@@ -113,6 +118,7 @@ private:
 
     std::unique_ptr<Condensed> condensed;
     bool by_condensed = false;  ///< the factors in use
+    double h = 0;               ///< of the last assemble()
     long by_blocks = 0;
 
     // K scaled to S K S with S chosen so that the diagonal blocks and the rows have length one
@@ -125,6 +131,7 @@ private:
     std::vector<Slot> slot;
     std::vector<int> mass_slot;
     std::vector<int> opening_slot;  ///< diagonal entries of the rows that may be empty
+    std::vector<int> soft_slot;     ///< and of those that give way
     Eigen::VectorXd work, residual, right_side;
 
     State pivot_state;

@@ -4,7 +4,7 @@
 ///     M r̈ + Φ_rᵀ λ = F,    J̄ ω̄̇ + Π̄ᵀ λ = τ̄ = n̄ - ω̄ × J̄ ω̄,    Φ(r, A, t) = 0           Fang (2022), Eq. 3.4
 ///
 /// Rows may bring unknowns α without mass, and then Φ(r, A, α, t) = 0 and Φ_αᵀ λ = 0 (5.33). The last rows may hold
-/// velocities alone, Φ_r ṙ + Π̄ ω̄ = ν, as rolling does: there is no Φ of them.
+/// velocities alone, Φ_r ṙ + Π̄ ω̄ = ν, as rolling does: there is no Φ of them. Some of those may give way, as friction does.
 
 #pragma once
 
@@ -50,13 +50,50 @@ struct Rows {
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> D;  ///< ∂Φ/∂α, rows × count
     };
 
+    /// Two rows of velocities, first and first + 1, that give way: with C their derivatives, v = (ṙ, ω̄) and λ their two
+    /// multipliers, over a step h that ends with v
+    ///
+    ///     λ = K (S + h C v) + D C v                             a spring and a dashpot, both of the end of the step
+    ///     |λ| ≤ μ N,  N = n · (multipliers of the rows pressing …  pressing + 2);  0 where N is negative
+    ///
+    /// Where they would be beyond their bound they are p times softer, p λ = K (S + h C v) + D C v: then λ is as long as the
+    /// bound, and against what is left of the motion. See GiveWay for p.
+    struct Compliant {
+        int first = 0, pressing = 0;  ///< both rows belong to those that open
+        bool early = false;           ///< within its bound before those that are not are looked at
+        double K = 0, D = 0, mu = 0;  ///< K is 0 where the rows are empty
+        Eigen::Vector2d S = Eigen::Vector2d::Zero();
+        Vec3 n = Vec3::Zero();
+        double p = 1, softness = 0;  ///< not of the system; with a minus on the diagonal of K
+
+        double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }  ///< C v/λ where S = 0
+    };
+
     std::vector<int> start{0};
     std::vector<Entry> entry;
     std::vector<Massless> massless;
+    std::vector<Compliant> compliant;
     int velocity_rows = 0;  ///< how many of the last rows hold velocities alone
     /// Rows that hold nothing in some states, where all their derivatives are zero and so is Φ: then their multipliers
-    /// stay as they are.
+    /// stay as they are. Ascending.
     std::vector<int> opening;
+
+    /// Makes C (h v) - softness (h² λ) = -h K S/(D + h K) of the rows that give way; empties them for h = 0, as there is no time
+    /// in which they could resist.
+    void soften(double h)
+    {
+        for (Compliant& c : compliant) {
+            c.softness = h > 0 ? c.p * c.mobility(h) / h : 0;
+            for (int n = start[c.first]; h == 0 && n < start[c.first + 2]; ++n)
+                entry[n].r.setZero(), entry[n].pi.setZero();
+        }
+    }
+    bool gives_way(int k) const
+    {
+        for (const Compliant& c : compliant)
+            if (k == c.first || k == c.first + 1) return true;
+        return false;
+    }
 
     /// Whether row k holds nothing in this state; of a group with massless unknowns the last row is asked.
     bool empty(int k) const

@@ -40,7 +40,8 @@ const bool enrolled = enrol<HalfImplicit1>({.name = "rA-half-1",
                                             .unknowns = "r, h omega, h^2 lambda",
                                             .source = "Fang (2022), Sec. 3.5",
                                             .massless = true,
-                                            .velocities = true});
+                                            .velocities = true,
+                                            .compliant = true});
 
 }  // namespace
 }  // namespace hilda::lie

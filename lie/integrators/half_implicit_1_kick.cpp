@@ -34,7 +34,8 @@ const bool enrolled =
                               .unknowns = "r, h omega, h^2 lambda",
                               .source = "Fang (2022), Sec. 3.5, with leapfrog's start and velocities",
                               .massless = true,
-                              .velocities = true});
+                              .velocities = true,
+                              .compliant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -87,7 +87,8 @@ private:
                 J_bar_inverse[i] * (momentum(i, theta) - momentum(i, -before)) - theta - before;
         }
         const Rows& C = rows_of_node();
-        for (int k = C.position_rows(); k < C.rows(); ++k) K.constraint_part(e)[k] -= C.dot(k, beyond);
+        for (int k = C.position_rows(); k < C.rows(); ++k)
+            if (!C.gives_way(k)) K.constraint_part(e)[k] -= C.dot(k, beyond);
     }
 
     /// ω̄_n of the angular momentum half-way between those on both sides
@@ -108,7 +109,8 @@ const bool enrolled =
                                   .unknowns = "r, h omega, h^2 lambda",
                                   .source = "Fang (2022), Sec. 3.5, as the leapfrog of angular momentum",
                                   .massless = true,
-                                  .velocities = true});
+                                  .velocities = true,
+                                  .compliant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/body.hpp"
-#include "lie/state.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::dae {
 
@@ -17,6 +17,10 @@ public:
 
     virtual int rows() const = 0;  ///< of positions; at most 8
     virtual int velocity_rows() const { return 0; }
+    /// Whether those give way in pairs, as lie::Rows::Compliant says; compliance() has K, D, S, μ, n of each pair.
+    virtual bool gives_way() const { return false; }
+    int pairs() const { return gives_way() ? velocity_rows() / 2 : 0; }
+    virtual bool is_early(int /*pair*/) const { return false; }
     virtual int unknowns() const = 0;
     /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
     virtual int remembered() const { return 0; }
@@ -37,6 +41,7 @@ public:
         double t;
         const double *alpha, *remembered;
         bool open;
+        const Eigen::VectorXd* lambda = nullptr;  ///< of the whole system
     };
     virtual void phi(const At& x, double* out) const = 0;
     /// Derivatives of all rows: (r, π̄) of each body, and Φ_α of the rows of positions
@@ -48,6 +53,8 @@ public:
     virtual void variation(const At& x, Derivatives& out) const = 0;
     /// γ of all rows, with Φ_α α̈ on the left for rows of positions
     virtual void gamma(const At& x, double* out) const = 0;
+    /// Into the pairs that give way, in the order of their rows
+    virtual void compliance(const At& /*x*/, lie::Rows::Compliant* /*out*/) const {}
     /// Bit c of the first twelve is clear where derivative c of this row, (r, pi) of body i and then of j, is always zero.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
 

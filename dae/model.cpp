@@ -243,7 +243,14 @@ void Model::set_pattern()
         c->first_velocity_row = rows_pattern.rows();
         add_to_pattern(*c, c->rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
-        for (int k = 0; c->opens() && k < c->velocity_rows(); ++k)
+        for (int n = 0; n < c->pairs(); ++n) {
+            lie::Rows::Compliant pair;
+            pair.first = c->first_velocity_row + 2 * n;
+            pair.pressing = c->first_row;
+            pair.early = c->is_early(n);
+            rows_pattern.compliant.push_back(pair);
+        }
+        for (int k = 0; (c->opens() || c->gives_way()) && k < c->velocity_rows(); ++k)
             rows_pattern.opening.push_back(c->first_velocity_row + k);
     }
 }
@@ -365,8 +372,12 @@ void Model::variation(const State& x, lie::Rows& out) const
                 out.entry[e].pi = of_body.row(of_c + k).tail<3>();
             }
     };
+    lie::Rows::Compliant* pair = out.compliant.data();
     for (size_t n = 0; n < with_unknowns.size(); ++n) {
         const Constraint& c = *with_unknowns[n];
+        for (int p = 0; p < c.pairs(); ++p) pair[p].K = 0;
+        if (!open(c, x)) c.compliance(at(c, x), pair);
+        pair += c.pairs();
         d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_alpha.setZero(c.rows(), c.unknowns());

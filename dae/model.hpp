@@ -72,7 +72,8 @@ public:
                 x.t,
                 x.alpha.data() + c.first_alpha,
                 x.remembered.data() + c.first_remembered,
-                open(c, x)};
+                open(c, x),
+                &x.lambda};
     }
     /// Whether it holds nothing at present. Its rows are then empty.
     static bool open(const Constraint& c, const State& x) { return mode(c, x) != Constraint::holds; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dae/start.hpp"
 
+#include "lie/give_way.hpp"
+
 #include <SuiteSparseQR.hpp>
 
 #include <algorithm>
@@ -37,7 +39,8 @@ const Constraint& contact_of(const Model& model, const State& x, int k)
     for (const bool of_velocities : {false, true})
         for (const auto& c : model.evolving()) {
             if (Model::open(*c, x)) continue;
-            row += of_velocities ? c->velocity_rows() : c->rows() - c->unknowns();
+            const int held = c->gives_way() ? 0 : c->velocity_rows();
+            row += of_velocities ? held : c->rows() - c->unknowns();
             if (k < row) return *c;
         }
     throw std::logic_error("no contact has this row");
@@ -50,6 +53,7 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
     lie::Rows whole = model.pattern();
     model.variation(x, whole);
+    whole.soften(0);  // what gives way leaves nothing undetermined
     std::vector<char> empty(whole.rows(), 0);
     for (const int k : whole.opening) empty[k] = whole.empty(k);
     lie::Elimination contacts(whole, empty);  // a contact is the one row that is left of it
@@ -235,9 +239,34 @@ void project_velocities(const lie::System& system, lie::Saddle& K, State& x)
     }
 }
 
+namespace {
+
+// Friction in the equations of a step is, at a start, as stiff as over a long step, and stops what slips within an instant,
+// if it can [s].
+constexpr double as_stiff_as_in = 1, an_instant = 1e-6;
+
+/// C a = γ - C v/τ for the rows that give way, so that their acceleration is γ where nothing slips and against the slip where
+/// something does
+void stop_within(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd& a)
+{
+    for (const lie::Rows::Compliant& c : C.compliant)
+        for (int k = c.first; k < c.first + 2; ++k) {
+            double slip = 0;
+            for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
+                const lie::Motion& body = x.body[C.entry[n].body];
+                slip += C.entry[n].r.dot(body.rdot) + C.entry[n].pi.dot(body.omega_bar);
+            }
+            a[6 * static_cast<int>(x.body.size()) + k] -= slip / tau;
+        }
+}
+
+}  // namespace
+
 void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
 {
-    K.assemble(x);
+    lie::GiveWay within_bounds(system.pattern());
+    within_bounds.all_stick(K);
+    K.assemble(x, as_stiff_as_in);
     lie::Loads loads(system.bodies());
     system.loads(x, loads);
     Eigen::VectorXd a(K.size());
@@ -248,8 +277,19 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
     }
     K.massless_part(a).setZero();
     system.gamma(x, K.constraint_part(a));
+    stop_within(an_instant, K.rows(), x, a);
     if (!a.allFinite()) throw lie::NonFinite("a load or a constraint is not finite");
-    K.solve_refined(a);
+    const Eigen::VectorXd right_side = a;
+    constexpr int most = 100;
+    for (int k = 0;; ++k) {
+        K.solve_refined(a);
+        if (within_bounds(K, K.rows(), a, x)) break;
+        if (k == most)
+            throw lie::NumericalFailure(
+                "start_not_converged",
+                "friction and the normal forces that bound it do not settle at the start");
+        a = right_side;
+    }
     for (int b = 0; b < system.bodies(); ++b) {
         x.body[b].rddot = a.segment<3>(6 * b);
         x.body[b].omegadot_bar = a.segment<3>(6 * b + 3);
@@ -403,7 +443,10 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().unknowns();
     for (const auto& c : model.evolving())
-        if (Model::open(*c, x)) report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
+        if (Model::open(*c, x))
+            report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
+        else if (c->gives_way())
+            report.rank -= c->velocity_rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
     lie::Saddle K(model, lie::Metric::mass, solver_of(model));

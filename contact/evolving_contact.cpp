@@ -4,7 +4,10 @@
 #include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+
+#include <algorithm>
 
 namespace hilda::contact {
 
@@ -95,10 +98,23 @@ Vec3 velocity(const Motion& body, const Vec3& arm)
 
 EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
                                  NormalRows normal_rows, const Unilateral& unilateral)
+    : EvolvingContact(i, shape_i, j, shape_j, friction, {}, normal_rows, unilateral)
+{}
+
+EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
+                                 const ImplicitFriction& law, NormalRows normal_rows,
+                                 const Unilateral& unilateral)
+    : EvolvingContact(i, shape_i, j, shape_j, Friction::implicit, law, normal_rows, unilateral)
+{}
+
+EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
+                                 const ImplicitFriction& law, NormalRows normal_rows,
+                                 const Unilateral& unilateral)
     : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(smaller_size(shape_i, shape_j)),
-      friction(friction), normal_rows(normal_rows), unilateral(unilateral), common_normal(shape_i, shape_j),
-      detector(make_detector(shape_i, shape_j))
+      friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
+      common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j))
 {
+    if (gives_way()) law.validate();
     if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
         lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",
                     unilateral.restitution);
@@ -137,10 +153,13 @@ void EvolvingContact::variation(const At& x, Derivatives& out) const
         out.of_alpha.template block<3, 3>(0, column) = sign * body.A;
         out.of_alpha.template block<2, 3>(3, column) = L * (T.transpose() * side.dn * body.A);
         out.of_alpha.template block<1, 3>(column == 0 ? 5 : 6, column) = side.u.transpose() * body.A;
-        if (friction != Friction::rolling) return;
+        if (friction == Friction::none) return;
         const Mat32 across = tangents_across(x, side_i.n);
         of_body.template block<2, 3>(7, 0) = sign * across.transpose();
         of_body.template block<2, 3>(7, 3) = -sign * (across.transpose() * lie::tilde(side.arm) * body.A);
+        if (law.resists_rolling())
+            of_body.template block<2, 3>(9, 3) =
+                sign * (across.transpose() * levers(touch(x), side_i.n) * lie::tilde(side_i.n) * body.A);
     };
     fill(side_i, x.bi, 1, out.of_i, 0);
     fill(side_j, x.bj, -1, out.of_j, 3);
@@ -185,8 +204,59 @@ void EvolvingContact::gamma(const At& x, double* out) const
     of(shape_j, side_j, omega_j, adot_j, point_j, normal_j, out[6], material_j);
     Vec3::Map(out) = point_j - point_i;
     Eigen::Vector2d::Map(out + 3) = -L * (tangents(x).transpose() * (normal_i + normal_j));
-    if (friction == Friction::rolling)
+    if (friction != Friction::none)
         Eigen::Vector2d::Map(out + 7) = tangents_across(x, n).transpose() * (material_j - material_i);
+    if (law.resists_rolling()) Eigen::Vector2d::Map(out + 9).setZero();  // of bodies that do not roll as yet
+}
+
+Mat3 EvolvingContact::levers(const Touch& at, const Vec3& n) const
+{
+    const Mat32 T = tangent_basis(n);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> kappa;
+    kappa.computeDirect(T.transpose() * (at.K_i + at.K_j) * T);
+    const Eigen::Vector2d longest = Eigen::Vector2d::Constant(10 * L);
+    const Mat32 along = T * kappa.eigenvectors();
+    return along * kappa.eigenvalues().cwiseInverse().cwiseMin(longest).asDiagonal() * along.transpose();
+}
+
+void EvolvingContact::compliance(const At& x, lie::Rows::Compliant* out) const
+{
+    const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
+    const auto set = [&](lie::Rows::Compliant& pair, const double* by, double K, double D, double factor) {
+        pair.K = K, pair.D = D, pair.n = n;
+        pair.S = Eigen::Vector2d::Map(by);
+        pair.mu = factor * (by[2] != 0 ? law.mu_k : law.mu_s);
+    };
+    if (!gives_way()) return;
+    set(out[slips], x.remembered + slides_by, law.K_E, law.K_D, 1);
+    if (!law.resists_rolling()) return;
+    const double kappa = 2 / levers(touch(x), n).trace();
+    set(out[rolls], x.remembered + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
+        2 * law.eta_r);
+}
+
+/// S, Z and what slips, out of the multipliers of the step that led here
+void EvolvingContact::give_way(const At& x, bool start, double* remembered) const
+{
+    constexpr double at_bound = 1e-4;  // of |λ|, see lie::GiveWay
+    const double h = start ? 0 : x.t - remembered[instant];
+    remembered[instant] = x.t;
+    if (start || x.open) {
+        std::fill(remembered + slides_by, remembered + 14, 0.);
+        return;
+    }
+    lie::Rows::Compliant pair[2];
+    compliance(x, pair);
+    const Vec3 Psi = x.lambda->segment<3>(first_row);
+    const double N = Psi.dot(pair[slips].n) > 0 ? Psi.norm() : 0;
+    for (const Pair p : {slips, rolls}) {
+        if (p == rolls && !law.resists_rolling()) continue;
+        double* by = remembered + (p == slips ? slides_by : rolls_by);
+        const lie::Rows::Compliant& c = pair[p];
+        const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
+        Eigen::Vector2d::Map(by) += h * c.mobility(h) * (lambda - c.K * c.S);
+        by[2] = lambda.norm() > (1 - at_bound) * c.mu * N;
+    }
 }
 
 unsigned EvolvingContact::nonzero(int row) const
@@ -198,6 +268,7 @@ unsigned EvolvingContact::nonzero(int row) const
     }
     if (row < 5) return turns | turns << 6;
     if (row < 7) return 0;
+    if (row > 8) return turns | turns << 6;
     return 0b111111111111;
 }
 
@@ -267,6 +338,7 @@ bool EvolvingContact::remember(const At& x, bool start, double* remembered) cons
         T.col(1) = n_i.cross(T.col(0));
     }
     Mat32::Map(remembered) = T;
+    if (gives_way()) give_way(x, start, remembered);
     return true;
 }
 
@@ -311,9 +383,11 @@ std::string EvolvingContact::objection(const At& x) const
 
 std::string EvolvingContact::row_name(int row) const
 {
-    constexpr const char* names[] = {"Psi x",  "Psi y",  "Psi z",     "N 1",      "N 2",
-                                     "G of i", "G of j", "rolling 1", "rolling 2"};
-    return names[row];
+    constexpr const char* names[] = {"Psi x",     "Psi y",        "Psi z",       "N 1",
+                                     "N 2",       "G of i",       "G of j",      "rolling 1",
+                                     "rolling 2", "resistance 1", "resistance 2"};
+    constexpr const char* sliding[] = {"sliding 1", "sliding 2"};
+    return gives_way() && (row == 7 || row == 8) ? sliding[row - 7] : names[row];
 }
 
 EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eigen::VectorXd& lambda) const
@@ -324,13 +398,15 @@ EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eig
     m.G = lambda.segment<2>(first_row + 5);
     m.rolling.setZero();
     m.friction.setZero();
+    m.resistance.setZero();
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
     m.F_N = m.Psi.dot(n);
     m.tangential = m.Psi - m.F_N * n;
-    if (friction == Friction::rolling) {
+    if (friction != Friction::none) {
         m.rolling = lambda.segment<2>(first_velocity_row);
         m.friction = -tangents_across(x, n) * m.rolling;
     }
+    if (law.resists_rolling()) m.resistance = lambda.segment<2>(first_velocity_row + 2);
     return m;
 }
 

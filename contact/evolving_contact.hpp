@@ -6,6 +6,7 @@
 
 #include "contact/detection.hpp"
 #include "contact/detectors/common_normal.hpp"
+#include "contact/implicit_friction.hpp"
 #include "contact/shape.hpp"
 #include "dae/model.hpp"
 
@@ -43,20 +44,31 @@ public:
     enum class NormalRows { tangent, fixed_xy };
     enum class Friction {
         none,  ///< or one that a force adds
-        rolling  ///< ideal: the material points in contact have one velocity, two rows more           (non-holonomic)
+        rolling,  ///< ideal: the material points in contact have one velocity, two rows more          (non-holonomic)
+        implicit  ///< that of Chapter 4 in the equations of the step: those two rows give way, and two more of rolling
     };
 
     /// Bodies i and j of the model, `ground` for the fixed one. InvalidInput for two planes, and for e outside 0 … 1.
     EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
                     Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent,
                     const Unilateral& unilateral = {});
+    /// With friction that is implicit
+    EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
+                    const ImplicitFriction& friction, NormalRows normal_rows = NormalRows::tangent,
+                    const Unilateral& unilateral = {});
 
     int rows() const override { return 7; }
-    int velocity_rows() const override { return friction == Friction::rolling ? 2 : 0; }
+    int velocity_rows() const override
+    {
+        return friction == Friction::none ? 0 : law.resists_rolling() ? 4 : 2;
+    }
+    bool gives_way() const override { return friction == Friction::implicit; }
+    bool is_early(int pair) const override { return pair == rolls; }
     int unknowns() const override { return 6; }
-    /// T by columns, and when it last rebounded [s]
-    int remembered() const override { return 7; }
-    static constexpr int rebounded = 6;
+    /// T by columns, and when it last rebounded [s]; of implicit friction the instant of this [s], and of sliding and rolling
+    /// S or Z along T [m] and whether it slips
+    int remembered() const override { return gives_way() ? 14 : 7; }
+    static constexpr int rebounded = 6, instant = 7, slides_by = 8, rolls_by = 11;
     bool opens() const override { return unilateral.opens || fallback; }
     bool hands_over() const override { return fallback; }
 
@@ -64,6 +76,7 @@ public:
     void variation(const At& x, Derivatives& out) const override;
     void gamma(const At& x, double* out) const override;
     unsigned nonzero(int row) const override;
+    void compliance(const At& x, lie::Rows::Compliant* out) const override;
     void track(const At& x, bool afresh, double* alpha) const override;
     bool remember(const At& x, bool start, double* remembered) const override;
     double gap(const At& x) const override { return touch(x).gap; }
@@ -79,16 +92,18 @@ public:
     /// Multipliers of this contact out of those of a model: λ_Ψ [N, global], λ_N, λ_G, those of rolling [N]
     struct Multipliers {
         Vec3 Psi;
-        Eigen::Vector2d N, G, rolling;
-        double F_N;       ///< λ_Ψ · n_i [N]
-        Vec3 tangential;  ///< λ_Ψ - F_N n_i, zero but for rounding
-        Vec3 friction;    ///< of rolling, on body i [N, global]
+        Eigen::Vector2d N, G, rolling;  ///< or of implicit friction
+        double F_N;                     ///< λ_Ψ · n_i [N]
+        Vec3 tangential;                ///< λ_Ψ - F_N n_i, zero but for rounding
+        Vec3 friction;                  ///< of rolling or of implicit friction, on body i [N, global]
+        Eigen::Vector2d resistance;     ///< λ_R of implicit friction [N]
     };
     Multipliers multipliers(const At& x, const Eigen::VectorXd& lambda) const;
 
     const Shape shape_i, shape_j;
     const double L;  ///< [m]
     const Friction friction;
+    const ImplicitFriction law;  ///< where friction is implicit
     const NormalRows normal_rows;
     const Unilateral unilateral;
     /// Whether a ContactForce stands by where there is no single contact point, or where the force of this contact is not
@@ -96,12 +111,19 @@ public:
     bool fallback = false;
 
 private:
+    EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
+                    const ImplicitFriction& law, NormalRows normal_rows, const Unilateral& unilateral);
+
     struct Side;
     using Mat32 = Eigen::Matrix<double, 3, 2>;
     Mat32 tangents(const At& x) const;
     /// T of the node, put into the plane across n
     Mat32 tangents_across(const At& x, const Vec3& n) const;
     Touch near_touch(const At& x) const;
+    enum Pair { slips = 0, rolls = 1 };
+    /// (K_i + K_j)⁻¹ in the tangent plane of global axes, 1/κ no longer than ten times L
+    Mat3 levers(const Touch& at, const Vec3& n) const;
+    void give_way(const At& x, bool start, double* remembered) const;
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;

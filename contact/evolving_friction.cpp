@@ -22,6 +22,8 @@ EvolvingFriction::EvolvingFriction(const dae::Model& model, const EvolvingContac
 {
     if (contact.friction == EvolvingContact::Friction::rolling)
         lie::reject(in_words(), "a contact that rolls ideally has no friction besides", "a friction law");
+    if (contact.friction == EvolvingContact::Friction::implicit)
+        lie::reject(in_words(), "a contact has friction either in its equations or as a force", "both");
 }
 
 Touch EvolvingFriction::touch(const lie::State& x) const

@@ -91,12 +91,15 @@ public:
     Touch touch(const At& x) const;
     /// Multipliers of this contact out of those of a model: λ_Ψ [N, global], λ_N, λ_G, those of rolling [N]
     struct Multipliers {
-        Vec3 Psi;
-        Eigen::Vector2d N, G, rolling;  ///< or of implicit friction
-        double F_N;                     ///< λ_Ψ · n_i [N]
-        Vec3 tangential;                ///< λ_Ψ - F_N n_i, zero but for rounding
-        Vec3 friction;                  ///< of rolling or of implicit friction, on body i [N, global]
-        Eigen::Vector2d resistance;     ///< λ_R of implicit friction [N]
+        using Vec2 = Eigen::Vector2d;
+
+        Vec3 Psi = Vec3::Zero();
+        Vec2 N = Vec2::Zero(), G = Vec2::Zero();
+        Vec2 rolling = Vec2::Zero();     ///< or of implicit friction
+        double F_N = 0;                  ///< λ_Ψ · n_i [N]
+        Vec3 tangential = Vec3::Zero();  ///< λ_Ψ - F_N n_i, zero but for rounding
+        Vec3 friction = Vec3::Zero();    ///< of rolling or of implicit friction, on body i [N, global]
+        Vec2 resistance = Vec2::Zero();  ///< λ_R of implicit friction [N]
     };
     Multipliers multipliers(const At& x, const Eigen::VectorXd& lambda) const;
 

@@ -29,7 +29,7 @@ namespace {
 
 using dae::ObjectReader;
 
-constexpr const char *rolling = "rolling", *slide_roll_spin = "slide-roll-spin";
+constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
 
 double from_zero_to_one(ObjectReader& o, std::string_view key, double fallback)
 {
@@ -158,21 +158,41 @@ HeldNormal read_held_normal(ObjectReader& o)
 struct HeldFriction {
     bool rolls = false;
     std::shared_ptr<const FrictionModel> law;
+    std::optional<ImplicitFriction> within_step;  ///< rows of the constraint
 };
+
+ImplicitFriction read_implicit(ObjectReader& o)
+{
+    ImplicitFriction f;
+    f.mu_s = o.not_negative("mu_s");
+    f.mu_k = o.not_negative("mu_k", f.mu_s);
+    if (f.mu_k > f.mu_s)
+        o.fail("mu_k",
+               "mu_k must not be above mu_s, " + dae::shortest(f.mu_s) + ", got " + dae::shortest(f.mu_k));
+    f.K_E = o.positive("K_E");
+    f.K_D = o.not_negative("D_slide", 0);
+    f.eta_r = o.not_negative("eta_r", 0);
+    f.D_roll = o.not_negative("D_roll", 0);
+    return f;
+}
 
 HeldFriction read_held_friction(ObjectReader& contact, const HeldNormal& normal)
 {
     if (!contact.has("friction")) return {};
     ObjectReader o = contact.object("friction");
     std::vector<std::string> laws = names_of_laws();
-    laws.insert(laws.begin(), rolling);
+    laws.insert(laws.begin(), {rolling, implicit});
     const std::string law = o.one_of("law", laws, slide_roll_spin);
-    HeldFriction held{.rolls = law == rolling, .law = nullptr};
-    if (held.rolls && normal.fallback != nullptr)
+    HeldFriction held{.rolls = law == rolling, .law = nullptr, .within_step = {}};
+    if ((held.rolls || law == implicit) && normal.fallback != nullptr)
         o.fail("law",
-               "a contact with a fallback needs a law that the fallback can have too, with mu_s and K_E; got "
-               "\"rolling\", which would end where it hands over");
-    if (!held.rolls)  // the constraint has no modulus, and the friction of the fallback is the same
+               "a contact with a fallback needs a law that the fallback can have too, such as "
+               "slide-roll-spin; got "
+               "\"" +
+                   law + "\", which would end where it hands over");
+    if (law == implicit)
+        held.within_step = read_implicit(o);
+    else if (!held.rolls)  // the constraint has no modulus, and the friction of the fallback is the same
         held.law = read_law(o, law, GivenForce(0));
     contact.keep("friction", o.finish());
     return held;
@@ -194,10 +214,14 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& 
     const HeldFriction friction = read_held_friction(o, held);
     check_smooth(o, "surface_i", i);
     check_smooth(o, "surface_j", j);
-    auto constraint = std::make_unique<EvolvingContact>(
-        pair.i, i, pair.j, j,
-        friction.rolls ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none, held.rows,
-        held.unilateral);
+    auto constraint =
+        friction.within_step
+            ? std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, *friction.within_step, held.rows,
+                                                held.unilateral)
+            : std::make_unique<EvolvingContact>(
+                  pair.i, i, pair.j, j,
+                  friction.rolls ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none,
+                  held.rows, held.unilateral);
     const EvolvingContact& contact = *constraint;
     constraint->fallback = held.fallback != nullptr;
     pair.model.constrain(pair.name, std::move(constraint));

@@ -151,6 +151,10 @@ void Model::prepare(State& x)
             if (const std::string why = c.objection(at(c, x)); !why.empty()) {
                 if (!c.hands_over()) refuse(why);
                 x.memory[c.first_memory] = Constraint::handed_over;
+                try {
+                    c.track(at(c, x), true, x.alpha.data() + c.first_alpha);  // for who looks at it
+                } catch (const lie::NumericalFailure&) {
+                }
                 continue;
             }
             c.track(at(c, x), true, x.alpha.data() + c.first_alpha);

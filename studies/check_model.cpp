@@ -237,9 +237,12 @@ int check_model(const CheckOptions& options)
     const std::vector<Touching> touching = contacts(model, d.x);
     const std::vector<Evolving> held = evolving(model, d.x);
     const int of_contacts = contact_rank(model, d.x);
-    lie::Saddle K(model);
-    K.assemble(d.x);
-    const double condition = 1 / K.reciprocal_condition();
+    double condition = std::nan("");
+    if (!held.empty()) {
+        lie::Saddle K(model);
+        K.assemble(d.x);
+        condition = 1 / K.reciprocal_condition();
+    }
     const auto other_forces = std::count_if(
         model.forces().begin(), model.forces().end(),
         [](const auto& force) { return dynamic_cast<const contact::TrackedForce*>(force.get()) == nullptr; });

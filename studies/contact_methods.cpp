@@ -7,7 +7,7 @@
 /// many    That ball 1 to 10000 times in one bowl, each by itself: CPU time of a step and contact.
 /// chain   Balls in a row in a groove down a slope, held by the first, 1 to 3333, three contacts a ball: forces that go
 ///         through all of them. At rest; what moves is wrong.
-/// pile    Balls fall into a bowl and come to rest: contacts come and go, and may be more than the freedoms.
+/// pile    Balls fall into a bowl without friction: contacts come and go, and may be more than the freedoms.
 
 #include "studies/arguments.hpp"
 #include "studies/chosen.hpp"
@@ -263,7 +263,7 @@ void print(const std::vector<Run>& runs, std::ostream& out)
         {"bowl", "A ball slides in a bowl for 2 s: largest error of its position"},
         {"many", "Balls in a bowl, each by itself: cost of a step"},
         {"chain", "Balls in a row in a groove, held by the first, 0.05 s: what moves of what is at rest"},
-        {"pile", "Balls that fall into a bowl and come to rest, 2 s"}};
+        {"pile", "Balls that fall into a bowl, 2 s"}};
     for (const std::string& part : parts) {
         Table table({{"method"},
                      {"h [s]", "{:g}"},

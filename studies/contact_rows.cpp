@@ -17,12 +17,8 @@ std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model&
 contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
                                              const lie::State& x)
 {
-    if (!dae::Model::open(c, x)) return c.multipliers(model.at(c, x), x.lambda);
-    contact::EvolvingContact::Multipliers none;
-    none.Psi.setZero(), none.tangential.setZero(), none.friction.setZero();
-    none.N.setZero(), none.G.setZero(), none.rolling.setZero();
-    none.F_N = 0;
-    return none;
+    if (dae::Model::open(c, x)) return {};
+    return c.multipliers(model.at(c, x), x.lambda);
 }
 
 ContactForces forces_of(const dae::Model& model, const contact::EvolvingContact& c)

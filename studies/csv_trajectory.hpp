@@ -18,6 +18,14 @@ struct ContactExtremes {
     double F_N_most = -std::numeric_limits<double>::infinity();  ///< [N]
     double lambda_N = 0;  ///< largest |λ_N| [N]: what the normals lack of being those of the surfaces
 
+    /// What may be rounding where nothing presses: 1e-9 of all weights, or of as many kilograms in 1 m/s² [N]
+    static double rounding(const dae::Model& model)
+    {
+        double sum = 0;
+        for (const double m : model.mass().m) sum += m;
+        return 1e-9 * sum * std::max(1.0, model.gravity.norm());
+    }
+
     /// λ_N above this part of F_N is no rounding.
     static constexpr double allowed = 1e-6;
     bool normals_differ() const

@@ -50,7 +50,7 @@ void ModelFrames::accepted(const lie::State& x, long n, int)
                                .C = touch.C(),
                                .N = of.F_N * touch.n,
                                .F = of.friction,
-                               .slipping = c.velocity_rows() == 0,
+                               .slipping = false,
                                .rolling = c.velocity_rows() > 0};
         if (const contact::EvolvingFriction* friction = beside[k].friction; friction != nullptr) {
             const contact::EvolvingFriction::Instant now = friction->at(x);

@@ -84,8 +84,10 @@ Result SingleRun::go()
     march(*integrator, from);
     if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
         for (const contact::ContactEvent& e : events->events())
-            result.events.push_back({e.t, description.model->evolving()[static_cast<size_t>(e.contact)]->name,
-                                     in_words(e.kind), e.speed});
+            if (e.t <= last_node)  // not of the step beyond the end, which completes the last node
+                result.events.push_back({e.t,
+                                         description.model->evolving()[static_cast<size_t>(e.contact)]->name,
+                                         in_words(e.kind), e.speed});
     finish();
     return std::move(result);
 }
@@ -218,6 +220,7 @@ void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoin
     // From the first moment on there is something to go on from.
     if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
     advance(march, integrator, recorder);
+    last_node = march.node().t;
     result.invariants = recorder.invariants();
     recorder.flush();
     judge_contacts();
@@ -234,12 +237,13 @@ void SingleRun::judge_contacts()
     const auto contacts = evolving_contacts(*description.model);
     for (size_t k = 0; k < result.contacts.size(); ++k) {
         const ContactExtremes& c = result.invariants.contact[k];
-        if (c.normals_differ())
+        if (c.normals_differ() && c.lambda_N > ContactExtremes::rounding(*description.model))
             tell(fmt::format(
                 "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
                 "its surfaces are not those of their points",
                 result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
-        if (!contacts[k]->unilateral.opens && c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+        if (!contacts[k]->unilateral.opens && c.F_N_least < -ContactExtremes::rounding(*description.model) &&
+            c.F_N_least < -1e-9 * std::abs(c.F_N_most))
             tell(fmt::format(
                 "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
                 result.contacts[k], -c.F_N_least));

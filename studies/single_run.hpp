@@ -58,6 +58,7 @@ private:
     std::optional<ModelFrames> frames;
     lie::Grid grid;
     std::string settings;
+    double last_node = 0;  ///< time of the last node [s]
     Clock::time_point begin;
     double seconds_before = 0;  ///< of a run that is gone on with
     Result result;

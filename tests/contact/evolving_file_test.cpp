@@ -179,6 +179,26 @@ TEST_CASE("tracked friction of a model file is that of the contact it stands in"
     CHECK(force[1]->stable_step(d.x) == std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE("friction that is solved for with the step needs no small one",
+          "[contact][model_file][evolving][friction]")
+{
+    const std::string friction =
+        R"({"law": "implicit", "mu_s": 0.3, "mu_k": 0.25, "K_E": 1e8, "eta_r": 0.01})";
+    dae::Description d = dae::read_model(model(ball, flat, held, friction), "m.json");
+    const auto& c = dynamic_cast<const EvolvingContact&>(*d.model->evolving()[0]);
+    CHECK(c.friction == EvolvingContact::Friction::implicit);
+    CHECK(d.model->forces().empty());
+    CHECK(dae::read_model(d.text, "again.json").text == d.text);
+    dae::start(d);
+    CHECK(d.model->stable_step(d.x).h == std::numeric_limits<double>::infinity());
+    CHECK_THROWS_WITH(
+        dae::read_model(
+            model(ball, flat, R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1e4}})",
+                  friction),
+            "m.json"),
+        Catch::Contains("/contacts/0/friction/law") && Catch::Contains("got \"implicit\""));
+}
+
 TEST_CASE("a fallback halves no step of the friction that it stands by for",
           "[contact][model_file][evolving][friction]")
 {

@@ -305,9 +305,11 @@ TEST_CASE("a contact that hands over is told of and goes on", "[studies][evolvin
                block + R"(, "surface_j": {"type": "plane"}, "normal": {"type": "constraint")" + fallback +
                R"(}, "friction": {"mu_s": 0.3, "K_E": 1e4}}]})";
     };
-    const std::string rolls = R"("r": [0, 0, 0.3], "axis_angle": [0.8, 0.6, 0, 0.5])",
-                      lies = R"("r": [0, 0, 0.2])",
-                      fallback = R"(, "fallback": {"type": "hooke", "stiffness": 1e5, "restitution": 0.2})";
+    const std::string
+        rolls = R"("r": [0, 0, 0.3], "axis_angle": [0.8, 0.6, 0, 0.5])",
+        lies = R"("r": [0, 0, 0.2])",
+        fallback =
+            R"(, "unilateral": true, "fallback": {"type": "hooke", "stiffness": 1e5, "restitution": 0.2})";
     const auto run = [&](const std::string& text) {
         write(in / "m.json", text);
         return call(in, {"run", "m.json", "--integrator", "rA-half-1-momentum", "--step", "5e-4",

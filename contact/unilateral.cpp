@@ -15,6 +15,7 @@ constexpr double touching = 1e-13;  // a gap, over the size of the contact, that
 constexpr int most_searches = 80;   // steps of regula falsi
 constexpr int most_events = 50;     // for each contact in one step
 constexpr int most_meetings = 3;    // of a contact in one step
+constexpr double rounding = 1e-9;   // of the largest force, and of a size that is approached in a step
 constexpr double rest = 1e-9;       // of a step, that is not worth a step
 
 }  // namespace
@@ -234,11 +235,14 @@ void UnilateralStep::restart(State& x)
 bool UnilateralStep::release_pulling(State& x)
 {
     Contact* worst = nullptr;
-    double least = 0;
-    for (Contact& c : contact)
-        if (closed(c, x) && c.contact->unilateral.opens && !c.held)
-            if (const double F_N = force(c, x, x.lambda); F_N < least) worst = &c, least = F_N;
-    if (worst == nullptr) return false;
+    double least = 0, largest = 0;
+    for (Contact& c : contact) {
+        if (!closed(c, x)) continue;
+        const double F_N = force(c, x, x.lambda);
+        largest = std::max(largest, std::abs(F_N));
+        if (c.contact->unilateral.opens && !c.held && F_N < least) worst = &c, least = F_N;
+    }
+    if (worst == nullptr || !(least < -rounding * largest)) return false;
     happened.push_back(
         {.kind = ContactEvent::Kind::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
     dae::Model::set_mode(*worst->contact, x, dae::Constraint::is_open);
@@ -263,11 +267,13 @@ UnilateralStep::Contact* UnilateralStep::first_to_meet(const State& from, const 
 double UnilateralStep::find_meeting(State& to, double h, Contact*& first)
 {
     first = nullptr;
+    const double whole = h;
     while (Contact* next = first_to_meet(anew, to)) {
         first = next;
         h = zero_of_gap(*next, to, h);
         if (!(h > 0)) {
-            if (!(separation_speed(*next, anew) < 0)) next->held = true;  // it opened here and does not leave
+            // it opened here and does not leave, or there is no impact to speak of
+            if (!(whole * separation_speed(*next, anew) < -rounding * next->contact->L)) next->held = true;
             to = anew;
             return 0;
         }
@@ -294,7 +300,7 @@ double UnilateralStep::zero_of_gap(const Contact& c, State& to, double h)
         if (!(s > a && s < b)) s = 0.5 * (a + b);
         try_step(anew, to, s);
         const double g = gap(c, to);
-        if (std::abs(g) <= none || !(b - a > 1e-15 * h)) break;
+        if (std::abs(g) <= none) return s;
         // regula falsi; the end that stays twice counts half ("Illinois")
         if (g < 0) {
             b = s, g_b = g;
@@ -305,8 +311,11 @@ double UnilateralStep::zero_of_gap(const Contact& c, State& to, double h)
             if (last > 0) g_b /= 2;
             last = 1;
         }
+        if (!(b - a > 1e-15 * h)) break;
     }
-    return s;
+    // rounding is coarser than that: the last that does not overlap
+    try_step(anew, to, a);
+    return a;
 }
 
 /// The velocities of x jump where contact c meets, h being the length of a whole step.
@@ -396,7 +405,6 @@ void UnilateralStep::push(const Contact& c, double impulse, const State& x)
 /// which separates at this speed. Contacts that would have to pull are opened. x.lambda are the impulses.
 void UnilateralStep::jump(State& x, const Contact* rebounding, double speed)
 {
-    constexpr double rounding = 1e-10;  // of the largest impulse
     for (Contact* pulling = nullptr;; pulling = nullptr) {
         K.assemble(x);
         v.setZero();

@@ -205,13 +205,15 @@ void add_pile(std::vector<Run>& runs)
         const ContactScene of = scene(pile);
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
-            Run run{.part = "pile", .method = method, .h = h, .end = 2, .stiffness = k, .bodies = balls};
+            Run run{.part = "pile", .method = method, .h = h, .end = 1, .stiffness = k, .bodies = balls};
             run.make = std::move(make);
             runs.push_back(run);
         };
-        add("evolving", 2e-3, std::nan(""),
-            [=] { return methods::evolving(of, {.reach = 100, .opens = true}); });
-        add("DVI", 1e-3, std::nan(""), [=] { return methods::rigid(of, {.tolerance = 1e-6}); });
+        if (balls <= 4)  // with more, contacts that bear nothing open and close without end
+            add("evolving", 2e-3, std::nan(""),
+                [=] { return methods::evolving(of, {.reach = 100, .opens = true}); });
+        add("DVI", 1e-3, std::nan(""),
+            [=] { return methods::rigid(of, {.tolerance = 1e-5, .most_iterations = 2000}); });
         add("DEM", 2e-4, 1e6, [=] { return methods::springs(of, {.stiffness = 1e6}); });
     }
 }
@@ -263,7 +265,7 @@ void print(const std::vector<Run>& runs, std::ostream& out)
         {"bowl", "A ball slides in a bowl for 2 s: largest error of its position"},
         {"many", "Balls in a bowl, each by itself: cost of a step"},
         {"chain", "Balls in a row in a groove, held by the first, 0.05 s: what moves of what is at rest"},
-        {"pile", "Balls that fall into a bowl, 2 s"}};
+        {"pile", "Balls that fall into a bowl, 1 s"}};
     for (const std::string& part : parts) {
         Table table({{"method"},
                      {"h [s]", "{:g}"},

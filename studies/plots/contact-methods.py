@@ -10,7 +10,7 @@ TITLES = {
     "bowl": "A ball slides in a bowl for 2 s: error of its position",
     "many": "Balls in a bowl, each by itself",
     "chain": "Balls in a groove in a row, three contacts a ball",
-    "pile": "Balls that fall into a bowl, 2 s",
+    "pile": "Balls that fall into a bowl, 1 s",
 }
 
 

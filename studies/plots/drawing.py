@@ -20,6 +20,8 @@ STYLES = {
     "rA-half-2": ("#009e73", "v"), "rA-half-2-bdf2": ("#66c2a5", "<"),
     "rA-genalpha": ("#cc79a7", "P"), "rA-rattle": ("#8c6bb1", "X"), "rA-rkmk-4": ("#e69f00", "*"),
     "ida-rp": ("#000000", "h"), "ida-rp-baumgarte": ("#444444", "H"), "ida-rp-index1": ("#888888", "8"),
+    "evolving": ("#0072b2", "o"), "evolving, KLU": ("#56b4e9", "^"), "evolving, text": ("#332288", "d"),
+    "DVI": ("#d55e00", "s"), "DVI, not stabilised": ("#e69f00", "v"), "DVI, text": ("#cc79a7", "<"), "DEM": ("#009e73", "P"),
     "rp-full-1": ("#a6611a", "s"), "rp-bdf2": ("#dfc27d", "D"),
     "rp-half-1": ("#7f7f7f", "o"), "rp-half-1-kick": ("#b0b0b0", "^"),
     "reps-half-1": ("#4d4d4d", "p"), "reps-half-1-kick": ("#969696", ">"),

@@ -38,8 +38,8 @@ enum class LinearSolver {
 
 class Saddle {
 public:
-    /// Analyses the pattern once; where rows may be empty, and the solver is not klu, whenever others are than before. The
-    /// system must outlive the saddle matrix.
+    /// Analyses the pattern once; but where rows may be empty, and the solver is not klu, anew whenever the set of empty
+    /// rows has changed. The system must outlive the saddle matrix.
     explicit Saddle(const System& system, Metric metric = Metric::mass,
                     LinearSolver solver = LinearSolver::klu);
 

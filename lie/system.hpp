@@ -74,8 +74,8 @@ struct Rows {
     std::vector<Massless> massless;
     std::vector<Compliant> compliant;
     int velocity_rows = 0;  ///< how many of the last rows hold velocities alone
-    /// Rows that hold nothing in some states, where all their derivatives are zero and so is Φ: then their multipliers
-    /// stay as they are. Ascending.
+    /// Rows that hold nothing in some states, where all their derivatives are zero and so is Φ. Their corrections are then
+    /// zero: whoever empties a row sets its multiplier to zero. Ascending.
     std::vector<int> opening;
 
     /// Makes C (h v) - softness (h² λ) = -h K S/(D + h K) of the rows that give way; empties them for h = 0, as there is no time

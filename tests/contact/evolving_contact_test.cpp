@@ -379,7 +379,7 @@ TEST_CASE("a contact whose normals are no longer opposite or whose surfaces fit 
     const Pair pair = pairs(random)[2];
     const EvolvingContact c(0, pair.i, 1, pair.j);
     Touching x = touching(pair, random);
-    Vec6 remembered;
+    Eigen::VectorXd remembered(c.remembered());
     c.remember(x.at(), true, remembered.data());
     const Vec3 n = -c.touch(x.at()).n;
     const auto T = Eigen::Matrix<double, 3, 2>::Map(remembered.data());

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How a room becomes targets.
 
-# One precompiled header, owned by the lowest room, used by all. No source may rely on it: the preset tidy builds
-# without.
+# Two precompiled headers: one owned by the lowest room and used by all rooms, one by its tests and used by all tests.
+# No source may rely on them: the preset tidy builds without.
 function(hilda_precompile target)
     if(NOT HILDA_PCH)
         return()
     endif()
+    set(headers <Eigen/Dense> <cmath> <memory> <string> <vector>)
     if(target STREQUAL "lie_objects")
-        target_precompile_headers(${target} PRIVATE <Eigen/Dense> <cmath> <memory> <string> <vector>)
+        target_precompile_headers(${target} PRIVATE ${headers})
+    elseif(target STREQUAL "test_lie_objects")
+        target_precompile_headers(${target} PRIVATE ${headers} <functional> <sstream> <catch2/catch.hpp>)
+    elseif(target MATCHES "^test_")
+        target_precompile_headers(${target} REUSE_FROM test_lie_objects)
     else()
         target_precompile_headers(${target} REUSE_FROM lie_objects)
     endif()

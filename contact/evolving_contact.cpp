@@ -13,9 +13,9 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double least_relative_curvature =
-    1e-6;  // of K_i + K_j, times L: below, the contact points run away
-constexpr double most_iterations = 50;
+// Of K_i + K_j, times L: below, the contact points run away.
+constexpr double least_relative_curvature = 1e-6;
+constexpr int most_iterations = 50;
 
 double smaller_size(const Shape& i, const Shape& j)
 {
@@ -26,10 +26,6 @@ double smaller_size(const Shape& i, const Shape& j)
                     i.surface->name() + " and " + j.surface->name());
     return a + b;
 }
-
-}  // namespace
-
-namespace {
 
 /// |∇G| at a point of a surface
 double length(const Vec3& gradient, const Vec3& a)
@@ -144,6 +140,11 @@ void EvolvingContact::variation(const At& x, Derivatives& out) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     const Mat32 T = tangents(x);
+    Mat32 across = Mat32::Zero(), turning = Mat32::Zero();  // rows of the slip and of ω_i - ω_j, transposed
+    if (friction != Friction::none) across = tangents_across(x, side_i.n);
+    if (law.resists_rolling())
+        turning = -lie::tilde(side_i.n) *
+                  levers(side_i.shape_operator() + side_j.shape_operator(), side_i.n) * across;
     const auto fill = [&](const CurvedSide& side, const Motion& body, double sign, auto& of_body,
                           int column) {
         // -A ~ᾱ: row c is -e_cᵀ ~(Aᾱ) A = (e_c-th row of A) turned
@@ -154,12 +155,9 @@ void EvolvingContact::variation(const At& x, Derivatives& out) const
         out.of_alpha.template block<2, 3>(3, column) = L * (T.transpose() * side.dn * body.A);
         out.of_alpha.template block<1, 3>(column == 0 ? 5 : 6, column) = side.u.transpose() * body.A;
         if (friction == Friction::none) return;
-        const Mat32 across = tangents_across(x, side_i.n);
         of_body.template block<2, 3>(7, 0) = sign * across.transpose();
         of_body.template block<2, 3>(7, 3) = -sign * (across.transpose() * lie::tilde(side.arm) * body.A);
-        if (law.resists_rolling())
-            of_body.template block<2, 3>(9, 3) =
-                sign * (across.transpose() * levers(touch(x), side_i.n) * lie::tilde(side_i.n) * body.A);
+        if (law.resists_rolling()) of_body.template block<2, 3>(9, 3) = sign * (turning.transpose() * body.A);
     };
     fill(side_i, x.bi, 1, out.of_i, 0);
     fill(side_j, x.bj, -1, out.of_j, 3);
@@ -209,11 +207,11 @@ void EvolvingContact::gamma(const At& x, double* out) const
     if (law.resists_rolling()) Eigen::Vector2d::Map(out + 9).setZero();  // of bodies that do not roll as yet
 }
 
-Mat3 EvolvingContact::levers(const Touch& at, const Vec3& n) const
+Mat3 EvolvingContact::levers(const Mat3& K_sum, const Vec3& n) const
 {
     const Mat32 T = tangent_basis(n);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> kappa;
-    kappa.computeDirect(T.transpose() * (at.K_i + at.K_j) * T);
+    kappa.computeDirect(T.transpose() * K_sum * T);
     const Eigen::Vector2d longest = Eigen::Vector2d::Constant(10 * L);
     const Mat32 along = T * kappa.eigenvectors();
     return along * kappa.eigenvalues().cwiseInverse().cwiseMin(longest).asDiagonal() * along.transpose();
@@ -230,7 +228,8 @@ void EvolvingContact::compliance(const At& x, lie::Rows::Compliant* out) const
     if (!gives_way()) return;
     set(out[slips], x.remembered + slides_by, law.K_E, law.K_D, 1);
     if (!law.resists_rolling()) return;
-    const double kappa = 2 / levers(touch(x), n).trace();
+    const Touch at = touch(x);
+    const double kappa = 2 / levers(at.K_i + at.K_j, n).trace();
     set(out[rolls], x.remembered + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
         2 * law.eta_r);
 }
@@ -241,7 +240,7 @@ void EvolvingContact::give_way(const At& x, bool start, double* remembered) cons
     constexpr double at_bound = 1e-4;  // of |λ|, see lie::GiveWay
     const double h = start ? 0 : x.t - remembered[instant];
     remembered[instant] = x.t;
-    if (start || x.open) {
+    if (start || x.idle) {
         std::fill(remembered + slides_by, remembered + 14, 0.);
         return;
     }
@@ -317,14 +316,13 @@ bool EvolvingContact::remember(const At& x, bool start, double* remembered) cons
         throw lie::NumericalFailure(status, text.str());
     };
     const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
-    if (!x.open) {
+    if (!x.idle) {
         if (const double facing = n_i.dot(at.n); !(facing < -0.5))
             return fail("contact_lost", "the normals are no longer opposite, their product is", facing);
         if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
             return fail("contact_singular",
                         "the surfaces fit each other too well for one contact point: the least sum of "
-                        "curvatures, times "
-                        "a size, is",
+                        "curvatures, times a size, is",
                         least);
     }
     Mat32 T;
@@ -375,8 +373,7 @@ std::string EvolvingContact::objection(const At& x) const
         what << "a surface does not fit into the other: the sum of their curvatures must be positive, got ";
     else
         what << "the surfaces fit each other along a line or a face, and have no single contact point: the "
-                "least sum "
-                "of their curvatures must be positive, got ";
+                "least sum of their curvatures must be positive, got ";
     what << least << " 1/m";
     return what.str();
 }

@@ -122,10 +122,9 @@ private:
     Mat32 tangents(const At& x) const;
     /// T of the node, put into the plane across n
     Mat32 tangents_across(const At& x, const Vec3& n) const;
-    Touch near_touch(const At& x) const;
     enum Pair { slips = 0, rolls = 1 };
     /// (K_i + K_j)⁻¹ in the tangent plane of global axes, 1/κ no longer than ten times L
-    Mat3 levers(const Touch& at, const Vec3& n) const;
+    Mat3 levers(const Mat3& K_sum, const Vec3& n) const;
     void give_way(const At& x, bool start, double* remembered) const;
 
     CommonNormal common_normal;

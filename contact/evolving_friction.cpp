@@ -11,6 +11,7 @@ namespace hilda::contact {
 namespace {
 
 constexpr int numbers_of_step = 8;
+constexpr double an_instant = 1e-9;  // [s]; the ways of the contact point over less are rounding
 
 }  // namespace
 
@@ -71,7 +72,7 @@ void EvolvingFriction::remember(lie::State& x) const
     const Instant now = at(x);
     if (now.meeting.N > 0) {
         const Slip& slip = now.meeting.slip;
-        const Rates mean = goes_on && h > 0 ? mean_rates(slip, h) : TrackedForce::speeds(now, x);
+        const Rates mean = goes_on && h > an_instant ? mean_rates(slip, h) : TrackedForce::speeds(now, x);
         last.psi = mean.psi;
         last.s = components(mean.s, slip.n, slip.u);
         last.p_i = components(mean.p_i, slip.n, slip.u), last.p_j = components(mean.p_j, slip.n, slip.u);

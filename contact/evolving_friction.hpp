@@ -39,7 +39,7 @@ public:
     double stable_step(const lie::State& x) const override;
 
     double normal_force(const lie::State& x) const;  ///< that friction goes by [N]
-    bool works(const lie::State& x) const override { return !dae::Model::open(contact, x); }
+    bool works(const lie::State& x) const override { return !dae::Model::idle(contact, x); }
     const dae::Constraint* held_by() const override { return &contact; }
 
     const EvolvingContact& contact;

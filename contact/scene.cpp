@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/scene.hpp"
 
+#include "contact/free_bodies.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -123,20 +124,11 @@ void Scene::step(double h)
             m.omegadot_bar = of.J_bar * (m.A.transpose() * T[b] - m.omega_bar.cross(J_bar * m.omega_bar));
             m.omega_bar += h * m.omegadot_bar;
         }
-        m.r += h * m.rdot;
-        if (m.omega_bar != Vec3::Zero()) m.A = lie::orthonormalised(m.A * lie::exp(h * m.omega_bar));
+        drift(m, h);
     }
     t += h;
 }
 
-double Scene::kinetic_energy() const
-{
-    double T = 0;
-    for (size_t b = 0; b < body.size(); ++b) {
-        if (inertia[b].moves()) T += 0.5 * inertia[b].m * body[b].rdot.squaredNorm();
-        if (inertia[b].turns()) T += 0.5 * body[b].omega_bar.dot(inertia[b].J_bar * body[b].omega_bar);
-    }
-    return T;
-}
+double Scene::kinetic_energy() const { return contact::kinetic_energy(inertia, body); }
 
 }  // namespace hilda::contact

@@ -14,6 +14,8 @@ struct ContactEvent {
     double t = 0;      ///< [s]
     int contact = 0;   ///< its number in Model::evolving()
     double speed = 0;  ///< of approach at an impact and a closing [m/s]
+
+    bool operator==(const ContactEvent&) const = default;
 };
 
 /// Steps a model whose contacts may open, with any scheme that takes contacts that evolve.
@@ -56,15 +58,28 @@ public:
     /// What happened so far, in order of time
     const std::vector<ContactEvent>& events() const { return happened; }
 
+    /// A node at which a contact was closed; none where t is NaN
+    struct Known {
+        double t = std::numeric_limits<double>::quiet_NaN(), F_N = 0;
+    };
+    /// All that it knows and that does not stand in the state; for checkpoints
+    struct Past {
+        std::vector<ContactEvent> events;
+        std::vector<Known>
+            closed;  ///< of each contact that may open the last two, for the time of a lift-off
+    };
+    Past past() const;
+    void go_on_from(const Past& past);  ///< InvalidInput for one of another number of contacts
+
 private:
+    static constexpr int most_meetings = 3;  ///< of a contact in one step
+    static constexpr double rounding =
+        1e-9;  ///< of the largest force, and of a size that is approached in a step
+
     struct Contact {
         const EvolvingContact* contact;
         int number;
-        struct Known {
-            double t = std::numeric_limits<double>::quiet_NaN(), F_N = 0;
-        };
-        Known last = {},
-              before = {};  ///< nodes where it was closed, for the time of a lift-off; none where t is NaN
+        Known last = {}, before = {};
         int meetings = 0;   ///< in the step
         bool held = false;  ///< stays closed for the rest of the step
         bool gone = false;  ///< handed over, and told of

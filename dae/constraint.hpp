@@ -15,7 +15,8 @@ public:
     Constraint(int i, int j) : i(i), j(j) {}
     virtual ~Constraint() = default;
 
-    virtual int rows() const = 0;  ///< of positions; at most 8
+    static constexpr int most_rows = 8;  ///< of positions
+    virtual int rows() const = 0;        ///< of positions
     virtual int velocity_rows() const { return 0; }
     /// Whether those give way in pairs, as lie::Rows::Compliant says; compliance() has K, D, S, μ, n of each pair.
     virtual bool gives_way() const { return false; }
@@ -40,14 +41,14 @@ public:
         const Motion &bi, &bj;
         double t;
         const double *alpha, *remembered;
-        bool open;
+        bool idle;                                ///< not in the mode `holds`
         const Eigen::VectorXd* lambda = nullptr;  ///< of the whole system
     };
     virtual void phi(const At& x, double* out) const = 0;
     /// Derivatives of all rows: (r, π̄) of each body, and Φ_α of the rows of positions
     struct Derivatives {
         Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, 12, 6> of_i, of_j;
-        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> of_alpha;
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, most_rows> of_alpha;
     };
     /// Into matrices of their full size, all of whose entries are zero or of an earlier call
     virtual void variation(const At& x, Derivatives& out) const = 0;

@@ -72,11 +72,11 @@ public:
                 x.t,
                 x.alpha.data() + c.first_alpha,
                 x.remembered.data() + c.first_remembered,
-                open(c, x),
+                idle(c, x),
                 &x.lambda};
     }
-    /// Whether it holds nothing at present. Its rows are then empty.
-    static bool open(const Constraint& c, const State& x) { return mode(c, x) != Constraint::holds; }
+    /// Whether it holds nothing at present, being open or handed over. Its rows are then empty.
+    static bool idle(const Constraint& c, const State& x) { return mode(c, x) != Constraint::holds; }
     static int mode(const Constraint& c, const State& x)
     {
         return c.opens() ? x.memory[c.first_memory] : Constraint::holds;
@@ -133,13 +133,21 @@ public:
     /// The same of Φ_r ṙ + Π̄ ω̄ - ν and of Φ_r r̈ + Π̄ ω̄̇ - γ
     double scaled_velocity_residual(const Row& row, const State& x) const;
     double scaled_acceleration_residual(const Row& row, const State& x) const;
-    /// Largest scaled residual over all rows, also the dropped ones, and the row it is in (-1 without rows).
+    /// A scaled residual and the row that has it: of all_rows(), or, where there is one, of this constraint with unknowns
     struct Residual {
         double value = 0;
-        int row = -1;
+        int row = -1;  ///< none without rows
+        const Constraint* of = nullptr;
+
+        /// Takes this error if it is larger. What is not a number is the largest.
+        void consider(double error, int row, const Constraint* of = nullptr);
     };
-    Residual largest_residual(const State& x) const;
-    Residual largest_velocity_residual(const State& x) const;
+    /// The largest in magnitude, over all rows including the dropped ones, over those in the equations, or over those of
+    /// blocks alone; rows of constraints with unknowns count as they are, where these hold.
+    enum class Over { all, in_equations, blocks };
+    Residual largest_residual(const State& x, Over over = Over::all) const;
+    Residual largest_velocity_residual(const State& x) const;  ///< of the blocks
+    std::string name_of(const Residual& residual) const;       ///< of its row; empty without one
 
     const lie::Mass& mass() const override { return inertia; }
     const lie::Rows& pattern() const override { return rows_pattern; }
@@ -168,6 +176,7 @@ private:
     void set_pattern();
     void add_to_pattern(const Row& row);
     void add_to_pattern(const Constraint& c, int first, int rows);
+    std::string name_of(const Constraint& c, int k) const;  ///< of its row k
 
     const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
 

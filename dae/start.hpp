@@ -11,7 +11,7 @@ namespace hilda::dae {
 
 /// Moves r and A onto Φ(r, A, t) = 0, by Newton steps that are shortest in the metric of the mass. Returns
 /// the number of steps. Throws lie::NoConvergence when the residual, scaled, does not fall below `tolerance`
-/// [m or rad].
+/// [m or rad], or below what rounding makes of it far from the origin.
 int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance = 1e-13);
 
 /// Moves ṙ and ω̄ onto Φ_r ṙ + Π̄ ω̄ = ν, shortest in the metric of the mass: as an ideal impact would.

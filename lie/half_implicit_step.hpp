@@ -14,7 +14,7 @@ namespace hilda::lie {
 ///     M v_{n+1} + w h Cᵀ λ_n = M (v - (w - 1) h r̈_{n-1}) + w h (F_n, τ̄_n),     z = (h v_{n+1}, w h² λ_n)
 ///
 /// w = 1 is the scheme of first order (3.25), w = 3/2 that of second order (3.35). A scheme adds how positions
-/// follow from z; there, δ(r, A, α) = δz / q to first order, with q its `rows_per_position`.
+/// follow from z; there, δ(r, A, α) = δz / q to first order, with its q.
 class HalfImplicitStep : public SaddleStep {
 public:
     int step(State& x, double h) final

@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'C', 'K', 'P'};
-constexpr std::uint64_t format = 4;
+constexpr std::uint64_t format = 5;
 constexpr size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint32_t);
 
 /// CRC-32 as in zlib and PNG
@@ -100,6 +100,19 @@ void pass(Archive& a, lie::State& x)
     pass_list(a, x.history);
 }
 
+constexpr size_t bytes_of_event = 2 * sizeof(int) + 2 * sizeof(double);
+
+template <class Archive>
+void pass(Archive& a, contact::ContactEvent& e)
+{
+    auto kind = static_cast<int>(e.kind);
+    pass(a, kind);
+    e.kind = static_cast<contact::ContactEvent::Kind>(kind);
+    pass(a, e.t);
+    pass(a, e.contact);
+    pass(a, e.speed);
+}
+
 /// The content, in its order, in both directions
 template <class Archive>
 void pass(Archive& a, Checkpoint& c)
@@ -118,6 +131,9 @@ void pass(Archive& a, Checkpoint& c)
                       &c.last_step.correction})
         pass(a, *v);
     pass_list(a, c.invariants.contact);
+    c.contacts.events.resize(a.count(c.contacts.events.size(), bytes_of_event));
+    for (contact::ContactEvent& e : c.contacts.events) pass(a, e);
+    pass_list(a, c.contacts.closed);
     pass(a, c.trajectory_bytes);
     pass(a, c.steps_bytes);
 }

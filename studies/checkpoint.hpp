@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/unilateral.hpp"
 #include "studies/csv_steps.hpp"
 #include "studies/csv_trajectory.hpp"
 
@@ -20,6 +21,7 @@ struct Checkpoint {
     lie::State pivots;     ///< see PivotNode; no bodies: none so far
     lie::Statistics statistics;
     Invariants invariants;
+    contact::UnilateralStep::Past contacts;  ///< of those that open
     StepsCsv::Cost last_step;
     std::uint64_t trajectory_bytes = 0, steps_bytes = 0;
     double wall_seconds = 0;

@@ -17,7 +17,7 @@ std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model&
 contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
                                              const lie::State& x)
 {
-    if (dae::Model::open(c, x)) return {};
+    if (dae::Model::idle(c, x)) return {};
     return c.multipliers(model.at(c, x), x.lambda);
 }
 
@@ -44,24 +44,11 @@ OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, co
     return {.F_N = m.F_N, .friction = of.friction != nullptr ? of.friction->friction(x).F : m.friction};
 }
 
-double largest_residual(const dae::Model& model, const lie::State& x)
-{
-    double largest = model.largest_residual(x).value;
-    double Phi[8];  // the most rows that a constraint may have
-    for (const auto& c : model.evolving()) {
-        if (dae::Model::open(*c, x)) continue;
-        c->phi(model.at(*c, x), Phi);
-        for (int k = 0; k < c->rows(); ++k)
-            if (!(std::abs(Phi[k]) <= largest)) largest = std::abs(Phi[k]);
-    }
-    return largest;
-}
-
 int contact_rank(const dae::Model& model, const lie::State& x)
 {
     int rank = 0;
     for (const auto& c : model.evolving())
-        if (!dae::Model::open(*c, x)) rank += c->rows() + c->velocity_rows() - c->unknowns();
+        if (!dae::Model::idle(*c, x)) rank += c->rows() + c->velocity_rows() - c->unknowns();
     return rank;
 }
 

@@ -30,10 +30,6 @@ struct OnBodyI {
 OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, const ContactForces& of,
                   const lie::State& x);
 
-/// The largest scaled residual of a model in x, in m or rad: of all its rows, also the dropped ones, and of the rows of
-/// its contacts, which are lengths
-double largest_residual(const dae::Model& model, const lie::State& x);
-
 /// Rows of the equations less unknowns without mass: what contacts that hold in x take from the freedom of a model
 int contact_rank(const dae::Model& model, const lie::State& x);
 

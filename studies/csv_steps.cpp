@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/csv_steps.hpp"
 
-#include "studies/contact_rows.hpp"
 #include "studies/csv.hpp"
 
 namespace hilda::studies {
@@ -30,7 +29,7 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
         field(h);
         field(static_cast<long>(iterations));
         field(last.correction);
-        field(largest_residual(model, x));
+        field(model.largest_residual(x).value);
         field(lie::energy(model, x));
         field(last.factorizations);
         append_number(row, last.wall_ns);

@@ -54,7 +54,7 @@ void TrajectoryCsv::write_header()
 
 void TrajectoryCsv::accepted(const lie::State& x, long n, int)
 {
-    const double energy = lie::energy(model, x), constraint_norm = largest_residual(model, x);
+    const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
     note(x, energy, constraint_norm);
     if (!grid.is_row(n)) return dae::check_dropped_rows(model, x);
     ++invariants.rows;

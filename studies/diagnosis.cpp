@@ -2,7 +2,6 @@
 #include "studies/diagnosis.hpp"
 
 #include "lie/saddle.hpp"
-#include "studies/contact_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -30,23 +29,6 @@ std::string not_finite(const dae::Model& model, const lie::State& x)
     for (const dae::Model::Row& row : model.all_rows())
         if (!std::isfinite(model.scaled_residual(row, x))) return model.name_of(row);
     return {};
-}
-
-/// The row with the largest residual, of constraints and of contacts
-std::string worst_row(const dae::Model& model, const lie::State& x)
-{
-    const dae::Model::Residual of_blocks = model.largest_residual(x);
-    double largest = of_blocks.value;
-    std::string name = of_blocks.row < 0 ? "" : model.name_of(model.all_rows()[of_blocks.row]);
-    double Phi[8];  // the most rows that a constraint with unknowns may have
-    for (const auto& c : model.evolving()) {
-        if (dae::Model::open(*c, x)) continue;
-        c->phi(model.at(*c, x), Phi);
-        for (int k = 0; k < c->rows(); ++k)
-            if (name.empty() || !(std::abs(Phi[k]) <= largest))
-                largest = std::abs(Phi[k]), name = model.row_name(c->first_row + k);
-    }
-    return name;
 }
 
 /// The reciprocal condition of the saddle matrix at the node; NaN when even that cannot be had
@@ -98,10 +80,11 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         }
     if (model.rows() == 0 && model.all_rows().empty()) return d;
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
+    const dae::Model::Residual worst = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
     d.detail = fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
-                           newton != nullptr ? newton->largest : worst_row(model, node),
-                           newton != nullptr ? newton->residual : largest_residual(model, node), rcond,
+                           newton != nullptr ? newton->largest : model.name_of(worst),
+                           newton != nullptr ? newton->residual : worst.value, rcond,
                            rcond < 1e-12 ? ": redundant or singular constraints?" : "");
     return d;
 }

@@ -11,7 +11,7 @@ AgainstTruth::AgainstTruth(const Case& c, double h)
 
 void AgainstTruth::accepted(const lie::State& x, long n, int)
 {
-    constraint_norm = std::max(constraint_norm, largest_residual(model, x));
+    constraint_norm = std::max(constraint_norm, model.largest_residual(x).value);
     const double k = static_cast<double>(n) * h / c.instants.dt;
     const long nearest = std::lround(k);
     if (nearest > c.instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/judged_run.hpp"
 
-#include "studies/contact_rows.hpp"
-
 #include <algorithm>
 
 namespace hilda::studies {
@@ -15,7 +13,7 @@ void AtInstants::accepted(const lie::State& x, long n, int)
     if (nearest > instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;
     at.push_back(nearest);
     run.row.push_back(x);
-    constraint_norm = std::max(constraint_norm, largest_residual(model, x));
+    constraint_norm = std::max(constraint_norm, model.largest_residual(x).value);
     for (const lie::Motion& body : x.body)
         orthogonality = std::max(orthogonality, lie::orthogonality_error(body.A));
 }

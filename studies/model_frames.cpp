@@ -41,7 +41,7 @@ void ModelFrames::accepted(const lie::State& x, long n, int)
     }
     for (size_t k = 0; k < evolving.size(); ++k) {
         const contact::EvolvingContact& c = *evolving[k];
-        if (dae::Model::open(c, x)) continue;
+        if (dae::Model::idle(c, x)) continue;
         const dae::Constraint::At at = model.at(c, x);
         const contact::Touch touch = c.touch(at);
         const contact::EvolvingContact::Multipliers of = c.multipliers(at, x.lambda);

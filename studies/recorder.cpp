@@ -53,6 +53,8 @@ Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const l
         trajectory.invariants = from->invariants;
         if (steps) steps->last = from->last_step;
         pivots.restore(from->pivots, grid.h);
+        if (auto* unilateral = dynamic_cast<contact::UnilateralStep*>(&integrator))
+            unilateral->go_on_from(from->contacts);
         before = sum(from->statistics, integrator.statistics(), -1);
     } else {
         trajectory.write_header();
@@ -83,6 +85,8 @@ Checkpoint Recorder::checkpoint(const lie::March& march)
     c.pivots = pivots.node;
     c.statistics = statistics();
     c.invariants = invariants();
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))
+        c.contacts = unilateral->past();
     c.trajectory_bytes = trajectory_file.size();
     if (steps) {
         c.last_step = steps->last;

@@ -2,6 +2,7 @@
 #include "contact/dvi/dvi_scene.hpp"
 
 #include "contact/dvi/half_step_momentum.hpp"
+#include "contact/free_bodies.hpp"
 #include "contact/tangent_basis.hpp"
 
 #include <algorithm>
@@ -178,21 +179,12 @@ void DviScene::advance(double h, double kick)
         m.omegadot_bar = (omega_bar[b] - m.omega_bar) / kick;
         m.rdot = rdot;
         m.omega_bar = omega_bar[b];
-        m.r += h * m.rdot;
-        if (m.omega_bar != Vec3::Zero()) m.A = lie::orthonormalised(m.A * lie::exp(h * m.omega_bar));
+        drift(m, h);
     }
     h_before = h;
     t += h;
 }
 
-double DviScene::kinetic_energy() const
-{
-    double T = 0;
-    for (size_t b = 0; b < body.size(); ++b) {
-        if (inertia[b].moves()) T += 0.5 * inertia[b].m * body[b].rdot.squaredNorm();
-        if (inertia[b].turns()) T += 0.5 * body[b].omega_bar.dot(inertia[b].J_bar * body[b].omega_bar);
-    }
-    return T;
-}
+double DviScene::kinetic_energy() const { return contact::kinetic_energy(inertia, body); }
 
 }  // namespace hilda::contact

@@ -51,7 +51,7 @@ public:
     {
         int closed = 0;
         const lie::State& x = march ? march->node() : start;
-        for (const auto& c : model.evolving()) closed += !dae::Model::open(*c, x);
+        for (const auto& c : model.evolving()) closed += !dae::Model::idle(*c, x);
         return closed;
     }
     long iterations() const override { return integrator->statistics().iterations; }

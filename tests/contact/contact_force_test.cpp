@@ -99,7 +99,7 @@ bool same(const State& a, const State& b)
 
 }  // namespace
 
-TEST_CASE("a ball of a model and of a scene move alike, and the more so the smaller the step",
+TEST_CASE("a ball of a model and of a scene move alike, and the more so the smaller the step (long)",
           "[contact][force]")
 {
     const auto apart = [](double h, const Motion& start) {
@@ -209,7 +209,7 @@ TEST_CASE("two free bodies in contact keep their momentum", "[contact][force]")
     CHECK((momentum(march.node()) - before).norm() < 1e-12);
 }
 
-TEST_CASE("every scheme takes a rolling ball to the same place", "[contact][force][order]")
+TEST_CASE("every scheme takes a rolling ball to the same place (long)", "[contact][force][order]")
 {
     const FrictionParameters sticking{.mu_s = 0.25, .mu_k = 0.25, .K_E = 2e4, .zeta = 0.5};
     const OneBall one(rolling(1, 0.98), sticking);

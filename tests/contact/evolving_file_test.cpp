@@ -125,7 +125,7 @@ TEST_CASE("a contact that may open is read with its restitution and may start op
     CHECK(dae::read_model(d.text, "again.json").text == d.text);
     const dae::StartReport report = dae::start(d);
     CHECK(report.degrees_of_freedom == 6);
-    CHECK(dae::Model::open(first(d), d.x));
+    CHECK(dae::Model::idle(first(d), d.x));
     CHECK(d.x.body[0].rdot.z() == -2);
 }
 

@@ -112,7 +112,7 @@ void check_same(const Result& a, const Result& b, double tolerance)
 
 }  // namespace
 
-TEST_CASE("contacts that evolve do not depend on how they are told", "[contact][evolving]")
+TEST_CASE("contacts that evolve do not depend on how they are told (long)", "[contact][evolving]")
 {
     const Result plain = sliding({});
     CHECK((plain.ball - Vec3(0.5, 0.3, -1.6)).norm() > 0.05);  // something happens

@@ -139,7 +139,8 @@ TEST_CASE("a ball in a bowl starts where its closed form says", "[contact][evolv
     CHECK(multipliers(xy.model, xy.x).F_N == Approx(9.014262047215154).epsilon(1e-13));
 }
 
-TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be", "[contact][evolving][order]")
+TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be (long)",
+          "[contact][evolving][order]")
 {
     struct Bounds {
         const char* scheme;
@@ -170,7 +171,7 @@ TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be", "[
     }
 }
 
-TEST_CASE("a ball that rolls in a bowl is where it must be", "[contact][evolving][order]")
+TEST_CASE("a ball that rolls in a bowl is where it must be (long)", "[contact][evolving][order]")
 {
     const Vec3 spin =
         -5 * Vec3(0.13852712896188304, 0.36940567723168771, -0.91888502010348160);  // about the normal
@@ -196,7 +197,7 @@ TEST_CASE("a ball that rolls in a bowl is where it must be", "[contact][evolving
     }
 }
 
-TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with the square of the step",
+TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with the square of the step (long)",
           "[contact][evolving]")
 {
     const auto drift = [](const char* scheme, double h, bool centred) {
@@ -228,7 +229,7 @@ TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with t
     }
 }
 
-TEST_CASE("a ball falls and rolls along the wall of an upright cylinder", "[contact][evolving][order]")
+TEST_CASE("a ball falls and rolls along the wall of an upright cylinder (long)", "[contact][evolving][order]")
 {
     // The normal always lies in the plane of x and y. Without friction it falls freely; rolling it goes up and down:
     // z = z_eq (1 - cos(Ω sqrt(2/7) t)), z_eq = -5g / 2Ω².
@@ -450,7 +451,7 @@ TEST_CASE("an ellipsoid that slides or rolls on a plane in all directions is whe
     }
 }
 
-TEST_CASE("a rattleback turns round in one direction only", "[contact][evolving][order]")
+TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][evolving][order]")
 {
     // its axes of inertia are turned by 0.1 rad against those of its shape
     const Vec3 axes(0.2, 0.05, 0.04);

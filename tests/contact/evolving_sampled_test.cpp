@@ -69,7 +69,7 @@ Error error(const Slide& of, const Slide& exact)
 
 }  // namespace
 
-TEST_CASE("the normal force on a height map converges of second order with its spacing",
+TEST_CASE("the normal force on a height map converges of second order with its spacing (long)",
           "[contact][evolving]")
 {
     const Vec3 axes(4, 3, 2), from(0, 1.3203946979732251, -1.2654225449401855);

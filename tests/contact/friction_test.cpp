@@ -400,7 +400,7 @@ Orbits orbits(double K_E, double h, const contact::Tracking& tracking)
 
 }  // namespace
 
-TEST_CASE("a ball on a turntable goes round at two sevenths of its speed", "[contact][scene]")
+TEST_CASE("a ball on a turntable goes round at two sevenths of its speed (long)", "[contact][scene]")
 {
     const Orbits half = orbits(1e5, 1e-3, {});
     INFO("radius " << half.radius << " rate " << half.rate);

@@ -8,14 +8,14 @@
 #include "dae/start.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
-
-#include <functional>
+#include "tests/support/watched_march.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
 using namespace hilda::contact;
 using lie::State;
+using tests::march;
 
 namespace {
 
@@ -73,21 +73,24 @@ struct Thrown : Ball {
     }
 };
 
-struct Watch final : lie::Observer {
-    std::function<void(const State&)> look;
-    void accepted(const State& x, long, int) override { look(x); }
+/// The same ball, with 1 m/s along x, at this height over a floor that it may leave
+struct Dropped {
+    dae::Model model;
+    State x;
+
+    explicit Dropped(double height)
+    {
+        model.add({.name = "ball", .m = m, .J_bar = I * Mat3::Identity()});
+        model.constrain("ball-floor",
+                        std::make_unique<EvolvingContact>(
+                            0, sphere(), dae::ground, Shape{.surface = std::make_shared<Plane>()}, rubber,
+                            EvolvingContact::NormalRows::tangent, Unilateral{.opens = true}));
+        x.body.resize(1);
+        x.body[0].r.z() = R + height;
+        x.body[0].rdot.x() = 1;
+        dae::start(model, x);
+    }
 };
-State march(
-    const dae::Model& model, const State& x, const std::string& scheme, double t, double h,
-    const std::function<void(const State&)>& look = [](const State&) {},
-    lie::LinearSolver solver = lie::LinearSolver::automatic)
-{
-    const auto integrator = lie::scheme(scheme).make(model, {.tolerance = 1e-12, .linear_solver = solver});
-    Watch watch;
-    watch.look = look;
-    lie::Observer* all[] = {&watch};
-    return lie::march(x, *integrator, lie::Grid::over(t, h, t), all).row.back();
-}
 
 /// Centre of a ball that rolls without slip in the plane x = 0, from rest over y = 1.5: it goes along the curve at the
 /// distance R inside the ellipse (3 sin φ, -2 cos φ),  φ̇ |p'|(1 - R κ) = v,  (m + I/R²) v̇ = -m g t_z
@@ -141,7 +144,7 @@ TEST_CASE("friction in the equations of the step takes steps that a force could 
     CHECK(most == Approx(1.0068).margin(5e-3));
 }
 
-TEST_CASE("a ball that friction in the equations holds rolls as an ideal one",
+TEST_CASE("a ball that friction in the equations holds rolls as an ideal one (long)",
           "[contact][evolving][implicit][order]")
 {
     // the start of the text is of first order; behind a half kick the spring's lag of one step is all that is left of it
@@ -241,8 +244,9 @@ TEST_CASE("friction in the equations is at its bound against the slip of bodies 
     CHECK(off[1] < 0.6 * off[0]);
 }
 
-TEST_CASE("rolling resistance in the equations brings the ball to rest where it rests without a spring",
-          "[contact][evolving][implicit]")
+TEST_CASE(
+    "rolling resistance in the equations brings the ball to rest where it rests without a spring (long)",
+    "[contact][evolving][implicit]")
 {
     struct Case {
         double eta_r, t_end, rest, stops;
@@ -322,8 +326,8 @@ TEST_CASE("friction in the equations is found alike by blocks and from the whole
     dae::start(b.model, b.x);
     std::vector<Vec3> end;
     for (const auto solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed})
-        end.push_back(march(
-                          b.model, b.x, "rA-half-1-momentum", 0.5, 5e-3, [](const State&) {}, solver)
+        end.push_back(march(b.model, b.x, "rA-half-1-momentum", 0.5, 5e-3, [](const State&) {},
+                            {.tolerance = 1e-12, .linear_solver = solver})
                           .body[0]
                           .r);
     CHECK((end[0] - end[1]).norm() < 1e-8);
@@ -346,19 +350,10 @@ TEST_CASE("friction in the equations is found alike by blocks and from the whole
 TEST_CASE("a contact that can open has no friction in its equations while it is open",
           "[contact][evolving][implicit]")
 {
-    dae::Model model;
-    model.add({.name = "ball", .m = m, .J_bar = I * Mat3::Identity()});
-    model.constrain("ball-floor", std::make_unique<EvolvingContact>(
-                                      0, sphere(), dae::ground, Shape{std::make_shared<Plane>()}, rubber,
-                                      EvolvingContact::NormalRows::tangent, Unilateral{.opens = true}));
-    State x;
-    x.body.resize(1);
-    x.body[0].r.z() = R + 1;
-    x.body[0].rdot.x() = 1;
-    dae::start(model, x);
+    const Dropped ball(1);
     for (const auto solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed}) {
-        const auto integrator = lie::scheme("rA-half-1-momentum").make(model, {.linear_solver = solver});
-        State y = x;
+        const auto integrator = lie::scheme("rA-half-1-momentum").make(ball.model, {.linear_solver = solver});
+        State y = ball.x;
         for (int k = 0; k < 10; ++k) integrator->step(y, 1e-2);
         CHECK(y.body[0].r.x() == Approx(0.1).epsilon(1e-12));
         CHECK(y.body[0].r.z() == Approx(R + 1 - 0.5 * g * 0.01).epsilon(1e-12));
@@ -369,19 +364,10 @@ TEST_CASE("a contact that can open has no friction in its equations while it is 
 TEST_CASE("a ball that lands and does not rebound slides until it rolls with five sevenths of its speed",
           "[contact][evolving][implicit]")
 {
-    dae::Model model;
-    model.add({.name = "ball", .m = m, .J_bar = I * Mat3::Identity()});
-    model.constrain("ball-floor", std::make_unique<EvolvingContact>(
-                                      0, sphere(), dae::ground, Shape{std::make_shared<Plane>()}, rubber,
-                                      EvolvingContact::NormalRows::tangent, Unilateral{.opens = true}));
-    State x;
-    x.body.resize(1);
-    x.body[0].r.z() = R + 0.1;
-    x.body[0].rdot.x() = 1;
-    dae::start(model, x);
+    const Dropped ball(0.1);
     for (const char* scheme : {"rA-half-1", "rA-half-1-momentum"}) {
-        UnilateralStep step(model, lie::scheme(scheme), {.tolerance = 1e-12});
-        const State end = lie::march(x, step, lie::Grid::over(1, 5e-3, 1)).row.back();
+        UnilateralStep step(ball.model, lie::scheme(scheme), {.tolerance = 1e-12});
+        const State end = lie::march(ball.x, step, lie::Grid::over(1, 5e-3, 1)).row.back();
         INFO(scheme);
         REQUIRE(step.events().size() == 1);
         CHECK(end.body[0].rdot.x() == Approx(1 / (1 + I / (m * R * R))).epsilon(1e-6));

@@ -37,7 +37,7 @@ double rebound(const std::shared_ptr<const contact::NormalLaw>& law, double v, d
 
 }  // namespace
 
-TEST_CASE("normal laws give the coefficient of restitution they are told", "[contact][normal]")
+TEST_CASE("normal laws give the coefficient of restitution they are told (long)", "[contact][normal]")
 {
     using namespace contact;
     const double e = GENERATE(1., 0.8, 0.5, 0.1);  // of the last the dashpot is beyond critical

@@ -297,7 +297,8 @@ Errors errors(const lie::Scheme& scheme, const Cycloid& bead, double h)
 
 }  // namespace
 
-TEST_CASE("a bead on a cycloid moves as Huygens found with the declared order", "[lie][order][massless]")
+TEST_CASE("a bead on a cycloid moves as Huygens found with the declared order (long)",
+          "[lie][order][massless]")
 {
     const Cycloid bead;
     int schemes = 0;

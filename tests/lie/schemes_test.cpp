@@ -38,7 +38,7 @@ double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const
 
 }  // namespace
 
-TEST_CASE("declared order is the measured order", "[lie][order]")
+TEST_CASE("declared order is the measured order (long)", "[lie][order]")
 {
     const tests::SpinningTop top;
     const lie::State start = top.start();
@@ -56,7 +56,7 @@ TEST_CASE("declared order is the measured order", "[lie][order]")
     }
 }
 
-TEST_CASE("a torque-free body keeps the declared order in its rotation", "[lie][order]")
+TEST_CASE("a torque-free body keeps the declared order in its rotation (long)", "[lie][order]")
 {
     const tests::SpinningTop top(true);
     const lie::State start = top.start();

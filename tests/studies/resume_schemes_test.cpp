@@ -55,9 +55,16 @@ TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studi
         written.number = whole.number();
         written.iterations = whole.iterations_of_last_step();
         written.pivots = pivots.node;
+        using Kind = contact::ContactEvent::Kind;
+        written.contacts.events = {{Kind::impact, 0.25, 0, 1.5}, {Kind::handed_over, 0.5, 2, 0}};
+        written.contacts.closed = {{0.125, 3}, {0.25, -1}};
         while (whole.number() < 2 * half) whole.advance(observers);
 
         const studies::Checkpoint read = studies::from_bytes(studies::to_bytes(written), "checkpoint");
+        CHECK(read.contacts.events == written.contacts.events);
+        REQUIRE(read.contacts.closed.size() == 2);
+        CHECK(read.contacts.closed[1].t == 0.25);
+        CHECK(read.contacts.closed[1].F_N == -1);
         const auto fresh = scheme.make(*d.model, settings);
         studies::PivotNode restored(*fresh);
         restored.restore(read.pivots, h);

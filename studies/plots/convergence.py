@@ -4,7 +4,7 @@
 
     convergence.py DIR      reads DIR/study.csv, writes DIR/convergence-PROBLEM.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, plt, read, save, style, where
+from drawing import Line2D, distinct, for_each_problem, grid, legend, plt, save, style, where
 
 PANELS = [
     [("r", "position $r$ [m]"), ("A", "orientation $\\|A\\|_F$"), ("v", "velocity $\\dot r$ [m/s]"),
@@ -60,12 +60,5 @@ def draw(folder, problem, rows):
     save(figure, folder, f"convergence-{problem}.png", legend(figure, schemes, more=more, columns=9))
 
 
-def main():
-    folder = directory()
-    rows = read(folder, "study.csv")
-    for problem in distinct(rows, "problem"):
-        draw(folder, problem, where(rows, problem=problem))
-
-
 if __name__ == "__main__":
-    main()
+    for_each_problem(draw)

@@ -93,3 +93,11 @@ def save(figure, folder, name, below=0.0, top=0.97):
     figure.tight_layout(rect=(0, below, 1, top))
     figure.savefig(os.path.join(folder, name), dpi=110)
     plt.close(figure)
+
+
+def for_each_problem(draw):
+    """Calls draw(folder, problem, rows) with the rows of each problem of the study that the command line names."""
+    folder = directory()
+    rows = read(folder, "study.csv")
+    for problem in distinct(rows, "problem"):
+        draw(folder, problem, where(rows, problem=problem))

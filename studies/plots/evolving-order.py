@@ -4,7 +4,7 @@
 
     evolving-order.py DIR       reads DIR/study.csv, writes DIR/evolving-order-PROBLEM.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, plt, read, save, style, where
+from drawing import Line2D, distinct, for_each_problem, grid, legend, plt, save, style, where
 
 PANELS = [("r", "position $r$ [m]"), ("A", "orientation $\\|A\\|_F$"), ("alpha", r"contact points $\bar\alpha$ [m]"),
           ("F_N", "normal force $F_N$ [N]")]
@@ -44,12 +44,5 @@ def draw(folder, problem, rows):
     save(figure, folder, f"evolving-order-{problem}.png", legend(figure, schemes, more=more))
 
 
-def main():
-    folder = directory()
-    rows = read(folder, "study.csv")
-    for problem in distinct(rows, "problem"):
-        draw(folder, problem, where(rows, problem=problem))
-
-
 if __name__ == "__main__":
-    main()
+    for_each_problem(draw)

@@ -4,7 +4,7 @@
 
     work-precision.py DIR       reads DIR/study.csv, writes DIR/work-precision-PROBLEM.png
 """
-from drawing import directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import distinct, for_each_problem, grid, legend, number, numbers, plt, save, style, where
 
 PANELS = [("r", "position $r$, rms [m]"), ("v", "velocity $\\dot r$, rms [m/s]"), ("Q", "joint loads, rms, relative")]
 
@@ -28,12 +28,5 @@ def draw(folder, problem, rows):
     save(figure, folder, f"work-precision-{problem}.png", legend(figure, schemes))
 
 
-def main():
-    folder = directory()
-    rows = read(folder, "study.csv")
-    for problem in distinct(rows, "problem"):
-        draw(folder, problem, where(rows, problem=problem))
-
-
 if __name__ == "__main__":
-    main()
+    for_each_problem(draw)

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case_file.hpp"
+
+#include "granular/fill.hpp"
+#include "granular/keys.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::granular {
+
+namespace {
+
+using Json = Keys::Json;
+
+/// Nothing deeper than this is a case, and a key that stands twice is a mistake.
+constexpr int deepest = 64;
+
+Json parse(const std::string& text)
+{
+    std::vector<std::set<std::string>> open;
+    std::string twice;
+    const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth > deepest) throw InvalidCase("is nested deeper than " + std::to_string(deepest));
+        if (event == Json::parse_event_t::object_start) open.emplace_back();
+        if (event == Json::parse_event_t::object_end && !open.empty()) open.pop_back();
+        if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+            twice = parsed.get<std::string>();
+        return true;
+    };
+    try {
+        Json all = Json::parse(text, watch);
+        if (!twice.empty()) throw InvalidCase("the key \"" + twice + "\" stands twice in one object");
+        return all;
+    } catch (const Json::parse_error& e) {
+        const std::size_t at = std::min(e.byte, text.size());
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+        throw InvalidCase("line " + std::to_string(line) + ": is no JSON");
+    }
+}
+
+template <class Laws>
+Laws read_law(Keys& pair, const std::string& kind, const std::string& otherwise, const Material& i,
+              const Material& j, bool material_normal)
+{
+    static const Json none = Json::object();
+    const bool given = pair.has(kind);
+    Keys own(given ? pair.raw(kind) : none, pair.place_of(kind));
+    const std::string name = own.text("law", otherwise);
+    LawKeys keys(own, pair, i, j, material_normal);
+    Laws law;
+    if (!law.read(name, keys)) own.refuse("law", "must be one of " + Laws::names(), name);
+    own.end();
+    return law;
+}
+
+PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<std::string>& notices)
+{
+    PairLaw law;
+    if (pair.has("restitution") && pair.number("restitution") == 0)
+        notices.push_back(pair.place_of("restitution") + ": 0 is taken as 1e-7, whose damping is finite");
+    law.normal = read_law<NormalLaws>(pair, "normal", "hertz", i, j, true);
+    const bool by_material = law.normal.is<Hertz>();
+    law.tangential = read_law<TangentialLaws>(pair, "tangential", "none", i, j, by_material);
+    law.rolling = read_law<RollingLaws>(pair, "rolling", "none", i, j, by_material);
+    law.spin = read_law<SpinLaws>(pair, "spin", "none", i, j, by_material);
+    law.cohesion = read_law<CohesionLaws>(pair, "cohesion", "none", i, j, by_material);
+    for (const char* key : {"mu", "mu_s", "restitution"}) pair.has(key);  // may stand there for nobody
+    return law;
+}
+
+Scheme read_scheme(Keys& keys)
+{
+    const std::pair<const char*, Scheme> all[] = {{"symplectic-euler", Scheme::symplectic_euler},
+                                                  {"velocity-verlet", Scheme::velocity_verlet},
+                                                  {"forward-euler", Scheme::forward_euler},
+                                                  {"extended-taylor", Scheme::extended_taylor},
+                                                  {"chung", Scheme::chung}};
+    const std::string name = keys.text("integrator", all[0].first);
+    std::string names;
+    for (const auto& [known, scheme] : all) {
+        if (name == known) return scheme;
+        names += (names.empty() ? "" : ", ") + std::string(known);
+    }
+    keys.refuse("integrator", "must be one of " + names, name);
+}
+
+Vec3 unit_vector(Keys& keys, const std::string& key)
+{
+    const Vec3 v = keys.vector(key);
+    if (!(v.norm() > 0)) keys.refuse(key, "must not be zero", keys.raw(key));
+    return (1 / v.norm()) * v;
+}
+
+Boundary read_boundary(Keys& keys)
+{
+    Boundary b;
+    const std::string type = keys.text("type");
+    b.r = keys.vector("r", {0, 0, 0});
+    b.v = keys.vector("v", {0, 0, 0}), b.omega = keys.vector("omega", {0, 0, 0});
+    if (type == "plane") {
+        b.axis = unit_vector(keys, "normal");
+        return b;
+    }
+    b.inside = keys.flag("inside");
+    if (type == "sphere") {
+        b.shape = Boundary::Shape::sphere;
+        b.radius = keys.positive("radius");
+    } else if (type == "cylinder") {
+        b.shape = Boundary::Shape::cylinder;
+        b.axis = unit_vector(keys, "axis");
+        b.radius = keys.positive("radius");
+    } else if (type == "cone") {
+        b.shape = Boundary::Shape::cone;
+        b.axis = unit_vector(keys, "axis");
+        const double half = keys.number("half_angle");
+        if (!(half > 0 && half < M_PI / 2)) keys.refuse("half_angle", "must be in (0, pi/2) rad", half);
+        b.cosine = std::cos(half), b.sine = std::sin(half);
+    } else {
+        keys.refuse("type", "must be one of plane, cylinder, cone, sphere", type);
+    }
+    return b;
+}
+
+}  // namespace
+
+Case read_case(const std::string& text, const std::string& file)
+{
+    try {
+        const Json all = parse(text);
+        Keys keys(all, "");
+        if (keys.count("hilda_case", -1) != 1) throw InvalidCase("/hilda_case: must be 1");
+        Case out;
+        out.text = text;
+        out.name = keys.text("name", "case");
+        keys.text("note", "");
+
+        WorldOptions o;
+        Keys domain = keys.object("domain");
+        o.low = domain.vector("low"), o.high = domain.vector("high");
+        if (domain.has("periodic")) {
+            const Json& which = domain.raw("periodic");
+            if (!which.is_array() || which.size() != 3)
+                domain.refuse("periodic", "must be three times true or false", which);
+            for (int k = 0; k < 3; ++k) o.periodic[k] = which[k].get<bool>();
+        }
+        domain.end();
+        o.gravity = keys.vector("gravity", {0, 0, -9.81});
+        out.h = o.h = keys.positive("step");
+        o.h = out.h = keys.number("step");
+        out.end = keys.positive("end");
+        out.end = keys.number("end");
+        out.every = keys.number("every", out.end / 100);
+        o.skin = keys.number("skin", o.skin);
+        o.scheme = read_scheme(keys);
+
+        std::vector<Material> materials;
+        for (const auto& [object, place] : keys.list("materials")) {
+            Keys m(*object, place);
+            materials.push_back({.name = m.text("name"),
+                                 .density = m.number("density"),
+                                 .E = m.number("E"),
+                                 .nu = m.number("nu")});
+            m.end();
+        }
+        const auto material = [&](Keys& k, const std::string& key) {
+            const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
+            for (std::size_t n = 0; n < materials.size(); ++n)
+                if (materials[n].name == name) return static_cast<int>(n);
+            k.refuse(key, "no material has this name", name);
+        };
+        out.world = std::make_unique<World>(o, materials);
+        for (const auto& [object, place] : keys.list("laws")) {
+            Keys pair(*object, place);
+            int of[2] = {0, 0};
+            if (materials.size() > 1 || pair.has("between")) {
+                const Json& names = pair.raw("between");
+                if (!names.is_array() || names.size() != 2)
+                    pair.refuse("between", "must be two names", names);
+                for (int k = 0; k < 2; ++k) {
+                    const auto found =
+                        std::find_if(materials.begin(), materials.end(), [&](const Material& m) {
+                            return names[k].is_string() && m.name == names[k].get<std::string>();
+                        });
+                    if (found == materials.end())
+                        pair.refuse("between/" + std::to_string(k), "no material has this name", names[k]);
+                    of[k] = static_cast<int>(found - materials.begin());
+                }
+            }
+            out.world->set_law(of[0], of[1],
+                               read_pair(pair, materials[of[0]], materials[of[1]], out.notices));
+            pair.end();
+        }
+        for (const auto& [object, place] : keys.list("boundaries")) {
+            Keys b(*object, place);
+            out.boundaries.push_back(b.text("name", "boundary " + std::to_string(out.boundaries.size())));
+            Boundary boundary = read_boundary(b);
+            boundary.material = material(b, "material");
+            out.world->add(boundary);
+            b.end();
+        }
+        for (const auto& [object, place] : keys.list("particles")) {
+            Keys p(*object, place);
+            out.world->add(Particle{.r = p.vector("r"),
+                                    .radius = p.positive("radius"),
+                                    .material = material(p, "material"),
+                                    .v = p.vector("v", {0, 0, 0}),
+                                    .omega = p.vector("omega", {0, 0, 0}),
+                                    .fixed = p.flag("fixed")});
+            p.end();
+        }
+        for (const auto& [object, place] : keys.list("fill")) {
+            Keys f(*object, place);
+            Filling filling = read_filling(f);
+            filling.material = material(f, "material");
+            f.end();
+            for (const Particle& p : fill(filling)) out.world->add(p);
+        }
+        keys.end();
+        return out;
+    } catch (const InvalidCase& e) {
+        throw InvalidCase(file + ": " + e.what());
+    }
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A granular case in JSON.
+
+#pragma once
+
+#include "granular/world.hpp"
+
+namespace hilda::granular {
+
+/// What a case file says, ready to run
+struct Case {
+    std::string name;
+    std::unique_ptr<World> world;
+    double h = 0, end = 0, every = 0;  ///< step, end, and time between outputs [s]
+    std::vector<std::string> boundaries;
+    std::vector<std::string> notices;  ///< what was mended on the way
+    std::string text;                  ///< of the file
+};
+
+/// InvalidCase, with the JSON pointer of what is wrong.
+Case read_case(const std::string& text, const std::string& file);
+
+}  // namespace hilda::granular

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Where particles begin: on a lattice, packed, or at random without touching.
+
+#pragma once
+
+#include "granular/keys.hpp"
+
+namespace hilda::granular {
+
+struct Filling {
+    enum class Kind {
+        lattice,  ///< simple cubic
+        hcp,      ///< hexagonal, close-packed where the spacing is a diameter
+        poisson  ///< at random, no two nearer than the spacing                                        Bridson (2007)
+    } kind = Kind::lattice;
+    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< box of the particles with all of their volume [m]
+    double radius = 0, least_radius = 0;     ///< radii are even between the two [m]
+    double spacing = 0;                      ///< between centres [m]
+    double jitter = 0;     ///< of each coordinate, as a part of what is free between neighbours
+    std::size_t most = 0;  ///< particles; 0: as many as fit
+    std::uint64_t seed = 1;
+    int material = 0;
+    Vec3 v = {0, 0, 0};   ///< [m/s]
+    double random_v = 0;  ///< length of what is added at random [m/s]
+};
+
+/// InvalidCase
+Filling read_filling(Keys& keys);
+
+/// The same particles on every machine: the random numbers are our own.
+std::vector<Particle> fill(const Filling& filling);
+
+}  // namespace hilda::granular

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Dry grains.
+
+#pragma once
+
+#include "granular/touch.hpp"
+
+namespace hilda::granular {
+
+struct NoCohesion {
+    static constexpr const char* name = "none";
+
+    template <class R>
+    HILDA_HD R operator()(const Touch<R>&) const
+    {
+        return R(0.f);
+    }
+    template <class Keys>
+    static NoCohesion read(Keys&)
+    {
+        return {};
+    }
+};
+
+}  // namespace hilda::granular

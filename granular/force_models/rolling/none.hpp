@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// No resistance to rolling.
+
+#pragma once
+
+#include "granular/touch.hpp"
+
+namespace hilda::granular {
+
+struct NoRolling {
+    static constexpr const char* name = "none";
+
+    template <class R>
+    HILDA_HD Vec<R> operator()(const Touch<R>&, const Pressing<R>&, R, History<R>&) const
+    {
+        return {R(0.f), R(0.f), R(0.f)};
+    }
+    template <class Keys>
+    static NoRolling read(Keys&)
+    {
+        return {};
+    }
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Resistance to rolling as a pseudo-force of the objective rolling velocity.              Fang (2022), Sec. 2.2.1.4
+
+#pragma once
+
+#include "granular/force_models/tangential/spring.hpp"
+
+namespace hilda::granular {
+
+///     v_r = -R* n × (ω_i - ω_j),   F_r from ∫ v_r as the tangential force from ∫ v_t, bounded by μ_r |F_n|
+///     M = R* n × F_r on body i
+struct PseudoForce {
+    static constexpr const char* name = "pseudo-force";
+
+    float mu_r = 0;
+    float k_r = 0;    ///< stiffness over that of the tangential spring
+    float eta_r = 0;  ///< damping over critical
+
+    template <class R>
+    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, R k_t, History<R>& history) const
+    {
+        const R k = k_r * k_t, gamma = 2 * eta_r * sqrt(t.m_eff * k);
+        const Vec<R> v_r = -(t.R_eff * t.n.cross(t.omega));
+        // kept as the angle over R*, so that one history serves all models
+        const Vec<R> s = t.R_eff * carried(history.psi, t.n) + R(t.h) * v_r;
+        const Vec<R> test = -(k * s) - gamma * v_r;
+        const R size = test.norm(), bound = mu_r * abs(p.F);
+        const Mask<R> full = size > bound;
+        const Vec<R> F = select(full, bound / larger(size, R(tiny)), R(1.f)) * test;
+        const Vec<R> kept = select(full, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * v_r), s);
+        history.psi = (R(1.f) / t.R_eff) * kept;
+        return t.R_eff * t.n.cross(F);
+    }
+
+    template <class Keys>
+    static PseudoForce read(Keys& keys)
+    {
+        return {.mu_r = keys.not_negative("mu_r"),
+                .k_r = keys.number_or("k_r", 1.f),
+                .eta_r = keys.number_or("eta_r", 0.f)};
+    }
+};
+
+}  // namespace hilda::granular

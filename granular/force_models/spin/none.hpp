@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// No resistance to turning about the normal.
+
+#pragma once
+
+#include "granular/touch.hpp"
+
+namespace hilda::granular {
+
+struct NoSpin {
+    static constexpr const char* name = "none";
+
+    template <class R>
+    HILDA_HD R operator()(const Touch<R>&, const Pressing<R>&, R, R, History<R>&) const
+    {
+        return R(0.f);
+    }
+    template <class Keys>
+    static NoSpin read(Keys&)
+    {
+        return {};
+    }
+};
+
+}  // namespace hilda::granular

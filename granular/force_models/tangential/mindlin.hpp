@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A spring and dashpot that remembers how far the surfaces have slid.                 Fang (2022), Eqs. 2.45 to 2.47
+
+#pragma once
+
+#include "granular/force_models/tangential/spring.hpp"
+
+namespace hilda::granular {
+
+///     u ← u + h v_t,   F° = -k u - γ v_t;   F_t = F° where |F°| ≤ μ_s |F_n|,  else μ_k |F_n| F°/|F°| and u = -(F_t + γ v_t)/k
+///
+/// The cap is on spring and dashpot together, and the spring is solved back from it (Luding 2008); (2.46) caps the spring
+/// alone, and stops a sliding body up to 4 % too early. With μ_s above μ_k this is the rule of the test force.
+struct Mindlin {
+    static constexpr const char* name = "mindlin";
+
+    TangentialSpring spring = {};
+    float mu_s = 0, mu_k = 0;
+
+    template <class R>
+    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>& history) const
+    {
+        const R k = spring.stiffness(p), gamma = spring.damping(t, p);
+        const Vec<R> u = carried(history.u, t.n) + R(t.h) * t.v_t;
+        const Vec<R> test = -(k * u) - gamma * t.v_t;
+        const R size = test.norm(), N = abs(p.F);
+        const Mask<R> slides = size > mu_s * N;
+        const Vec<R> F = select(slides, mu_k * N / larger(size, R(tiny)), R(1.f)) * test;
+        history.u = select(slides, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * t.v_t), u);
+        return F;
+    }
+
+    template <class Keys>
+    static Mindlin read(Keys& keys)
+    {
+        return {.spring = TangentialSpring::read(keys),
+                .mu_s = keys.static_friction(),
+                .mu_k = keys.kinetic_friction()};
+    }
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Smooth surfaces.
+
+#pragma once
+
+#include "granular/touch.hpp"
+
+namespace hilda::granular {
+
+struct NoFriction {
+    static constexpr const char* name = "none";
+
+    template <class R>
+    HILDA_HD Vec<R> operator()(const Touch<R>&, const Pressing<R>&, History<R>&) const
+    {
+        return {R(0.f), R(0.f), R(0.f)};
+    }
+    template <class Keys>
+    static NoFriction read(Keys&)
+    {
+        return {};
+    }
+};
+
+}  // namespace hilda::granular

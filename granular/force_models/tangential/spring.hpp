@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The spring and dashpot across a contact.                                            Fang (2022), Sec. A.5, corrected
+
+#pragma once
+
+#include "granular/material.hpp"
+#include "granular/touch.hpp"
+
+namespace hilda::granular {
+
+constexpr float tiny = 1e-30f;  // keeps a quotient finite whose numerator is zero
+
+/// Stiffness k_t times the scale of the normal law. With Hertz of materials k_t is 8 G*, else it is given [N/m].
+///
+///     k = k_t scale,    γ = c √(m* k)  of materials,   γ_t m* scale  where it is given [1/s]
+struct TangentialSpring {
+    float k_t = 0, c = 0, gamma_t = 0;
+
+    template <class R>
+    HILDA_HD R stiffness(const Pressing<R>& p) const
+    {
+        return k_t * p.scale;
+    }
+    template <class R>
+    HILDA_HD R damping(const Touch<R>& t, const Pressing<R>& p) const
+    {
+        return c * sqrt(t.m_eff * stiffness(p)) + gamma_t * t.m_eff * p.scale;
+    }
+
+    template <class Keys>
+    static TangentialSpring read(Keys& keys)
+    {
+        if (!keys.material_normal())
+            return {.k_t = keys.positive("k_t"), .c = 0, .gamma_t = keys.not_negative("gamma_t")};
+        return {.k_t = float(8 * effective_shear_modulus(keys.i, keys.j)),
+                .c = float(granular::damping(keys.restitution())),
+                .gamma_t = 0};
+    }
+};
+
+/// A displacement of the last step in the tangent plane of this one: without its part along n, and as long as before
+template <class R>
+HILDA_HD inline Vec<R> carried(const Vec<R>& u, const Vec<R>& n)
+{
+    const R along = u.dot(n), before = u.dot(u);
+    const Vec<R> in_plane = u - along * n;
+    const R now = in_plane.dot(in_plane);
+    return select(now > R(0.f), sqrt(before / larger(now, R(tiny))), R(0.f)) * in_plane;
+}
+
+}  // namespace hilda::granular

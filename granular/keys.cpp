@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/keys.hpp"
+
+#include <cmath>
+
+namespace hilda::granular {
+
+Keys::Keys(const Json& object, std::string place) : place(std::move(place)), of(object)
+{
+    if (!of.is_object())
+        throw InvalidCase(this->place + ": must be an object, got " + of.dump().substr(0, 60));
+}
+
+bool Keys::has(const std::string& key)
+{
+    known.insert(key);
+    return of.contains(key);
+}
+
+const Keys::Json& Keys::at(const std::string& key)
+{
+    if (!has(key)) throw InvalidCase(place_of(key) + ": is missing");
+    return of.at(key);
+}
+
+const Keys::Json& Keys::raw(const std::string& key) { return at(key); }
+
+double Keys::number(const std::string& key)
+{
+    const Json& value = at(key);
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+        refuse(key, "must be a finite number", value);
+    return value.get<double>();
+}
+
+double Keys::number(const std::string& key, double otherwise) { return has(key) ? number(key) : otherwise; }
+
+float Keys::positive(const std::string& key)
+{
+    const double value = number(key);
+    if (!(value > 0)) refuse(key, "must be positive", value);
+    return static_cast<float>(value);
+}
+
+float Keys::not_negative(const std::string& key)
+{
+    const double value = number(key, 0);
+    if (!(value >= 0)) refuse(key, "must not be negative", value);
+    return static_cast<float>(value);
+}
+
+long Keys::count(const std::string& key, long otherwise)
+{
+    if (!has(key)) return otherwise;
+    const Json& value = at(key);
+    if (!value.is_number_integer() || value.get<long>() < 0)
+        refuse(key, "must be a whole number, not negative", value);
+    return value.get<long>();
+}
+
+bool Keys::flag(const std::string& key)
+{
+    if (!has(key)) return false;
+    const Json& value = at(key);
+    if (!value.is_boolean()) refuse(key, "must be true or false", value);
+    return value.get<bool>();
+}
+
+std::string Keys::text(const std::string& key)
+{
+    const Json& value = at(key);
+    if (!value.is_string()) refuse(key, "must be a text", value);
+    return value.get<std::string>();
+}
+
+std::string Keys::text(const std::string& key, const std::string& otherwise)
+{
+    return has(key) ? text(key) : otherwise;
+}
+
+Vec3 Keys::vector(const std::string& key)
+{
+    const Json& value = at(key);
+    const bool three = value.is_array() && value.size() == 3;
+    for (int k = 0; three && k < 3; ++k)
+        if (!value[k].is_number() || !std::isfinite(value[k].get<double>()))
+            refuse(key + "/" + std::to_string(k), "must be a finite number", value[k]);
+    if (!three) refuse(key, "must be three numbers", value);
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+Vec3 Keys::vector(const std::string& key, const Vec3& otherwise)
+{
+    return has(key) ? vector(key) : otherwise;
+}
+
+Keys Keys::object(const std::string& key) { return {at(key), place_of(key)}; }
+
+std::vector<std::pair<const Keys::Json*, std::string>> Keys::list(const std::string& key)
+{
+    std::vector<std::pair<const Json*, std::string>> all;
+    if (!has(key)) return all;
+    const Json& value = at(key);
+    if (!value.is_array()) refuse(key, "must be a list", value);
+    for (std::size_t k = 0; k < value.size(); ++k)
+        all.emplace_back(&value[k], place_of(key) + "/" + std::to_string(k));
+    return all;
+}
+
+void Keys::end() const
+{
+    for (const auto& [key, value] : of.items())
+        if (!known.contains(key)) {
+            std::string names;
+            for (const std::string& k : known) names += (names.empty() ? "" : ", ") + k;
+            throw InvalidCase(place_of(key) + ": unknown key; known here are " + names);
+        }
+}
+
+double LawKeys::restitution()
+{
+    constexpr double least = 1e-7;  // ln e must be finite
+    const double e = pair.number("restitution");
+    if (!(e >= 0 && e <= 1)) pair.refuse("restitution", "must be in (0, 1]", e);
+    return std::max(e, least);
+}
+
+float LawKeys::static_friction() { return pair.has("mu_s") ? pair.not_negative("mu_s") : kinetic_friction(); }
+
+float LawKeys::kinetic_friction() { return pair.not_negative("mu"); }
+
+}  // namespace hilda::granular

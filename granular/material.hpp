@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Materials, and what two of them make of each other.                                 Fang (2022), Sec. A.5, corrected
+
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace hilda::granular {
+
+struct Material {
+    std::string name;
+    double density = 0;    ///< [kg/m³]
+    double E = 0, nu = 0;  ///< Young's modulus [Pa], Poisson's ratio
+};
+
+/// E* with 1/E* = (1 - ν_i²)/E_i + (1 - ν_j²)/E_j [Pa]
+inline double effective_modulus(const Material& i, const Material& j)
+{
+    return 1 / ((1 - i.nu * i.nu) / i.E + (1 - j.nu * j.nu) / j.E);
+}
+
+/// G* with 1/G* = 2 (2 - ν_i)(1 + ν_i)/E_i + 2 (2 - ν_j)(1 + ν_j)/E_j [Pa]
+inline double effective_shear_modulus(const Material& i, const Material& j)
+{
+    const auto softness = [](const Material& m) { return 2 * (2 - m.nu) * (1 + m.nu) / m.E; };
+    return 1 / (softness(i) + softness(j));
+}
+
+/// c = -2 √(5/6) ln e / √(ln² e + π²), the damping over √(m* S) that gives a Hertzian contact the restitution e, 0 < e ≤ 1
+inline double damping(double e)
+{
+    const double l = std::log(e);
+    return -2 * std::sqrt(5.0 / 6) * l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
+}
+
+}  // namespace hilda::granular

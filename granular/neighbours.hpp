@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Which pairs may touch: particles sorted by cell, and a list that holds until something has moved half the skin.
+
+#pragma once
+
+#include "granular/contact_loop.hpp"
+
+#include <vector>
+
+namespace hilda::granular {
+
+/// Particles of a back end, in the order of their cells
+template <class Backend>
+struct Particles {
+    par::Array<Backend, Position> position;
+    par::Array<Backend, Four> velocity;  ///< [m/s], radius [m]
+    par::Array<Backend, Four> omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
+    par::Array<Backend, Rest> rest;
+    par::Array<Backend, std::uint32_t> id;
+    std::uint32_t count = 0;
+
+    void resize(std::uint32_t n)
+    {
+        position.resize(n), velocity.resize(n), omega.resize(n), rest.resize(n), id.resize(n);
+        count = n;
+    }
+    std::size_t bytes() const
+    {
+        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + id.bytes();
+    }
+};
+
+/// Pairs by rows: those of particle p are start[p] … start[p + 1] - 1, with p as i, and in `other` those with p as j
+template <class Backend>
+struct Pairs {
+    par::Array<Backend, std::uint32_t> start, i, j, other_start, other;
+    par::Array<Backend, std::uint8_t> law, touches;
+    par::Array<Backend, Four> history, turning, torque;
+    par::Array<Backend, Load> load;
+    std::uint32_t count = 0;
+
+    std::size_t bytes() const
+    {
+        return start.bytes() + i.bytes() + j.bytes() + other_start.bytes() + other.bytes() + law.bytes() +
+               touches.bytes() + history.bytes() + turning.bytes() + torque.bytes() + load.bytes();
+    }
+};
+
+/// What decides which pairs there are
+struct Reach {
+    Grid grid;
+    float skin = 0;                        ///< [m]
+    const std::uint8_t* law_of = nullptr;  ///< materials × materials
+    std::uint32_t materials = 1;
+    const Boundary* boundary = nullptr;
+    std::uint32_t boundaries = 0;
+    bool turning = false;  ///< whether a law keeps a history of turning
+};
+
+template <class Backend>
+class Neighbours {
+public:
+    /// Puts particles into the cells where they are, sorts them, finds pairs and gives them the histories of the pairs of
+    /// before. std::out_of_range with the id of a particle that has left the domain.
+    void find(const Reach& reach, Particles<Backend>& particles, Pairs<Backend>& pairs);
+
+    /// Where particle k was when find() was last called
+    const par::Array<Backend, Position>& origin() const { return origins; }
+    std::size_t bytes() const;
+
+private:
+    void sort(const Reach& reach, Particles<Backend>& particles);
+
+    par::Array<Backend, std::uint64_t> key;
+    par::Array<Backend, std::uint32_t> order, where, cell_start, counts;
+    par::Array<Backend, Four> scratch;
+    par::Array<Backend, Position> origins;
+};
+
+extern template class Neighbours<par::Cpu>;
+
+}  // namespace hilda::granular

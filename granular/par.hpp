@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The few parallel primitives that everything else is made of, on the CPU (OpenMP and Thrust) or on a GPU (CUDA).
+///
+/// A functor is a struct with raw pointers and `HILDA_HD void operator()(std::uint32_t) const`. The results of all
+/// primitives are the same for any number of threads: sorts are stable, sums go by fixed blocks, maxima are exact.
+
+#pragma once
+
+#include "granular/real.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#ifdef __CUDACC__
+#include <cuda_runtime.h>
+#endif
+
+namespace hilda::granular::par {
+
+/// Where arrays live and loops run
+struct Cpu {};
+struct Gpu {};
+
+/// A GPU that cannot do what was asked: none there, no memory, a failed launch. what() has the CUDA call and its answer.
+class DeviceError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+void* allocate(Cpu, std::size_t bytes);  ///< aligned to 64 bytes; std::bad_alloc
+void release(Cpu, void* memory) noexcept;
+void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes);
+void* allocate(Gpu, std::size_t bytes);
+void release(Gpu, void* memory) noexcept;
+void copy_bytes(Gpu, void* to, const void* from, std::size_t bytes);  ///< from anywhere to anywhere
+
+/// Memory of a back end. Growing does not keep what was in it.
+template <class Backend, class T>
+class Array {
+public:
+    Array() = default;
+    explicit Array(std::size_t n) { resize(n); }
+    Array(Array&& o) noexcept : first(o.first), count(o.count), room(o.room)
+    {
+        o.first = nullptr, o.count = o.room = 0;
+    }
+    Array& operator=(Array&& o) noexcept
+    {
+        std::swap(first, o.first), std::swap(count, o.count), std::swap(room, o.room);
+        return *this;
+    }
+    Array(const Array&) = delete;
+    Array& operator=(const Array&) = delete;
+    ~Array() { release(Backend(), first); }
+
+    void resize(std::size_t n)
+    {
+        if (n > room) {
+            release(Backend(), first);
+            first = nullptr, room = 0;
+            const std::size_t wanted = n + n / 32;
+            first = static_cast<T*>(allocate(Backend(), wanted * sizeof(T)));
+            room = wanted;
+        }
+        count = n;
+    }
+    std::size_t size() const { return count; }
+    std::size_t bytes() const { return room * sizeof(T); }
+    T* data() const { return first; }
+
+private:
+    T* first = nullptr;
+    std::size_t count = 0, room = 0;
+};
+
+// All of these are synchronous to the caller.
+/// Fewer than `few` calls are not worth waking threads for.
+template <class Functor>
+void for_each(Cpu, std::size_t n, const Functor& f, std::size_t few = 2048)
+{
+#pragma omp parallel for schedule(static) if (n > few)
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k) f(static_cast<std::uint32_t>(k));
+}
+
+float largest(Cpu, const float* values, std::size_t n);  ///< 0 where there are none
+/// out[0] = 0, out[k + 1] = out[k] + in[k]: n + 1 numbers. Returns the last.
+std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
+void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n);
+float largest(Gpu, const float* values, std::size_t n);
+std::uint64_t exclusive_scan(Gpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
+void stable_sort_by_key(Gpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n);
+
+template <class T>
+struct FillWith {
+    T* to;
+    T value;
+    HILDA_HD void operator()(std::uint32_t k) const { to[k] = value; }
+};
+template <class T>
+struct GatherFrom {
+    T* to;
+    const T* from;
+    const std::uint32_t* where;
+    HILDA_HD void operator()(std::uint32_t k) const { to[k] = from[where[k]]; }
+};
+template <class Backend, class T>
+void fill(Backend b, T* to, std::size_t n, T value)
+{
+    for_each(b, n, FillWith<T>{to, value});
+}
+/// to[k] = from[where[k]]
+template <class Backend, class T>
+void gather(Backend b, T* to, const T* from, const std::uint32_t* where, std::size_t n)
+{
+    for_each(b, n, GatherFrom<T>{to, from, where});
+}
+
+#ifdef __CUDACC__
+inline void check(cudaError_t answer, const char* call)
+{
+    if (answer != cudaSuccess) throw DeviceError(std::string(call) + ": " + cudaGetErrorString(answer));
+}
+template <class Functor>
+__global__ void call(std::uint32_t n, Functor f)
+{
+    const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
+    if (k < n) f(k);
+}
+template <class Functor>
+void for_each(Gpu, std::size_t n, const Functor& f)
+{
+    if (n == 0) return;
+    constexpr unsigned block = 128;
+    call<<<static_cast<unsigned>((n + block - 1) / block), block>>>(static_cast<std::uint32_t>(n), f);
+    check(cudaGetLastError(), "a kernel launch");
+}
+#endif
+
+}  // namespace hilda::granular::par

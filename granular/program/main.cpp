@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The program hilda-granular: runs a granular case. Of its own, because it may be built for a GPU and then links CUDA.
+
+#include "granular/case_file.hpp"
+#include "granular/files.hpp"
+#include "granular/output.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <omp.h>
+#include <unistd.h>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+namespace {
+
+using namespace hilda::granular;
+using Clock = std::chrono::steady_clock;
+
+enum Exit { ok = 0, usage = 2, bad_case = 3, numerical = 4, io = 5, no_device = 7, by_signal = 128 };
+
+volatile std::sig_atomic_t caught = 0;
+
+double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+struct Options {
+    std::string file, output, device = "cpu";
+    double checkpoint = 0;
+    int threads = 0;
+    bool quiet = false, force = false, resume = false, no_vtk = false;
+};
+
+/// One line on a terminal, replaced as the run goes on
+class Progress {
+public:
+    explicit Progress(bool quiet) : shown(!quiet && isatty(STDERR_FILENO) != 0) {}
+    void update(const Case& c, double rate)
+    {
+        if (!shown || seconds_since(last) < 0.2) return;
+        last = Clock::now();
+        const double left =
+            rate > 0 ? (c.end - c.world->t()) / c.h * static_cast<double>(c.world->count()) / rate : 0;
+        std::fprintf(stderr, "\rhilda: t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left   ",
+                     c.world->t(), c.end, 1e-6 * rate, left);
+    }
+    void clear() const
+    {
+        if (shown) std::fprintf(stderr, "\r%78s\r", "");
+    }
+
+private:
+    bool shown;
+    Clock::time_point last = Clock::now();
+};
+
+class Run {
+public:
+    Run(const Options& o, Case c) : o(o), c(std::move(c)) {}
+
+    int go()
+    {
+        namespace fs = std::filesystem;
+        if (fs::exists(file("summary.json")) && !o.force && !o.resume) {
+            std::fprintf(stderr,
+                         "hilda: error: %s: has a run already; --force starts it again, --resume goes on\n",
+                         o.output.c_str());
+            return usage;
+        }
+        make_directory(o.output);
+        every = std::max(1L, std::lround(c.every / c.h));
+        steps = std::lround(c.end / c.h);
+        if (o.resume && fs::exists(file("checkpoint"))) {
+            resume();
+        } else {
+            for (const char* old : {"checkpoint", "summary.json"}) std::remove(file(old).c_str());
+            write_file(file("case.json"), c.text);
+            csv = "t,kinetic_energy,contacts,pairs";
+            for (const std::string& b : c.boundaries) csv += ',' + b + "_Fx," + b + "_Fy," + b + "_Fz";
+            csv += '\n';
+        }
+        begin = saved = Clock::now();
+        const int code = march();
+        finish(code);
+        return code;
+    }
+
+private:
+    std::string file(const std::string& name) const { return o.output + '/' + name; }
+
+    void resume()
+    {
+        const std::string bytes = read_file(file("checkpoint"), std::size_t{1} << 36);
+        c.world->from_bytes(bytes, run_text(), file("checkpoint"));
+        csv = read_file(file("run.csv"), std::size_t{1} << 32);
+        // rows after the checkpoint are made again
+        const long rows = c.world->steps() / every + 2;
+        std::size_t at = 0;
+        for (long k = 0; k < rows && at < csv.size(); ++k) at = csv.find('\n', at) + 1;
+        csv.resize(at);
+        for (long k = 0; k * every <= c.world->steps(); ++k)
+            frames.emplace_back(static_cast<double>(k * every) * c.h, frame(k));
+    }
+
+    /// What a checkpoint must belong to
+    std::string run_text() const { return c.text + '\n' + std::to_string(c.h); }
+
+    static std::string frame(long k)
+    {
+        char name[48];
+        std::snprintf(name, sizeof name, "particles-%06ld.vtp", k);
+        return name;
+    }
+
+    int march()
+    {
+        Progress line(o.quiet);
+        World& w = *c.world;
+        long since = w.steps();
+        try {
+            if (w.steps() == 0) record();
+            while (w.steps() < steps && caught == 0) {
+                const long next = std::min((w.steps() / every + 1) * every, steps);
+                // no more than about a tenth of a second between looks at the clock
+                while (w.steps() < next && caught == 0) {
+                    const long most = std::max(1L, 1000000L / static_cast<long>(w.count() + 1));
+                    w.step(std::min(most, next - w.steps()));
+                    line.update(c, static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) /
+                                       seconds_since(begin));
+                }
+                if (w.steps() % every == 0) record();
+                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint) save();
+            }
+        } catch (const ParticleLost& e) {
+            line.clear();
+            std::fprintf(stderr, "hilda: error[particle_lost]: %s\n", e.what());
+            message = e.what();
+            return numerical;
+        }
+        line.clear();
+        rate = static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) / seconds_since(begin);
+        if (caught != 0) {
+            save();
+            if (!o.quiet)
+                std::fprintf(stderr, "hilda: interrupted; --resume goes on from the checkpoint in %s\n",
+                             o.output.c_str());
+            return by_signal + caught;
+        }
+        return ok;
+    }
+
+    void save()
+    {
+        write_file(file("run.csv"), csv);
+        write_file(file("checkpoint"), c.world->to_bytes(run_text()));
+        saved = Clock::now();
+    }
+
+    void record()
+    {
+        const World& w = *c.world;
+        const std::vector<Contact> contacts = w.contacts();
+        std::vector<Vec3> F(c.boundaries.size(), Vec3{0, 0, 0});
+        for (const Contact& at : contacts)
+            if (at.boundary) F[at.j] -= at.F;
+        char row[128];
+        std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
+                      w.candidates());
+        csv += row;
+        for (const Vec3& f : F) {
+            std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", f.x, f.y, f.z);
+            csv += row;
+        }
+        csv += '\n';
+        if (o.no_vtk) return;
+        const std::string name = frame(w.steps() / every);
+        make_directory(file("vtk"));
+        write_file(file("vtk/" + name), particles_vtp(w));
+        frames.emplace_back(w.t(), name);
+    }
+
+    void finish(int code)
+    {
+        const World& w = *c.world;
+        write_file(file("run.csv"), csv);
+        write_file(file("particles.csv"), particles_csv(w));
+        write_file(file("contacts.csv"), contacts_csv(w));
+        if (!frames.empty()) write_file(file("vtk/run.pvd"), pvd(frames));
+        nlohmann::ordered_json s = {
+            {"case", c.name},
+            {"status", code == ok          ? "ok"
+                       : code == numerical ? "particle_lost"
+                                           : "interrupted"},
+            {"particles", w.count()},
+            {"step", c.h},
+            {"t", w.t()},
+            {"steps", w.steps()},
+            {"rebuilds", w.rebuilds()},
+            {"kinetic_energy", w.kinetic_energy()},
+            {"particle_steps_per_second", rate},
+            {"bytes_per_particle",
+             w.count() > 0 ? static_cast<double>(w.bytes()) / static_cast<double>(w.count()) : 0},
+            {"threads", omp_get_max_threads()},
+            {"device", "cpu"},
+            {"notices", c.notices}};
+        if (!message.empty()) s["message"] = message;
+        write_file(file("summary.json"), s.dump(2) + '\n');
+        if (code == ok) std::remove(file("checkpoint").c_str());
+        if (code == ok && !o.quiet)
+            std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
+                        c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * rate, o.output.c_str());
+    }
+
+    const Options& o;
+    Case c;
+    long every = 1, steps = 0;
+    std::string csv, message;
+    std::vector<std::pair<double, std::string>> frames;
+    Clock::time_point begin, saved;
+    double rate = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    Options o;
+    CLI::App app("hilda-granular: a granular case, on the CPU or on a GPU");
+    app.add_option("CASE", o.file, "a case file in JSON")->required();
+    app.add_option("--output", o.output, "directory of what the run leaves; by default named after the case");
+    app.add_option("--threads", o.threads, "of the CPU; the results do not depend on it")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--checkpoint", o.checkpoint, "seconds between checkpoints; none by default")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--device", o.device, "cpu");
+    app.add_flag("--resume", o.resume, "goes on from the checkpoint in the output directory");
+    app.add_flag("--force", o.force, "writes over an earlier run");
+    app.add_flag("--no-vtk", o.no_vtk, "writes no particles for ParaView");
+    app.add_flag("--quiet", o.quiet, "says nothing but errors");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);
+        std::fprintf(stderr, "hilda: error: granular: %s\n", e.what());
+        return usage;
+    }
+    if (o.device != "cpu") {
+        std::fprintf(stderr, "hilda: error: --device %s: this program was built for the CPU alone\n",
+                     o.device.c_str());
+        return no_device;
+    }
+    if (o.threads > 0) omp_set_num_threads(o.threads);
+    if (o.output.empty()) o.output = std::filesystem::path(o.file).stem().string();
+    for (const int s : {SIGINT, SIGTERM}) std::signal(s, [](int which) { caught = which; });
+    std::signal(SIGXFSZ, SIG_IGN);
+    try {
+        std::string text;
+        try {
+            text = read_file(o.file, std::size_t{64} << 20);
+        } catch (const FileError& e) {
+            throw InvalidCase(e.what());
+        }
+        Case c = read_case(text, o.file);
+        if (!o.quiet)
+            for (const std::string& n : c.notices) std::fprintf(stderr, "hilda: warning: %s\n", n.c_str());
+        return Run(o, std::move(c)).go();
+    } catch (const InvalidCase& e) {
+        std::fprintf(stderr, "hilda: error: %s\n", e.what());
+        return bad_case;
+    } catch (const FileError& e) {
+        std::fprintf(stderr, "hilda: error: %s\n", e.what());
+        return io;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "hilda: error: not enough memory\n");
+        return bad_case;
+    }
+}

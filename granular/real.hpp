@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The arithmetic that physics is written in: a real type R, which is float on a GPU, double in the reference and a pack
+/// of floats in the loops of a CPU; and vectors of it.
+
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#ifdef __CUDACC__
+#define HILDA_HD __host__ __device__
+#else
+#define HILDA_HD
+#endif
+
+namespace hilda::granular {
+
+/// What belongs to a real type: the number that a parameter is, and the answer to a comparison
+template <class R>
+struct RealType {
+    using Number = R;
+    using Mask = bool;
+};
+template <class R>
+using Number = typename RealType<R>::Number;
+template <class R>
+using Mask = typename RealType<R>::Mask;
+
+HILDA_HD inline float sqrt(float x) { return ::sqrtf(x); }
+HILDA_HD inline double sqrt(double x) { return ::sqrt(x); }
+HILDA_HD inline float rint(float x) { return ::rintf(x); }
+HILDA_HD inline float abs(float x) { return ::fabsf(x); }
+HILDA_HD inline double abs(double x) { return ::fabs(x); }
+HILDA_HD inline float select(bool condition, float a, float b) { return condition ? a : b; }
+HILDA_HD inline double select(bool condition, double a, double b) { return condition ? a : b; }
+
+template <class R>
+HILDA_HD inline R smaller(R a, R b)
+{
+    return select(a < b, a, b);
+}
+template <class R>
+HILDA_HD inline R larger(R a, R b)
+{
+    return select(a < b, b, a);
+}
+
+template <class R>
+struct Vec {
+    R x, y, z;
+
+    HILDA_HD Vec operator+(const Vec& o) const { return {x + o.x, y + o.y, z + o.z}; }
+    HILDA_HD Vec operator-(const Vec& o) const { return {x - o.x, y - o.y, z - o.z}; }
+    HILDA_HD Vec operator-() const { return {-x, -y, -z}; }
+    HILDA_HD Vec& operator+=(const Vec& o) { return *this = *this + o; }
+    HILDA_HD Vec& operator-=(const Vec& o) { return *this = *this - o; }
+    HILDA_HD friend Vec operator*(const R& s, const Vec& v) { return {s * v.x, s * v.y, s * v.z}; }
+    HILDA_HD R dot(const Vec& o) const { return x * o.x + y * o.y + z * o.z; }
+    HILDA_HD Vec cross(const Vec& o) const
+    {
+        return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
+    }
+    HILDA_HD R norm() const { return sqrt(dot(*this)); }
+    bool operator==(const Vec&) const = default;
+};
+
+template <class R>
+HILDA_HD inline Vec<R> select(const Mask<R>& condition, const Vec<R>& a, const Vec<R>& b)
+{
+    return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
+}
+
+}  // namespace hilda::granular

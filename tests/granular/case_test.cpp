@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a case file says is what is run; what makes no sense is refused with its place.
+#include "granular/case_file.hpp"
+#include "granular/files.hpp"
+#include "granular/fill.hpp"
+#include "granular/keys.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using granular::read_case;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json good()
+{
+    return ordered_json::parse(R"({"hilda_case": 1,
+ "domain": {"low": [0, 0, 0], "high": [1, 1, 1]}, "step": 1e-5, "end": 0.1,
+ "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}, {"name": "steel", "density": 7800, "E": 2e11, "nu": 0.3}],
+ "laws": [{"between": ["glass", "glass"], "restitution": 0.9, "mu": 0.3, "tangential": {"law": "mindlin"}},
+          {"between": ["glass", "steel"], "restitution": 0.5, "normal": {"law": "hooke", "k_n": 1e4}}],
+ "boundaries": [{"type": "plane", "normal": [0, 0, 2], "material": "steel"}],
+ "particles": [{"r": [0.5, 0.5, 0.5], "radius": 0.1, "material": "glass"}]})");
+}
+
+/// The case with one entry changed
+std::string with(const std::string& pointer, const ordered_json& value)
+{
+    ordered_json c = good();
+    c[ordered_json::json_pointer(pointer)] = value;
+    return c.dump();
+}
+
+}  // namespace
+
+TEST_CASE("a case is what its file says", "[granular][case]")
+{
+    const granular::Case c = read_case(good().dump(), "file");
+    CHECK(c.h == 1e-5);
+    const auto p = c.world->particles();
+    REQUIRE(p.size() == 1);
+    CHECK(p[0].r.z == 0.5);
+    CHECK(c.boundaries == std::vector<std::string>{"boundary 0"});
+}
+
+TEST_CASE("the example is a case", "[granular][case]")
+{
+    const std::string file = std::string(HILDA_SOURCE_DIR) + "/granular/cases/bed.json";
+    const granular::Case c = read_case(granular::read_file(file, 10000), file);
+    CHECK(c.world->count() > 5000);
+    CHECK(c.boundaries.size() == 5);
+}
+
+TEST_CASE("what is wrong in a case is named with its place and value", "[granular][case]")
+{
+    const std::tuple<std::string, ordered_json, std::string> wrong[] = {
+        {"/hilda_case", 2, "/hilda_case: must be 1"},
+        {"/step", 0, "/step: must be positive, got 0"},
+        {"/step", "1e-5", "/step: must be a finite number, got \"1e-5\""},
+        {"/steps", 5, "/steps: unknown key"},
+        {"/domain/high", {1, 1}, "/domain/high: must be three numbers, got [1,1]"},
+        {"/domain/high/2", -1, "domain: the high end along z must be above the low one, got -1"},
+        {"/integrator", "euler", "/integrator: must be one of symplectic-euler, velocity-verlet"},
+        {"/materials/0/E", -7e7, "material 'glass': E must be positive, got -70000000"},
+        {"/materials/0/nu", 0.5, "material 'glass': nu must be between -1 and 0.5, got 0.5"},
+        {"/materials/1/density", 0, "material 'steel': density must be positive, got 0"},
+        {"/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"},
+        {"/laws/0/between/1", "brass", "/laws/0/between/1: no material has this name, got \"brass\""},
+        {"/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of none, coulomb, mindlin"},
+        {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key"},
+        {"/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: must be positive, got -1"},
+        {"/boundaries/0/type", "wall", "/boundaries/0/type: must be one of plane, cylinder, cone, sphere"},
+        {"/boundaries/0/normal", {0, 0, 0}, "/boundaries/0/normal: must not be zero"},
+        {"/particles/0/radius", -0.1, "/particles/0/radius: must be positive, got -0.1"},
+        {"/particles/0/material", "wood", "/particles/0/material: no material has this name, got \"wood\""},
+        {"/particles/0/r", {0.5, nullptr, 0.5}, "/particles/0/r/1: must be a finite number, got null"},
+    };
+    for (const auto& [pointer, value, message] : wrong) {
+        INFO(pointer);
+        CHECK_THROWS_WITH(read_case(with(pointer, value), "file"), Catch::StartsWith("file: " + message));
+    }
+    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": }", "file"), "file: line 2: is no JSON");
+    CHECK_THROWS_WITH(read_case(R"({"hilda_case": 1, "step": 1, "step": 2})", "file"),
+                      "file: the key \"step\" stands twice in one object");
+    CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
+}
+
+TEST_CASE("a restitution of zero is floored with a notice", "[granular][case]")
+{
+    const granular::Case c = read_case(with("/laws/0/restitution", 0), "file");
+    REQUIRE(c.notices.size() == 1);
+    CHECK(c.notices[0] == "/laws/0/restitution: 0 is taken as 1e-7, whose damping is finite");
+}
+
+TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")
+{
+    const auto kind = GENERATE(granular::Filling::Kind::lattice, granular::Filling::Kind::hcp,
+                               granular::Filling::Kind::poisson);
+    granular::Filling f;
+    f.kind = kind;
+    f.low = {0, 0, 0}, f.high = {0.02, 0.02, 0.02};
+    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (kind == granular::Filling::Kind::hcp ? 1 : 1.05),
+    f.jitter = 1;
+    const auto all = granular::fill(f);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (const double c : {all[i].r.x, all[i].r.y, all[i].r.z}) REQUIRE((c >= 1e-3 && c <= 0.019));
+        for (std::size_t j = i + 1; j < all.size(); ++j)
+            REQUIRE((all[i].r - all[j].r).norm() > 2e-3 * (1 - 1e-12));
+    }
+    const double packing = static_cast<double>(all.size()) * 4 / 3 * M_PI * 1e-9 / 8e-6;
+    CHECK(packing > (kind == granular::Filling::Kind::hcp       ? 0.55
+                     : kind == granular::Filling::Kind::lattice ? 0.37
+                                                                : 0.2));
+    CHECK(granular::fill(f)[5].r == all[5].r);
+}

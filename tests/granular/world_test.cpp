@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many grains: who touches whom, what is conserved, what does not depend on the order of things.
+#include "tests/support/grains.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <omp.h>
+
+#include <random>
+#include <set>
+
+using namespace hilda;
+using namespace hilda::tests;
+using granular::Boundary;
+using granular::Contact;
+
+namespace {
+
+constexpr double R = 1e-3;
+
+Material glass() { return {"glass", 2500, 7e7, 0.24}; }
+
+struct Random {
+    std::mt19937 engine;
+    double number(double low, double high)
+    {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+};
+
+WorldOptions box(double width, double height)
+{
+    WorldOptions o;
+    o.low = {-2 * R, -2 * R, -2 * R}, o.high = {width + 2 * R, width + 2 * R, height};
+    o.h = 5e-6;
+    return o;
+}
+
+void add_walls(World& world, double width)
+{
+    Boundary b;
+    world.add(b);
+    for (const auto& [r, axis] : {std::pair{Vec3{0, 0, 0}, Vec3{1, 0, 0}},
+                                  {Vec3{width, 0, 0}, Vec3{-1, 0, 0}},
+                                  {Vec3{0, 0, 0}, Vec3{0, 1, 0}},
+                                  {Vec3{0, width, 0}, Vec3{0, -1, 0}}}) {
+        b.r = r, b.axis = axis;
+        world.add(b);
+    }
+}
+
+/// A loose heap of n³ grains, of radii up to `spread` smaller
+std::vector<Particle> heap(int n, double spread, Random& random)
+{
+    std::vector<Particle> all;
+    for (int k = 0; k < n * n * n; ++k) {
+        Particle p;
+        p.radius = R * (1 - random.number(0, spread));
+        p.r = 2.1 * R * Vec3{k % n + 0.6, k / n % n + 0.6, k / (n * n) + 0.6} + random.vector(0.03 * R);
+        p.v = random.vector(0.2), p.omega = random.vector(50);
+        all.push_back(p);
+    }
+    return all;
+}
+
+double width_of(int n) { return 2.1 * R * (n + 0.2); }
+
+}  // namespace
+
+TEST_CASE("the contacts of the neighbour list are those of all pairs", "[granular][neighbours]")
+{
+    const bool periodic = GENERATE(false, true);
+    const double spread = GENERATE(0., 0.6);
+    Random random{std::mt19937(7)};
+    constexpr int n = 7;
+    const double width = width_of(n);
+    WorldOptions o = box(width, width + 4 * R);
+    if (periodic)
+        o.low = {0, 0, -2 * R}, o.high = {width, width, width + 4 * R}, o.periodic = {true, true, false};
+    World world(o, {glass()});
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.7, 0.4));
+    if (periodic)
+        world.add(Boundary{});
+    else
+        add_walls(world, width);
+    const auto heaped = heap(n, spread, random);
+    for (const Particle& p : heaped) world.add(p);
+    int seen = 0;
+    for (int k = 0; k < 20; ++k) {
+        world.step(600);
+        const auto before = world.particles();
+        std::set<std::pair<unsigned, unsigned>> all, found;
+        for (unsigned i = 0; i < before.size(); ++i)
+            for (unsigned j = i + 1; j < before.size(); ++j) {
+                Vec3 d = before[i].r - before[j].r;
+                if (periodic) d.x -= width * std::round(d.x / width), d.y -= width * std::round(d.y / width);
+                const double overlap = before[i].radius + before[j].radius - d.norm();
+                if (overlap > 1e-10) all.insert({i, j});
+            }
+        for (const Contact& c : world.contacts())
+            if (!c.boundary) found.insert({c.i, c.j});
+        for (const auto& pair : all) CHECK(found.count(pair) == 1);
+        seen += static_cast<int>(all.size());
+        CHECK(found.size() <= all.size() + 2);  // those that overlap by less than 1e-10 m
+    }
+    CHECK(seen > 400);
+    CHECK(world.rebuilds() > 5);
+    CHECK(world.rebuilds() < 2000);
+}
+
+TEST_CASE("a run has the same bits for any number of threads", "[granular][deterministic]")
+{
+    const int threads = omp_get_max_threads();
+    std::vector<Particle> first;
+    for (const int t : {1, 2, 3, 4, 8}) {
+        omp_set_num_threads(t);
+        Random random{std::mt19937(3)};
+        constexpr int n = 16;
+        World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
+        world.set_law(0, 0, hertz_mindlin(glass(), 0.7, 0.4));
+        add_walls(world, width_of(n));
+        for (const Particle& p : heap(n, 0.3, random)) world.add(p);
+        world.step(600);
+        const auto now = world.particles();
+        if (first.empty()) first = now;
+        bool same = true;
+        for (std::size_t k = 0; k < now.size(); ++k)
+            same = same && now[k].r == first[k].r && now[k].v == first[k].v && now[k].omega == first[k].omega;
+        INFO(t << " threads");
+        CHECK(same);
+    }
+    omp_set_num_threads(threads);
+}
+
+TEST_CASE("grains that nothing holds keep their momentum", "[granular][invariant]")
+{
+    Random random{std::mt19937(5)};
+    constexpr int n = 6;
+    WorldOptions o = box(width_of(n), width_of(n));
+    const double far = 0.1;
+    o.low = {-far, -far, -far}, o.high = {far, far, far}, o.gravity = {0, 0, 0};
+    World world(o, {glass()});
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.9, 0.3));
+    for (Particle p : heap(n, 0.2, random)) {
+        p.r = 0.97 * p.r, p.v = p.v - 100 * p.r;  // towards each other
+        world.add(p);
+    }
+    world.step();
+    Vec3 before = world.momentum();
+    double scale = 0;
+    for (const Particle& p : world.particles()) scale += p.mass * p.v.norm();
+    std::size_t contacts = 0;
+    for (int k = 0; k < 200; ++k) {
+        world.step(10);
+        contacts += world.contacts().size();
+        const Vec3 now = world.momentum();
+        CHECK((now - before).norm() < 10 * 6e-8 * scale / std::sqrt(static_cast<double>(world.count())));
+        before = now;
+    }
+    CHECK(contacts > 1000);
+}
+
+TEST_CASE("friction is never beyond its bound", "[granular][invariant]")
+{
+    Random random{std::mt19937(9)};
+    constexpr int n = 6;
+    World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
+    const double mu = 0.35;
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.6, mu));
+    add_walls(world, width_of(n));
+    for (const Particle& p : heap(n, 0.2, random)) world.add(p);
+    int slid = 0;
+    world.step(8000);
+    for (int k = 0; k < 500; ++k) {
+        world.step();
+        for (const Contact& c : world.contacts()) {
+            const double F_n = c.F.dot(c.n), F_t = (c.F - F_n * c.n).norm();
+            REQUIRE(F_t <= mu * std::abs(F_n) + 1e-5 * c.F.norm());  // spring and dashpot may cancel
+            slid += F_t > 0.99 * mu * std::abs(F_n);
+        }
+    }
+    CHECK(slid > 1000);
+}

@@ -31,7 +31,7 @@ endif()
 
 install(TARGETS hilda_library EXPORT hilda_targets)
 if(TARGET hilda_program)
-    install(TARGETS hilda_program)
+    install(TARGETS hilda_program hilda_granular_program)
 endif()
 foreach(room lie dae contact)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"

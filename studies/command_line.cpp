@@ -4,6 +4,7 @@
 #include "studies/arguments.hpp"
 #include "studies/check_model.hpp"
 #include "studies/exit_codes.hpp"
+#include "studies/granular.hpp"
 #include "studies/info.hpp"
 #include "studies/lists.hpp"
 #include "studies/plot.hpp"
@@ -306,9 +307,11 @@ private:
 
     void add_granular()
     {
-        CLI::App* c = add("granular", "granular dynamics",
-                          []() -> int { throw NotAvailable("granular: not part of this build"); });
-        c->allow_extras();
+        CLI::App* c = add("granular", "a granular case, by the program hilda-granular beside this one",
+                          [this] { return start_granular(granular); });
+        c->prefix_command();  // all that follows is for the other program, --help too
+        c->set_help_flag();
+        c->callback([this, c] { granular = c->remaining(); });
     }
 
     void add_plot()
@@ -383,6 +386,7 @@ private:
     std::vector<std::string> chosen_integrators;
     std::string name, write_to, kind, directory;
     bool json = false, verbose = false;
+    std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ World::World(const WorldOptions& o, std::vector<Material> all) : options(o), mat
         if (!(m.E > 0) || !std::isfinite(m.E)) refuse(where, "E must be positive", m.E);
         if (!(m.nu > -1 && m.nu < 0.5)) refuse(where, "nu must be between -1 and 0.5", m.nu);
     }
-    law_of.assign(materials.size() * materials.size(), 255);
+    law_of.assign(materials.size() * materials.size(), no_law);
 }
 
 World::~World() = default;
@@ -100,6 +100,8 @@ std::uint32_t World::add(const Particle& p)
         refuse(where, "no material has this number", p.material);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
     waiting.push_back(p);
+    if (!(p.mass > 0))
+        waiting.back().mass = sphere_mass(p.radius, materials[static_cast<std::size_t>(p.material)].density);
     return id;
 }
 
@@ -175,9 +177,68 @@ void World::settle_in()
         par::fill(par::Cpu(), acc.data(), particle.count, Four{});
         par::fill(par::Cpu(), turn.data(), particle.count, Four{});
     }
-    for (std::size_t m = 0; m < law_of.size(); ++m)
-        if (law_of[m] == 255 && laws.size() == 1) law_of[m] = 0;
+    check_laws();
     look_again();
+    look_for_neighbours();
+    check_overlaps();
+}
+
+/// All materials that may meet have a law.
+void World::check_laws() const
+{
+    const std::size_t n = materials.size();
+    std::vector<char> of_particles(n, 0), all(n, 0);
+    for (std::uint32_t k = 0; k < particle.count; ++k) of_particles[particle.rest.data()[k].material] = 1;
+    all = of_particles;
+    for (const Boundary& b : boundaries) all[static_cast<std::size_t>(b.material)] = 1;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            if (of_particles[i] != 0 && all[j] != 0 && law_of[i * n + j] == no_law)
+                refuse("laws", "there is none between two materials that may meet",
+                       "'" + materials[i].name + "' and '" + materials[j].name + "'");
+}
+
+/// Where particles begin, they are not pressed into each other or into a boundary.
+void World::check_overlaps() const
+{
+    if (number > 0) return;
+    constexpr double deepest = 0.05;  // of the smaller radius
+    const std::vector<Particle> all = particles();
+    for (const Contact& c : contacts()) {
+        const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
+        if (c.delta > deepest * R)
+            refuse(name_of(c.i) + " and " + (c.boundary ? "boundary " + std::to_string(c.j) : name_of(c.j)),
+                   "must not overlap by more than 5 % of a radius at the start", c.delta);
+    }
+}
+
+World::StepLimits World::step_limits() const
+{
+    StepLimits limits;
+    const std::vector<Particle> all = particles();
+    double fastest = 0;
+    for (const Particle& p : all) fastest = std::max(fastest, p.v.norm());
+    for (const Particle& p : all) {
+        const Material& m = materials[static_cast<std::size_t>(p.material)];
+        const double G = m.E / (2 * (1 + m.nu));
+        if (p.fixed) continue;
+        limits.rayleigh =
+            std::min(limits.rayleigh, M_PI * p.radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766));
+        for (const PairLaw& law : laws)
+            law.normal.visit([&](const auto& l) {
+                // of two of its kind, at 0.1 m/s or faster
+                const double mass = p.mass / 2, R = p.radius / 2;
+                if constexpr (requires { l.k_n; }) {
+                    limits.collision =
+                        std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
+                } else {
+                    const double E_eff = l.E_eff, v = std::max(fastest, 0.1);
+                    limits.collision = std::min(limits.collision,
+                                                2.87 * std::pow(mass * mass / (R * E_eff * E_eff * v), 0.2));
+                }
+            });
+    }
+    return limits;
 }
 
 void World::look_for_neighbours()

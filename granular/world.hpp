@@ -110,8 +110,19 @@ public:
     /// Looks for neighbours before the next step, as a world does that was loaded from a file
     void look_again() { moved = std::numeric_limits<double>::infinity(); }
 
+    /// What an explicit step is measured by
+    struct StepLimits {
+        double rayleigh = std::numeric_limits<double>::infinity();  ///< least Rayleigh time of a particle [s]
+        double collision = std::numeric_limits<double>::infinity();  ///< least time of a collision of two [s]
+    };
+    StepLimits step_limits() const;
+
 private:
+    static constexpr std::uint8_t no_law = 255;
+
     void settle_in();
+    void check_laws() const;
+    void check_overlaps() const;
     void look_for_neighbours();
     LawView law_view() const;
     ParticleView particle_view() const;

@@ -71,6 +71,7 @@ public:
                          o.output.c_str());
             return usage;
         }
+        if (!judge_step()) return bad_case;
         make_directory(o.output);
         every = std::max(1L, std::lround(c.every / c.h));
         steps = std::lround(c.end / c.h);
@@ -91,6 +92,27 @@ public:
 
 private:
     std::string file(const std::string& name) const { return o.output + '/' + name; }
+
+    /// Above a fifth of the Rayleigh time or a fifteenth of a collision a step is coarse; above the one, or two pi-ths of
+    /// the other, it is not stable.
+    bool judge_step() const
+    {
+        const World::StepLimits limits = c.world->step_limits();
+        const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
+        if (c.h > stable) {
+            std::fprintf(stderr,
+                         "hilda: %s: %s: /step: must not be above %.3g s, where it is stable, got %g%s\n",
+                         o.force ? "warning" : "error", o.file.c_str(), stable, c.h,
+                         o.force ? "" : "; --force overrides");
+            return o.force;
+        }
+        if (!o.quiet && (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15))
+            std::fprintf(
+                stderr,
+                "hilda: warning: the step %g s is %.2g of the Rayleigh time and %.2g of a collision\n", c.h,
+                c.h / limits.rayleigh, c.h / limits.collision);
+        return true;
+    }
 
     void resume()
     {

@@ -86,6 +86,36 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
     CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
 }
 
+TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")
+{
+    const auto begin = [](const std::string& text) { read_case(text, "file").world->step(); };
+    CHECK_NOTHROW(begin(good().dump()));
+    CHECK_THROWS_WITH(begin(with("/particles/0/material", "steel")),
+                      "laws: there is none between two materials that may meet, got 'steel' and 'steel'");
+    ordered_json two = good();
+    two["particles"].push_back({{"r", {0.5, 0.5, 0.685}}, {"radius", 0.1}, {"material", "glass"}});
+    CHECK_THROWS_WITH(begin(two.dump()),
+                      Catch::StartsWith("particle 0 and particle 1: must not overlap by more than 5 % of a "
+                                        "radius at the start, got 0.015"));
+    CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 0.09})),
+                      Catch::StartsWith("particle 0 and boundary 0: must not"));
+    CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 1.5})),
+                      "particle 0: is outside the domain along z, got 1.5");
+}
+
+TEST_CASE("a step is measured by the Rayleigh time and by a collision", "[granular][case]")
+{
+    const granular::Case c = read_case(good().dump(), "file");
+    const double G = 7e7 / (2 * 1.24);
+    CHECK(c.world->step_limits().rayleigh ==
+          Approx(M_PI * 0.1 * std::sqrt(2500 / G) / (0.1631 * 0.24 + 0.8766)));
+    // of glass on glass at 0.1 m/s, which is shorter than on the spring of steel (Johnson 1985, Sec. 11.4)
+    const double m_eff = 2500 * 4. / 3 * M_PI * 1e-3 / 2, R_eff = 0.05, E_eff = 7e7 / (2 * (1 - 0.24 * 0.24));
+    const double collision = 2.87 * std::pow(m_eff * m_eff / (R_eff * E_eff * E_eff * 0.1), 0.2);
+    CHECK(c.world->step_limits().collision == Approx(collision).epsilon(1e-6));
+    CHECK(collision < M_PI * std::sqrt(m_eff / 1e4));
+}
+
 TEST_CASE("a restitution of zero is floored with a notice", "[granular][case]")
 {
     const granular::Case c = read_case(with("/laws/0/restitution", 0), "file");

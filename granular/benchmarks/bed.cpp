@@ -3,7 +3,7 @@
 /// LAMMPS and YADE are compared on.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_granular_benchmark
-///     OMP_NUM_THREADS=1 build/native/hilda_granular_benchmark 50000 [skin in diameters]
+///     build/native/hilda_granular_benchmark 50000 [skin in diameters]      with 1, 2, 4 … threads
 
 #include "granular/world.hpp"
 
@@ -91,8 +91,16 @@ int main(int argc, char** argv)
     std::printf(
         "                          million  ns per particle-step in             pairs  contacts bytes\n"
         "particles thr phase    per s      loads  advance neighb. rebuilds   per particle\n");
-    report("falling", world, 400);
+    const int most = omp_get_max_threads();
+    const auto report_all = [&](const char* phase, long steps) {
+        for (int threads = 1; threads <= most; threads *= 2) {
+            omp_set_num_threads(threads);
+            report(phase, world, steps);
+        }
+        omp_set_num_threads(most);
+    };
+    report_all("falling", 400);
     const double settled = 0.25;  // [s]
-    world.step(std::lround(settled / h) - 400);
-    report("at rest", world, 1000);
+    world.step(std::lround(settled / h));
+    report_all("at rest", 1000);
 }

@@ -182,3 +182,95 @@ TEST_CASE("friction is never beyond its bound", "[granular][invariant]")
     }
     CHECK(slid > 1000);
 }
+
+TEST_CASE("a bed at rest bears on floor and walls with its weight (long)", "[granular][invariant]")
+{
+    Random random{std::mt19937(11)};
+    constexpr int n = 9;
+    World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.1, 0.4));
+    add_walls(world, width_of(n));
+    double weight = 0;
+    for (Particle p : heap(n, 0.3, random)) {
+        p.v = {0, 0, 0};
+        world.add(p);
+        weight += 9.81 * 2500 * 4 / 3 * std::numbers::pi * p.radius * p.radius * p.radius;
+    }
+    world.step(60000);
+    double up = 0;
+    for (int b = 0; b < 5; ++b) up -= world.wrench(b).F.z;
+    CHECK(up == Approx(weight).epsilon(2e-3));
+    CHECK(world.kinetic_energy() < 1e-6 * weight * width_of(n));
+}
+
+TEST_CASE("an elastic gas keeps its energy", "[granular][invariant]")
+{
+    Random random{std::mt19937(13)};
+    constexpr int n = 5;
+    const double width = width_of(n);
+    WorldOptions o;
+    o.low = {0, 0, 0}, o.high = {width, width, width};
+    o.periodic = {true, true, true}, o.gravity = {0, 0, 0};
+    o.h = 2e-6;
+    World world(o, {glass()});
+    world.set_law(0, 0, hertz_mindlin(glass(), 1));
+    for (Particle p : heap(n, 0.4, random)) {
+        p.omega = {0, 0, 0};
+        world.add(p);
+    }
+    const double E_eff = granular::effective_modulus(glass(), glass());
+    const auto energy = [&] {
+        const auto all = world.particles();
+        double E = world.kinetic_energy();
+        for (const Contact& c : world.contacts()) {
+            const double R_eff = all[c.i].radius * all[c.j].radius / (all[c.i].radius + all[c.j].radius);
+            E += 8. / 15 * E_eff * std::sqrt(R_eff) * std::pow(c.delta, 2.5);
+        }
+        return E;
+    };
+    world.step();
+    const double before = energy();
+    std::size_t met = 0;
+    for (int k = 0; k < 200; ++k) {
+        world.step(200);
+        met += world.contacts().size();
+        CHECK(energy() == Approx(before).epsilon(2e-3));
+    }
+    CHECK(met > 200);
+}
+
+TEST_CASE("a world in a mirror, or told in another order, moves alike", "[granular][invariant]")
+{
+    constexpr int n = 6;
+    const double width = width_of(n);
+    const auto run = [&](bool mirrored, bool backwards) {
+        Random random{std::mt19937(17)};
+        WorldOptions o = box(width, width + 4 * R);
+        World world(o, {glass()});
+        world.set_law(0, 0, hertz_mindlin(glass(), 0.8, 0.3));
+        add_walls(world, width);
+        std::vector<Particle> all = heap(n, 0.3, random);
+        for (Particle& p : all)
+            if (mirrored)
+                p.r.x = width - p.r.x, p.v.x = -p.v.x, p.omega.y = -p.omega.y, p.omega.z = -p.omega.z;
+        if (backwards) std::reverse(all.begin(), all.end());
+        for (const Particle& p : all) world.add(p);
+        world.step(1000);
+        std::vector<Particle> out = world.particles();
+        if (backwards) std::reverse(out.begin(), out.end());
+        for (Particle& p : out)
+            if (mirrored) p.r.x = width - p.r.x, p.v.x = -p.v.x;
+        return out;
+    };
+    const auto plain = run(false, false);
+    const auto far = [&](const std::vector<Particle>& other) {
+        double most = 0;
+        for (std::size_t k = 0; k < plain.size(); ++k)
+            most = std::max(most, (plain[k].r - other[k].r).norm());
+        return most / R;
+    };
+    // Collisions make rounding larger, about ten times each.
+    CHECK(far(run(true, false)) < 1e-5);
+    CHECK(far(run(false, true)) < 1e-5);
+    CHECK(far(run(true, true)) < 1e-5);
+}

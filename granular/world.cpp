@@ -397,19 +397,24 @@ std::vector<Contact> World::contacts() const
         c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
         const Position at = particle.position.data()[i];
         const double R = particle.velocity.data()[i].w;
+        const Vec3 r = place(grid, at);
         if (c.boundary) {
-            const Nearest near = nearest(boundaries[c.j], place(grid, at));
+            const Nearest near = nearest(boundaries[c.j], r);
             c.n = near.n, c.delta = R - near.distance;
+            c.C = r - near.distance * near.n;
         } else {
             const Difference d = difference(grid, at, particle.position.data()[j]);
             const Vec3 apart = grid.unit * Vec3{double(d.x), double(d.y), double(d.z)};
             c.n = (1 / apart.norm()) * apart;
             c.delta = R + particle.velocity.data()[j].w - apart.norm();
+            c.C = r - R * c.n;
         }
+        if (view.torque != nullptr) c.T = to_double(torque.data()[n]);
         c.F = to_double(load.data()[n].F), c.u = to_double(history.data()[n]);
         if (!c.boundary && c.j < c.i) {
             std::swap(c.i, c.j);
-            c.n = -c.n, c.F = -c.F, c.u = -c.u;
+            c.C += c.delta * c.n;  // at the radius of the other
+            c.n = -c.n, c.F = -c.F, c.T = -c.T, c.u = -c.u;
         }
         all.push_back(c);
     }
@@ -425,6 +430,7 @@ Wrench World::wrench(int b) const
     for (const Contact& c : contacts()) {
         if (!c.boundary || static_cast<int>(c.j) != b) continue;
         sum.F -= c.F;
+        sum.T -= (c.C - boundaries[c.j].r).cross(c.F) + c.T;
     }
     return sum;
 }

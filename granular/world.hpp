@@ -45,9 +45,11 @@ struct Particle {
 struct Contact {
     std::uint32_t i = 0, j = 0;  ///< ids; j a boundary's number where `boundary`
     bool boundary = false;
+    Vec3 C = {0, 0, 0};  ///< point where F acts on i, at its radius [m]; on the boundary where it is one
     Vec3 n = {0, 0, 0};  ///< into i
     double delta = 0;    ///< overlap [m]
     Vec3 F = {0, 0, 0};  ///< on i [N]
+    Vec3 T = {0, 0, 0};  ///< of rolling and spin on i [N m]
     Vec3 u = {0, 0, 0};  ///< tangential displacement [m]
 };
 

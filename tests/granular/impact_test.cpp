@@ -148,3 +148,27 @@ TEST_CASE("an oblique impact that slides throughout leaves with the spin of the 
         CHECK(q.omega.y == Approx(2.5 * mu * (1 + e) * v_n / R).epsilon(1e-4));
     }
 }
+
+TEST_CASE("a boundary feels the force and the torque of what lies on it", "[granular][impact]")
+{
+    constexpr double g = 9.81;
+    WorldOptions o = weightless(1e-4);
+    o.gravity = {0, 0, -g};
+    World world(o, {soft()});
+    world.set_law(0, 0, hertz_mindlin(soft(), 0.1, 0.3));
+    granular::Boundary floor;
+    floor.r = {0.5, -0.25, 0};
+    world.add(floor);
+    Particle p;
+    p.radius = R, p.mass = 1, p.r = {1, 0.5, R};
+    world.add(p);
+    world.step(40000);
+    const granular::Wrench w = world.wrench(0);
+    CHECK(w.F.z == Approx(-g).epsilon(1e-5));
+    CHECK(w.T.x == Approx(-g * 0.75).epsilon(1e-5));
+    CHECK(w.T.y == Approx(g * 0.5).epsilon(1e-5));
+    const auto c = world.contacts();
+    REQUIRE(c.size() == 1);
+    CHECK(c[0].C.z == Approx(0).margin(1e-9));
+    CHECK(c[0].delta == Approx(R - world.particles()[0].r.z).margin(2.1e-9));  // a unit of positions
+}

@@ -214,7 +214,7 @@ TEST_CASE("a crowd says what is wrong with a kind", "[contact][broad]")
                       "contact::Crowd: the reach of a kind must be positive, got 0");
 }
 
-TEST_CASE("compliant contacts that come and go are those that were there all the time",
+TEST_CASE("compliant contacts that come and go are those that were there all the time (long)",
           "[contact][broad][scene]")
 {
     // Five balls tumble over each other and the floor: once with every pair named, once with the pairs that are found.

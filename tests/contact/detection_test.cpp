@@ -489,7 +489,7 @@ TEST_CASE("bodies that touch in many points are refused", "[contact][detection]"
     }
 }
 
-TEST_CASE("two rings are apart until they touch", "[contact][detection]")
+TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Torus ring(0.3, 0.05);

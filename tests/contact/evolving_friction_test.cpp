@@ -132,7 +132,7 @@ TEST_CASE("the bound of a sphere in a bowl is that of one damped spring", "[cont
     CHECK(Released(0.3).model.stable_step(b.x).h > 2.5e-3);
 }
 
-TEST_CASE("friction in the bowl is smooth below the bound and chatters above",
+TEST_CASE("friction in the bowl is smooth below the bound and chatters above (long)",
           "[contact][evolving][friction]")
 {
     const Released b(0);
@@ -206,7 +206,7 @@ TEST_CASE("rolling resistance brings the ball to rest where the dissertation's d
     }
 }
 
-TEST_CASE("tracked friction becomes ideal rolling as its spring becomes stiff",
+TEST_CASE("tracked friction becomes ideal rolling as its spring becomes stiff (long)",
           "[contact][evolving][friction]")
 {
     const double t = 0.25, h = 2.5e-4;

@@ -369,7 +369,7 @@ TEST_CASE("an ellipsoid rocks on a plane with its period", "[contact][evolving][
     }
 }
 
-TEST_CASE("an ellipsoid that slides or rolls on a plane in all directions is where it must be",
+TEST_CASE("an ellipsoid that slides or rolls on a plane in all directions is where it must be (long)",
           "[contact][evolving][order]")
 {
     // an independent integration of the same motions in minimal coordinates
@@ -485,7 +485,7 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
     CHECK(std::log2(coarse / fine) == Approx(2).margin(0.05));
 }
 
-TEST_CASE("two free ellipsoids in contact keep their momenta", "[contact][evolving][order]")
+TEST_CASE("two free ellipsoids in contact keep their momenta (long)", "[contact][evolving][order]")
 {
     struct Drift {
         double P = 0, L = 0, energy = 0;

@@ -95,7 +95,7 @@ TEST_CASE("the normal force on a height map converges of second order with its s
     CHECK(std::log2(of[0].rms / of[2].rms) / 2 > 1.8);
 }
 
-TEST_CASE("the normal force on a triangle mesh converges faster than its edges", "[contact][evolving]")
+TEST_CASE("the normal force on a triangle mesh converges faster than its edges (long)", "[contact][evolving]")
 {
     const Vec3 axes(2.5, 2.7, 2.3), from(0.3, 1.2, -1.2);
     const Slide exact = slide(std::make_shared<contact::Ellipsoid>(axes, true), 0.5, from, 1, 2e-3);

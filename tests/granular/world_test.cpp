@@ -68,7 +68,7 @@ double width_of(int n) { return 2.1 * R * (n + 0.2); }
 
 }  // namespace
 
-TEST_CASE("the contacts of the neighbour list are those of all pairs", "[granular][neighbours]")
+TEST_CASE("the contacts of the neighbour list are those of all pairs (long)", "[granular][neighbours]")
 {
     const bool periodic = GENERATE(false, true);
     const double spread = GENERATE(0., 0.6);

@@ -280,7 +280,7 @@ TEST_CASE("a root that is off by whole turns is not taken", "[lie][newton]")
     }
 }
 
-TEST_CASE("rho at infinity sets the damping of generalised alpha", "[lie]")
+TEST_CASE("rho at infinity sets the damping of generalised alpha (long)", "[lie]")
 {
     const tests::SpinningTop top;
     CHECK_THROWS_AS(lie::scheme("rA-genalpha").make(top, {.rho_infinity = 1.2}), lie::InvalidInput);

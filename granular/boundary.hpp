@@ -5,6 +5,7 @@
 
 #include "granular/real.hpp"
 
+#include <array>
 #include <cstdint>
 
 namespace hilda::granular {
@@ -63,6 +64,16 @@ HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& at)
     }
     const double far = d.norm();
     return {sign * (far - b.radius), (sign / (far > 0 ? far : 1)) * d};
+}
+
+/// Floor and four walls of a box without a lid
+inline std::array<Boundary, 5> open_box(const Vec3& low, const Vec3& high)
+{
+    std::array<Boundary, 5> b;
+    b[0].r = b[1].r = b[2].r = low, b[3].r = b[4].r = high;
+    b[0].axis = {0, 0, 1}, b[1].axis = {1, 0, 0}, b[2].axis = {0, 1, 0};
+    b[3].axis = {-1, 0, 0}, b[4].axis = {0, -1, 0};
+    return b;
 }
 
 /// Velocity of the boundary at a point [m/s]

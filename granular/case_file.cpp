@@ -142,15 +142,17 @@ Case read_case(const std::string& text, const std::string& file)
             const Json& which = domain.raw("periodic");
             if (!which.is_array() || which.size() != 3)
                 domain.refuse("periodic", "must be three times true or false", which);
-            for (int k = 0; k < 3; ++k) o.periodic[k] = which[k].get<bool>();
+            for (int k = 0; k < 3; ++k) {
+                if (!which[k].is_boolean())
+                    domain.refuse("periodic/" + std::to_string(k), "must be true or false", which[k]);
+                o.periodic[k] = which[k].get<bool>();
+            }
         }
         domain.end();
         o.gravity = keys.vector("gravity", {0, 0, -9.81});
         out.h = o.h = keys.positive("step");
-        o.h = out.h = keys.number("step");
         out.end = keys.positive("end");
-        out.end = keys.number("end");
-        out.every = keys.number("every", out.end / 100);
+        out.every = keys.has("every") ? keys.positive("every") : out.end / 100;
         o.skin = keys.number("skin", o.skin);
         o.scheme = read_scheme(keys);
 
@@ -219,6 +221,8 @@ Case read_case(const std::string& text, const std::string& file)
         keys.end();
         return out;
     } catch (const InvalidCase& e) {
+        throw InvalidCase(file + ": " + e.what());
+    } catch (const Json::exception& e) {  // a number beyond all numbers, say
         throw InvalidCase(file + ": " + e.what());
     }
 }

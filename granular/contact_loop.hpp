@@ -48,7 +48,6 @@ struct LawView {
 
 /// Loads of all pairs at t_n, and their histories from t_{n-1} to it
 void find_loads(par::Cpu, const ParticleView& particles, const PairView& pairs, const LawView& laws);
-void find_loads(par::Gpu, const ParticleView& particles, const PairView& pairs, const LawView& laws);
 
 /// A contact of two particles out of integers: overlap q/(D + d) with q = D² - d² exact
 template <class R>

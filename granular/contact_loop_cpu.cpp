@@ -241,11 +241,13 @@ struct Loop {
         History<Pack> history;
         history.u = {u.x, u.y, u.z};
         history.age = u.w + laws.h;
-        Answer<Pack> out = answer(law, t, history);
-        if (pairs.turning != nullptr) {
+        const bool turning = pairs.turning != nullptr;
+        if (turning) {
             const auto psi = rows<Pack>(pairs.turning, which);
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
-            add_turning(law, t, history, out);
+        }
+        const Answer<Pack> out = answer(law, t, history, turning);
+        if (turning) {
             const Pack to_turning[4] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
             const Pack to_torque[4] = {out.T.x, out.T.y, out.T.z, Pack(0.f)};
             store_rows(to_turning, [&](int k) { return &pairs.turning[which[k]]; });

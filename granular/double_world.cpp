@@ -17,8 +17,7 @@ void DoubleWorld::find_loads()
         History<double>& kept =
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0}).first->second;
         kept.age += t.h;
-        Answer<double> out = answer(law, t, kept);
-        if (law.turns()) add_turning(law, t, kept, out);
+        const Answer<double> out = answer(law, t, kept, law.turns());
         const Vec3 M = -t.n.cross(out.F_t);
         F[i] += out.F, T[i] += t.R_i * M + out.T;
         if (j >= 0) F[j] -= out.F, T[j] += t.R_j * M - out.T;

@@ -105,7 +105,6 @@ Filling read_filling(Keys& keys)
         keys.refuse("type", "must be one of lattice, hcp, poisson", kind);
     f.low = keys.vector("low"), f.high = keys.vector("high");
     f.radius = keys.positive("radius");
-    f.radius = keys.number("radius");
     f.least_radius = keys.number("least_radius", f.radius);
     if (!(f.least_radius > 0 && f.least_radius <= f.radius))
         keys.refuse("least_radius", "must be positive, and not above the radius", f.least_radius);

@@ -119,6 +119,5 @@ struct Advance {
 
 /// Advances all particles, each by the sum of its loads in the order of its pairs; returns the largest |v|² of them.
 float advance(par::Cpu, std::uint32_t particles, const Advance& arrays);
-float advance(par::Gpu, std::uint32_t particles, const Advance& arrays);
 
 }  // namespace hilda::granular

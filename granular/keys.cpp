@@ -35,18 +35,18 @@ double Keys::number(const std::string& key)
 
 double Keys::number(const std::string& key, double otherwise) { return has(key) ? number(key) : otherwise; }
 
-float Keys::positive(const std::string& key)
+double Keys::positive(const std::string& key)
 {
     const double value = number(key);
     if (!(value > 0)) refuse(key, "must be positive", value);
-    return static_cast<float>(value);
+    return value;
 }
 
-float Keys::not_negative(const std::string& key)
+double Keys::not_negative(const std::string& key)
 {
     const double value = number(key, 0);
     if (!(value >= 0)) refuse(key, "must not be negative", value);
-    return static_cast<float>(value);
+    return value;
 }
 
 long Keys::count(const std::string& key, long otherwise)
@@ -125,8 +125,11 @@ double LawKeys::restitution()
     return std::max(e, least);
 }
 
-float LawKeys::static_friction() { return pair.has("mu_s") ? pair.not_negative("mu_s") : kinetic_friction(); }
+float LawKeys::static_friction()
+{
+    return pair.has("mu_s") ? static_cast<float>(pair.not_negative("mu_s")) : kinetic_friction();
+}
 
-float LawKeys::kinetic_friction() { return pair.not_negative("mu"); }
+float LawKeys::kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
 
 }  // namespace hilda::granular

@@ -24,12 +24,8 @@ public:
     bool has(const std::string& key);
     double number(const std::string& key);
     double number(const std::string& key, double otherwise);
-    float positive(const std::string& key);
-    float not_negative(const std::string& key);
-    float number_or(const std::string& key, float otherwise)
-    {
-        return static_cast<float>(number(key, otherwise));
-    }
+    double positive(const std::string& key);
+    double not_negative(const std::string& key);  ///< 0 where it is not there
     long count(const std::string& key, long otherwise);
     bool flag(const std::string& key);  ///< false where it is not there
     std::string text(const std::string& key);
@@ -67,9 +63,12 @@ public:
         : i(i), j(j), own(own), pair(pair), of_materials(material_normal)
     {}
 
-    float positive(const std::string& key) { return own.positive(key); }
-    float not_negative(const std::string& key) { return own.not_negative(key); }
-    float number_or(const std::string& key, float otherwise) { return own.number_or(key, otherwise); }
+    float positive(const std::string& key) { return static_cast<float>(own.positive(key)); }
+    float not_negative(const std::string& key) { return static_cast<float>(own.not_negative(key)); }
+    float number_or(const std::string& key, float otherwise)
+    {
+        return static_cast<float>(own.number(key, otherwise));
+    }
     int flag(const std::string& key) { return own.flag(key) ? 1 : 0; }
     double restitution();
     float static_friction();

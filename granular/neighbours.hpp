@@ -5,8 +5,6 @@
 
 #include "granular/contact_loop.hpp"
 
-#include <vector>
-
 namespace hilda::granular {
 
 /// Particles of a back end, in the order of their cells
@@ -46,6 +44,11 @@ struct Pairs {
     }
 };
 
+/// A particle is outside a domain that is not periodic there.
+struct LeftDomain {
+    std::uint32_t id;
+};
+
 /// What decides which pairs there are
 struct Reach {
     Grid grid;
@@ -61,11 +64,9 @@ template <class Backend>
 class Neighbours {
 public:
     /// Puts particles into the cells where they are, sorts them, finds pairs and gives them the histories of the pairs of
-    /// before. std::out_of_range with the id of a particle that has left the domain.
+    /// before. Throws LeftDomain, with the particles where they were.
     void find(const Reach& reach, Particles<Backend>& particles, Pairs<Backend>& pairs);
 
-    /// Where particle k was when find() was last called
-    const par::Array<Backend, Position>& origin() const { return origins; }
     std::size_t bytes() const;
 
 private:
@@ -74,7 +75,6 @@ private:
     par::Array<Backend, std::uint64_t> key;
     par::Array<Backend, std::uint32_t> order, where, cell_start, counts;
     par::Array<Backend, Four> scratch;
-    par::Array<Backend, Position> origins;
 };
 
 extern template class Neighbours<par::Cpu>;

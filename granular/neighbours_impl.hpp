@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functors of Neighbours, for the CPU and for a GPU.
+// The functors of Neighbours, for any back end.
 #pragma once
 
 #include "granular/neighbours.hpp"
@@ -11,13 +11,9 @@ namespace hilda::granular {
 namespace detail {
 
 /// Adds one and returns what was there
-HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
+inline std::uint32_t take_next(std::uint32_t* counter)
 {
-#ifdef __CUDA_ARCH__
-    return atomicAdd(counter, 1u);
-#else
     return __atomic_fetch_add(counter, 1u, __ATOMIC_RELAXED);
-#endif
 }
 
 /// The cell a particle is in now; its place becomes that in the cell. Its sort key has the cell in order of z, y, x and
@@ -45,7 +41,7 @@ struct Settle {
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        Position& p = position[k];
+        Position p = position[k];
         std::int32_t x = Grid::x_of(p.cell), y = Grid::y_of(p.cell), z = Grid::z_of(p.cell);
         const bool in_x = move(x, p.x, 0), in_y = move(y, p.y, 1), in_z = move(z, p.z, 2);
         order[k] = k;
@@ -54,6 +50,7 @@ struct Settle {
             return;
         }
         p.cell = Grid::pack(x, y, z);
+        position[k] = p;
         const std::uint64_t number =
             (static_cast<std::uint64_t>(z) * grid.cells[1] + y) * static_cast<std::uint64_t>(grid.cells[0]) +
             x;
@@ -268,7 +265,7 @@ template <class Backend>
 std::size_t Neighbours<Backend>::bytes() const
 {
     return key.bytes() + order.bytes() + where.bytes() + cell_start.bytes() + counts.bytes() +
-           scratch.bytes() + origins.bytes();
+           scratch.bytes();
 }
 
 template <class Backend>
@@ -277,7 +274,7 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     const Backend on;
     const std::uint32_t n = p.count;
     const Grid& g = reach.grid;
-    key.resize(n), order.resize(n), where.resize(n), scratch.resize(n), origins.resize(n);
+    key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);
     par::for_each(on, n, detail::Settle{g, p.position.data(), p.id.data(), key.data(), order.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n);
     if (n > 0) {
@@ -287,7 +284,7 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
             std::uint32_t k = 0, id = 0;
             par::copy_bytes(on, &k, order.data() + n - 1, sizeof k);
             par::copy_bytes(on, &id, p.id.data() + k, sizeof id);
-            throw std::out_of_range(std::to_string(id));
+            throw LeftDomain{id};
         }
     }
     const auto permute = [&](auto& array) {
@@ -299,7 +296,6 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     };
     permute(p.position), permute(p.velocity), permute(p.omega), permute(p.rest), permute(p.id);
     par::for_each(on, n, detail::Invert{order.data(), where.data()});
-    par::copy_bytes(on, origins.data(), p.position.data(), n * sizeof(Position));
 
     const auto cells = static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2];
     cell_start.resize(cells + 1);

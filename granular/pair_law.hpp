@@ -26,8 +26,9 @@ struct Answer {
     Vec<R> T;    ///< rolling and spin [N m]
 };
 
+/// `turning`: whether any law of the world resists rolling or spin; else T is zero
 template <class R>
-HILDA_HD inline Answer<R> answer(const PairLaw& law, const Touch<R>& t, History<R>& history)
+HILDA_HD inline Answer<R> answer(const PairLaw& law, const Touch<R>& t, History<R>& history, bool turning)
 {
     Pressing<R> p{};
     law.normal.visit([&](const auto& l) { p = l(t); });
@@ -37,15 +38,7 @@ HILDA_HD inline Answer<R> answer(const PairLaw& law, const Touch<R>& t, History<
     law.cohesion.visit([&](const auto& l) { attraction = l(t); });
     out.F = (p.F - attraction) * t.n + out.F_t;
     out.T = {R(0.f), R(0.f), R(0.f)};
-    return out;
-}
-
-/// Rolling and spin, which few contacts have
-template <class R>
-HILDA_HD inline void add_turning(const PairLaw& law, const Touch<R>& t, History<R>& history, Answer<R>& out)
-{
-    Pressing<R> p{};
-    law.normal.visit([&](const auto& l) { p = l(t); });
+    if (!turning) return out;
     R k_t = R(0.f), gamma_t = R(0.f);
     law.tangential.visit([&](const auto& l) {
         if constexpr (requires { l.spring; }) k_t = l.spring.stiffness(p), gamma_t = l.spring.damping(t, p);
@@ -54,6 +47,7 @@ HILDA_HD inline void add_turning(const PairLaw& law, const Touch<R>& t, History<
     R about_n{};
     law.spin.visit([&](const auto& l) { about_n = l(t, p, k_t, gamma_t, history); });
     out.T += about_n * t.n;
+    return out;
 }
 
 }  // namespace hilda::granular

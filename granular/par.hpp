@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The few parallel primitives that everything else is made of, on the CPU (OpenMP and Thrust) or on a GPU (CUDA).
+/// The few parallel primitives that everything else is made of, on the CPU with OpenMP and Thrust.
 ///
 /// A functor is a struct with raw pointers and `HILDA_HD void operator()(std::uint32_t) const`. The results of all
-/// primitives are the same for any number of threads: sorts are stable, sums go by fixed blocks, maxima are exact.
+/// primitives are the same for any number of threads: sorts are stable, and there are no sums of floats.
 
 #pragma once
 
@@ -10,31 +10,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
-#include <string>
-
-#ifdef __CUDACC__
-#include <cuda_runtime.h>
-#endif
+#include <utility>
 
 namespace hilda::granular::par {
 
-/// Where arrays live and loops run
+/// Where arrays live and loops run: what a back end overloads the functions below with
 struct Cpu {};
-struct Gpu {};
-
-/// A GPU that cannot do what was asked: none there, no memory, a failed launch. what() has the CUDA call and its answer.
-class DeviceError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 void* allocate(Cpu, std::size_t bytes);  ///< aligned to 64 bytes; std::bad_alloc
 void release(Cpu, void* memory) noexcept;
 void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes);
-void* allocate(Gpu, std::size_t bytes);
-void release(Gpu, void* memory) noexcept;
-void copy_bytes(Gpu, void* to, const void* from, std::size_t bytes);  ///< from anywhere to anywhere
 
 /// Memory of a back end. Growing does not keep what was in it.
 template <class Backend, class T>
@@ -84,13 +69,9 @@ void for_each(Cpu, std::size_t n, const Functor& f, std::size_t few = 2048)
     for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k) f(static_cast<std::uint32_t>(k));
 }
 
-float largest(Cpu, const float* values, std::size_t n);  ///< 0 where there are none
 /// out[0] = 0, out[k + 1] = out[k] + in[k]: n + 1 numbers. Returns the last.
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
 void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n);
-float largest(Gpu, const float* values, std::size_t n);
-std::uint64_t exclusive_scan(Gpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
-void stable_sort_by_key(Gpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n);
 
 template <class T>
 struct FillWith {
@@ -116,26 +97,5 @@ void gather(Backend b, T* to, const T* from, const std::uint32_t* where, std::si
 {
     for_each(b, n, GatherFrom<T>{to, from, where});
 }
-
-#ifdef __CUDACC__
-inline void check(cudaError_t answer, const char* call)
-{
-    if (answer != cudaSuccess) throw DeviceError(std::string(call) + ": " + cudaGetErrorString(answer));
-}
-template <class Functor>
-__global__ void call(std::uint32_t n, Functor f)
-{
-    const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
-    if (k < n) f(k);
-}
-template <class Functor>
-void for_each(Gpu, std::size_t n, const Functor& f)
-{
-    if (n == 0) return;
-    constexpr unsigned block = 128;
-    call<<<static_cast<unsigned>((n + block - 1) / block), block>>>(static_cast<std::uint32_t>(n), f);
-    check(cudaGetLastError(), "a kernel launch");
-}
-#endif
 
 }  // namespace hilda::granular::par

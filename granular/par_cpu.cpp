@@ -38,14 +38,6 @@ void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes)
     if (bytes > 0) std::memcpy(to, from, bytes);
 }
 
-float largest(Cpu, const float* values, std::size_t n)
-{
-    float all = 0;
-#pragma omp parallel for schedule(static) reduction(max : all) if (n > 2048)
-    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k) all = std::max(all, values[k]);
-    return all;
-}
-
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n)
 {
     out[0] = 0;

@@ -109,13 +109,9 @@ void World::reserve(std::size_t n) { waiting.reserve(n); }
 
 std::string World::name_of(std::uint32_t id) const { return "particle " + std::to_string(id); }
 
-/// Those that were added since the last step become part of the arrays. The grid goes by the largest of all.
-void World::settle_in()
+/// Cells for particles as large as the largest of these
+void World::set_grid(const std::vector<Particle>& all)
 {
-    if (waiting.empty()) return;
-    const std::vector<Particle> all = particles();
-    waiting.clear();
-
     double largest = 0;
     radius_of_all = static_cast<float>(all[0].radius);
     for (const Particle& p : all) {
@@ -149,9 +145,27 @@ void World::settle_in()
             options.periodic[k]
                 ? static_cast<std::int32_t>(std::lround((high[k] - low[k]) / grid.cells[k] / grid.unit))
                 : static_cast<std::int32_t>(std::lround(edge / grid.unit));
+}
 
-    std::vector<std::uint32_t> old_id(particle.id.data(), particle.id.data() + particle.count);
-    if (particle.count > 0) pairs.count = 0;  // histories of before are not carried over: see add()
+/// Those that were added since the last step become part of the arrays, which are then in the order of the ids.
+void World::settle_in()
+{
+    if (waiting.empty()) return;
+    const std::vector<Particle> all = particles();
+    waiting.clear();
+    set_grid(all);
+
+    // contacts and accelerations of those that are there go on
+    const auto id = [&](std::uint32_t k) { return particle.id.data()[k]; };
+    for (std::uint32_t n = 0; n < pairs.count; ++n) {
+        std::uint32_t &i = pairs.i.data()[n], &j = pairs.j.data()[n];
+        i = id(i);
+        if ((j & PairView::boundary) == 0) j = id(j);
+    }
+    std::vector<Four> acc_of(all.size()), turn_of(all.size());
+    for (std::uint32_t k = 0; k < acc.size(); ++k)
+        acc_of[id(k)] = acc.data()[k], turn_of[id(k)] = turn.data()[k];
+
     particle.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < particle.count; ++k) {
         const Particle& p = all[k];
@@ -174,8 +188,8 @@ void World::settle_in()
     }
     if (options.scheme == Scheme::chung || options.scheme == Scheme::velocity_verlet) {
         acc.resize(particle.count), turn.resize(particle.count);
-        par::fill(par::Cpu(), acc.data(), particle.count, Four{});
-        par::fill(par::Cpu(), turn.data(), particle.count, Four{});
+        std::copy(acc_of.begin(), acc_of.end(), acc.data());
+        std::copy(turn_of.begin(), turn_of.end(), turn.data());
     }
     check_laws();
     look_again();
@@ -253,8 +267,8 @@ void World::look_for_neighbours()
                       .turning = turning};
     try {
         neighbours.find(reach, particle, pairs);
-    } catch (const std::out_of_range& e) {
-        const auto id = static_cast<std::uint32_t>(std::stoul(e.what()));
+    } catch (const LeftDomain& lost) {
+        const std::uint32_t id = lost.id;
         const auto* at = std::find(particle.id.data(), particle.id.data() + particle.count, id);
         const Vec3 v = to_double(particle.velocity.data()[at - particle.id.data()]);
         std::ostringstream what;

@@ -123,6 +123,7 @@ private:
     static constexpr std::uint8_t no_law = 255;
 
     void settle_in();
+    void set_grid(const std::vector<Particle>& all);
     void check_laws() const;
     void check_overlaps() const;
     void look_for_neighbours();

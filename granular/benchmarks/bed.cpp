@@ -36,18 +36,9 @@ World bed(std::size_t n, double skin)
     law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(glass, glass)), .c = c};
     law.tangential =
         Mindlin{.spring = {.k_t = static_cast<float>(8 * effective_shear_modulus(glass, glass)), .c = c},
-                .mu_s = 0.3f,
-                .mu_k = 0.3f};
+                .cap = {0.3f, 0.3f}};
     world.set_law(0, 0, law);
-    Boundary b;
-    world.add(b);
-    for (const auto& [r, axis] : {std::pair{Vec3{0, 0, 0}, Vec3{1, 0, 0}},
-                                  {Vec3{width, 0, 0}, Vec3{-1, 0, 0}},
-                                  {Vec3{0, 0, 0}, Vec3{0, 1, 0}},
-                                  {Vec3{0, width, 0}, Vec3{0, -1, 0}}}) {
-        b.r = r, b.axis = axis;
-        world.add(b);
-    }
+    for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
     unsigned seed = 1;
     const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) * 0x1p-31 - 1; };
     for (std::size_t k = 0; k < n; ++k) {

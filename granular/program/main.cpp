@@ -251,7 +251,7 @@ private:
 int main(int argc, char** argv)
 {
     Options o;
-    CLI::App app("hilda-granular: a granular case, on the CPU or on a GPU");
+    CLI::App app("hilda-granular: a granular case");
     app.add_option("CASE", o.file, "a case file in JSON")->required();
     app.add_option("--output", o.output, "directory of what the run leaves; by default named after the case");
     app.add_option("--threads", o.threads, "of the CPU; the results do not depend on it")

@@ -61,6 +61,8 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
         {"/steps", 5, "/steps: unknown key"},
         {"/domain/high", {1, 1}, "/domain/high: must be three numbers, got [1,1]"},
         {"/domain/high/2", -1, "domain: the high end along z must be above the low one, got -1"},
+        {"/domain/periodic", {true, 1, false}, "/domain/periodic/1: must be true or false, got 1"},
+        {"/every", -1, "/every: must be positive, got -1"},
         {"/integrator", "euler", "/integrator: must be one of symplectic-euler, velocity-verlet"},
         {"/materials/0/E", -7e7, "material 'glass': E must be positive, got -70000000"},
         {"/materials/0/nu", 0.5, "material 'glass': nu must be between -1 and 0.5, got 0.5"},
@@ -84,6 +86,7 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
     CHECK_THROWS_WITH(read_case(R"({"hilda_case": 1, "step": 1, "step": 2})", "file"),
                       "file: the key \"step\" stands twice in one object");
     CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
+    CHECK_THROWS_AS(read_case(R"({"hilda_case": 1e400})", "file"), granular::InvalidCase);
 }
 
 TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")

@@ -172,3 +172,27 @@ TEST_CASE("a boundary feels the force and the torque of what lies on it", "[gran
     CHECK(c[0].C.z == Approx(0).margin(1e-9));
     CHECK(c[0].delta == Approx(R - world.particles()[0].r.z).margin(2.1e-9));  // a unit of positions
 }
+
+TEST_CASE("a contact goes on when particles are added", "[granular][impact]")
+{
+    const auto run = [&](bool another) {
+        WorldOptions o = weightless(1e-4);
+        o.gravity = {0.5, 0, -9.81};  // down a slope that it sticks on
+        World world(o, {soft()});
+        world.set_law(0, 0, hertz_mindlin(soft(), 0.1, 0.3));
+        world.set_omega_locked(true);
+        world.add(granular::Boundary{});
+        Particle p;
+        p.radius = R, p.mass = 1, p.r = {-1, 0, R};
+        world.add(p);
+        world.step(20000);
+        p.r = {1.5, 0, 2};
+        if (another) world.add(p);
+        world.step(1000);
+        return world.contacts().at(0);
+    };
+    const auto alone = run(false), with_another = run(true);
+    CHECK(alone.u.x > 1e-7);
+    CHECK(with_another.u.x == Approx(alone.u.x).epsilon(1e-4));
+    CHECK(with_another.F.x == Approx(-0.5).epsilon(1e-4));
+}

@@ -24,8 +24,7 @@ inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 
     if (mu > 0)
         law.tangential = granular::Mindlin{
             .spring = {.k_t = static_cast<float>(8 * granular::effective_shear_modulus(m, m)), .c = c},
-            .mu_s = static_cast<float>(mu),
-            .mu_k = static_cast<float>(mu)};
+            .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
     return law;
 }
 

@@ -7,7 +7,7 @@
 
 namespace hilda::granular {
 
-/// F_c [N], or a multiple of the weight of the lighter body of a pair by the caller's choice of F_c
+/// F_c, however deep they overlap
 struct ConstantCohesion {
     static constexpr const char* name = "constant";
 

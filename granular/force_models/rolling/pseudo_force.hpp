@@ -24,9 +24,7 @@ struct PseudoForce {
         // kept as the angle over R*, so that one history serves all models
         const Vec<R> s = t.R_eff * carried(history.psi, t.n) + R(t.h) * v_r;
         const Vec<R> test = -(k * s) - gamma * v_r;
-        const R size = test.norm(), bound = mu_r * abs(p.F);
-        const Mask<R> full = size > bound;
-        const Vec<R> F = select(full, bound / larger(size, R(tiny)), R(1.f)) * test;
+        const auto [F, full] = Cap{mu_r, mu_r}(test, abs(p.F));
         const Vec<R> kept = select(full, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * v_r), s);
         history.psi = (R(1.f) / t.R_eff) * kept;
         return t.R_eff * t.n.cross(F);

@@ -15,7 +15,7 @@ struct Mindlin {
     static constexpr const char* name = "mindlin";
 
     TangentialSpring spring = {};
-    float mu_s = 0, mu_k = 0;
+    Cap cap = {};
 
     template <class R>
     HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>& history) const
@@ -23,9 +23,7 @@ struct Mindlin {
         const R k = spring.stiffness(p), gamma = spring.damping(t, p);
         const Vec<R> u = carried(history.u, t.n) + R(t.h) * t.v_t;
         const Vec<R> test = -(k * u) - gamma * t.v_t;
-        const R size = test.norm(), N = abs(p.F);
-        const Mask<R> slides = size > mu_s * N;
-        const Vec<R> F = select(slides, mu_k * N / larger(size, R(tiny)), R(1.f)) * test;
+        const auto [F, slides] = cap(test, abs(p.F));
         history.u = select(slides, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * t.v_t), u);
         return F;
     }
@@ -33,9 +31,7 @@ struct Mindlin {
     template <class Keys>
     static Mindlin read(Keys& keys)
     {
-        return {.spring = TangentialSpring::read(keys),
-                .mu_s = keys.static_friction(),
-                .mu_k = keys.kinetic_friction()};
+        return {.spring = TangentialSpring::read(keys), .cap = Cap::read(keys)};
     }
 };
 

@@ -15,7 +15,7 @@ struct MindlinIncremental {
     static constexpr const char* name = "mindlin-incremental";
 
     TangentialSpring spring = {};
-    float mu_s = 0, mu_k = 0;
+    Cap cap = {};
 
     template <class R>
     HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>& history) const
@@ -26,9 +26,7 @@ struct MindlinIncremental {
             select(t.v_n < R(0.f), larger(R(1.f) + R(t.h) * t.v_n / (R(2.f) * t.delta), R(0.f)), R(1.f));
         const Vec<R> T = fell * carried(history.u, t.n) - (R(t.h) * k) * t.v_t;
         const Vec<R> test = T - gamma * t.v_t;
-        const R size = test.norm(), N = abs(p.F);
-        const Mask<R> slides = size > mu_s * N;
-        const Vec<R> F = select(slides, mu_k * N / larger(size, R(tiny)), R(1.f)) * test;
+        const auto [F, slides] = cap(test, abs(p.F));
         history.u = select(slides, F + gamma * t.v_t, T);
         return F;
     }
@@ -36,9 +34,7 @@ struct MindlinIncremental {
     template <class Keys>
     static MindlinIncremental read(Keys& keys)
     {
-        return {.spring = TangentialSpring::read(keys),
-                .mu_s = keys.static_friction(),
-                .mu_k = keys.kinetic_friction()};
+        return {.spring = TangentialSpring::read(keys), .cap = Cap::read(keys)};
     }
 };
 

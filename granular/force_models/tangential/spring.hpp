@@ -38,6 +38,31 @@ struct TangentialSpring {
     }
 };
 
+/// Coulomb's bound on spring and dashpot together
+struct Cap {
+    float mu_s = 0, mu_k = 0;
+
+    template <class R>
+    struct Capped {
+        Vec<R> F;
+        Mask<R> slides;
+    };
+    /// The test force, or μ_k N along it where it is above μ_s N
+    template <class R>
+    HILDA_HD Capped<R> operator()(const Vec<R>& test, const R& N) const
+    {
+        const R size = test.norm();
+        const Mask<R> slides = size > mu_s * N;
+        return {select(slides, mu_k * N / larger(size, R(tiny)), R(1.f)) * test, slides};
+    }
+
+    template <class Keys>
+    static Cap read(Keys& keys)
+    {
+        return {.mu_s = keys.static_friction(), .mu_k = keys.kinetic_friction()};
+    }
+};
+
 /// A displacement of the last step in the tangent plane of this one: without its part along n, and as long as before
 template <class R>
 HILDA_HD inline Vec<R> carried(const Vec<R>& u, const Vec<R>& n)

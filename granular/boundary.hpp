@@ -26,8 +26,15 @@ struct Boundary {
     double radius = 0;        ///< [m]
     double cosine = 1, sine = 0;
     Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< velocity of r [m/s], turning about it [rad/s]
-    float inverse_mass = 0;                 ///< of a body that is free [1/kg]
     std::int32_t material = 0;
+
+    // A tool: a body that moves by what touches it, its weight and F. A mass of 0 is one that moves as it is told.
+    double mass = 0;                                ///< [kg]
+    double inertia = 0;                             ///< about r, whatever the axis [kg m²]; 0: does not turn
+    std::array<bool, 3> free = {true, true, true};  ///< along x, y, z
+    Vec3 F = {0, 0, 0};                             ///< [N]
+
+    HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };
 
 /// Distance of a point from a boundary [m], negative beyond it, and the unit normal there, towards the particles

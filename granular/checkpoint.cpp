@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
-constexpr std::uint64_t format = 1;
+constexpr std::uint64_t format = 2;
 constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
 
 /// FNV-1a over words of eight bytes, and over what is left
@@ -87,13 +87,18 @@ std::string World::to_bytes(const std::string& of_run)
     a.bytes.append(magic, sizeof magic);
     a(format), a(std::uint64_t{0});
     a.list(of_run.data(), of_run.size());
-    a(number), a(found), a(grid), a(skin), a(radius_of_all);
+    a(number), a(found), a(scene);
     a.list(boundaries.data(), boundaries.size());
+    a.list(forces.data(), forces.size());
+    const Arrays<par::Cpu>& all = engine->arrays();
+    const Particles<par::Cpu>& particle = all.particle;
+    const Pairs<par::Cpu>& pairs = all.pairs;
     const auto array = [&](const auto& values, std::size_t n) { a.list(values.data(), n); };
     const std::uint32_t n = particle.count;
     array(particle.position, n), array(particle.velocity, n), array(particle.omega, n),
         array(particle.rest, n);
-    array(particle.id, n), array(acc, acc.size()), array(turn, turn.size());
+    array(particle.id, n), array(particle.acc, particle.acc.size()),
+        array(particle.turn, particle.turn.size());
     // pairs that touch, and no others: the rest is found again
     std::vector<std::uint32_t> i, j;
     std::vector<Four> history, turning;
@@ -133,13 +138,17 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     a.list(run);
     if (run != of_run) throw FileError(file + ": the checkpoint belongs to another run");
     settle_in();
-    number = a.one<long>(), found = a.one<long>(), grid = a.one<Grid>();
-    skin = a.one<float>(), radius_of_all = a.one<float>();
-    a.list(boundaries);
+    number = a.one<long>(), found = a.one<long>(), scene = a.one<Scene>();
+    a.list(boundaries), a.list(forces);
+    forces_changed = true;
+    Arrays<par::Cpu>& all = engine->arrays();
+    Particles<par::Cpu>& particle = all.particle;
+    Pairs<par::Cpu>& pairs = all.pairs;
     const auto n = a.list(particle.position);
     a.list(particle.velocity), a.list(particle.omega), a.list(particle.rest), a.list(particle.id);
-    a.list(acc), a.list(turn);
+    a.list(particle.acc), a.list(particle.turn);
     particle.count = static_cast<std::uint32_t>(n);
+    particles_in = n;
     pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));
     a.list(pairs.j), a.list(pairs.history);
     const bool turning = a.list(pairs.turning) > 0;
@@ -151,6 +160,7 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
         pairs.torque.resize(pairs.count);
         par::fill(par::Cpu(), pairs.torque.data(), pairs.count, Four{});
     }
+    engine->written();
     time = static_cast<double>(number) * options.h;
     look_again();
 }

@@ -199,7 +199,7 @@ struct Loop {
                                  float(near.n.z),
                                  float(delta),
                                  v.w,
-                                 1 / (w.w + b.inverse_mass),
+                                 1 / (w.w + b.inverse_mass()),
                                  float(v.x - of_b.x),
                                  float(v.y - of_b.y),
                                  float(v.z - of_b.z),

@@ -37,7 +37,7 @@ void DoubleWorld::find_loads()
         for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
             const Nearest near = nearest(boundary[b], p.r);
             t.R_i = t.R_eff = p.radius, t.R_j = 0, t.n = near.n;
-            t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass);
+            t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
             set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega, Vec3{0, 0, 0});
             if (!p.fixed) meet(i, -1 - b, t, p.radius - near.distance);
         }
@@ -49,27 +49,39 @@ void DoubleWorld::step(long count)
     const auto n = particle.size();
     const Scheme scheme = options.scheme;
     if (a.size() != n) a.assign(n, {0, 0, 0}), alpha.assign(n, {0, 0, 0});
-    const auto go_all = [&](Part part, bool loads) {
+    const bool verlet = scheme == Scheme::velocity_verlet;
+    const auto go_all = [&](Part part) {
         for (std::size_t k = 0; k < n; ++k) {
             Particle& p = particle[k];
             if (p.fixed) continue;
             Vec3 acc = a[k], turn = alpha[k];
-            if (loads) {
+            if (part != Part::before_loads) {
                 acc = (1 / p.mass) * F[k] + options.gravity;
                 turn = (turns ? 2.5 / (p.mass * p.radius * p.radius) : 0) * T[k];
             }
-            const Change<double> moves = change(scheme, part, p.v, acc, a[k], options.h);
-            p.omega += change(scheme, part, p.omega, turn, alpha[k], options.h).v;
+            if (part != Part::only_loads) {
+                const Change<double> moves = change(scheme, part, p.v, acc, a[k], options.h);
+                p.omega += change(scheme, part, p.omega, turn, alpha[k], options.h).v;
+                p.r += moves.way, p.v += moves.v;
+            }
             a[k] = acc, alpha[k] = turn;
-            p.r += moves.way, p.v += moves.v;
         }
     };
-    for (; count > 0; --count, ++number) {
-        const bool verlet = scheme == Scheme::velocity_verlet;
-        if (verlet && number > 0) go_all(Part::before_loads, false);
-        find_loads();
-        go_all(verlet ? Part::after_loads : Part::whole, true);
+    const auto move_boundaries = [&] {
         for (Boundary& b : boundary) b.r += options.h * b.v;
+    };
+    for (; count > 0; --count, ++number) {
+        if (number == 0 || !verlet) find_loads();
+        if (number == 0) go_all(Part::only_loads);
+        if (verlet) {
+            go_all(Part::before_loads);
+            move_boundaries();
+            find_loads();
+            go_all(Part::after_loads);
+        } else {
+            go_all(Part::whole);
+            move_boundaries();
+        }
     }
 }
 

@@ -15,8 +15,9 @@ enum class Scheme : std::int32_t {
     chung  ///< x += h v + h² (28/27 a - 29/54 a_before),  v += h (3/2 a - 1/2 a_before)      Chung and Lee (1994)
 };
 
-/// What of a step is done: all of it, or the part before and the part after the loads at t_{n+1}
-enum class Part : std::int32_t { whole, before_loads, after_loads };
+/// What of a step is done: all of it; the part before and the part after the loads at t_{n+1}; or that loads become
+/// accelerations and nothing moves
+enum class Part : std::int32_t { whole, before_loads, after_loads, only_loads };
 
 /// What a step adds to a velocity and to a place, or to a turning and an angle
 template <class R>
@@ -97,6 +98,10 @@ HILDA_HD inline Vec<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const 
     }
     const Vec<R> zero{R(0.f), R(0.f), R(0.f)};
     a = select(moves, a, zero);
+    if (s.part == Part::only_loads) {
+        acc = a, turn = b;
+        return zero;
+    }
     const Change<R> of_v = change(s.scheme, s.part, m.v, a, acc, s.h);
     m.omega += change(s.scheme, s.part, m.omega, b, turn, s.h).v;
     add(m.v.x, of_v.v.x, m.v_rest.x), add(m.v.y, of_v.v.y, m.v_rest.y), add(m.v.z, of_v.v.z, m.v_rest.z);
@@ -114,6 +119,8 @@ struct Advance {
     const std::uint32_t *start, *other_start, *other;
     const Load* load;
     const Four* torque;  ///< nullptr where no law resists turning
+    const Four* force;   ///< from outside, by id [N]; nullptr where there is none
+    const std::uint32_t* id;
     StepOf step;
 };
 

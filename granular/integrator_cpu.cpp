@@ -70,6 +70,13 @@ struct AdvancePack {
             for (std::uint32_t k = 0; k < lanes; ++k) sums[k] = sum(first + std::min(k, valid - 1));
             load_rows<Pack, Four>([&](int k) { return &sums[k].F; }, F);
             load_rows<Pack, Four>([&](int k) { return &sums[k].M; }, M);
+            if (to.force != nullptr) {
+                Pack from_outside[4];
+                load_rows<Pack, Four>(
+                    [&](int k) { return &to.force[to.id[first + std::min<std::uint32_t>(k, valid - 1)]]; },
+                    from_outside);
+                for (int k = 0; k < 3; ++k) F[k] += from_outside[k];
+            }
             if (to.torque != nullptr) {
                 Four torques[lanes];
                 for (std::uint32_t k = 0; k < lanes; ++k)
@@ -103,7 +110,7 @@ struct AdvancePack {
             a[0] = acc.x, a[1] = acc.y, a[2] = acc.z, b[0] = turn.x, b[1] = turn.y, b[2] = turn.z;
             store4(to.acc, first, valid, a), store4(to.turn, first, valid, b);
         }
-        if (to.step.part != Part::after_loads) {
+        if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
             load4(to.position, first, valid, at);
             at[1].v += to_int(units.x).v, at[2].v += to_int(units.y).v, at[3].v += to_int(units.z).v;
             store4(to.position, first, valid, at);
@@ -114,17 +121,12 @@ struct AdvancePack {
 
 }  // namespace
 
-float advance(par::Cpu, std::uint32_t particles, const Advance& arrays)
+float advance(par::Cpu cpu, std::uint32_t particles, const Advance& arrays)
 {
     const AdvancePack one{arrays, particles};
-    const auto packs = static_cast<std::ptrdiff_t>((particles + lanes - 1) / lanes);
-    float fastest = 0;
-#pragma omp parallel for schedule(static) reduction(max : fastest) if (packs > 128)
-    for (std::ptrdiff_t k = 0; k < packs; ++k) {
-        const float v2 = one(static_cast<std::uint32_t>(k) * lanes);
-        if (!(v2 <= fastest)) fastest = v2;  // also what is not a number
-    }
-    return fastest;
+    const std::uint32_t packs = (particles + lanes - 1) / lanes;
+    return par::largest(
+        cpu, packs, [&](std::uint32_t k) { return one(k * lanes); }, 128);
 }
 
 }  // namespace hilda::granular

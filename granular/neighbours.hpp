@@ -15,6 +15,8 @@ struct Particles {
     par::Array<Backend, Four> omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
     par::Array<Backend, Rest> rest;
     par::Array<Backend, std::uint32_t> id;
+    par::Array<Backend, Four> acc, turn;   ///< of the step before; none where the scheme asks for none
+    par::Array<Backend, Position> before;  ///< where neighbours were last looked for
     std::uint32_t count = 0;
 
     void resize(std::uint32_t n)
@@ -24,7 +26,8 @@ struct Particles {
     }
     std::size_t bytes() const
     {
-        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + id.bytes();
+        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + id.bytes() + acc.bytes() +
+               turn.bytes() + before.bytes();
     }
 };
 
@@ -49,10 +52,23 @@ struct LeftDomain {
     std::uint32_t id;
 };
 
+/// Where particles are and how far neighbours are looked for
+struct Scene {
+    Grid grid;
+    float skin = 0;              ///< [m]
+    float radius = 0;            ///< of all [m]; 0 where they differ
+    std::uint32_t replicas = 1;  ///< systems in the same place that do not see each other
+};
+
+template <class Backend>
+ParticleView particle_view(const Scene& scene, const Particles<Backend>& p)
+{
+    return {scene.grid, p.position.data(), p.velocity.data(), p.omega.data(), scene.radius};
+}
+
 /// What decides which pairs there are
 struct Reach {
-    Grid grid;
-    float skin = 0;                        ///< [m]
+    Scene scene;
     const std::uint8_t* law_of = nullptr;  ///< materials × materials
     std::uint32_t materials = 1;
     const Boundary* boundary = nullptr;

@@ -11,16 +11,21 @@ namespace hilda::granular {
 namespace detail {
 
 /// Adds one and returns what was there
-inline std::uint32_t take_next(std::uint32_t* counter)
+HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
 {
+#ifdef __CUDA_ARCH__
+    return atomicAdd(counter, 1u);
+#else
     return __atomic_fetch_add(counter, 1u, __ATOMIC_RELAXED);
+#endif
 }
 
-/// The cell a particle is in now; its place becomes that in the cell. Its sort key has the cell in order of z, y, x and
-/// then the id; all bits set where it has left the domain.
+/// The cell a particle is in now; its place becomes that in the cell. Its sort key has the replica, the cell in order of
+/// z, y, x and then the id; all bits set where it has left the domain.
 struct Settle {
     Grid grid;
     Position* position;
+    const Rest* rest;
     const std::uint32_t* id;
     std::uint64_t* key;
     std::uint32_t* order;
@@ -51,9 +56,9 @@ struct Settle {
         }
         p.cell = Grid::pack(x, y, z);
         position[k] = p;
-        const std::uint64_t number =
-            (static_cast<std::uint64_t>(z) * grid.cells[1] + y) * static_cast<std::uint64_t>(grid.cells[0]) +
-            x;
+        const std::uint64_t row =
+            (static_cast<std::uint64_t>(rest[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
+        const std::uint64_t number = row * grid.cells[0] + x;
         key[k] = number << 32 | id[k];
     }
 };
@@ -83,6 +88,7 @@ struct Search {
     Grid grid;
     const Position* position;
     const Four *velocity, *omega;
+    const Rest* rest;
     const std::uint32_t* cell_start;
     float metre, skin;
     const Boundary* boundary;
@@ -108,6 +114,7 @@ struct Search {
         const std::uint32_t cell = position[k].cell;
         const std::int32_t x = Grid::x_of(cell), y = Grid::y_of(cell), z = Grid::z_of(cell);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
+        const std::uint32_t replica = rest[k].replica;
         // Of the 27 cells around, those after this one in the order z, y, x of an endless grid: rows (y, z) of three
         // cells, which are neighbours in memory but where the domain is periodic.
         for (int row = 0; row < 5; ++row) {
@@ -120,7 +127,7 @@ struct Search {
                 if (grid.periodic[2] == 0) continue;
                 zz -= nz;
             }
-            const std::uint32_t base = (static_cast<std::uint32_t>(zz) * ny + yy) * nx;
+            const std::uint32_t base = ((replica * nz + zz) * ny + yy) * nx;
             const std::int32_t from = row == 0 ? x : x - 1, to = x + 1;
             const std::uint32_t first = row == 0 ? k + 1 : cell_start[base + (from < 0 ? 0 : from)];
             const std::uint32_t last = cell_start[base + (to < nx ? to : nx - 1) + 1];
@@ -155,7 +162,6 @@ struct FillPairs {
     std::uint8_t* law;
     const std::uint8_t* law_of;  ///< nullptr where there is one law
     std::uint32_t materials;
-    const Rest* rest;
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
@@ -165,8 +171,8 @@ struct FillPairs {
             const bool particle = (other & PairView::boundary) == 0;
             if (particle) take_next(&others[other]);
             if (law_of != nullptr)
-                law[n] = law_of[rest[k].material * materials +
-                                (particle ? rest[other].material
+                law[n] = law_of[search.rest[k].material * materials +
+                                (particle ? search.rest[other].material
                                           : search.boundary[other & ~PairView::boundary].material)];
             ++n;
         });
@@ -273,17 +279,18 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
 {
     const Backend on;
     const std::uint32_t n = p.count;
-    const Grid& g = reach.grid;
+    const Grid& g = reach.scene.grid;
     key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);
-    par::for_each(on, n, detail::Settle{g, p.position.data(), p.id.data(), key.data(), order.data()});
+    par::for_each(on, n,
+                  detail::Settle{g, p.position.data(), p.rest.data(), p.id.data(), key.data(), order.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n);
     if (n > 0) {
         std::uint64_t last = 0;
-        par::copy_bytes(on, &last, key.data() + n - 1, sizeof last);
+        par::copy_to_host(on, &last, key.data() + n - 1, sizeof last);
         if (last == ~std::uint64_t{0}) {
             std::uint32_t k = 0, id = 0;
-            par::copy_bytes(on, &k, order.data() + n - 1, sizeof k);
-            par::copy_bytes(on, &id, p.id.data() + k, sizeof id);
+            par::copy_to_host(on, &k, order.data() + n - 1, sizeof k);
+            par::copy_to_host(on, &id, p.id.data() + k, sizeof id);
             throw LeftDomain{id};
         }
     }
@@ -295,9 +302,13 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
         par::copy_bytes(on, array.data(), to, n * sizeof(T));
     };
     permute(p.position), permute(p.velocity), permute(p.omega), permute(p.rest), permute(p.id);
+    if (p.acc.size() > 0) permute(p.acc), permute(p.turn);
+    p.before.resize(n);
+    par::copy_bytes(on, p.before.data(), p.position.data(), n * sizeof(Position));
     par::for_each(on, n, detail::Invert{order.data(), where.data()});
 
-    const auto cells = static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2];
+    const auto cells =
+        static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * reach.scene.replicas;
     cell_start.resize(cells + 1);
     par::for_each(on, n + 1, detail::StartCells{key.data(), n, cells, cell_start.data()});
 }
@@ -319,9 +330,17 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
     par::for_each(on, before, detail::Save{old});
     sort(reach, p);
 
-    const detail::Search search{reach.grid,     p.position.data(), p.velocity.data(),
-                                p.omega.data(), cell_start.data(), static_cast<float>(reach.grid.unit),
-                                reach.skin,     reach.boundary,    reach.boundaries};
+    const Scene& scene = reach.scene;
+    const detail::Search search{.grid = scene.grid,
+                                .position = p.position.data(),
+                                .velocity = p.velocity.data(),
+                                .omega = p.omega.data(),
+                                .rest = p.rest.data(),
+                                .cell_start = cell_start.data(),
+                                .metre = static_cast<float>(scene.grid.unit),
+                                .skin = scene.skin,
+                                .boundary = reach.boundary,
+                                .boundaries = reach.boundaries};
     counts.resize(n);
     pairs.start.resize(n + 1), pairs.other_start.resize(n + 1);
     par::for_each(on, n, detail::CountPairs{search, counts.data()});
@@ -334,7 +353,7 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
     par::fill(on, counts.data(), n, 0u);
     par::for_each(on, n,
                   detail::FillPairs{search, pairs.start.data(), pairs.i.data(), pairs.j.data(), counts.data(),
-                                    pairs.law.data(), reach.law_of, reach.materials, p.rest.data()});
+                                    pairs.law.data(), reach.law_of, reach.materials});
     par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
     par::fill(on, counts.data(), n, 0u);
     par::for_each(on, pairs.count,

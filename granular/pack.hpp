@@ -8,7 +8,7 @@
 #error "packs are for loops on the CPU"
 #endif
 
-#include "granular/real.hpp"
+#include "granular/par.hpp"
 
 #include <cstring>
 
@@ -118,7 +118,7 @@ inline Pack rint(Pack a)
 inline float largest(Pack a)
 {
     float most = a.v[0];
-    for (int k = 1; k < lanes; ++k) most = a.v[k] <= most ? most : a.v[k];
+    for (int k = 1; k < lanes; ++k) most = par::worse(most, a.v[k]);
     return most;
 }
 

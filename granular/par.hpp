@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The few parallel primitives that everything else is made of, on the CPU with OpenMP and Thrust.
+/// The few parallel primitives that everything else is made of: here on the CPU, with OpenMP and Thrust; par_gpu.hpp has
+/// those of CUDA.
 ///
 /// A functor is a struct with raw pointers and `HILDA_HD void operator()(std::uint32_t) const`. The results of all
 /// primitives are the same for any number of threads: sorts are stable, and there are no sums of floats.
@@ -20,6 +21,14 @@ struct Cpu {};
 void* allocate(Cpu, std::size_t bytes);  ///< aligned to 64 bytes; std::bad_alloc
 void release(Cpu, void* memory) noexcept;
 void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes);
+inline void copy_to_host(Cpu b, void* to, const void* from, std::size_t bytes)
+{
+    copy_bytes(b, to, from, bytes);
+}
+inline void copy_to_device(Cpu b, void* to, const void* from, std::size_t bytes)
+{
+    copy_bytes(b, to, from, bytes);
+}
 
 /// Memory of a back end. Growing does not keep what was in it.
 template <class Backend, class T>
@@ -67,6 +76,21 @@ void for_each(Cpu, std::size_t n, const Functor& f, std::size_t few = 2048)
 {
 #pragma omp parallel for schedule(static) if (n > few)
     for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k) f(static_cast<std::uint32_t>(k));
+}
+
+/// The larger one; what is not a number is larger than all numbers
+HILDA_HD inline float worse(float a, float b) { return a != a || b <= a ? a : b; }
+#pragma omp declare reduction(worst:float : omp_out = worse(omp_out, omp_in)) initializer(omp_priv = 0)
+
+/// The largest f(k) of all k, at least 0; not a number where one of them is none. Fewer than `few` stay on one thread.
+template <class Functor>
+float largest(Cpu, std::size_t n, const Functor& f, std::size_t few = 2048)
+{
+    float most = 0;
+#pragma omp parallel for schedule(static) reduction(worst : most) if (n > few)
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k)
+        most = worse(most, f(static_cast<std::uint32_t>(k)));
+    return most;
 }
 
 /// out[0] = 0, out[k + 1] = out[k] + in[k]: n + 1 numbers. Returns the last.

@@ -25,7 +25,7 @@ struct alignas(16) Four {
 struct alignas(16) Rest {
     std::uint16_t way[3] = {0, 0, 0};  ///< [units]
     std::uint16_t v[3] = {0, 0, 0};    ///< [m/s]
-    std::uint32_t material = 0;
+    std::uint16_t material = 0, replica = 0;
 
     HILDA_HD static float wide(std::uint16_t half)
     {

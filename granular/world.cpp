@@ -12,6 +12,11 @@ namespace hilda::granular {
 
 namespace {
 
+std::string name_of(std::uint32_t id) { return "particle " + std::to_string(id); }
+
+/// Schemes that want the accelerations of the step before
+bool keeps_accelerations(Scheme s) { return s == Scheme::chung || s == Scheme::velocity_verlet; }
+
 template <class Value>
 [[noreturn]] void refuse(const std::string& where, const std::string& what, const Value& value)
 {
@@ -65,6 +70,7 @@ World::World(const WorldOptions& o, std::vector<Material> all) : options(o), mat
         if (!(m.nu > -1 && m.nu < 0.5)) refuse(where, "nu must be between -1 and 0.5", m.nu);
     }
     law_of.assign(materials.size() * materials.size(), no_law);
+    engine = make_engine(o.device);
 }
 
 World::~World() = default;
@@ -77,6 +83,7 @@ void World::set_law(int i, int j, const PairLaw& law)
     if (laws.size() >= 255) refuse("law", "no more than 255 laws are possible", laws.size() + 1);
     law_of[i * n + j] = law_of[j * n + i] = static_cast<std::uint8_t>(laws.size());
     laws.push_back(law);
+    laws_changed = true;
     look_again();
 }
 
@@ -84,6 +91,8 @@ int World::add(const Boundary& b)
 {
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
+    if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
+        refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
     boundaries.push_back(b);
     look_again();
     return static_cast<int>(boundaries.size()) - 1;
@@ -91,7 +100,7 @@ int World::add(const Boundary& b)
 
 std::uint32_t World::add(const Particle& p)
 {
-    const auto id = static_cast<std::uint32_t>(particle.count + waiting.size());
+    const auto id = static_cast<std::uint32_t>(count());
     const std::string where = "particle " + std::to_string(id);
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
     if (!finite(p.r) || !finite(p.v) || !finite(p.omega))
@@ -107,19 +116,23 @@ std::uint32_t World::add(const Particle& p)
 
 void World::reserve(std::size_t n) { waiting.reserve(n); }
 
-std::string World::name_of(std::uint32_t id) const { return "particle " + std::to_string(id); }
-
 /// Cells for particles as large as the largest of these
-void World::set_grid(const std::vector<Particle>& all)
+void World::set_scene(const std::vector<Particle>& all)
 {
+    Grid& grid = scene.grid;
     double largest = 0;
-    radius_of_all = static_cast<float>(all[0].radius);
+    scene.radius = static_cast<float>(all[0].radius);
+    scene.replicas = 1;
     for (const Particle& p : all) {
         largest = std::max(largest, 2 * p.radius);
-        if (static_cast<float>(p.radius) != radius_of_all) radius_of_all = 0;
+        if (static_cast<float>(p.radius) != scene.radius) scene.radius = 0;
+        scene.replicas = std::max(scene.replicas, std::uint32_t{p.replica} + 1);
     }
-    skin = static_cast<float>(options.skin * largest);
-    const double edge = largest + skin;
+    if (scene.replicas > 1)
+        for (const Boundary& b : boundaries)
+            if (b.mass > 0) refuse("boundary", "one that is free cannot be in all replicas", scene.replicas);
+    scene.skin = static_cast<float>(options.skin * largest);
+    const double edge = largest + scene.skin;
     const double low[] = {options.low.x, options.low.y, options.low.z},
                  high[] = {options.high.x, options.high.y, options.high.z};
     double widest = edge;
@@ -139,6 +152,8 @@ void World::set_grid(const std::vector<Particle>& all)
         grid.cells[k] = static_cast<std::int32_t>(cells);
         if (options.periodic[k]) widest = std::max(widest, length / cells);
     }
+    const double cells = double(scene.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
+    if (cells > 0x7fffffff) refuse("domain", "has more than 2^31 cells, with all of its replicas", cells);
     grid.unit = widest / Grid::widest;
     for (int k = 0; k < 3; ++k)
         grid.width[k] =
@@ -151,48 +166,59 @@ void World::set_grid(const std::vector<Particle>& all)
 void World::settle_in()
 {
     if (waiting.empty()) return;
+    if (laws.empty()) refuse("world", "no law is set for its materials", "none");
     const std::vector<Particle> all = particles();
-    waiting.clear();
-    set_grid(all);
-
-    // contacts and accelerations of those that are there go on
-    const auto id = [&](std::uint32_t k) { return particle.id.data()[k]; };
-    for (std::uint32_t n = 0; n < pairs.count; ++n) {
-        std::uint32_t &i = pairs.i.data()[n], &j = pairs.j.data()[n];
-        i = id(i);
-        if ((j & PairView::boundary) == 0) j = id(j);
-    }
-    std::vector<Four> acc_of(all.size()), turn_of(all.size());
-    for (std::uint32_t k = 0; k < acc.size(); ++k)
-        acc_of[id(k)] = acc.data()[k], turn_of[id(k)] = turn.data()[k];
-
-    particle.resize(static_cast<std::uint32_t>(all.size()));
-    for (std::uint32_t k = 0; k < particle.count; ++k) {
-        const Particle& p = all[k];
+    Arrays<par::Cpu>& a = engine->arrays();
+    set_scene(all);
+    const Grid& grid = scene.grid;
+    std::vector<Position> position(all.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
         std::int32_t cell[3], at[3];
-        const double r[] = {p.r.x, p.r.y, p.r.z};
+        const double r[] = {all[k].r.x, all[k].r.y, all[k].r.z};
         for (int c = 0; c < 3; ++c) {
             const double units = (r[c] - grid.low[c]) / grid.unit;
             const double whole = std::floor(units / grid.width[c]);
             if (!(whole >= 0 && whole < grid.cells[c]))
-                refuse(name_of(k), std::string("is outside the domain along ") + "xyz"[c], r[c]);
+                refuse(name_of(static_cast<std::uint32_t>(k)),
+                       std::string("is outside the domain along ") + "xyz"[c], r[c]);
             cell[c] = static_cast<std::int32_t>(whole);
             at[c] = static_cast<std::int32_t>(std::lround(units - whole * grid.width[c]));
         }
-        particle.position.data()[k] = {Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]};
-        const double mass = p.mass > 0 ? p.mass : sphere_mass(p.radius, materials[p.material].density);
-        particle.velocity.data()[k] = to_four(p.v, p.radius);
-        particle.omega.data()[k] = to_four(p.omega, p.fixed ? 0 : 1 / mass);
-        particle.rest.data()[k] = {.way = {}, .v = {}, .material = static_cast<std::uint32_t>(p.material)};
-        particle.id.data()[k] = k;
+        position[k] = {Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]};
     }
-    if (options.scheme == Scheme::chung || options.scheme == Scheme::velocity_verlet) {
-        acc.resize(particle.count), turn.resize(particle.count);
-        std::copy(acc_of.begin(), acc_of.end(), acc.data());
-        std::copy(turn_of.begin(), turn_of.end(), turn.data());
+
+    // contacts and accelerations of those that are there go on
+    Particles<par::Cpu>& p = a.particle;
+    const auto id = [&](std::uint32_t k) { return p.id.data()[k]; };
+    for (std::uint32_t n = 0; n < a.pairs.count; ++n) {
+        std::uint32_t &i = a.pairs.i.data()[n], &j = a.pairs.j.data()[n];
+        i = id(i);
+        if ((j & PairView::boundary) == 0) j = id(j);
     }
+    std::vector<Four> acc_of(all.size(), to_four(options.gravity, 0)), turn_of(all.size());
+    for (std::uint32_t k = 0; k < p.acc.size(); ++k)
+        acc_of[id(k)] = p.acc.data()[k], turn_of[id(k)] = p.turn.data()[k];
+
+    p.resize(static_cast<std::uint32_t>(all.size()));
+    for (std::uint32_t k = 0; k < p.count; ++k) {
+        const Particle& one = all[k];
+        p.position.data()[k] = position[k];
+        p.velocity.data()[k] = to_four(one.v, one.radius);
+        p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
+        p.rest.data()[k] = {
+            .way = {}, .v = {}, .material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
+        p.id.data()[k] = k;
+    }
+    if (keeps_accelerations(options.scheme)) {
+        p.acc.resize(p.count), p.turn.resize(p.count);
+        std::copy(acc_of.begin(), acc_of.end(), p.acc.data());
+        std::copy(turn_of.begin(), turn_of.end(), p.turn.data());
+    }
+    waiting.clear();
+    particles_in = all.size();
+    if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
+    engine->written();
     check_laws();
-    look_again();
     look_for_neighbours();
     check_overlaps();
 }
@@ -202,7 +228,8 @@ void World::check_laws() const
 {
     const std::size_t n = materials.size();
     std::vector<char> of_particles(n, 0), all(n, 0);
-    for (std::uint32_t k = 0; k < particle.count; ++k) of_particles[particle.rest.data()[k].material] = 1;
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    for (std::uint32_t k = 0; k < p.count; ++k) of_particles[p.rest.data()[k].material] = 1;
     all = of_particles;
     for (const Boundary& b : boundaries) all[static_cast<std::size_t>(b.material)] = 1;
     for (std::size_t i = 0; i < n; ++i)
@@ -255,129 +282,178 @@ World::StepLimits World::step_limits() const
     return limits;
 }
 
+/// The particle at k of the arrays is lost: where, when and how fast.
+void World::lose(std::uint32_t k, const std::string& how) const
+{
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    const std::uint32_t id = p.id.data()[k];
+    const Vec3 v = to_double(p.velocity.data()[k]);
+    std::ostringstream what;
+    what << name_of(id) << ' ' << how << " at t = " << time << " s, with a velocity of (" << v.x << ", "
+         << v.y << ", " << v.z << ") m/s";
+    throw ParticleLost(what.str(), id, time);
+}
+
+/// The list of pairs holds until two have come nearer to each other by the skin.
+void World::keep_neighbours()
+{
+    const double far = 0.5 * scene.skin;
+    if (moved <= far && moved_boundaries <= far) return;
+    // The sum of the longest ways of each step is a bound; the longest way of one particle may be less.
+    if (std::isfinite(moved) && moved_boundaries <= far) {
+        const double measured = engine->longest_way() * scene.grid.unit;
+        if (measured <= 0.8 * far) {
+            moved = measured;
+            return;
+        }
+    }
+    look_for_neighbours();
+}
+
 void World::look_for_neighbours()
 {
-    const bool turning = std::any_of(laws.begin(), laws.end(), [](const PairLaw& l) { return l.turns(); });
-    const Reach reach{.grid = grid,
-                      .skin = skin,
-                      .law_of = laws.size() > 1 ? law_of.data() : nullptr,
-                      .materials = static_cast<std::uint32_t>(materials.size()),
-                      .boundary = boundaries.data(),
-                      .boundaries = static_cast<std::uint32_t>(boundaries.size()),
-                      .turning = turning};
+    if (laws_changed) engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
+    laws_changed = false;
+    engine->set_boundaries(boundaries);
     try {
-        neighbours.find(reach, particle, pairs);
+        engine->find_neighbours(scene);
     } catch (const LeftDomain& lost) {
-        const std::uint32_t id = lost.id;
-        const auto* at = std::find(particle.id.data(), particle.id.data() + particle.count, id);
-        const Vec3 v = to_double(particle.velocity.data()[at - particle.id.data()]);
-        std::ostringstream what;
-        what << "particle " << id << " has left the domain at t = " << time << " s, with a velocity of ("
-             << v.x << ", " << v.y << ", " << v.z << ") m/s";
-        throw ParticleLost(what.str(), id, time);
+        const Particles<par::Cpu>& p = engine->arrays().particle;
+        const auto* at = std::find(p.id.data(), p.id.data() + p.count, lost.id);
+        lose(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
     }
-    moved = 0;
+    moved = moved_boundaries = 0;
     ++found;
 }
 
-LawView World::law_view() const
+StepOf World::step_of(Part part) const
 {
-    return {laws.data(), static_cast<int>(laws.size()), boundaries.data(), static_cast<float>(options.h)};
+    return {.scheme = options.scheme,
+            .part = part,
+            .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
+                        static_cast<float>(options.gravity.z)},
+            .h = static_cast<float>(options.h),
+            .per_metre = static_cast<float>(1 / scene.grid.unit),
+            .turns = locked_turning ? 0.f : 1.f};
 }
 
-ParticleView World::particle_view() const
+/// Loads give tools their velocities of the next step.
+void World::push_tools()
 {
-    return {grid, particle.position.data(), particle.velocity.data(), particle.omega.data(), radius_of_all};
+    if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
+        return;
+    const std::vector<Wrench> on = engine->on_free_boundaries(scene);
+    for (std::size_t k = 0; k < boundaries.size(); ++k) {
+        Boundary& b = boundaries[k];
+        if (!(b.mass > 0)) continue;
+        const Vec3 a = (1 / b.mass) * (on[k].F + b.F) + options.gravity;
+        b.v += options.h * Vec3{b.free[0] ? a.x : 0, b.free[1] ? a.y : 0, b.free[2] ? a.z : 0};
+        if (b.inertia > 0) b.omega += (options.h / b.inertia) * on[k].T;
+    }
 }
 
-PairView World::pair_view() const
+/// By their velocities; the longest way of a point on one of them within the domain
+double World::move_boundaries()
 {
-    return {pairs.i.data(),       pairs.j.data(),       laws.size() > 1 ? pairs.law.data() : nullptr,
-            pairs.history.data(), pairs.turning.data(), pairs.load.data(),
-            pairs.torque.data(),  pairs.touches.data(), pairs.count};
+    const double h = options.h, across = (options.high - options.low).norm();
+    double longest = 0;
+    for (Boundary& b : boundaries) {
+        b.r += h * b.v;
+        double way = h * b.v.norm();
+        const double angle = h * b.omega.norm();
+        if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
+            const Vec3 e = (h / angle) * b.omega;
+            const Vec3 turned = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
+                                ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
+            b.axis = (1 / turned.norm()) * turned;
+            way += angle * across;
+        }
+        longest = std::max(longest, way);
+    }
+    return longest;
 }
 
-Advance World::advance_by(Part part)
-{
-    const bool turning = pairs.torque.size() > 0;
-    return {.position = particle.position.data(),
-            .velocity = particle.velocity.data(),
-            .omega = particle.omega.data(),
-            .rest = particle.rest.data(),
-            .acc = acc.data(),
-            .turn = turn.data(),
-            .start = pairs.start.data(),
-            .other_start = pairs.other_start.data(),
-            .other = pairs.other.data(),
-            .load = pairs.load.data(),
-            .torque = turning ? pairs.torque.data() : nullptr,
-            .step = {.scheme = options.scheme,
-                     .part = part,
-                     .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
-                                 static_cast<float>(options.gravity.z)},
-                     .h = static_cast<float>(options.h),
-                     .per_metre = static_cast<float>(1 / grid.unit),
-                     .turns = locked_turning ? 0.f : 1.f}};
-}
+void World::before_each_step(std::function<void(World&)> f) { callbacks.push_back(std::move(f)); }
 
 void World::step(long n)
 {
-    const par::Cpu cpu;
-    if (!waiting.empty()) {
-        if (laws.empty()) refuse("world", "no law is set for its materials", "none");
-        settle_in();
-    }
-    const bool verlet = options.scheme == Scheme::velocity_verlet;
     for (; n > 0; --n) {
-        Lap lap;
-        if (verlet && number > 0) advance(cpu, particle.count, advance_by(Part::before_loads));
-        times.advance += lap.take();
-        if (moved > 0.5 * skin) look_for_neighbours();
-        times.neighbours += lap.take();
-        find_loads(cpu, particle_view(), pair_view(), law_view());
-        times.loads += lap.take();
-        const float fastest =
-            advance(cpu, particle.count, advance_by(verlet ? Part::after_loads : Part::whole));
-        times.advance += lap.take();
-        double way = options.h * std::sqrt(static_cast<double>(fastest));
-        for (Boundary& b : boundaries) {
-            b.r += options.h * b.v;
-            way = std::max(way, options.h * b.v.norm());
-        }
-        if (!(way < grid.unit * Grid::widest)) {
-            std::uint32_t k = 0;
-            float most = -1;
-            for (std::uint32_t m = 0; m < particle.count; ++m) {
-                const Four v = particle.velocity.data()[m];
-                const float v2 = v.x * v.x + v.y * v.y + v.z * v.z;
-                if (!(v2 <= most)) most = v2, k = m;
-            }
-            std::ostringstream what;
-            what << "particle " << particle.id.data()[k]
-                 << " moves more than a cell in a step at t = " << time << " s, with " << std::sqrt(most)
-                 << " m/s";
-            throw ParticleLost(what.str(), particle.id.data()[k], time);
-        }
-        moved += way;
+        for (std::size_t k = 0; k < callbacks.size(); ++k) callbacks[k](*this);
+        settle_in();
+        one_step();
         time = static_cast<double>(++number) * options.h;
     }
 }
 
+void World::one_step()
+{
+    const auto h = static_cast<float>(options.h);
+    const bool verlet = options.scheme == Scheme::velocity_verlet;
+    Lap lap;
+    const auto find_loads = [&] {
+        times.advance += lap.take();
+        keep_neighbours();
+        engine->set_boundaries(boundaries);
+        times.neighbours += lap.take();
+        engine->find_loads(scene, h);
+        times.loads += lap.take();
+    };
+    if (forces_changed) engine->set_forces(forces);
+    forces_changed = false;
+    const auto limit = [&](double way) {
+        if (way < scene.grid.unit * Grid::widest) return;
+        const Particles<par::Cpu>& p = engine->arrays().particle;
+        std::uint32_t worst = 0;
+        double most = -1;
+        for (std::uint32_t k = 0; k < p.count && !std::isnan(most); ++k) {
+            const double speed = to_double(p.velocity.data()[k]).norm();
+            if (!(speed <= most)) most = speed, worst = k;
+        }
+        lose(worst, "moves more than a cell in a step");
+    };
+    const auto go = [&](Part part) {
+        const double way = options.h * std::sqrt(static_cast<double>(engine->advance(step_of(part))));
+        limit(way);
+        return way;
+    };
+    if (number == 0 && keeps_accelerations(options.scheme)) {
+        find_loads();
+        engine->advance(step_of(Part::only_loads));
+    }
+    if (verlet) {
+        moved += go(Part::before_loads);
+        moved_boundaries += move_boundaries();
+        find_loads();
+        go(Part::after_loads);
+        push_tools();
+    } else {
+        if (number > 0 || !keeps_accelerations(options.scheme)) find_loads();
+        moved += go(Part::whole);
+        push_tools();
+        moved_boundaries += move_boundaries();
+    }
+    times.advance += lap.take();
+}
+
 std::vector<Particle> World::particles() const
 {
-    std::vector<Particle> all(particle.count);
-    for (std::uint32_t k = 0; k < particle.count; ++k) {
-        const Four v = particle.velocity.data()[k], w = particle.omega.data()[k];
-        const Rest& rest = particle.rest.data()[k];
-        Particle& p = all[particle.id.data()[k]];
-        p.r = place(grid, particle.position.data()[k]) +
+    const Particles<par::Cpu>& in = engine->arrays().particle;
+    const Grid& grid = scene.grid;
+    std::vector<Particle> all(in.count);
+    for (std::uint32_t k = 0; k < in.count; ++k) {
+        const Four v = in.velocity.data()[k], w = in.omega.data()[k];
+        const Rest& rest = in.rest.data()[k];
+        Particle& p = all[in.id.data()[k]];
+        p.r = place(grid, in.position.data()[k]) +
               grid.unit * Vec3{Rest::wide(rest.way[0]), Rest::wide(rest.way[1]), Rest::wide(rest.way[2])};
         p.v = to_double(v) + Vec3{Rest::wide(rest.v[0]), Rest::wide(rest.v[1]), Rest::wide(rest.v[2])},
         p.omega = to_double(w);
         p.radius = v.w;
-        p.material = static_cast<int>(rest.material);
+        p.material = rest.material;
+        p.replica = rest.replica;
         p.fixed = w.w == 0;
-        p.mass = p.fixed ? 0 : 1 / static_cast<double>(w.w);
+        p.mass =
+            p.fixed ? sphere_mass(p.radius, materials[rest.material].density) : 1 / static_cast<double>(w.w);
     }
     all.insert(all.end(), waiting.begin(), waiting.end());
     return all;
@@ -385,6 +461,9 @@ std::vector<Particle> World::particles() const
 
 std::vector<Contact> World::contacts() const
 {
+    const Arrays<par::Cpu>& a = engine->arrays();
+    const Particles<par::Cpu>& particle = a.particle;
+    const Pairs<par::Cpu>& pairs = a.pairs;
     const std::size_t many = pairs.count;
     const auto copy_of = [&](const auto& array) {
         using T = std::remove_reference_t<decltype(*array.data())>;
@@ -396,10 +475,13 @@ std::vector<Contact> World::contacts() const
                torque = copy_of(pairs.torque);
     const auto load = copy_of(pairs.load);
     const auto touches = copy_of(pairs.touches);
-    PairView view = pair_view();
-    view.history = history.data(), view.load = load.data(), view.touches = touches.data();
-    if (view.turning != nullptr) view.turning = turning.data(), view.torque = torque.data();
-    find_loads(par::Cpu(), particle_view(), view, law_view());
+    const bool turns = turning.size() > 0;
+    find_loads(
+        par::Cpu(), particle_view(scene, particle),
+        {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr, history.data(),
+         turns ? turning.data() : nullptr, load.data(), turns ? torque.data() : nullptr, touches.data(),
+         pairs.count},
+        {laws.data(), static_cast<int>(laws.size()), boundaries.data(), static_cast<float>(options.h)});
 
     std::vector<Contact> all;
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
@@ -409,21 +491,22 @@ std::vector<Contact> World::contacts() const
         c.boundary = (j & PairView::boundary) != 0;
         c.i = particle.id.data()[i];
         c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
+        c.replica = particle.rest.data()[i].replica;
         const Position at = particle.position.data()[i];
         const double R = particle.velocity.data()[i].w;
-        const Vec3 r = place(grid, at);
+        const Vec3 r = place(scene.grid, at);
         if (c.boundary) {
             const Nearest near = nearest(boundaries[c.j], r);
             c.n = near.n, c.delta = R - near.distance;
             c.C = r - near.distance * near.n;
         } else {
-            const Difference d = difference(grid, at, particle.position.data()[j]);
-            const Vec3 apart = grid.unit * Vec3{double(d.x), double(d.y), double(d.z)};
+            const Difference d = difference(scene.grid, at, particle.position.data()[j]);
+            const Vec3 apart = scene.grid.unit * Vec3{double(d.x), double(d.y), double(d.z)};
             c.n = (1 / apart.norm()) * apart;
             c.delta = R + particle.velocity.data()[j].w - apart.norm();
             c.C = r - R * c.n;
         }
-        if (view.torque != nullptr) c.T = to_double(torque.data()[n]);
+        if (turns) c.T = to_double(torque.data()[n]);
         c.F = to_double(load.data()[n].F), c.u = to_double(history.data()[n]);
         if (!c.boundary && c.j < c.i) {
             std::swap(c.i, c.j);
@@ -438,11 +521,11 @@ std::vector<Contact> World::contacts() const
     return all;
 }
 
-Wrench World::wrench(int b) const
+Wrench World::wrench(int b, int replica) const
 {
     Wrench sum;
     for (const Contact& c : contacts()) {
-        if (!c.boundary || static_cast<int>(c.j) != b) continue;
+        if (!c.boundary || static_cast<int>(c.j) != b || (replica >= 0 && c.replica != replica)) continue;
         sum.F -= c.F;
         sum.T -= (c.C - boundaries[c.j].r).cross(c.F) + c.T;
     }
@@ -467,17 +550,30 @@ Vec3 World::momentum() const
 void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 {
     settle_in();
-    for (std::uint32_t k = 0; k < particle.count; ++k)
-        if (particle.id.data()[k] == id) {
-            particle.velocity.data()[k] = to_four(v, particle.velocity.data()[k].w);
-            for (std::uint16_t& rest : particle.rest.data()[k].v) rest = 0;
-            particle.omega.data()[k] = to_four(omega, particle.omega.data()[k].w);
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        if (p.id.data()[k] == id) {
+            p.velocity.data()[k] = to_four(v, p.velocity.data()[k].w);
+            for (std::uint16_t& rest : p.rest.data()[k].v) rest = 0;
+            p.omega.data()[k] = to_four(omega, p.omega.data()[k].w);
         }
+    engine->written();
 }
 
-std::size_t World::bytes() const
+void World::set_force(std::uint32_t id, const Vec3& F)
 {
-    return particle.bytes() + pairs.bytes() + neighbours.bytes() + acc.bytes() + turn.bytes();
+    if (id >= count()) refuse("force", "no particle has this id", id);
+    if (!finite(F)) refuse("force on " + name_of(id), "must be finite", F.norm());
+    forces.resize(count());
+    forces[id] = to_four(F, 0);
+    forces_changed = true;
+}
+
+std::size_t World::bytes_needed(std::size_t n)
+{
+    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Rest) + 40,
+                          of_pair = sizeof(Four) + sizeof(Load) + 14, pairs = 6;
+    return n * (of_particle + pairs * of_pair + 2 * sizeof(Particle));
 }
 
 }  // namespace hilda::granular

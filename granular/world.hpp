@@ -4,10 +4,11 @@
 #pragma once
 
 #include "granular/boundary.hpp"
-#include "granular/integrator.hpp"
+#include "granular/engine.hpp"
 #include "granular/pair_law.hpp"
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -40,6 +41,7 @@ struct Particle {
     Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< [m/s, rad/s]
     bool fixed = false;                     ///< keeps its place
     double mass = 0;                        ///< [kg]; 0: from its density
+    std::uint16_t replica = 0;              ///< meets those of the same replica alone
 };
 
 struct Contact {
@@ -51,10 +53,7 @@ struct Contact {
     Vec3 F = {0, 0, 0};  ///< on i [N]
     Vec3 T = {0, 0, 0};  ///< of rolling and spin on i [N m]
     Vec3 u = {0, 0, 0};  ///< tangential displacement [m]
-};
-
-struct Wrench {
-    Vec3 F = {0, 0, 0}, T = {0, 0, 0};  ///< [N, N m], about Boundary::r
+    std::uint16_t replica = 0;
 };
 
 struct WorldOptions {
@@ -64,12 +63,16 @@ struct WorldOptions {
     double h = 0;                  ///< step [s]
     double skin = 0.1;             ///< of the neighbour list, in diameters of the largest particle
     Scheme scheme = Scheme::symplectic_euler;
+    Device device = {};
 };
 
-/// Particles on the CPU. All that a run depends on is in the arguments of its functions: the same calls give the same
-/// bits, for any number of threads.
+/// Particles, on the CPU or a GPU. All that a run depends on is in the arguments of its functions: the same calls give the
+/// same bits, for any number of threads.
+///
+/// Replicas are systems side by side: each has its particles, and all have the same boundaries.
 class World {
 public:
+    /// InvalidCase; DeviceError
     World(const WorldOptions& options, std::vector<Material> materials);
     World(World&&) = default;
     ~World();
@@ -87,8 +90,15 @@ public:
 
     std::vector<Particle> particles() const;  ///< by id, at t
     std::vector<Contact> contacts() const;    ///< by ids, at t
-    Wrench wrench(int boundary) const;        ///< on it, at t
+    /// On a boundary, at t; by the particles of one replica where that is given
+    Wrench wrench(int boundary, int replica = -1) const;
+
+    /// What f does at the beginning of every step, at t(): it may set velocities of boundaries and forces, and add
+    /// particles. Those that were told first are called first. They are no part of a checkpoint.
+    void before_each_step(std::function<void(World&)> f);
+    /// To be moved through its v and omega; one with a mass moves by what touches it.
     Boundary& boundary(int number) { return boundaries[number]; }
+    void set_force(std::uint32_t id, const Vec3& F);  ///< from outside [N], until it is set anew
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
     void set_omega_locked(bool locked) { locked_turning = locked; }
 
@@ -100,15 +110,17 @@ public:
 
     double kinetic_energy() const;  ///< [J]
     Vec3 momentum() const;          ///< [kg m/s]
-    std::size_t count() const { return particle.count + waiting.size(); }
-    std::size_t candidates() const { return pairs.count; }
+    std::size_t count() const { return particles_in + waiting.size(); }
+    std::size_t candidates() const { return engine->arrays().pairs.count; }
     long rebuilds() const { return found; }
     /// Seconds that went into each part of the steps since the last call
     struct Times {
         double neighbours = 0, loads = 0, advance = 0;
     };
     Times take_times() { return std::exchange(times, {}); }
-    std::size_t bytes() const;
+    std::size_t bytes() const { return engine->bytes(); }
+    /// About what so many particles in a dense bed will take, with what it takes to make them
+    static std::size_t bytes_needed(std::size_t particles);
     /// Looks for neighbours before the next step, as a world does that was loaded from a file
     void look_again() { moved = std::numeric_limits<double>::infinity(); }
 
@@ -123,33 +135,34 @@ private:
     static constexpr std::uint8_t no_law = 255;
 
     void settle_in();
-    void set_grid(const std::vector<Particle>& all);
+    void set_scene(const std::vector<Particle>& all);
     void check_laws() const;
     void check_overlaps() const;
+    void keep_neighbours();
     void look_for_neighbours();
-    LawView law_view() const;
-    ParticleView particle_view() const;
-    PairView pair_view() const;
-    Advance advance_by(Part part);
-    std::string name_of(std::uint32_t id) const;
+    void one_step();
+    double move_boundaries();
+    void push_tools();
+    StepOf step_of(Part part) const;
+    [[noreturn]] void lose(std::uint32_t k, const std::string& how) const;
 
     WorldOptions options;
     std::vector<Material> materials;
     std::vector<PairLaw> laws;
     std::vector<std::uint8_t> law_of;
     std::vector<Boundary> boundaries;
+    std::vector<Four> forces;       ///< from outside, by id [N]
     std::vector<Particle> waiting;  ///< added since the last step
+    std::vector<std::function<void(World&)>> callbacks;
 
-    Grid grid;
-    float skin = 0;           ///< [m]
-    float radius_of_all = 0;  ///< [m]; 0 where they differ
-    Particles<par::Cpu> particle;
-    Pairs<par::Cpu> pairs;
-    Neighbours<par::Cpu> neighbours;
-    par::Array<par::Cpu, Four> acc, turn;
-    double time = 0, moved = std::numeric_limits<double>::infinity();
+    std::unique_ptr<Engine> engine;
+    Scene scene;
+    std::size_t particles_in = 0;
+    double time = 0;
+    /// Bounds of the ways of particles and of boundaries since neighbours were looked for [m]
+    double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
     long number = 0, found = 0;
-    bool locked_turning = false;
+    bool locked_turning = false, laws_changed = true, forces_changed = false;
     Times times;
 };
 

@@ -40,6 +40,6 @@ if(HILDA_WERROR)
     list(APPEND hilda_warnings -Werror)
 endif()
 
-add_compile_options(${hilda_flags} ${hilda_warnings})
+add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${hilda_flags};${hilda_warnings}>")
 # An element of a matrix that was never written shows itself as NaN.
 add_compile_definitions($<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS> $<$<CONFIG:Debug>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)

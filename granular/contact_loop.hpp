@@ -49,7 +49,20 @@ struct LawView {
 /// Loads of all pairs at t_n, and their histories from t_{n-1} to it
 void find_loads(par::Cpu, const ParticleView& particles, const PairView& pairs, const LawView& laws);
 
-/// A contact of two particles out of integers: overlap q/(D + d) with q = D² - d² exact
+/// The same on another back end; see loops.hpp.
+template <class Backend>
+void find_loads(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws);
+
+/// Two particles out of whole numbers: the overlap is q/(D + d), with q = D² - d² exact. All in units but for t.
+template <class R>
+HILDA_HD inline void set_overlap(Touch<R>& t, const R& q, const R& d2, const R& D, const Vec<R>& apart,
+                                 const R& metre)
+{
+    const R d = sqrt(d2);
+    t.delta = q / (D + d) * metre;
+    t.n = (R(1.f) / d) * apart;
+}
+
 template <class R>
 HILDA_HD inline void set_masses(Touch<R>& t, R inverse_i, R inverse_j)
 {
@@ -65,6 +78,26 @@ HILDA_HD inline void set_rates(Touch<R>& t, const Vec<R>& v, const Vec<R>& omega
     t.v_n = -along;
     t.v_t = v - along * t.n - (t.R_i * omega_i + t.R_j * omega_j).cross(t.n);
     t.omega = omega_i - omega_j;
+}
+
+/// A particle and a boundary, but for the step; false where they do not touch
+HILDA_HD inline bool meet(Touch<float>& t, const Grid& grid, const Position& p, const Four& v, const Four& w,
+                          const Boundary& b)
+{
+    const Vec3 r = place(grid, p);
+    const Nearest near = nearest(b, r);
+    const double delta = v.w - near.distance;
+    if (!(delta > 0)) return false;
+    const auto narrow = [](const Vec3& a) {
+        return Vec<float>{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+    };
+    t.n = narrow(near.n);
+    t.delta = static_cast<float>(delta);
+    t.R_i = t.R_eff = v.w, t.R_j = 0;
+    t.m_eff = 1 / (w.w + b.inverse_mass());
+    set_rates(t, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
+              Vec<float>{w.x, w.y, w.z}, Vec<float>{0, 0, 0});
+    return true;
 }
 
 }  // namespace hilda::granular

@@ -157,8 +157,11 @@ struct Loop {
     /// Few: their geometry goes one by one, in double precision, and then a pack of them to the laws
     void answer_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t count) const
     {
+        // as many as there are lanes, as a Touch of packs is in memory
+        constexpr int values = sizeof(Touch<float>) / sizeof(float);
+        static_assert(sizeof(Touch<Pack>) >= (values - 1) * sizeof(Pack));
         struct alignas(64) Lanes {
-            float of[14][lanes];
+            float of[values - 1][lanes];  // all but the step
         } in = {};
         std::uint32_t hit[lanes];
         std::uint32_t hits = 0;
@@ -168,45 +171,23 @@ struct Loop {
                 hit[k] = hit[0];
                 for (auto& row : in.of) row[k] = row[0];
             }
-            Pack value[14];
-            std::memcpy(value, &in, sizeof value);
             Touch<Pack> t;
+            std::memcpy(static_cast<void*>(&t), &in, sizeof in);
             t.h = laws.h;
-            t.n = {value[0], value[1], value[2]};
-            t.delta = value[3];
-            t.R_i = t.R_eff = value[4], t.R_j = Pack(0.f);
-            t.m_eff = value[5];
-            const Vec<Pack> zero{Pack(0.f), Pack(0.f), Pack(0.f)};
-            set_rates(t, Vec<Pack>{value[6], value[7], value[8]}, Vec<Pack>{value[9], value[10], value[11]},
-                      zero);
             respond(law, t, hit);
             hits = 0;
         };
         for (std::uint32_t m = 0; m < count; ++m) {
             const std::uint32_t at = which[m], i = pairs.i[at];
-            const Boundary& b = laws.boundary[pairs.j[at] & ~PairView::boundary];
-            const Vec3 r = place(particles.grid, particles.position[i]);
-            const Nearest near = nearest(b, r);
-            const Four v = particles.velocity[i], w = particles.omega[i];
-            const double delta = v.w - near.distance;
-            if (!(delta > 0)) {
+            Touch<float> one{};
+            if (!meet(one, particles.grid, particles.position[i], particles.velocity[i], particles.omega[i],
+                      laws.boundary[pairs.j[at] & ~PairView::boundary])) {
                 if (pairs.touches[at] != 0) forget(at);
                 continue;
             }
-            const Vec3 of_b = velocity(b, r - near.distance * near.n);
-            const float row[] = {float(near.n.x),
-                                 float(near.n.y),
-                                 float(near.n.z),
-                                 float(delta),
-                                 v.w,
-                                 1 / (w.w + b.inverse_mass()),
-                                 float(v.x - of_b.x),
-                                 float(v.y - of_b.y),
-                                 float(v.z - of_b.z),
-                                 w.x,
-                                 w.y,
-                                 w.z};
-            for (int k = 0; k < 12; ++k) in.of[k][hits] = row[k];
+            float value[values];
+            std::memcpy(value, &one, sizeof value);
+            for (int k = 0; k < values - 1; ++k) in.of[k][hits] = value[k];
             pairs.touches[at] = 1;
             hit[hits++] = at;
             if (hits == lanes) flush();
@@ -221,13 +202,11 @@ struct Loop {
         const auto v_i = rows<Pack>(particles.velocity, i), v_j = rows<Pack>(particles.velocity, j);
         const auto w_i = rows<Pack>(particles.omega, i), w_j = rows<Pack>(particles.omega, j);
         const Apart a = apart(i, j, v_i.w, v_j.w);
-        const Pack d = sqrt(to_float(a.d2)), D = to_float(a.D);
         Touch<Pack> t;
         t.h = laws.h;
         t.R_i = v_i.w, t.R_j = v_j.w;
-        t.delta = to_float(a.q) / (D + d) * metre;
-        const Pack per_d = Pack(1.f) / d;
-        t.n = per_d * Vec<Pack>{to_float(a.x), to_float(a.y), to_float(a.z)};
+        set_overlap(t, to_float(a.q), to_float(a.d2), to_float(a.D),
+                    Vec<Pack>{to_float(a.x), to_float(a.y), to_float(a.z)}, Pack(metre));
         set_masses(t, w_i.w, w_j.w);
         set_rates(t, Vec<Pack>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z}, Vec<Pack>{w_i.x, w_i.y, w_i.z},
                   Vec<Pack>{w_j.x, w_j.y, w_j.z});

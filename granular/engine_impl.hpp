@@ -225,8 +225,10 @@ private:
             else
                 par::copy_to_device(on, a.data(), b.data(), b.size() * sizeof(T));
         };
-        auto &p = to.particle, &q = to.pairs;
-        auto &pf = from.particle, &qf = from.pairs;
+        auto& p = to.particle;
+        auto& q = to.pairs;
+        auto& pf = from.particle;
+        auto& qf = from.pairs;
         one(p.position, pf.position), one(p.velocity, pf.velocity), one(p.omega, pf.omega);
         one(p.rest, pf.rest), one(p.id, pf.id), one(p.acc, pf.acc), one(p.turn, pf.turn);
         one(p.before, pf.before);

@@ -126,5 +126,8 @@ struct Advance {
 
 /// Advances all particles, each by the sum of its loads in the order of its pairs; returns the largest |v|² of them.
 float advance(par::Cpu, std::uint32_t particles, const Advance& arrays);
+/// The same on another back end; see loops.hpp.
+template <class Backend>
+float advance(Backend on, std::uint32_t particles, const Advance& arrays);
 
 }  // namespace hilda::granular

@@ -54,7 +54,12 @@ private:
 
 }  // namespace
 
-World::World(const WorldOptions& o, std::vector<Material> all) : options(o), materials(std::move(all))
+World::World(const WorldOptions& o, std::vector<Material> all)
+    : World(o, std::move(all), make_engine(o.device))
+{}
+
+World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<Engine> on)
+    : options(o), materials(std::move(all)), engine(std::move(on))
 {
     for (const auto& [low, high, axis] :
          {std::tuple{o.low.x, o.high.x, 'x'}, {o.low.y, o.high.y, 'y'}, {o.low.z, o.high.z, 'z'}})
@@ -70,7 +75,6 @@ World::World(const WorldOptions& o, std::vector<Material> all) : options(o), mat
         if (!(m.nu > -1 && m.nu < 0.5)) refuse(where, "nu must be between -1 and 0.5", m.nu);
     }
     law_of.assign(materials.size() * materials.size(), no_law);
-    engine = make_engine(o.device);
 }
 
 World::~World() = default;

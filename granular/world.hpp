@@ -74,6 +74,8 @@ class World {
 public:
     /// InvalidCase; DeviceError
     World(const WorldOptions& options, std::vector<Material> materials);
+    /// On an engine of the caller's
+    World(const WorldOptions& options, std::vector<Material> materials, std::unique_ptr<Engine> engine);
     World(World&&) = default;
     ~World();
 

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loops over contacts and particles one by one, for back ends whose threads are their lanes. Same bits as the packs of
+// contact_loop_cpu.cpp and integrator_cpu.cpp.
+#pragma once
+
+#include "granular/contact_loop.hpp"
+#include "granular/integrator.hpp"
+
+namespace hilda::granular {
+
+namespace detail {
+
+struct FindLoad {
+    ParticleView particles;
+    PairView pairs;
+    LawView laws;
+    float per_metre, metre;
+
+    HILDA_HD void operator()(std::uint32_t k) const
+    {
+        const std::uint32_t i = pairs.i[k], j = pairs.j[k];
+        const Position p_i = particles.position[i];
+        const Four v_i = particles.velocity[i];
+        Touch<float> t{};
+        t.h = laws.h;
+        bool touches = false;
+        if ((j & PairView::boundary) != 0) {
+            touches =
+                meet(t, particles.grid, p_i, v_i, particles.omega[i], laws.boundary[j & ~PairView::boundary]);
+        } else {
+            const Four v_j = particles.velocity[j];
+            const Difference d = difference(particles.grid, p_i, particles.position[j]);
+            const std::int64_t D = in_units(v_i.w, per_metre) + in_units(v_j.w, per_metre), x = d.x, y = d.y,
+                               z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;
+            touches = q > 0;
+            if (touches) {
+                set_overlap(
+                    t, static_cast<float>(q), static_cast<float>(d2), static_cast<float>(D),
+                    Vec<float>{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
+                    metre);
+                const Four w_i = particles.omega[i], w_j = particles.omega[j];
+                t.R_i = v_i.w, t.R_j = v_j.w;
+                set_masses(t, w_i.w, w_j.w);
+                set_rates(t, Vec<float>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
+                          Vec<float>{w_i.x, w_i.y, w_i.z}, Vec<float>{w_j.x, w_j.y, w_j.z});
+            }
+        }
+        const bool turning = pairs.turning != nullptr;
+        if (!touches) {
+            if (pairs.touches[k] == 0) return;
+            pairs.touches[k] = 0, pairs.history[k] = {}, pairs.load[k] = {};
+            if (turning) pairs.turning[k] = {}, pairs.torque[k] = {};
+            return;
+        }
+        pairs.touches[k] = 1;
+        const Four u = pairs.history[k];
+        History<float> history{{u.x, u.y, u.z}, u.w + laws.h, {0, 0, 0}, 0};
+        if (turning) {
+            const Four psi = pairs.turning[k];
+            history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
+        }
+        const Answer<float> out =
+            answer(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], t, history, turning);
+        const Vec<float> M = -t.n.cross(out.F_t);
+        pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.age};
+        pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {M.x, M.y, M.z, 0}};
+        if (!turning) return;
+        pairs.turning[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
+        pairs.torque[k] = {out.T.x, out.T.y, out.T.z, 0};
+    }
+};
+
+/// Advances a particle, and returns its |v|²; 0 of one that is fixed.
+struct AdvanceOne {
+    Advance to;
+
+    HILDA_HD static Vec<float> vec(const Four& f) { return {f.x, f.y, f.z}; }
+    HILDA_HD static void put(Four& to, const Vec<float>& v) { to.x = v.x, to.y = v.y, to.z = v.z; }
+
+    HILDA_HD float operator()(std::uint32_t k) const
+    {
+        Vec<float> F{0, 0, 0}, T{0, 0, 0};
+        Four v = to.velocity[k], w = to.omega[k];
+        if (to.step.part != Part::before_loads) {
+            Vec<float> F_j{0, 0, 0}, M{0, 0, 0}, M_j{0, 0, 0};
+            for (std::uint32_t n = to.start[k]; n < to.start[k + 1]; ++n)
+                F += vec(to.load[n].F), M += vec(to.load[n].M);
+            for (std::uint32_t m = to.other_start[k]; m < to.other_start[k + 1]; ++m) {
+                const Load& load = to.load[to.other[m]];
+                F_j += vec(load.F), M_j += vec(load.M);
+            }
+            F -= F_j, M += M_j;
+            if (to.force != nullptr) F += vec(to.force[to.id[k]]);
+            if (to.torque != nullptr) {
+                for (std::uint32_t n = to.start[k]; n < to.start[k + 1]; ++n) T += vec(to.torque[n]);
+                for (std::uint32_t m = to.other_start[k]; m < to.other_start[k + 1]; ++m)
+                    T -= vec(to.torque[to.other[m]]);
+            }
+            T = v.w * M + T;
+        }
+        Rest rest = to.rest[k];
+        const auto wide = [](const std::uint16_t* three) {
+            return Vec<float>{Rest::wide(three[0]), Rest::wide(three[1]), Rest::wide(three[2])};
+        };
+        const auto narrow = [](std::uint16_t* three, const Vec<float>& from) {
+            three[0] = Rest::narrow(from.x), three[1] = Rest::narrow(from.y), three[2] = Rest::narrow(from.z);
+        };
+        Moving<float> m{vec(v), vec(w), wide(rest.v), wide(rest.way), v.w, w.w};
+        Vec<float> acc{0, 0, 0}, turn{0, 0, 0};
+        if (to.acc != nullptr) acc = vec(to.acc[k]), turn = vec(to.turn[k]);
+        const Vec<float> units = go(to.step, m, F, T, acc, turn);
+
+        put(v, m.v), put(w, m.omega);
+        to.velocity[k] = v, to.omega[k] = w;
+        narrow(rest.way, m.rest), narrow(rest.v, m.v_rest);
+        to.rest[k] = rest;
+        if (to.acc != nullptr) put(to.acc[k], acc), put(to.turn[k], turn);
+        if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
+            Position p = to.position[k];
+            p.x += static_cast<std::int32_t>(units.x), p.y += static_cast<std::int32_t>(units.y),
+                p.z += static_cast<std::int32_t>(units.z);
+            to.position[k] = p;
+        }
+        return w.w > 0 ? m.v.dot(m.v) : 0;
+    }
+};
+
+}  // namespace detail
+
+template <class Backend>
+void find_loads(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws)
+{
+    const auto metre = static_cast<float>(particles.grid.unit);
+    par::for_each(on, pairs.count, detail::FindLoad{particles, pairs, laws, 1 / metre, metre});
+}
+
+template <class Backend>
+float advance(Backend on, std::uint32_t particles, const Advance& arrays)
+{
+    return par::largest(on, particles, detail::AdvanceOne{arrays});
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/program/run.hpp"
+
+#include "granular/files.hpp"
+#include "granular/output.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <omp.h>
+#include <unistd.h>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::granular {
+
+volatile std::sig_atomic_t caught = 0;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+/// One line on a terminal, replaced as the run goes on
+class Progress {
+public:
+    explicit Progress(bool quiet) : shown(!quiet && isatty(STDERR_FILENO) != 0) {}
+    void update(const Case& c, double rate)
+    {
+        if (!shown || seconds_since(last) < 0.2) return;
+        last = Clock::now();
+        const double left =
+            rate > 0 ? (c.end - c.world->t()) / c.h * static_cast<double>(c.world->count()) / rate : 0;
+        std::fprintf(stderr, "\rhilda: t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left   ",
+                     c.world->t(), c.end, 1e-6 * rate, left);
+    }
+    void clear() const
+    {
+        if (shown) std::fprintf(stderr, "\r%78s\r", "");
+    }
+
+private:
+    bool shown;
+    Clock::time_point last = Clock::now();
+};
+
+class Run {
+public:
+    Run(const Options& o, Case c) : o(o), c(std::move(c)) {}
+
+    int go()
+    {
+        namespace fs = std::filesystem;
+        if (fs::exists(file("summary.json")) && !o.force && !o.resume) {
+            std::fprintf(stderr,
+                         "hilda: error: %s: has a run already; --force starts it again, --resume goes on\n",
+                         o.output.c_str());
+            return usage;
+        }
+        if (!judge_step()) return bad_case;
+        make_directory(o.output);
+        every = std::max(1L, std::lround(c.every / c.h));
+        steps = std::lround(c.end / c.h);
+        if (o.resume && fs::exists(file("checkpoint"))) {
+            resume();
+        } else {
+            for (const char* old : {"checkpoint", "summary.json"}) std::remove(file(old).c_str());
+            write_file(file("case.json"), c.text);
+            csv = "t,kinetic_energy,contacts,pairs";
+            for (const std::string& b : c.boundaries) csv += ',' + b + "_Fx," + b + "_Fy," + b + "_Fz";
+            csv += '\n';
+        }
+        begin = saved = Clock::now();
+        const int code = march();
+        finish(code);
+        return code;
+    }
+
+private:
+    std::string file(const std::string& name) const { return o.output + '/' + name; }
+
+    /// Above a fifth of the Rayleigh time or a fifteenth of a collision a step is coarse; above the one, or two pi-ths of
+    /// the other, it is not stable.
+    bool judge_step() const
+    {
+        const World::StepLimits limits = c.world->step_limits();
+        const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
+        if (c.h > stable) {
+            std::fprintf(stderr,
+                         "hilda: %s: %s: /step: must not be above %.3g s, where it is stable, got %g%s\n",
+                         o.force ? "warning" : "error", o.file.c_str(), stable, c.h,
+                         o.force ? "" : "; --force overrides");
+            return o.force;
+        }
+        if (!o.quiet && (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15))
+            std::fprintf(
+                stderr,
+                "hilda: warning: the step %g s is %.2g of the Rayleigh time and %.2g of a collision\n", c.h,
+                c.h / limits.rayleigh, c.h / limits.collision);
+        return true;
+    }
+
+    void resume()
+    {
+        const std::string bytes = read_file(file("checkpoint"), std::size_t{1} << 36);
+        c.world->from_bytes(bytes, run_text(), file("checkpoint"));
+        csv = read_file(file("run.csv"), std::size_t{1} << 32);
+        // rows after the checkpoint are made again
+        const long rows = c.world->steps() / every + 2;
+        std::size_t at = 0;
+        for (long k = 0; k < rows && at < csv.size(); ++k) at = csv.find('\n', at) + 1;
+        csv.resize(at);
+        for (long k = 0; k * every <= c.world->steps(); ++k)
+            frames.emplace_back(static_cast<double>(k * every) * c.h, frame(k));
+    }
+
+    /// What a checkpoint must belong to
+    std::string run_text() const { return c.text + '\n' + std::to_string(c.h); }
+
+    static std::string frame(long k)
+    {
+        char name[48];
+        std::snprintf(name, sizeof name, "particles-%06ld.vtp", k);
+        return name;
+    }
+
+    int march()
+    {
+        Progress line(o.quiet);
+        World& w = *c.world;
+        long since = w.steps();
+        try {
+            if (w.steps() == 0) record();
+            while (w.steps() < steps && caught == 0) {
+                const long next = std::min((w.steps() / every + 1) * every, steps);
+                // no more than about a tenth of a second between looks at the clock
+                while (w.steps() < next && caught == 0) {
+                    const long most = std::max(1L, 1000000L / static_cast<long>(w.count() + 1));
+                    w.step(std::min(most, next - w.steps()));
+                    line.update(c, static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) /
+                                       seconds_since(begin));
+                }
+                if (w.steps() % every == 0) record();
+                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint) save();
+            }
+        } catch (const ParticleLost& e) {
+            line.clear();
+            std::fprintf(stderr, "hilda: error[particle_lost]: %s\n", e.what());
+            message = e.what();
+            return numerical;
+        }
+        line.clear();
+        rate = static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) / seconds_since(begin);
+        if (caught != 0) {
+            save();
+            if (!o.quiet)
+                std::fprintf(stderr, "hilda: interrupted; --resume goes on from the checkpoint in %s\n",
+                             o.output.c_str());
+            return by_signal + caught;
+        }
+        return ok;
+    }
+
+    void save()
+    {
+        write_file(file("run.csv"), csv);
+        write_file(file("checkpoint"), c.world->to_bytes(run_text()));
+        saved = Clock::now();
+    }
+
+    void record()
+    {
+        const World& w = *c.world;
+        const std::vector<Contact> contacts = w.contacts();
+        std::vector<Vec3> F(c.boundaries.size(), Vec3{0, 0, 0});
+        for (const Contact& at : contacts)
+            if (at.boundary) F[at.j] -= at.F;
+        char row[128];
+        std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
+                      w.candidates());
+        csv += row;
+        for (const Vec3& f : F) {
+            std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", f.x, f.y, f.z);
+            csv += row;
+        }
+        csv += '\n';
+        if (o.no_vtk) return;
+        const std::string name = frame(w.steps() / every);
+        make_directory(file("vtk"));
+        write_file(file("vtk/" + name), particles_vtp(w));
+        frames.emplace_back(w.t(), name);
+    }
+
+    void finish(int code)
+    {
+        const World& w = *c.world;
+        write_file(file("run.csv"), csv);
+        write_file(file("particles.csv"), particles_csv(w));
+        write_file(file("contacts.csv"), contacts_csv(w));
+        if (!frames.empty()) write_file(file("vtk/run.pvd"), pvd(frames));
+        nlohmann::ordered_json s = {
+            {"case", c.name},
+            {"status", code == ok          ? "ok"
+                       : code == numerical ? "particle_lost"
+                                           : "interrupted"},
+            {"particles", w.count()},
+            {"step", c.h},
+            {"t", w.t()},
+            {"steps", w.steps()},
+            {"rebuilds", w.rebuilds()},
+            {"kinetic_energy", w.kinetic_energy()},
+            {"particle_steps_per_second", rate},
+            {"bytes_per_particle",
+             w.count() > 0 ? static_cast<double>(w.bytes()) / static_cast<double>(w.count()) : 0},
+            {"threads", omp_get_max_threads()},
+            {"device", "cpu"},
+            {"notices", c.notices}};
+        if (!message.empty()) s["message"] = message;
+        write_file(file("summary.json"), s.dump(2) + '\n');
+        if (code == ok) std::remove(file("checkpoint").c_str());
+        if (code == ok && !o.quiet)
+            std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
+                        c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * rate, o.output.c_str());
+    }
+
+    const Options& o;
+    Case c;
+    long every = 1, steps = 0;
+    std::string csv, message;
+    std::vector<std::pair<double, std::string>> frames;
+    Clock::time_point begin, saved;
+    double rate = 0;
+};
+
+}  // namespace
+
+int run(const Options& options, Case c) { return Run(options, std::move(c)).go(); }
+
+}  // namespace hilda::granular

@@ -153,6 +153,7 @@ Case read_case(const std::string& text, const std::string& file)
         out.h = o.h = keys.positive("step");
         out.end = keys.positive("end");
         out.every = keys.has("every") ? keys.positive("every") : out.end / 100;
+        out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : out.every;
         o.skin = keys.number("skin", o.skin);
         o.scheme = read_scheme(keys);
 

@@ -12,6 +12,7 @@ struct Case {
     std::string name;
     std::unique_ptr<World> world;
     double h = 0, end = 0, every = 0;  ///< step, end, and time between outputs [s]
+    double anew = 0;                   ///< time between the steps at which a checkpoint may be written [s]
     std::vector<std::string> boundaries;
     std::vector<std::string> notices;  ///< what was mended on the way
     std::string text;                  ///< of the file

@@ -20,7 +20,7 @@ int main(int argc, char** argv)
     app.add_option("--output", o.output, "directory of what the run leaves; by default named after the case");
     app.add_option("--threads", o.threads, "of the CPU; the results do not depend on it")
         ->check(CLI::PositiveNumber);
-    app.add_option("--checkpoint", o.checkpoint, "seconds between checkpoints; none by default")
+    app.add_option("--checkpoint", o.checkpoint, "least seconds between two checkpoints; none by default")
         ->check(CLI::PositiveNumber);
     app.add_option("--device", o.device, "cpu");
     app.add_flag("--resume", o.resume, "goes on from the checkpoint in the output directory");
@@ -41,7 +41,11 @@ int main(int argc, char** argv)
     }
     if (o.threads > 0) omp_set_num_threads(o.threads);
     if (o.output.empty()) o.output = std::filesystem::path(o.file).stem().string();
-    for (const int s : {SIGINT, SIGTERM}) std::signal(s, [](int which) { caught = which; });
+    for (const int s : {SIGINT, SIGTERM})
+        std::signal(s, [](int which) {
+            caught = which;
+            std::signal(which, SIG_DFL);  // who asks twice does not want to wait
+        });
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         std::string text;

@@ -60,13 +60,18 @@ public:
             return usage;
         }
         if (!judge_step()) return bad_case;
+        c.world->step(0);  // refuses what is wrong with the particles while nothing is written
         make_directory(o.output);
         every = std::max(1L, std::lround(c.every / c.h));
+        anew = std::max(1L, std::lround(c.anew / c.h));
         steps = std::lround(c.end / c.h);
-        if (o.resume && fs::exists(file("checkpoint"))) {
-            resume();
-        } else {
-            for (const char* old : {"checkpoint", "summary.json"}) std::remove(file(old).c_str());
+        if (o.resume && done()) {
+            if (!o.quiet) std::fprintf(stderr, "hilda: %s: is done already\n", o.output.c_str());
+            return ok;
+        }
+        if (!o.resume || !load()) {
+            for (const char* old : {"checkpoint", "checkpoint.1", "summary.json"})
+                std::remove(file(old).c_str());
             write_file(file("case.json"), c.text);
             csv = "t,kinetic_energy,contacts,pairs";
             for (const std::string& b : c.boundaries) csv += ',' + b + "_Fx," + b + "_Fy," + b + "_Fz";
@@ -102,18 +107,56 @@ private:
         return true;
     }
 
-    void resume()
+    /// Whether this very case was run to its end here
+    bool done() const
     {
-        const std::string bytes = read_file(file("checkpoint"), std::size_t{1} << 36);
-        c.world->from_bytes(bytes, run_text(), file("checkpoint"));
+        namespace fs = std::filesystem;
+        if (fs::exists(file("checkpoint")) || !fs::exists(file("summary.json"))) return false;
+        const auto summary =
+            nlohmann::json::parse(read_file(file("summary.json"), std::size_t{1} << 24), nullptr, false);
+        if (!summary.is_object() || summary.value("status", "") != "ok") return false;
+        if (read_file(file("case.json"), std::size_t{1} << 28) != c.text)
+            throw FileError(file("case.json") + ": is another case, which was run to its end here");
+        return true;
+    }
+
+    /// Goes on from the last checkpoint, or where that is damaged from the one before. False where there is none.
+    bool load()
+    {
+        std::string damage;
+        for (const char* name : {"checkpoint", "checkpoint.1"}) {
+            if (!std::filesystem::exists(file(name))) continue;
+            try {
+                c.world->from_bytes(read_file(file(name), std::size_t{1} << 40), run_text(), file(name));
+            } catch (const FileError& e) {
+                if (damage.empty()) damage = e.what();
+                continue;
+            }
+            if (!damage.empty())
+                std::fprintf(stderr, "hilda: warning: %s; going on from the one before\n", damage.c_str());
+            load_rows();
+            return true;
+        }
+        if (!damage.empty()) throw FileError(damage);
+        return false;
+    }
+
+    /// Rows after the checkpoint are made again.
+    void load_rows()
+    {
         csv = read_file(file("run.csv"), std::size_t{1} << 32);
-        // rows after the checkpoint are made again
-        const long rows = c.world->steps() / every + 2;
+        const long rows = c.world->steps() / every + 2;  // with the names, and that of t = 0
         std::size_t at = 0;
-        for (long k = 0; k < rows && at < csv.size(); ++k) at = csv.find('\n', at) + 1;
+        for (long k = 0; k < rows; ++k) {
+            at = csv.find('\n', at);
+            if (at++ == std::string::npos)
+                throw FileError(file("run.csv") + ": should have " + std::to_string(rows) + " lines, got " +
+                                std::to_string(k));
+        }
         csv.resize(at);
-        for (long k = 0; k * every <= c.world->steps(); ++k)
-            frames.emplace_back(static_cast<double>(k * every) * c.h, frame(k));
+        if (!o.no_vtk)
+            for (long k = 0; k < rows - 1; ++k)
+                frames.emplace_back(static_cast<double>(k * every) * c.h, frame(k));
     }
 
     /// What a checkpoint must belong to
@@ -126,6 +169,8 @@ private:
         return name;
     }
 
+    /// Files are written by the clock, but only at times that the case sets: there the neighbours are looked for anew, as by
+    /// a world that was loaded, whether a file is written or not. So neither the clock nor a signal changes a bit.
     int march()
     {
         Progress line(o.quiet);
@@ -133,17 +178,22 @@ private:
         long since = w.steps();
         try {
             if (w.steps() == 0) record();
-            while (w.steps() < steps && caught == 0) {
-                const long next = std::min((w.steps() / every + 1) * every, steps);
+            while (w.steps() < steps) {
+                const long next =
+                    std::min({(w.steps() / every + 1) * every, (w.steps() / anew + 1) * anew, steps});
                 // no more than about a tenth of a second between looks at the clock
-                while (w.steps() < next && caught == 0) {
+                while (w.steps() < next) {
                     const long most = std::max(1L, 1000000L / static_cast<long>(w.count() + 1));
                     w.step(std::min(most, next - w.steps()));
                     line.update(c, static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) /
                                        seconds_since(begin));
                 }
                 if (w.steps() % every == 0) record();
-                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint) save();
+                if (w.steps() % anew != 0 || w.steps() == steps) continue;
+                w.look_again();
+                const bool stop = caught != 0;
+                if (stop || (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint)) save();
+                if (stop) break;
             }
         } catch (const ParticleLost& e) {
             line.clear();
@@ -153,8 +203,7 @@ private:
         }
         line.clear();
         rate = static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) / seconds_since(begin);
-        if (caught != 0) {
-            save();
+        if (w.steps() < steps) {
             if (!o.quiet)
                 std::fprintf(stderr, "hilda: interrupted; --resume goes on from the checkpoint in %s\n",
                              o.output.c_str());
@@ -166,7 +215,10 @@ private:
     void save()
     {
         write_file(file("run.csv"), csv);
-        write_file(file("checkpoint"), c.world->to_bytes(run_text()));
+        const std::string bytes = c.world->to_bytes(run_text());
+        std::rename(file("checkpoint").c_str(),
+                    file("checkpoint.1").c_str());  // there is none the first time
+        write_file(file("checkpoint"), bytes);
         saved = Clock::now();
     }
 
@@ -219,7 +271,9 @@ private:
             {"notices", c.notices}};
         if (!message.empty()) s["message"] = message;
         write_file(file("summary.json"), s.dump(2) + '\n');
-        if (code == ok) std::remove(file("checkpoint").c_str());
+        if (code == ok)
+            for (const char* old : {"checkpoint", "checkpoint.1", "checkpoint.new"})
+                std::remove(file(old).c_str());
         if (code == ok && !o.quiet)
             std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
                         c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * rate, o.output.c_str());
@@ -227,7 +281,7 @@ private:
 
     const Options& o;
     Case c;
-    long every = 1, steps = 0;
+    long every = 1, anew = 1, steps = 0;
     std::string csv, message;
     std::vector<std::pair<double, std::string>> frames;
     Clock::time_point begin, saved;

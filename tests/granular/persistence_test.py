@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What hilda-granular leaves is one set of bytes, however often it is killed, with any threads and back end.
+
+    persistence_test.py WHAT PROGRAM [PROGRAM]      WHAT is kills, ends or threads; a second PROGRAM has another back end
+"""
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+# Grains of many sizes are shaken down into a cup, with all that has a history.
+CASE = {
+    "hilda_case": 1, "name": "cup",
+    "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
+    "step": 5e-6, "end": 0.2, "every": 1e-2, "checkpoint_every": 1e-3,
+    "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
+                  {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
+    "laws": [{"between": ["glass", "glass"], "restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"},
+              "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}, "spin": {"law": "torsional-spring"}},
+             {"between": ["glass", "steel"], "restitution": 0.5, "mu": 0.4, "tangential": {"law": "mindlin"},
+              "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}}],
+    "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "material": "steel"},
+                   {"name": "wall", "type": "cylinder", "r": [0.01, 0.01, 0], "axis": [0, 0, 1], "radius": 0.01,
+                    "inside": True, "material": "steel"}],
+    "fill": [{"type": "lattice", "low": [0.003, 0.003, 0], "high": [0.017, 0.017, 0.03], "radius": 1e-3,
+              "least_radius": 6e-4, "spacing": 1.02, "jitter": 1, "random_v": 0.2, "material": "glass"}]}
+
+
+class Runs:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, pathlib.Path(folder)
+        self.environment = dict(os.environ, OMP_WAIT_POLICY="passive")
+
+    def case(self, name, **changes):
+        (self.folder / f"{name}.json").write_text(json.dumps(dict(CASE, **changes)))
+        return name
+
+    def start(self, name, *arguments, program=None):
+        threads = () if "--threads" in arguments else ("--threads", "1")
+        return subprocess.Popen([program or self.program, f"{name}.json", *threads, *arguments], cwd=self.folder,
+                                env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def finish(self, name, *arguments, code=0, **options):
+        process = self.start(name, *arguments, **options)
+        _, err = process.communicate()
+        if process.returncode != code:
+            sys.exit(f"{' '.join(process.args)}: ended with {process.returncode}, not {code}: {err}")
+        return err
+
+    def sha(self, output):
+        """One for all that does not tell of the clock"""
+        out = self.folder / output
+        files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
+        files += sorted((out / "vtk").iterdir())
+        whole = hashlib.sha256()
+        for file in files:
+            whole.update(file.name.encode() + b"\0" + file.read_bytes())
+        return whole.hexdigest()
+
+    def remove(self, output):
+        shutil.rmtree(self.folder / output, ignore_errors=True)
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"not so: {what}")
+
+
+def kills(runs, wanted=20):
+    """Killed at random moments and resumed until it is done"""
+    case = runs.case("cup")
+    begin = time.monotonic()
+    runs.finish(case, "--output", "whole")
+    seconds = time.monotonic() - begin
+    whole = runs.sha("whole")
+    contacts = (runs.folder / "whole" / "contacts.csv").read_text().count("\n")
+    expect(contacts > 300, f"the grains touch, {contacts} times")
+
+    draw = random.Random(7)
+    resume = ("--output", "cut", "--checkpoint", "0.02", "--resume")
+    done = kept = runs_to_the_end = 0
+    while done < wanted:
+        process = runs.start(case, *resume)
+        try:
+            process.communicate(timeout=draw.uniform(0, 2 * seconds / wanted))
+            expect(process.returncode == 0, "a run that was not killed ends well")
+            expect(runs.sha("cut") == whole, "the run that was killed leaves what the whole one does")
+            runs.remove("cut")
+            runs_to_the_end += 1
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+            done += 1
+            kept += (runs.folder / "cut" / "checkpoint").exists()
+    expect(kept > 0, "some were killed with a checkpoint there")
+    runs.finish(case, *resume)
+    expect(runs.sha("cut") == whole, "the run that was killed leaves what the whole one does")
+    left = [file.name for file in (runs.folder / "cut").iterdir()]
+    expect(not any(name.startswith("checkpoint") for name in left), f"no checkpoint is left of a run that is done: {left}")
+    expect("is done already" in runs.finish(case, *resume), "there is no more to do")
+    print(f"{done} kills, {kept} with a checkpoint, {1 + runs_to_the_end} runs to the end; {seconds:.2f} s uncut; {whole}")
+
+
+def ends(runs):
+    """Signals, damaged and foreign checkpoints, and a grain that is lost"""
+    case = runs.case("cup", end=0.05)
+    runs.finish(case, "--output", "whole")
+    whole = runs.sha("whole")
+    out = runs.folder / "cut"
+
+    def interrupt(which):
+        process = runs.start(case, "--output", "cut", "--checkpoint", "0.01", "--force")
+        while not (out / "checkpoint.1").exists():
+            expect(process.poll() is None, "two checkpoints are kept while it runs")
+            time.sleep(0.001)
+        process.send_signal(which)
+        _, err = process.communicate()
+        expect(process.returncode == 128 + which, f"signal {which} ends with its code, not {process.returncode}")
+        expect("--resume goes on" in err, f"says how to go on: {err}")
+        expect(json.loads((out / "summary.json").read_text())["status"] == "interrupted", "summary of an interrupted run")
+
+    for which in (signal.SIGINT, signal.SIGTERM):
+        interrupt(which)
+        runs.finish(case, "--output", "cut", "--resume")
+        expect(runs.sha("cut") == whole, "a run that was interrupted leaves what the whole one does")
+        runs.remove("cut")
+
+    interrupt(signal.SIGINT)
+    newest = (out / "checkpoint").read_bytes()
+    other = runs.case("other", end=0.06)
+    expect("belongs to another run" in runs.finish(other, "--output", "cut", "--resume", code=5), "a foreign one is refused")
+    (out / "checkpoint").write_bytes(newest[:len(newest) // 2] + bytes([newest[len(newest) // 2] ^ 1]) + newest[len(newest) // 2 + 1:])
+    err = runs.finish(case, "--output", "cut", "--resume")
+    expect("hilda: warning: cut/checkpoint: the checkpoint is damaged" in err and "the one before" in err, err)
+    expect(runs.sha("cut") == whole, "the checkpoint before the last does as well")
+
+    runs.remove("cut")
+    interrupt(signal.SIGINT)
+    for name in ("checkpoint", "checkpoint.1"):
+        (out / name).write_bytes(b"HILDAGRN" + b"\0" * 100)
+    expect("cut/checkpoint: the checkpoint is damaged" in runs.finish(case, "--output", "cut", "--resume", code=5),
+           "damaged ones are refused")
+
+    # without a floor they fall out of the domain
+    lost = runs.case("lost", boundaries=CASE["boundaries"][1:], end=0.1)
+    err = runs.finish(lost, "--output", "lost", "--checkpoint", "1e-4", code=4)
+    expect("error[particle_lost]: particle " in err and "t = " in err and "velocity" in err, err)
+    summary = json.loads((runs.folder / "lost" / "summary.json").read_text())
+    expect(summary["status"] == "particle_lost" and summary["t"] > 0.01, f"says where it ended: {summary}")
+    expect(runs.finish(lost, "--output", "lost", "--resume", code=4) == err, "the last checkpoint stays, and can be loaded")
+    print(f"both signals, fallback, refusals and a lost grain; {whole}")
+
+
+def threads(runs, others):
+    """Enough grains for loops to be shared"""
+    cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
+    case = runs.case("heap", end=0.015, every=5e-3, checkpoint_every=5e-3, boundaries=[CASE["boundaries"][0], cup],
+                     domain={"low": [-0.012, -0.012, -0.002], "high": [0.052, 0.052, 0.08]},
+                     fill=[dict(CASE["fill"][0], low=[0, 0, 0], high=[0.04, 0.04, 0.02])])
+    one = None
+    for program in (None, *others):
+        for count in (1, 2, 3, 4, 8):
+            runs.finish(case, "--output", "out", "--force", "--threads", str(count), program=program)
+            sha = runs.sha("out")
+            one = one or sha
+            expect(sha == one, f"{count} threads of {program or runs.program} give the same")
+    print(f"1, 2, 3, 4, 8 threads, {1 + len(others)} back ends; {one}")
+
+
+def main():
+    what, program, *others = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        runs = Runs(program, folder)
+        if what == "kills":
+            kills(runs)
+        elif what == "ends":
+            ends(runs)
+        else:
+            threads(runs, others)
+
+
+if __name__ == "__main__":
+    main()

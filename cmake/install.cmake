@@ -37,7 +37,8 @@ foreach(room lie dae contact)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
         FILES_MATCHING PATTERN "*.hpp")
 endforeach()
-install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
+install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL
     FILES_MATCHING PATTERN "*.py")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

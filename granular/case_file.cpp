@@ -166,6 +166,7 @@ Case read_case(const std::string& text, const std::string& file)
                                  .nu = m.number("nu")});
             m.end();
         }
+        if (materials.empty()) throw InvalidCase("/materials: must name at least one");
         const auto material = [&](Keys& k, const std::string& key) {
             const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
             for (std::size_t n = 0; n < materials.size(); ++n)

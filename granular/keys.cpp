@@ -42,9 +42,9 @@ double Keys::positive(const std::string& key)
     return value;
 }
 
-double Keys::not_negative(const std::string& key)
+double Keys::not_negative(const std::string& key, double otherwise)
 {
-    const double value = number(key, 0);
+    const double value = number(key, otherwise);
     if (!(value >= 0)) refuse(key, "must not be negative", value);
     return value;
 }
@@ -130,6 +130,10 @@ float LawKeys::static_friction()
     return pair.has("mu_s") ? static_cast<float>(pair.not_negative("mu_s")) : kinetic_friction();
 }
 
-float LawKeys::kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
+float LawKeys::kinetic_friction()
+{
+    pair.number("mu");  // whoever asks for friction says how much
+    return static_cast<float>(pair.not_negative("mu"));
+}
 
 }  // namespace hilda::granular

@@ -25,7 +25,7 @@ public:
     double number(const std::string& key);
     double number(const std::string& key, double otherwise);
     double positive(const std::string& key);
-    double not_negative(const std::string& key);  ///< 0 where it is not there
+    double not_negative(const std::string& key, double otherwise = 0);
     long count(const std::string& key, long otherwise);
     bool flag(const std::string& key);  ///< false where it is not there
     std::string text(const std::string& key);
@@ -64,10 +64,9 @@ public:
     {}
 
     float positive(const std::string& key) { return static_cast<float>(own.positive(key)); }
-    float not_negative(const std::string& key) { return static_cast<float>(own.not_negative(key)); }
-    float number_or(const std::string& key, float otherwise)
+    float not_negative(const std::string& key, float otherwise = 0)
     {
-        return static_cast<float>(own.number(key, otherwise));
+        return static_cast<float>(own.not_negative(key, otherwise));
     }
     int flag(const std::string& key) { return own.flag(key) ? 1 : 0; }
     double restitution();

@@ -60,7 +60,11 @@ public:
             return usage;
         }
         if (!judge_step()) return bad_case;
-        c.world->step(0);  // refuses what is wrong with the particles while nothing is written
+        try {
+            c.world->step(0);  // refuses what is wrong with the particles, while nothing is written
+        } catch (const InvalidCase& e) {
+            throw InvalidCase(o.file + ": " + e.what());
+        }
         make_directory(o.output);
         every = std::max(1L, std::lround(c.every / c.h));
         anew = std::max(1L, std::lround(c.anew / c.h));

@@ -33,8 +33,8 @@ struct ConstantTorque {
     static ConstantTorque read(Keys& keys)
     {
         return {.mu_r = keys.not_negative("mu_r"),
-                .slow = keys.number_or("slow", 1e-4f),
-                .after = keys.number_or("after", 0.f),
+                .slow = keys.not_negative("slow", 1e-4f),
+                .after = keys.not_negative("after", 0.f),
                 .half_radius = keys.flag("half_radius")};
     }
 };

@@ -34,8 +34,8 @@ struct PseudoForce {
     static PseudoForce read(Keys& keys)
     {
         return {.mu_r = keys.not_negative("mu_r"),
-                .k_r = keys.number_or("k_r", 1.f),
-                .eta_r = keys.number_or("eta_r", 0.f)};
+                .k_r = keys.not_negative("k_r", 1.f),
+                .eta_r = keys.not_negative("eta_r", 0.f)};
     }
 };
 

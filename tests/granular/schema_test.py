@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The JSON Schema of the granular case and the program accept the same good cases and refuse the same bad ones.
+
+    schema_test.py PROGRAM
+"""
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import jsonschema
+
+root = pathlib.Path(__file__).resolve().parents[2]
+
+# Every key that there is
+EVERYTHING = {
+    "hilda_case": 1, "name": "everything", "note": "of all a little",
+    "domain": {"low": [-1, -1, -1], "high": [2, 2, 2], "periodic": [False, True, False]},
+    "gravity": [0, 0, -1.62], "step": 1e-5, "end": 2e-5, "every": 1e-5, "checkpoint_every": 1e-5, "skin": 0.2,
+    "integrator": "velocity-verlet",
+    "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
+                  {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
+    "laws": [{"between": ["glass", "glass"], "restitution": 0.9, "mu": 0.3, "mu_s": 0.4,
+              "normal": {"law": "hertz", "clamped": True}, "tangential": {"law": "mindlin"},
+              "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}, "spin": {"law": "torsional-spring"},
+              "cohesion": {"law": "sjkr", "k": 10}},
+             {"between": ["glass", "steel"], "mu": 0.1, "normal": {"law": "hooke", "k_n": 1e4, "gamma_n": 10},
+              "tangential": {"law": "coulomb", "k_t": 1e4, "gamma_t": 3},
+              "rolling": {"law": "constant-torque", "mu_r": 0.1, "slow": 1e-3, "after": 1e-4, "half_radius": True},
+              "cohesion": {"law": "constant", "F_c": 1e-6}},
+             {"between": ["steel", "steel"], "restitution": 0, "mu": 0.1, "tangential": {"law": "mindlin-incremental"},
+              "rolling": {"law": "pseudo-force", "mu_r": 0.1, "k_r": 2, "eta_r": 0.1}}],
+    "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 2], "r": [0, 0, -0.5], "material": "steel"},
+                   {"type": "cylinder", "axis": [0, 0, 1], "radius": 0.9, "inside": True, "v": [0, 0, 1], "omega": [0, 0, 1],
+                    "material": "glass"},
+                   {"type": "cone", "axis": [0, 0, 1], "half_angle": 0.5, "r": [0.5, 0.5, -0.5], "material": "glass"},
+                   {"type": "sphere", "radius": 0.1, "r": [-0.5, -0.5, 0], "material": "steel"}],
+    "particles": [{"r": [0, 0, 0], "radius": 0.05, "material": "glass", "v": [0, 0, 1], "omega": [1, 0, 0], "fixed": False}],
+    "fill": [{"type": "lattice", "low": [0, 0, 0.2], "high": [0.3, 0.3, 0.5], "radius": 0.05, "least_radius": 0.04,
+              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}]}
+
+MISSING = object()
+
+# What only the program knows: names of this case, and how things stand to each other. A law of another name may be one
+# that a build has.
+BY_THE_PROGRAM = [
+    ("/domain/high/2", -1.5, "domain: the high end along z must be above"),
+    ("/laws/0/between/1", "brass", "/laws/0/between/1: no material"),
+    ("/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of"),
+    ("/laws/1", MISSING, "laws: there is none between two materials that may meet, got 'glass' and 'steel'"),
+    ("/boundaries/0/material", "wood", "/boundaries/0/material: no material"),
+    ("/boundaries/0/material", MISSING, "/boundaries/0/material: no material"),
+    ("/boundaries/0/r/2", 0, "must not overlap by more than 5 % of a radius at the start, got 0.05"),
+    ("/particles/0/material", "wood", "/particles/0/material: no material"),
+    ("/particles/0/r/2", 3, "particle 0: is outside the domain along z, got 3"),
+    ("/particles/0/r", [0.05, 0.05, 0.3], "must not overlap by more than 5 % of a radius at the start, got 0.0"),
+    ("/fill/0/least_radius", 0.06, "/fill/0/least_radius: must be positive, and not above the radius"),
+    ("/fill/0/high/1", 0.05, "/fill/0/high/1: the box must be at least a diameter wide"),
+    ("/step", 0.1, "/step: must not be above"),
+]
+BY_BOTH = [
+    ("/hilda_case", 2, "/hilda_case: must be 1"),
+    ("/hilda_case", MISSING, "/hilda_case"),
+    ("/steps", 5, "/steps: unknown key"),
+    ("/name", 5, "/name: must be a text"),
+    ("/note", [], "/note: must be a text"),
+    ("/domain", MISSING, "/domain: is missing"),
+    ("/domain/low", MISSING, "/domain/low: is missing"),
+    ("/domain/high", [1, 1], "/domain/high: must be three numbers"),
+    ("/domain/height", 1, "/domain/height: unknown key"),
+    ("/domain/periodic", [True, 1, False], "/domain/periodic/1: must be true or false"),
+    ("/gravity", 9.81, "/gravity: must be three numbers"),
+    ("/gravity/2", None, "/gravity/2: must be a finite number"),
+    ("/step", 0, "/step: must be positive"),
+    ("/step", "1e-5", "/step: must be a finite number"),
+    ("/step", MISSING, "/step: is missing"),
+    ("/end", -1, "/end: must be positive"),
+    ("/every", 0, "/every: must be positive"),
+    ("/checkpoint_every", -1, "/checkpoint_every: must be positive"),
+    ("/skin", 0, "skin: must be in (0, 1]"),
+    ("/skin", 1.5, "skin: must be in (0, 1]"),
+    ("/integrator", "euler", "/integrator: must be one of"),
+    ("/materials", MISSING, "/materials: must name at least one"),
+    ("/materials", {}, "/materials: must be a list"),
+    ("/materials/0", "glass", "/materials/0: must be an object"),
+    ("/materials/0/name", MISSING, "/materials/0/name: is missing"),
+    ("/materials/0/density", -2500, "material 'glass': density must be positive, got -2500"),
+    ("/materials/0/density", 0, "material 'glass': density must be positive, got 0"),
+    ("/materials/0/E", -7e7, "material 'glass': E must be positive"),
+    ("/materials/0/nu", 0.5, "material 'glass': nu must be between -1 and 0.5"),
+    ("/materials/0/nu", -1, "material 'glass': nu must be between -1 and 0.5"),
+    ("/materials/0/G", 1, "/materials/0/G: unknown key"),
+    ("/laws/0/between", ["glass"], "/laws/0/between: must be two names"),
+    ("/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"),
+    ("/laws/0/restitution", -0.1, "/laws/0/restitution: must be in (0, 1], got -0.1"),
+    ("/laws/0/restitution", MISSING, "/laws/0/restitution: is missing"),
+    ("/laws/0/mu", -0.3, "/laws/0/mu: must not be negative"),
+    ("/laws/0/mu", MISSING, "/laws/0/mu: is missing"),
+    ("/laws/0/mu_s", -0.3, "/laws/0/mu_s: must not be negative"),
+    ("/laws/0/normal/k_n", 1, "/laws/0/normal/k_n: unknown key"),
+    ("/laws/0/normal/clamped", 1, "/laws/0/normal/clamped: must be true or false"),
+    ("/laws/0/tangential/k_t", 1, "/laws/0/tangential/k_t: unknown key"),
+    ("/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key"),
+    ("/laws/0/rolling/mu_r", -1, "/laws/0/rolling/mu_r: must not be negative"),
+    ("/laws/0/spin/mu", 1, "/laws/0/spin/mu: unknown key"),
+    ("/laws/0/cohesion/k", -1, "/laws/0/cohesion/k: must not be negative"),
+    ("/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: must be positive"),
+    ("/laws/1/normal/k_n", MISSING, "/laws/1/normal/k_n: is missing"),
+    ("/laws/1/normal/gamma_n", -1, "/laws/1/normal/gamma_n: must not be negative"),
+    ("/laws/1/tangential/k_t", MISSING, "/laws/1/tangential/k_t: is missing"),
+    ("/laws/1/rolling/slow", -1, "/laws/1/rolling/slow: must not be negative"),
+    ("/laws/1/rolling/after", -1, "/laws/1/rolling/after: must not be negative"),
+    ("/laws/1/cohesion/F_c", -1, "/laws/1/cohesion/F_c: must not be negative"),
+    ("/laws/2/rolling/k_r", -1, "/laws/2/rolling/k_r: must not be negative"),
+    ("/laws/2/rolling/eta_r", -1, "/laws/2/rolling/eta_r: must not be negative"),
+    ("/laws/2/damping", 1, "/laws/2/damping: unknown key"),
+    ("/boundaries/0/type", "wall", "/boundaries/0/type: must be one of"),
+    ("/boundaries/0/type", MISSING, "/boundaries/0/type: is missing"),
+    ("/boundaries/0/normal", [0, 0, 0], "/boundaries/0/normal: must not be zero"),
+    ("/boundaries/0/normal", MISSING, "/boundaries/0/normal: is missing"),
+    ("/boundaries/0/radius", 1, "/boundaries/0/radius: unknown key"),
+    ("/boundaries/1/radius", 0, "/boundaries/1/radius: must be positive"),
+    ("/boundaries/1/inside", 1, "/boundaries/1/inside: must be true or false"),
+    ("/boundaries/2/half_angle", 1.6, "/boundaries/2/half_angle: must be in (0, pi/2) rad"),
+    ("/boundaries/3/axis", [0, 0, 1], "/boundaries/3/axis: unknown key"),
+    ("/boundaries/3/r", "here", "/boundaries/3/r: must be three numbers"),
+    ("/particles/0/radius", -0.1, "/particles/0/radius: must be positive"),
+    ("/particles/0/radius", None, "/particles/0/radius: must be a finite number"),
+    ("/particles/0/r", [0.5, None, 0.5], "/particles/0/r/1: must be a finite number"),
+    ("/particles/0/fixed", "no", "/particles/0/fixed: must be true or false"),
+    ("/particles/0/mass", 1, "/particles/0/mass: unknown key"),
+    ("/fill/0/type", "heap", "/fill/0/type: must be one of"),
+    ("/fill/0/spacing", 0.9, "/fill/0/spacing: must be at least one diameter"),
+    ("/fill/0/jitter", 2, "/fill/0/jitter: must be in [0, 1]"),
+    ("/fill/0/count", -1, "/fill/0/count: must be a whole number"),
+    ("/fill/0/count", 1.5, "/fill/0/count: must be a whole number"),
+    ("/fill/0/random_v", -1, "/fill/0/random_v: must not be negative"),
+    ("/fill/0/number", 1, "/fill/0/number: unknown key"),
+]
+
+
+def changed(case, pointer, value):
+    """The case with one entry set or taken out"""
+    case = copy.deepcopy(case)
+    *path, last = pointer.split("/")[1:]
+    at = case
+    for key in path:
+        at = at[int(key) if isinstance(at, list) else key]
+    last = int(last) if isinstance(at, list) else last
+    if value is MISSING:
+        del at[last]
+    else:
+        at[last] = value
+    return case
+
+
+def without_description(node, path="#"):
+    """Places of the schema that say what a key is, but not in words."""
+    if not isinstance(node, dict):
+        return
+    for key, value in node.get("properties", {}).items():
+        plain = isinstance(value, dict) and "const" not in value and "/if" not in path and "$ref" not in value
+        if plain and "description" not in value and not path.startswith("#/$defs/pair/allOf"):
+            yield f"{path}/{key}"
+    for key, value in node.items():
+        for child, at in ([(value, key)] if isinstance(value, dict) else
+                          [(v, f"{key}/{k}") for k, v in enumerate(value)] if isinstance(value, list) else []):
+            yield from without_description(child, f"{path}/{at}")
+
+
+def main():
+    with open(root / "granular" / "case.schema.json", encoding="utf-8") as file:
+        schema = json.load(file)
+    validator_class = jsonschema.validators.validator_for(schema)
+    validator_class.check_schema(schema)
+    validator = validator_class(schema)
+    faults = [f"{place} has no description" for place in without_description(schema)]
+
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+
+        def run(case):
+            (folder / "case.json").write_text(json.dumps(case))
+            done = subprocess.run([sys.argv[1], "case.json", "--quiet", "--threads", "1", "--output", "out"], cwd=folder,
+                                  capture_output=True, text=True)
+            return done.returncode, done.stderr
+
+        for pointer, value, message in BY_BOTH + BY_THE_PROGRAM:
+            case = changed(EVERYTHING, pointer, value)
+            code, err = run(case)
+            if code != 3 or message not in err or "hilda: error: case.json: " not in err:
+                faults.append(f"{pointer}: the program ended with {code}, not 3 and '{message}': {err}")
+            if (folder / "out").exists():
+                faults.append(f"{pointer}: the program wrote something")
+            by_both = (pointer, value, message) in BY_BOTH
+            if validator.is_valid(case) == by_both:
+                faults.append(f"{pointer}: {value}: {'accepted' if by_both else 'refused'} by the schema")
+
+        examples = sorted((root / "granular" / "cases").glob("*.json"))
+        good = [EVERYTHING] + [json.loads(file.read_text()) for file in examples]
+        for case in good:
+            faults += [f"{case['name']}: {e.json_path}: {e.message[:200]}" for e in validator.iter_errors(case)]
+        code, err = run(EVERYTHING)
+        if code != 0:
+            faults.append(f"everything: {code}: {err}")
+
+    for fault in faults:
+        print(fault)
+    print(f"{len(good)} cases accepted, {len(BY_BOTH)} refused by both, {len(BY_THE_PROGRAM)} by the program; {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case_file.hpp"
 
+#include "granular/boundary_keys.hpp"
 #include "granular/fill.hpp"
-#include "granular/keys.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hilda::granular {
 
@@ -85,43 +84,6 @@ Scheme read_scheme(Keys& keys)
     keys.refuse("integrator", "must be one of " + names, name);
 }
 
-Vec3 unit_vector(Keys& keys, const std::string& key)
-{
-    const Vec3 v = keys.vector(key);
-    if (!(v.norm() > 0)) keys.refuse(key, "must not be zero", keys.raw(key));
-    return (1 / v.norm()) * v;
-}
-
-Boundary read_boundary(Keys& keys)
-{
-    Boundary b;
-    const std::string type = keys.text("type");
-    b.r = keys.vector("r", {0, 0, 0});
-    b.v = keys.vector("v", {0, 0, 0}), b.omega = keys.vector("omega", {0, 0, 0});
-    if (type == "plane") {
-        b.axis = unit_vector(keys, "normal");
-        return b;
-    }
-    b.inside = keys.flag("inside");
-    if (type == "sphere") {
-        b.shape = Boundary::Shape::sphere;
-        b.radius = keys.positive("radius");
-    } else if (type == "cylinder") {
-        b.shape = Boundary::Shape::cylinder;
-        b.axis = unit_vector(keys, "axis");
-        b.radius = keys.positive("radius");
-    } else if (type == "cone") {
-        b.shape = Boundary::Shape::cone;
-        b.axis = unit_vector(keys, "axis");
-        const double half = keys.number("half_angle");
-        if (!(half > 0 && half < M_PI / 2)) keys.refuse("half_angle", "must be in (0, pi/2) rad", half);
-        b.cosine = std::cos(half), b.sine = std::sin(half);
-    } else {
-        keys.refuse("type", "must be one of plane, cylinder, cone, sphere", type);
-    }
-    return b;
-}
-
 }  // namespace
 
 Case read_case(const std::string& text, const std::string& file)
@@ -197,10 +159,13 @@ Case read_case(const std::string& text, const std::string& file)
         }
         for (const auto& [object, place] : keys.list("boundaries")) {
             Keys b(*object, place);
-            out.boundaries.push_back(b.text("name", "boundary " + std::to_string(out.boundaries.size())));
-            Boundary boundary = read_boundary(b);
-            boundary.material = material(b, "material");
-            out.world->add(boundary);
+            const int made_of = material(b, "material");
+            for (NamedBoundary& n :
+                 read_boundary(b, b.text("name", "boundary " + std::to_string(out.boundaries.size())))) {
+                n.boundary.material = made_of;
+                out.world->add(n.boundary);
+                out.boundaries.push_back(n.name);
+            }
             b.end();
         }
         for (const auto& [object, place] : keys.list("particles")) {

@@ -78,7 +78,8 @@ public:
                 std::remove(file(old).c_str());
             write_file(file("case.json"), c.text);
             csv = "t,kinetic_energy,contacts,pairs";
-            for (const std::string& b : c.boundaries) csv += ',' + b + "_Fx," + b + "_Fy," + b + "_Fz";
+            for (const std::string& b : c.boundaries)
+                for (const char* of : {"_Fx", "_Fy", "_Fz", "_Tx", "_Ty", "_Tz"}) csv += ',' + b + of;
             csv += '\n';
         }
         begin = saved = Clock::now();
@@ -230,17 +231,21 @@ private:
     {
         const World& w = *c.world;
         const std::vector<Contact> contacts = w.contacts();
-        std::vector<Vec3> F(c.boundaries.size(), Vec3{0, 0, 0});
+        std::vector<Wrench> on(c.boundaries.size());
         for (const Contact& at : contacts)
-            if (at.boundary) F[at.j] -= at.F;
+            if (at.boundary) {
+                on[at.j].F -= at.F;
+                on[at.j].T -= (at.C - c.world->boundary(static_cast<int>(at.j)).r).cross(at.F) + at.T;
+            }
         char row[128];
         std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
                       w.candidates());
         csv += row;
-        for (const Vec3& f : F) {
-            std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", f.x, f.y, f.z);
-            csv += row;
-        }
+        for (const Wrench& l : on)
+            for (const Vec3& part : {l.F, l.T}) {
+                std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", part.x, part.y, part.z);
+                csv += row;
+            }
         csv += '\n';
         if (o.no_vtk) return;
         const std::string name = frame(w.steps() / every);

@@ -52,6 +52,23 @@ TEST_CASE("the example is a case", "[granular][case]")
     CHECK(c.boundaries.size() == 5);
 }
 
+TEST_CASE("a box is planes around its inside, less those that are open", "[granular][case]")
+{
+    ordered_json c = good();
+    c["boundaries"][0] = {{"name", "bin"},           {"type", "box"},      {"low", {0.1, 0.2, 0.3}},
+                          {"high", {0.9, 0.8, 0.7}}, {"r", {0, 0, 0.05}},  {"v", {0, 0, 2}},
+                          {"open", {"+z", "-x"}},    {"material", "steel"}};
+    granular::Case box = read_case(c.dump(), "file");
+    CHECK(box.boundaries == std::vector<std::string>{"bin+x", "bin-y", "bin+y", "bin-z"});
+    const double away[] = {0.4, 0.3, 0.3, 0.15};  // of the middle
+    for (int k = 0; k < 4; ++k) {
+        const granular::Boundary& b = box.world->boundary(k);
+        CHECK(granular::nearest(b, {0.5, 0.5, 0.5}).distance == Approx(away[k]));
+        CHECK(b.v.z == 2);
+        CHECK(b.material == 1);
+    }
+}
+
 TEST_CASE("what is wrong in a case is named with its place and value", "[granular][case]")
 {
     const std::tuple<std::string, ordered_json, std::string> wrong[] = {
@@ -72,7 +89,8 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
         {"/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of none, coulomb, mindlin"},
         {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key"},
         {"/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: must be positive, got -1"},
-        {"/boundaries/0/type", "wall", "/boundaries/0/type: must be one of plane, cylinder, cone, sphere"},
+        {"/boundaries/0/type", "wall",
+         "/boundaries/0/type: must be one of plane, box, cylinder, cone, sphere"},
         {"/boundaries/0/normal", {0, 0, 0}, "/boundaries/0/normal: must not be zero"},
         {"/particles/0/radius", -0.1, "/particles/0/radius: must be positive, got -0.1"},
         {"/particles/0/material", "wood", "/particles/0/material: no material has this name, got \"wood\""},

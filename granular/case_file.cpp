@@ -84,9 +84,23 @@ Scheme read_scheme(Keys& keys)
     keys.refuse("integrator", "must be one of " + names, name);
 }
 
+/// Against the memory that there is. A close-packed crystal, with three contacts a particle, takes most when its contacts
+/// are written.
+void check_memory(double particles, const std::vector<Filling>& fillings, std::size_t memory)
+{
+    constexpr double of_a_particle = 2800, gigabyte = 1e9;
+    for (const Filling& f : fillings) particles += estimate(f);
+    if (of_a_particle * particles <= static_cast<double>(memory)) return;
+    char what[160];
+    std::snprintf(what, sizeof what,
+                  "/fill: %.3g particles need about %.3g GB of memory, and there are %.3g GB", particles,
+                  of_a_particle * particles / gigabyte, static_cast<double>(memory) / gigabyte);
+    throw InvalidCase(what);
+}
+
 }  // namespace
 
-Case read_case(const std::string& text, const std::string& file)
+Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings)
 {
     try {
         const Json all = parse(text);
@@ -178,14 +192,17 @@ Case read_case(const std::string& text, const std::string& file)
                                     .fixed = p.flag("fixed")});
             p.end();
         }
+        std::vector<Filling> fillings;
         for (const auto& [object, place] : keys.list("fill")) {
             Keys f(*object, place);
-            Filling filling = read_filling(f);
-            filling.material = material(f, "material");
+            fillings.push_back(read_filling(f));
+            fillings.back().material = material(f, "material");
             f.end();
-            for (const Particle& p : fill(filling)) out.world->add(p);
         }
         keys.end();
+        check_memory(static_cast<double>(out.world->count()), fillings, surroundings.memory);
+        for (const Filling& f : fillings)
+            for (const Particle& p : fill(f)) out.world->add(p);
         return out;
     } catch (const InvalidCase& e) {
         throw InvalidCase(file + ": " + e.what());

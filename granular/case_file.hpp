@@ -18,7 +18,13 @@ struct Case {
     std::string text;                  ///< of the file
 };
 
-/// InvalidCase, with the JSON pointer of what is wrong.
-Case read_case(const std::string& text, const std::string& file);
+/// What a case meets in the program that reads it
+struct Surroundings {
+    std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< that there is [bytes]
+};
+
+/// InvalidCase, with the JSON pointer of what is wrong; nothing large is allocated before it is known that the memory will
+/// do.
+Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings = {});
 
 }  // namespace hilda::granular

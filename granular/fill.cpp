@@ -30,12 +30,19 @@ private:
     std::uint64_t state;
 };
 
+/// Distances of centres in a row, of rows and of layers
+Vec3 distances(const Filling& f)
+{
+    const double a = f.spacing;
+    if (f.kind != Filling::Kind::hcp) return {a, a, a};
+    return {a, a * std::sqrt(3.) / 2, a * std::sqrt(2. / 3)};
+}
+
 /// Rows along x, layers along z
 std::vector<Vec3> lattice(const Filling& f, const Vec3& low, const Vec3& high)
 {
     const bool hcp = f.kind == Filling::Kind::hcp;
-    const double a = f.spacing, row = hcp ? a * std::sqrt(3.) / 2 : a,
-                 layer = hcp ? a * std::sqrt(2. / 3) : a;
+    const auto [a, row, layer] = distances(f);
     std::vector<Vec3> all;
     for (int k = 0; low.z + k * layer <= high.z; ++k)
         for (int j = 0;; ++j) {
@@ -44,6 +51,7 @@ std::vector<Vec3> lattice(const Filling& f, const Vec3& low, const Vec3& high)
             for (int i = 0;; ++i) {
                 const double x = low.x + i * a + (hcp && (j + k) % 2 == 1 ? a / 2 : 0);
                 if (!(x <= high.x)) break;
+                if (f.most > 0 && all.size() == f.most) return all;
                 all.push_back({x, y, low.z + k * layer});
             }
         }
@@ -122,6 +130,16 @@ Filling read_filling(Keys& keys)
         if (!(high - low >= 2 * f.radius))
             keys.refuse("high/" + std::to_string(axis), "the box must be at least a diameter wide", high);
     return f;
+}
+
+double estimate(const Filling& f)
+{
+    const Vec3 size = f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius}, a = distances(f);
+    const Vec3 n{size.x / a.x, size.y / a.y, size.z / a.z};
+    // Bridson's algorithm leaves 0.58 particles in a cube of the spacing
+    if (f.kind == Filling::Kind::poisson) return 0.58 * (n.x + 0.4) * (n.y + 0.4) * (n.z + 0.4);
+    const double all = (std::floor(n.x) + 1) * (std::floor(n.y) + 1) * (std::floor(n.z) + 1);
+    return f.most > 0 ? std::min(all, static_cast<double>(f.most)) : all;
 }
 
 std::vector<Particle> fill(const Filling& f)

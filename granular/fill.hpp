@@ -27,6 +27,9 @@ struct Filling {
 /// InvalidCase
 Filling read_filling(Keys& keys);
 
+/// About as many particles as that will be; a lattice less its count, for random places before it
+double estimate(const Filling& filling);
+
 /// The same particles on every machine: the random numbers are our own.
 std::vector<Particle> fill(const Filling& filling);
 

@@ -27,6 +27,7 @@ void append(std::string& to, const Vec3& v)
 std::string particles_csv(const World& world)
 {
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z\n";
+    csv.reserve(220 * world.count());
     std::size_t id = 0;
     for (const Particle& p : world.particles()) {
         csv += std::to_string(id++) + ',' + std::to_string(p.material) + ',';
@@ -40,7 +41,9 @@ std::string particles_csv(const World& world)
 std::string contacts_csv(const World& world)
 {
     std::string csv = "i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz\n";
-    for (const Contact& c : world.contacts()) {
+    const std::vector<Contact> all = world.contacts();
+    csv.reserve(240 * all.size());
+    for (const Contact& c : all) {
         csv += std::to_string(c.i) + ',' + std::to_string(c.j) + ',' + (c.boundary ? '1' : '0');
         append(csv, c.n);
         csv += ',';

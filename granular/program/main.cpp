@@ -2,6 +2,7 @@
 /// The program hilda-granular: runs a granular case. Of its own, because it may be built for a GPU and then links CUDA.
 
 #include "granular/files.hpp"
+#include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -54,7 +55,7 @@ int main(int argc, char** argv)
         } catch (const FileError& e) {
             throw InvalidCase(e.what());
         }
-        Case c = read_case(text, o.file);
+        Case c = read_case(text, o.file, {.memory = available_memory()});
         if (!o.quiet)
             for (const std::string& n : c.notices) std::fprintf(stderr, "hilda: warning: %s\n", n.c_str());
         return run(o, std::move(c));

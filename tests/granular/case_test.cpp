@@ -144,6 +144,23 @@ TEST_CASE("a restitution of zero is floored with a notice", "[granular][case]")
     CHECK(c.notices[0] == "/laws/0/restitution: 0 is taken as 1e-7, whose damping is finite");
 }
 
+TEST_CASE("a case that needs more memory than there is is refused before it takes any", "[granular][case]")
+{
+    ordered_json c = good();
+    c["fill"] = {{{"type", "lattice"},
+                  {"low", {0, 0, 0}},
+                  {"high", {1, 1, 1}},
+                  {"radius", 5e-6},
+                  {"material", "glass"},
+                  {"spacing", 1}}};
+    CHECK_THROWS_WITH(read_case(c.dump(), "file", {.memory = 64'000'000'000}),
+                      "file: /fill: 1e+15 particles need about 2.8e+09 GB of memory, and there are 64 GB");
+    c["fill"][0]["count"] = 100;
+    CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
+    CHECK_THROWS_WITH(read_case(c.dump(), "file", {.memory = 100'000}),
+                      "file: /fill: 101 particles need about 0.000283 GB of memory, and there are 0.0001 GB");
+}
+
 TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")
 {
     const auto kind = GENERATE(granular::Filling::Kind::lattice, granular::Filling::Kind::hcp,
@@ -164,4 +181,10 @@ TEST_CASE("no two particles of a filling overlap, and all are in their box", "[g
                      : kind == granular::Filling::Kind::lattice ? 0.37
                                                                 : 0.2));
     CHECK(granular::fill(f)[5].r == all[5].r);
+    // every other row and layer of a crystal may be one shorter
+    CHECK(granular::estimate(f) == Approx(double(all.size())).epsilon(0.12));
+    f.most = 7;
+    const auto some = granular::fill(f);
+    REQUIRE(some.size() == 7);
+    CHECK(some[6].r.z == all[6].r.z);
 }

@@ -61,6 +61,8 @@ BY_THE_PROGRAM = [
     ("/particles/0/r/2", 3, "particle 0: is outside the domain along z, got 3"),
     ("/particles/0/r", [0.05, 0.05, 0.3], "must not overlap by more than 5 % of a radius at the start, got 0.0"),
     ("/fill/0/least_radius", 0.06, "/fill/0/least_radius: must be positive, and not above the radius"),
+    ("/fill/0", {"type": "lattice", "low": [0, 0, 0], "high": [1, 1, 1], "radius": 1e-5, "material": "steel"},
+     "/fill: 1.08e+14 particles need about 3.02e+08 GB of memory, and there are "),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: the box must be at least a diameter wide"),
     ("/step", 0.1, "/step: must not be above"),
 ]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/boundary_keys.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hilda::granular {
@@ -14,8 +15,51 @@ Vec3 unit_vector(Keys& keys, const std::string& key)
     return (1 / v.norm()) * v;
 }
 
+/// Where it is and how it moves, in numbers where all components are numbers
+NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& compile)
+{
+    NamedBoundary all{.name = name, .boundary = {}};
+    all.motion.name = name;
+    const auto read = [&](const std::string& key, Vec3& number, std::optional<VectorFormula>& formula) {
+        if (!keys.has_formula(key)) {
+            number = keys.vector(key, {0, 0, 0});
+            return;
+        }
+        formula = keys.formulas(key, compile);
+        number = (*formula)(0);
+    };
+    read("r", all.boundary.r, all.motion.r);
+    if (all.motion.r && keys.has("v")) keys.refuse("v", "must not stand where r is a formula", keys.raw("v"));
+    read("v", all.boundary.v, all.motion.v);
+    return all;
+}
+
+/// What a tool has besides
+void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
+{
+    Boundary& b = tool.boundary;
+    if (keys.has_formula("omega")) {
+        tool.motion.omega = keys.formulas("omega", compile);
+        b.omega = (*tool.motion.omega)(0);
+    } else {
+        b.omega = keys.vector("omega", {0, 0, 0});
+    }
+    if (!keys.has("mass")) return;
+    b.mass = keys.positive("mass");
+    b.inertia = keys.not_negative("inertia");
+    if (b.inertia > 0 && tool.motion.omega)
+        keys.refuse("omega", "must be numbers where the inertia lets it turn", keys.raw("omega"));
+    b.free = keys.flags("free", {true, true, true});
+    if (keys.has_formula("F")) {
+        tool.motion.F = keys.formulas("F", compile);
+        b.F = (*tool.motion.F)(0);
+    } else {
+        b.F = keys.vector("F", {0, 0, 0});
+    }
+}
+
 /// The sides that `open` leaves
-std::vector<NamedBoundary> read_box(Keys& keys, const std::string& name, const Boundary& moves)
+std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
 {
     const Vec3 low = keys.vector("low"), high = keys.vector("high");
     const double widths[] = {high.x - low.x, high.y - low.y, high.z - low.z};
@@ -36,10 +80,17 @@ std::vector<NamedBoundary> read_box(Keys& keys, const std::string& name, const B
     std::vector<NamedBoundary> all;
     for (const auto& [side, normal] : sides) {
         if (open.contains(side)) continue;
-        Boundary b = moves;
-        b.axis = normal;
-        b.r += side[0] == '-' ? low : high;
-        all.push_back({name + side, b});
+        NamedBoundary plane = box;
+        plane.name = plane.motion.name = box.name + side;
+        plane.boundary.axis = normal;
+        const Vec3 corner = side[0] == '-' ? low : high;
+        plane.boundary.r += corner;
+        if (box.motion.r) {
+            const double from[] = {corner.x, corner.y, corner.z};
+            for (int k = 0; k < 3; ++k)
+                plane.motion.r->of[k] = [f = box.motion.r->of[k], c = from[k]](double t) { return c + f(t); };
+        }
+        all.push_back(std::move(plane));
     }
     if (all.empty()) keys.refuse("open", "must leave a side", keys.raw("open"));
     return all;
@@ -47,17 +98,16 @@ std::vector<NamedBoundary> read_box(Keys& keys, const std::string& name, const B
 
 }  // namespace
 
-std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name)
+std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name, const Compile& compile)
 {
-    Boundary b;
     const std::string type = keys.text("type");
-    b.r = keys.vector("r", {0, 0, 0});
-    b.v = keys.vector("v", {0, 0, 0});
-    if (type == "box") return read_box(keys, name, b);
-    b.omega = keys.vector("omega", {0, 0, 0});
+    NamedBoundary one = read_motion(keys, name, compile);
+    if (type == "box") return read_box(keys, one);
+    read_tool(keys, one, compile);
+    Boundary& b = one.boundary;
     if (type == "plane") {
         b.axis = unit_vector(keys, "normal");
-        return {{name, b}};
+        return {one};
     }
     b.inside = keys.flag("inside");
     if (type == "sphere") {
@@ -76,7 +126,7 @@ std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name)
     } else {
         keys.refuse("type", "must be one of plane, box, cylinder, cone, sphere", type);
     }
-    return {{name, b}};
+    return {one};
 }
 
 }  // namespace hilda::granular

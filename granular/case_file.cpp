@@ -84,12 +84,20 @@ Scheme read_scheme(Keys& keys)
     keys.refuse("integrator", "must be one of " + names, name);
 }
 
+std::uint16_t read_replica(Keys& keys)
+{
+    const long replica = keys.count("replica", 0);
+    if (replica > 0xffff) keys.refuse("replica", "must be below 65536", replica);
+    return static_cast<std::uint16_t>(replica);
+}
+
 /// Against the memory that there is. A close-packed crystal, with three contacts a particle, takes most when its contacts
 /// are written.
 void check_memory(double particles, const std::vector<Filling>& fillings, std::size_t memory)
 {
-    constexpr double of_a_particle = 2800, gigabyte = 1e9;
+    constexpr double gigabyte = 1e9, of_output = 2200;
     for (const Filling& f : fillings) particles += estimate(f);
+    const double of_a_particle = of_output + 1e-3 * static_cast<double>(World::bytes_needed(1000));
     if (of_a_particle * particles <= static_cast<double>(memory)) return;
     char what[160];
     std::snprintf(what, sizeof what,
@@ -114,17 +122,9 @@ Case read_case(const std::string& text, const std::string& file, const Surroundi
         WorldOptions o;
         Keys domain = keys.object("domain");
         o.low = domain.vector("low"), o.high = domain.vector("high");
-        if (domain.has("periodic")) {
-            const Json& which = domain.raw("periodic");
-            if (!which.is_array() || which.size() != 3)
-                domain.refuse("periodic", "must be three times true or false", which);
-            for (int k = 0; k < 3; ++k) {
-                if (!which[k].is_boolean())
-                    domain.refuse("periodic/" + std::to_string(k), "must be true or false", which[k]);
-                o.periodic[k] = which[k].get<bool>();
-            }
-        }
+        o.periodic = domain.flags("periodic", o.periodic);
         domain.end();
+        o.device = surroundings.device;
         o.gravity = keys.vector("gravity", {0, 0, -9.81});
         out.h = o.h = keys.positive("step");
         out.end = keys.positive("end");
@@ -171,25 +171,30 @@ Case read_case(const std::string& text, const std::string& file, const Surroundi
                                read_pair(pair, materials[of[0]], materials[of[1]], out.notices));
             pair.end();
         }
+        std::vector<Motion> motions;
         for (const auto& [object, place] : keys.list("boundaries")) {
             Keys b(*object, place);
             const int made_of = material(b, "material");
             for (NamedBoundary& n :
-                 read_boundary(b, b.text("name", "boundary " + std::to_string(out.boundaries.size())))) {
+                 read_boundary(b, b.text("name", "boundary " + std::to_string(out.boundaries.size())),
+                               surroundings.compile)) {
                 n.boundary.material = made_of;
-                out.world->add(n.boundary);
+                n.motion.boundary = out.world->add(n.boundary);
+                if (n.motion.moves()) motions.push_back(n.motion);
                 out.boundaries.push_back(n.name);
             }
             b.end();
         }
         for (const auto& [object, place] : keys.list("particles")) {
             Keys p(*object, place);
-            out.world->add(Particle{.r = p.vector("r"),
-                                    .radius = p.positive("radius"),
-                                    .material = material(p, "material"),
-                                    .v = p.vector("v", {0, 0, 0}),
-                                    .omega = p.vector("omega", {0, 0, 0}),
-                                    .fixed = p.flag("fixed")});
+            const std::uint32_t id = out.world->add({.r = p.vector("r"),
+                                                     .radius = p.positive("radius"),
+                                                     .material = material(p, "material"),
+                                                     .v = p.vector("v", {0, 0, 0}),
+                                                     .omega = p.vector("omega", {0, 0, 0}),
+                                                     .fixed = p.flag("fixed"),
+                                                     .replica = read_replica(p)});
+            if (p.has("force")) out.world->set_force(id, p.vector("force"));
             p.end();
         }
         std::vector<Filling> fillings;
@@ -197,12 +202,21 @@ Case read_case(const std::string& text, const std::string& file, const Surroundi
             Keys f(*object, place);
             fillings.push_back(read_filling(f));
             fillings.back().material = material(f, "material");
+            fillings.back().replica = read_replica(f);
             f.end();
         }
         keys.end();
         check_memory(static_cast<double>(out.world->count()), fillings, surroundings.memory);
         for (const Filling& f : fillings)
             for (const Particle& p : fill(f)) out.world->add(p);
+        if (!motions.empty()) {
+            try {
+                drive(*out.world, motions, out.h);
+            } catch (const NotFinite& e) {
+                throw InvalidCase(e.what());
+            }
+            out.world->before_each_step([motions, h = out.h](World& w) { drive(w, motions, h); });
+        }
         return out;
     } catch (const InvalidCase& e) {
         throw InvalidCase(file + ": " + e.what());

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/world.hpp"
+#include "granular/motion.hpp"
 
 namespace hilda::granular {
 
@@ -21,9 +21,11 @@ struct Case {
 /// What a case meets in the program that reads it
 struct Surroundings {
     std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< that there is [bytes]
+    Compile compile = {};                                          ///< of formulas; none: they are refused
+    Device device = {};
 };
 
-/// InvalidCase, with the JSON pointer of what is wrong; nothing large is allocated before it is known that the memory will
+/// InvalidCase, DeviceError; with the JSON pointer of what is wrong; nothing large is allocated before it is known that the memory will
 /// do.
 Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings = {});
 

@@ -159,7 +159,7 @@ std::vector<Particle> fill(const Filling& f)
     for (const Vec3& r : places) {
         Particle p;
         p.radius = random.number(f.least_radius, f.radius);
-        p.material = f.material;
+        p.material = f.material, p.replica = f.replica;
         p.r = r + Vec3{random.number(-free, free), random.number(-free, free), random.number(-free, free)};
         p.r = {std::clamp(p.r.x, low.x, high.x), std::clamp(p.r.y, low.y, high.y),
                std::clamp(p.r.z, low.z, high.z)};

@@ -20,6 +20,7 @@ struct Filling {
     std::size_t most = 0;  ///< particles; 0: as many as fit
     std::uint64_t seed = 1;
     int material = 0;
+    std::uint16_t replica = 0;
     Vec3 v = {0, 0, 0};   ///< [m/s]
     double random_v = 0;  ///< length of what is added at random [m/s]
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/keys.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hilda::granular {
@@ -92,6 +93,44 @@ Vec3 Keys::vector(const std::string& key)
 Vec3 Keys::vector(const std::string& key, const Vec3& otherwise)
 {
     return has(key) ? vector(key) : otherwise;
+}
+
+std::array<bool, 3> Keys::flags(const std::string& key, const std::array<bool, 3>& otherwise)
+{
+    if (!has(key)) return otherwise;
+    const Json& value = at(key);
+    if (!value.is_array() || value.size() != 3) refuse(key, "must be three times true or false", value);
+    for (int k = 0; k < 3; ++k)
+        if (!value[k].is_boolean()) refuse(key + "/" + std::to_string(k), "must be true or false", value[k]);
+    return {value[0].get<bool>(), value[1].get<bool>(), value[2].get<bool>()};
+}
+
+bool Keys::has_formula(const std::string& key)
+{
+    if (!has(key) || !at(key).is_array()) return false;
+    return std::any_of(at(key).begin(), at(key).end(), [](const Json& part) { return part.is_string(); });
+}
+
+VectorFormula Keys::formulas(const std::string& key, const Compile& compile)
+{
+    const Json& value = at(key);
+    if (!value.is_array() || value.size() != 3) refuse(key, "must be three numbers or formulas", value);
+    VectorFormula all;
+    for (int k = 0; k < 3; ++k) {
+        const std::string part = key + "/" + std::to_string(k);
+        if (value[k].is_number() && std::isfinite(value[k].get<double>())) {
+            all.of[k] = [c = value[k].get<double>()](double) { return c; };
+            continue;
+        }
+        if (!value[k].is_string()) refuse(part, "must be a finite number or a formula", value[k]);
+        if (!compile) refuse(part, "must be a number where nobody reads formulas", value[k]);
+        try {
+            all.of[k] = compile(value[k].get<std::string>());
+        } catch (const InvalidCase& e) {
+            throw InvalidCase(place_of(part) + ": " + e.what());
+        }
+    }
+    return all;
 }
 
 Keys Keys::object(const std::string& key) { return {at(key), place_of(key)}; }

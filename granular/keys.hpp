@@ -4,7 +4,7 @@
 #pragma once
 
 #include "granular/material.hpp"
-#include "granular/world.hpp"
+#include "granular/motion.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -32,6 +32,11 @@ public:
     std::string text(const std::string& key, const std::string& otherwise);
     Vec3 vector(const std::string& key);
     Vec3 vector(const std::string& key, const Vec3& otherwise);
+    std::array<bool, 3> flags(const std::string& key, const std::array<bool, 3>& otherwise);
+    /// Whether one of three components is a text, and so a formula
+    bool has_formula(const std::string& key);
+    /// Three numbers or formulas
+    VectorFormula formulas(const std::string& key, const Compile& compile);
     Keys object(const std::string& key);
     /// The members of an array, none where it is not there
     std::vector<std::pair<const Json*, std::string>> list(const std::string& key);

@@ -2,16 +2,34 @@
 /// The program hilda-granular: runs a granular case. Of its own, because it may be built for a GPU and then links CUDA.
 
 #include "granular/files.hpp"
+#include "granular/program/formula.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <omp.h>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 
 using namespace hilda::granular;
+
+namespace {
+
+std::optional<Device> device_of(const std::string& name)
+{
+    if (name == "cpu") return Device{};
+    if (name == "cuda") return Device{.kind = Device::cuda};
+    int number = 0;
+    const char* end = name.data() + name.size();
+    if (name.starts_with("cuda:") && std::from_chars(name.data() + 5, end, number).ptr == end &&
+        number >= 0 && name.size() > 5)
+        return Device{.kind = Device::cuda, .number = number};
+    return {};
+}
+
+}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -23,7 +41,10 @@ int main(int argc, char** argv)
         ->check(CLI::PositiveNumber);
     app.add_option("--checkpoint", o.checkpoint, "least seconds between two checkpoints; none by default")
         ->check(CLI::PositiveNumber);
-    app.add_option("--device", o.device, "cpu");
+    app.add_option("--device", o.device, "cpu, or cuda or cuda:N for a GPU")
+        ->check(CLI::Validator(
+            [](const std::string& s) { return device_of(s) ? "" : "must be cpu, cuda or cuda:N"; }, "",
+            "device"));
     app.add_flag("--resume", o.resume, "goes on from the checkpoint in the output directory");
     app.add_flag("--force", o.force, "writes over an earlier run");
     app.add_flag("--no-vtk", o.no_vtk, "writes no particles for ParaView");
@@ -34,11 +55,6 @@ int main(int argc, char** argv)
         if (e.get_exit_code() == 0) return app.exit(e);
         std::fprintf(stderr, "hilda: error: granular: %s\n", e.what());
         return usage;
-    }
-    if (o.device != "cpu") {
-        std::fprintf(stderr, "hilda: error: --device %s: this program was built for the CPU alone\n",
-                     o.device.c_str());
-        return no_device;
     }
     if (o.threads > 0) omp_set_num_threads(o.threads);
     if (o.output.empty()) o.output = std::filesystem::path(o.file).stem().string();
@@ -55,7 +71,8 @@ int main(int argc, char** argv)
         } catch (const FileError& e) {
             throw InvalidCase(e.what());
         }
-        Case c = read_case(text, o.file, {.memory = available_memory()});
+        Case c = read_case(
+            text, o.file, {.memory = available_memory(), .compile = compile, .device = *device_of(o.device)});
         if (!o.quiet)
             for (const std::string& n : c.notices) std::fprintf(stderr, "hilda: warning: %s\n", n.c_str());
         return run(o, std::move(c));
@@ -65,6 +82,9 @@ int main(int argc, char** argv)
     } catch (const FileError& e) {
         std::fprintf(stderr, "hilda: error: %s\n", e.what());
         return io;
+    } catch (const DeviceError& e) {
+        std::fprintf(stderr, "hilda: error: --device %s: %s\n", o.device.c_str(), e.what());
+        return no_device;
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "hilda: error: not enough memory\n");
         return bad_case;

@@ -61,7 +61,8 @@ public:
         }
         if (!judge_step()) return bad_case;
         try {
-            c.world->step(0);  // refuses what is wrong with the particles, while nothing is written
+            c.world->to_bytes(
+                "");  // which refuses what is wrong with the particles, while nothing is written
         } catch (const InvalidCase& e) {
             throw InvalidCase(o.file + ": " + e.what());
         }
@@ -203,12 +204,18 @@ private:
         } catch (const ParticleLost& e) {
             line.clear();
             std::fprintf(stderr, "hilda: error[particle_lost]: %s\n", e.what());
-            message = e.what();
+            message = e.what(), status = "particle_lost";
+            return numerical;
+        } catch (const NotFinite& e) {
+            line.clear();
+            std::fprintf(stderr, "hilda: error[not_finite]: %s\n", e.what());
+            message = e.what(), status = "not_finite";
             return numerical;
         }
         line.clear();
         rate = static_cast<double>(w.steps() - since) * static_cast<double>(w.count()) / seconds_since(begin);
         if (w.steps() < steps) {
+            status = "interrupted";
             if (!o.quiet)
                 std::fprintf(stderr, "hilda: interrupted; --resume goes on from the checkpoint in %s\n",
                              o.output.c_str());
@@ -263,9 +270,7 @@ private:
         if (!frames.empty()) write_file(file("vtk/run.pvd"), pvd(frames));
         nlohmann::ordered_json s = {
             {"case", c.name},
-            {"status", code == ok          ? "ok"
-                       : code == numerical ? "particle_lost"
-                                           : "interrupted"},
+            {"status", status},
             {"particles", w.count()},
             {"step", c.h},
             {"t", w.t()},
@@ -276,7 +281,7 @@ private:
             {"bytes_per_particle",
              w.count() > 0 ? static_cast<double>(w.bytes()) / static_cast<double>(w.count()) : 0},
             {"threads", omp_get_max_threads()},
-            {"device", "cpu"},
+            {"device", o.device},
             {"notices", c.notices}};
         if (!message.empty()) s["message"] = message;
         write_file(file("summary.json"), s.dump(2) + '\n');
@@ -291,7 +296,7 @@ private:
     const Options& o;
     Case c;
     long every = 1, anew = 1, steps = 0;
-    std::string csv, message;
+    std::string csv, message, status = "ok";
     std::vector<std::pair<double, std::string>> frames;
     Clock::time_point begin, saved;
     double rate = 0;

@@ -69,6 +69,112 @@ TEST_CASE("a box is planes around its inside, less those that are open", "[granu
     }
 }
 
+TEST_CASE("boundaries move as formulas say", "[granular][case]")
+{
+    const auto compile = [](const std::string& text) -> granular::Formula {
+        if (text == "sin(9*t)") return [](double t) { return std::sin(9 * t); };
+        if (text == "9*cos(9*t)") return [](double t) { return 9 * std::cos(9 * t); };
+        if (text == "sqrt(min(0,0.05-t))") return [](double t) { return t < 0.05 ? 0 : std::sqrt(0.05 - t); };
+        throw granular::InvalidCase("is none");
+    };
+    ordered_json c = good();
+    const ordered_json plane = {{"type", "plane"}, {"normal", {0, 0, 1}}, {"material", "steel"}};
+    c["step"] = 1e-3, c["materials"][0]["E"] = 7e3, c["gravity"] = {0, 0, 0};
+    auto at = plane, by = plane, turning = plane, box = plane;
+    at["r"] = {0, 0.5, "sin(9*t)"}, by["v"] = {0, 0, "9*cos(9*t)"}, turning["omega"] = {0, 0, "9*cos(9*t)"};
+    at["normal"] = by["normal"] = turning["normal"] = {-1, 0, 0};
+    at["r"][0] = 2, by["r"] = turning["r"] = {2, 0, 0};
+    box = {{"type", "box"},
+           {"low", {-3, -3, -3}},
+           {"high", {3, 3, 3}},
+           {"material", "steel"},
+           {"r", {0, 0, "sin(9*t)"}}};
+    c["boundaries"] = {at, by, turning, box};
+    auto moving = read_case(c.dump(), "file", {.compile = compile});
+    granular::World& w = *moving.world;
+    CHECK(w.boundary(0).v.z == Approx(9).epsilon(1e-4));
+    CHECK(w.boundary(1).v.z == Approx(9).epsilon(1e-4));
+    for (int k = 0; k < 50; ++k) w.step(2);
+    const double z = std::sin(0.9);
+    CHECK(w.boundary(0).r.y == 0.5);
+    CHECK(w.boundary(0).r.z == Approx(z).epsilon(1e-14));
+    CHECK(w.boundary(1).r.z == Approx(z).epsilon(1e-5));  // h² 9²/24 = 3.4e-6
+    // the angle is sin(9 t) too
+    CHECK(std::atan2(w.boundary(2).axis.y, w.boundary(2).axis.x) == Approx(z - M_PI).epsilon(1e-5));
+    CHECK(w.boundary(3).r.z == Approx(z - 3).epsilon(1e-14));
+    CHECK(w.boundary(8).r.z == Approx(z + 3).epsilon(1e-14));
+
+    c["boundaries"] = {plane};
+    const auto refused = [&](const char* key, const ordered_json& value, const std::string& message) {
+        ordered_json wrong = c;
+        wrong["boundaries"][0][key] = value;
+        CHECK_THROWS_WITH(read_case(wrong.dump(), "file", {.compile = compile}),
+                          "file: /boundaries/0/" + message);
+    };
+    refused("v", {0, 0, "cos"}, "v/2: is none");
+    refused("v", {0, "sin(9*t)"}, "v: must be three numbers or formulas, got [0,\"sin(9*t)\"]");
+    refused("v", {0, "sin(9*t)", nullptr}, "v/2: must be a finite number or a formula, got null");
+    c["boundaries"][0]["r"] = {0, 0, "sin(9*t)"};
+    refused("v", {0, 0, 1}, "v: must not stand where r is a formula, got [0,0,1]");
+    CHECK_THROWS_WITH(
+        read_case(c.dump(), "file"),
+        "file: /boundaries/0/r/2: must be a number where nobody reads formulas, got \"sin(9*t)\"");
+    c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "sqrt(min(0,0.05-t))"};
+    auto bursting = read_case(c.dump(), "file", {.compile = compile});
+    CHECK_THROWS_WITH(bursting.world->step(100), "boundary 'boundary 0': v is not finite at t = 0.0505 s");
+}
+
+TEST_CASE("a tool with a mass falls where it is free and is told where it is not", "[granular][case]")
+{
+    const auto compile = [](const std::string&) -> granular::Formula {
+        return [](double t) { return 30 * t; };
+    };
+    ordered_json c = good();
+    c["step"] = 1e-3, c["materials"][0]["E"] = 7e3;
+    c["boundaries"] = {{{"type", "plane"},
+                        {"normal", {0, 0, -1}},
+                        {"r", {0, 0, 20}},
+                        {"material", "steel"},
+                        {"mass", 3},
+                        {"free", {false, false, true}},
+                        {"v", {0.25, "30*t", "30*t"}},
+                        {"F", {1, 2, "30*t"}}}};
+    auto falling = read_case(c.dump(), "file", {.compile = compile});
+    falling.world->step(10);
+    const granular::Boundary& b = falling.world->boundary(0);
+    CHECK(b.v.x == 0.25);
+    CHECK(b.v.y == Approx(30 * 9.5e-3));
+    CHECK(b.v.z == Approx(-9.81 * 0.01 + 30. / 3 * 1e-6 * 45));  // F of the beginnings of ten steps
+    c["boundaries"][0].erase("mass");
+    CHECK_THROWS_WITH(read_case(c.dump(), "file", {.compile = compile}),
+                      Catch::StartsWith("file: /boundaries/0/free: unknown key"));
+}
+
+TEST_CASE("particles have replicas, and forces from outside", "[granular][case]")
+{
+    ordered_json c = good();
+    c["gravity"] = {0, 0, 0};
+    c["particles"].push_back(c["particles"][0]);
+    c["particles"][1]["replica"] = 2, c["particles"][1]["force"] = {0, 0, 1e-3};
+    c["fill"] = {{{"type", "lattice"},
+                  {"low", {0, 0, 0}},
+                  {"high", {0.2, 0.2, 0.3}},
+                  {"radius", 0.1},
+                  {"material", "glass"},
+                  {"replica", 1}}};
+    auto all = read_case(c.dump(), "file");
+    all.world->step(100);  // though two of them are in one place
+    const auto p = all.world->particles();
+    REQUIRE(p.size() == 3);
+    CHECK(p[1].replica == 2);
+    CHECK(p[2].replica == 1);
+    CHECK(p[1].v.z == Approx(100 * 1e-5 * 1e-3 / p[1].mass));
+    CHECK(p[0].v.z == 0);
+    c["particles"][1]["replica"] = 65536;
+    CHECK_THROWS_WITH(read_case(c.dump(), "file"),
+                      "file: /particles/1/replica: must be below 65536, got 65536");
+}
+
 TEST_CASE("what is wrong in a case is named with its place and value", "[granular][case]")
 {
     const std::tuple<std::string, ordered_json, std::string> wrong[] = {
@@ -154,11 +260,13 @@ TEST_CASE("a case that needs more memory than there is is refused before it take
                   {"material", "glass"},
                   {"spacing", 1}}};
     CHECK_THROWS_WITH(read_case(c.dump(), "file", {.memory = 64'000'000'000}),
-                      "file: /fill: 1e+15 particles need about 2.8e+09 GB of memory, and there are 64 GB");
+                      Catch::StartsWith("file: /fill: 1e+15 particles need about ") &&
+                          Catch::EndsWith(" GB of memory, and there are 64 GB"));
     c["fill"][0]["count"] = 100;
     CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
     CHECK_THROWS_WITH(read_case(c.dump(), "file", {.memory = 100'000}),
-                      "file: /fill: 101 particles need about 0.000283 GB of memory, and there are 0.0001 GB");
+                      Catch::StartsWith("file: /fill: 101 particles need about ") &&
+                          Catch::EndsWith(" GB of memory, and there are 0.0001 GB"));
 }
 
 TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")

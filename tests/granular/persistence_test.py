@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-# Grains of many sizes are shaken down into a cup, with all that has a history.
+# Grains of many sizes in a cup that shakes, under a lid that lies on them, with all that has a history.
 CASE = {
     "hilda_case": 1, "name": "cup",
     "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
@@ -27,9 +27,11 @@ CASE = {
               "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}, "spin": {"law": "torsional-spring"}},
              {"between": ["glass", "steel"], "restitution": 0.5, "mu": 0.4, "tangential": {"law": "mindlin"},
               "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}}],
-    "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "material": "steel"},
+    "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "r": [0, 0, "1e-4*sin(2*pi*40*t)"], "material": "steel"},
                    {"name": "wall", "type": "cylinder", "r": [0.01, 0.01, 0], "axis": [0, 0, 1], "radius": 0.01,
-                    "inside": True, "material": "steel"}],
+                    "inside": True, "omega": [0, 0, "5*t"], "material": "steel"},
+                   {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": [0, 0, 0.04], "mass": 2e-3, "F": [0, 0, "-0.1*t"],
+                    "free": [False, False, True], "material": "steel"}],
     "fill": [{"type": "lattice", "low": [0.003, 0.003, 0], "high": [0.017, 0.017, 0.03], "radius": 1e-3,
               "least_radius": 6e-4, "spacing": 1.02, "jitter": 1, "random_v": 0.2, "material": "glass"}]}
 
@@ -162,7 +164,7 @@ def ends(runs):
 def threads(runs, others):
     """Enough grains for loops to be shared"""
     cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
-    case = runs.case("heap", end=0.015, every=5e-3, checkpoint_every=5e-3, boundaries=[CASE["boundaries"][0], cup],
+    case = runs.case("heap", end=0.015, every=5e-3, checkpoint_every=5e-3, boundaries=[CASE["boundaries"][0], cup, CASE["boundaries"][2]],
                      domain={"low": [-0.012, -0.012, -0.002], "high": [0.052, 0.052, 0.08]},
                      fill=[dict(CASE["fill"][0], low=[0, 0, 0], high=[0.04, 0.04, 0.02])])
     one = None

@@ -63,6 +63,11 @@ public:
     /// What the last loads are on boundaries that are not held, by their numbers; zero for the others
     virtual std::vector<Wrench> on_free_boundaries(const Scene& scene) = 0;
 
+    /// Until all that was begun is done: for those who read a clock
+    virtual void wait() = 0;
+    /// Bytes per second of a copy within its memory, counting what is read and what is written
+    virtual double copy_rate() = 0;
+
     virtual std::size_t bytes() const = 0;
 };
 

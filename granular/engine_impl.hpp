@@ -4,6 +4,7 @@
 
 #include "granular/engine.hpp"
 
+#include <chrono>
 #include <cstring>
 #include <type_traits>
 
@@ -155,6 +156,7 @@ public:
                                   .other_start = own.pairs.other_start.data(),
                                   .other = own.pairs.other.data(),
                                   .load = own.pairs.load.data(),
+                                  .touches = own.pairs.touches.data(),
                                   .torque = turning ? own.pairs.torque.data() : nullptr,
                                   .force = force.size() > 0 ? force.data() : nullptr,
                                   .id = p.id.data(),
@@ -181,6 +183,22 @@ public:
         for (const detail::OnBoundary& one : of_pairs)
             sums[one.boundary].F += one.F, sums[one.boundary].T += one.T;
         return sums;
+    }
+
+    void wait() override { par::wait(on); }
+
+    double copy_rate() override
+    {
+        constexpr std::size_t size = std::size_t{1} << 28;
+        constexpr int times = 8;
+        par::Array<Backend, char> from(size), to(size);
+        par::fill(on, from.data(), size, char{1}), par::fill(on, to.data(), size, char{2});
+        wait();
+        const auto begin = std::chrono::steady_clock::now();
+        for (int k = 0; k < times; ++k) par::copy_bytes(on, to.data(), from.data(), size);
+        wait();
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+        return 2.0 * times * size / seconds.count();
     }
 
     std::size_t bytes() const override

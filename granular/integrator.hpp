@@ -118,8 +118,9 @@ struct Advance {
     Four *acc, *turn;  ///< of the step before; nullptr where the scheme needs none
     const std::uint32_t *start, *other_start, *other;
     const Load* load;
-    const Four* torque;  ///< nullptr where no law resists turning
-    const Four* force;   ///< from outside, by id [N]; nullptr where there is none
+    const std::uint8_t* touches;  ///< where not, loads are zero
+    const Four* torque;           ///< nullptr where no law resists turning
+    const Four* force;            ///< from outside, by id [N]; nullptr where there is none
     const std::uint32_t* id;
     StepOf step;
 };

@@ -84,7 +84,7 @@ struct AdvanceOne {
         if (to.step.part != Part::before_loads) {
             Vec<float> F_j{0, 0, 0}, M{0, 0, 0}, M_j{0, 0, 0};
             for (std::uint32_t n = to.start[k]; n < to.start[k + 1]; ++n)
-                F += vec(to.load[n].F), M += vec(to.load[n].M);
+                if (to.touches[n] != 0) F += vec(to.load[n].F), M += vec(to.load[n].M);
             for (std::uint32_t m = to.other_start[k]; m < to.other_start[k + 1]; ++m) {
                 const Load& load = to.load[to.other[m]];
                 F_j += vec(load.F), M_j += vec(load.M);

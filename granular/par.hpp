@@ -30,6 +30,8 @@ inline void copy_to_device(Cpu b, void* to, const void* from, std::size_t bytes)
     copy_bytes(b, to, from, bytes);
 }
 
+inline void wait(Cpu) {}  ///< until all that was begun is done
+
 /// Memory of a back end. Growing does not keep what was in it.
 template <class Backend, class T>
 class Array {

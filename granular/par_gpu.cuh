@@ -51,6 +51,8 @@ inline void copy_to_device(Gpu, void* to, const void* from, std::size_t bytes)
     if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "a copy to the GPU");
 }
 
+inline void wait(Gpu) { check(cudaDeviceSynchronize(), "work on the GPU"); }
+
 /// Memory of one kind of call, kept from one to the next
 template <class Tag>
 inline Array<Gpu, unsigned char>& scratch()

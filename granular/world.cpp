@@ -394,13 +394,17 @@ void World::one_step()
     const auto h = static_cast<float>(options.h);
     const bool verlet = options.scheme == Scheme::velocity_verlet;
     Lap lap;
+    const auto take = [&](double& to) {
+        if (timed) engine->wait();
+        to += lap.take();
+    };
     const auto find_loads = [&] {
-        times.advance += lap.take();
+        take(times.advance);
         keep_neighbours();
         engine->set_boundaries(boundaries);
-        times.neighbours += lap.take();
+        take(times.neighbours);
         engine->find_loads(scene, h);
-        times.loads += lap.take();
+        take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
     forces_changed = false;
@@ -436,7 +440,7 @@ void World::one_step()
         push_tools();
         moved_boundaries += move_boundaries();
     }
-    times.advance += lap.take();
+    take(times.advance);
 }
 
 std::vector<Particle> World::particles() const

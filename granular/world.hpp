@@ -120,6 +120,9 @@ public:
         double neighbours = 0, loads = 0, advance = 0;
     };
     Times take_times() { return std::exchange(times, {}); }
+    /// A GPU is waited for between the parts, so that their times are their own; the whole is then slower.
+    void set_timed(bool on) { timed = on; }
+    double copy_rate() { return engine->copy_rate(); }  ///< of its memory [B/s], read and written
     std::size_t bytes() const { return engine->bytes(); }
     /// About what so many particles in a dense bed will take, with what it takes to make them
     static std::size_t bytes_needed(std::size_t particles);
@@ -164,7 +167,7 @@ private:
     /// Bounds of the ways of particles and of boundaries since neighbours were looked for [m]
     double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
     long number = 0, found = 0;
-    bool locked_turning = false, laws_changed = true, forces_changed = false;
+    bool locked_turning = false, laws_changed = true, forces_changed = false, timed = false;
     Times times;
 };
 

@@ -3,7 +3,11 @@
 /// LAMMPS and YADE are compared on.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_granular_benchmark
-///     build/native/hilda_granular_benchmark 50000 [skin in diameters]      with 1, 2, 4 … threads
+///     build/native/hilda_granular_benchmark 50000         with 1, 2, 4 … threads
+///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
+///
+/// Then, for the bed at rest, how each part of a step uses the memory: bytes that it cannot do without, over its time, as a
+/// part of the rate of a plain copy.
 
 #include "granular/world.hpp"
 
@@ -11,6 +15,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <tuple>
 
 #include <omp.h>
 
@@ -20,7 +26,7 @@ namespace {
 
 constexpr double R = 1e-3, h = 5e-6;
 
-World bed(std::size_t n, double skin)
+World bed(std::size_t n, Device device)
 {
     const Material glass{"glass", 2500, 7e7, 0.24};
     const double d = 2 * R, spacing = 1.05 * d, width = std::cbrt(static_cast<double>(n)) * d;
@@ -29,7 +35,7 @@ World bed(std::size_t n, double skin)
     WorldOptions o;
     o.low = {-d, -d, -d}, o.high = {width + d, width + d, layers * spacing + 3 * d};
     o.h = h;
-    o.skin = skin;
+    o.device = device;
     World world(o, {glass});
     const auto c = static_cast<float>(damping(0.9));
     PairLaw law;
@@ -73,25 +79,61 @@ void report(const char* phase, World& world, long steps)
     std::fflush(stdout);
 }
 
+/// Bytes of a dense step that no order of the work avoids: each array that it reads or writes, once
+void report_memory(World& world, long steps)
+{
+    const double n = static_cast<double>(world.count());
+    const double pairs = static_cast<double>(world.candidates()) / n,
+                 touching = static_cast<double>(world.contacts().size()) / n;
+    constexpr double state = sizeof(Position) + 2 * sizeof(Four);
+    const double loads = state + pairs * (2 * sizeof(std::uint32_t) + 1) +
+                         touching * (2 * sizeof(Four) + sizeof(Load)),
+                 advance = 2 * (state + sizeof(Rest)) + 2 * sizeof(std::uint32_t) +
+                           pairs * sizeof(std::uint32_t) + 2 * touching * sizeof(Load);
+    const double copy = world.copy_rate();
+    world.set_timed(true);
+    world.take_times();
+    world.step(steps);
+    const World::Times t = world.take_times();
+    world.set_timed(false);
+    std::printf("\ncopy: %.1f GB/s, read and written\n", 1e-9 * copy);
+    std::printf("part       bytes per particle   us per step     GB/s  of a copy\n");
+    for (const auto& [name, bytes, seconds] :
+         {std::tuple{"loads", loads, t.loads}, {"advance", advance, t.advance}}) {
+        const double rate = bytes * n * static_cast<double>(steps) / seconds;
+        std::printf("%-10s %18.0f %13.1f %8.1f %9.0f%%\n", name, bytes,
+                    1e6 * seconds / static_cast<double>(steps), 1e-9 * rate, 100 * rate / copy);
+    }
+    std::printf("%-10s %18s %13.1f\n", "neighbours", "", 1e6 * t.neighbours / static_cast<double>(steps));
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
-{
+try {
     const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;
-    World world = bed(n, argc > 2 ? std::strtod(argv[2], nullptr) : 0.1);
+    const bool gpu = argc > 2 && std::strcmp(argv[2], "cuda") == 0;
+    if (n < 1 || (argc > 2 && !gpu)) {
+        std::fprintf(stderr, "usage: hilda_granular_benchmark [PARTICLES [cuda]]\n");
+        return 2;
+    }
+    World world = bed(n, {.kind = gpu ? Device::cuda : Device::cpu});
     std::printf(
         "                          million  ns per particle-step in             pairs  contacts bytes\n"
         "particles thr phase    per s      loads  advance neighb. rebuilds   per particle\n");
-    const int most = omp_get_max_threads();
+    const int most = gpu ? 1 : omp_get_max_threads();
     const auto report_all = [&](const char* phase, long steps) {
         for (int threads = 1; threads <= most; threads *= 2) {
             omp_set_num_threads(threads);
             report(phase, world, steps);
         }
-        omp_set_num_threads(most);
     };
     report_all("falling", 400);
     const double settled = 0.25;  // [s]
     world.step(std::lround(settled / h));
     report_all("at rest", 1000);
+    report_memory(world, 200);
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "hilda_granular_benchmark: %s\n", e.what());
+    return 1;
 }

@@ -382,7 +382,7 @@ void World::before_each_step(std::function<void(World&)> f) { callbacks.push_bac
 void World::step(long n)
 {
     for (; n > 0; --n) {
-        for (std::size_t k = 0; k < callbacks.size(); ++k) callbacks[k](*this);
+        for (const auto& f : callbacks) f(*this);
         settle_in();
         one_step();
         time = static_cast<double>(++number) * options.h;

@@ -96,7 +96,7 @@ public:
     Wrench wrench(int boundary, int replica = -1) const;
 
     /// What f does at the beginning of every step, at t(): it may set velocities of boundaries and forces, and add
-    /// particles. Those that were told first are called first. They are no part of a checkpoint.
+    /// particles. Those that were told first are called first; none is told within f. They are no part of a checkpoint.
     void before_each_step(std::function<void(World&)> f);
     /// To be moved through its v and omega; one with a mass moves by what touches it.
     Boundary& boundary(int number) { return boundaries[number]; }

@@ -36,7 +36,8 @@ int main(int argc, char** argv)
     Options o;
     CLI::App app("hilda-granular: a granular case");
     app.add_option("CASE", o.file, "a case file in JSON")->required();
-    app.add_option("--output", o.output, "directory of what the run leaves; by default named after the case");
+    app.add_option("--output", o.output,
+                   "directory of what the run leaves; by default out/ and the name of the file");
     app.add_option("--threads", o.threads, "of the CPU; the results do not depend on it")
         ->check(CLI::PositiveNumber);
     app.add_option("--checkpoint", o.checkpoint, "least seconds between two checkpoints; none by default")
@@ -57,7 +58,7 @@ int main(int argc, char** argv)
         return usage;
     }
     if (o.threads > 0) omp_set_num_threads(o.threads);
-    if (o.output.empty()) o.output = std::filesystem::path(o.file).stem().string();
+    if (o.output.empty()) o.output = "out/" + std::filesystem::path(o.file).stem().string();
     for (const int s : {SIGINT, SIGTERM})
         std::signal(s, [](int which) {
             caught = which;

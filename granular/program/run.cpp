@@ -53,9 +53,10 @@ public:
     int go()
     {
         namespace fs = std::filesystem;
-        if (fs::exists(file("summary.json")) && !o.force && !o.resume) {
+        std::error_code none;
+        if (fs::is_directory(o.output, none) && !fs::is_empty(o.output, none) && !o.force && !o.resume) {
             std::fprintf(stderr,
-                         "hilda: error: %s: has a run already; --force starts it again, --resume goes on\n",
+                         "hilda: error: %s: is not empty; --force starts it again, --resume goes on\n",
                          o.output.c_str());
             return usage;
         }

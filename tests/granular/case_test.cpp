@@ -49,7 +49,7 @@ TEST_CASE("the example is a case", "[granular][case]")
     const std::string file = std::string(HILDA_SOURCE_DIR) + "/granular/cases/bed.json";
     const granular::Case c = read_case(granular::read_file(file, 10000), file);
     CHECK(c.world->count() > 5000);
-    CHECK(c.boundaries.size() == 5);
+    CHECK(c.boundaries == std::vector<std::string>{"box-x", "box+x", "box-y", "box+y", "box-z"});
 }
 
 TEST_CASE("a box is planes around its inside, less those that are open", "[granular][case]")

@@ -174,7 +174,12 @@ def threads(runs, others):
             sha = runs.sha("out")
             one = one or sha
             expect(sha == one, f"{count} threads of {program or runs.program} give the same")
-    print(f"1, 2, 3, 4, 8 threads, {1 + len(others)} back ends; {one}")
+    gpu = runs.start(case, "--output", "out", "--force", "--device", "cuda")
+    _, err = gpu.communicate()
+    expect(gpu.returncode in (0, 7), f"a GPU runs it or is not there: {err}")
+    if gpu.returncode == 0:
+        expect(runs.sha("out") == one, "a GPU gives the same")
+    print(f"1, 2, 3, 4, 8 threads, {1 + len(others)} back ends{', a GPU' if gpu.returncode == 0 else ''}; {one}")
 
 
 def main():

@@ -76,8 +76,8 @@ def expect(condition, what):
         sys.exit(f"not so: {what}")
 
 
-def kills(runs, wanted=20):
-    """Killed at random moments and resumed until it is done"""
+def kills(runs, wanted=20, legs=20):
+    """Killed at random moments, a leg apart on average, and resumed until it is done"""
     case = runs.case("cup")
     begin = time.monotonic()
     runs.finish(case, "--output", "whole")
@@ -92,7 +92,7 @@ def kills(runs, wanted=20):
     while done < wanted:
         process = runs.start(case, *resume)
         try:
-            process.communicate(timeout=draw.uniform(0, 2 * seconds / wanted))
+            process.communicate(timeout=draw.uniform(0, 2 * seconds / legs))
             expect(process.returncode == 0, "a run that was not killed ends well")
             expect(runs.sha("cut") == whole, "the run that was killed leaves what the whole one does")
             runs.remove("cut")

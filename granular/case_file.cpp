@@ -3,6 +3,7 @@
 
 #include "granular/boundary_keys.hpp"
 #include "granular/fill.hpp"
+#include "granular/text_place.hpp"
 
 #include <algorithm>
 
@@ -14,6 +15,10 @@ using Json = Keys::Json;
 
 /// Nothing deeper than this is a case, and a key that stands twice is a mistake.
 constexpr int deepest = 64;
+
+struct NoJson : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 Json parse(const std::string& text)
 {
@@ -32,9 +37,7 @@ Json parse(const std::string& text)
         if (!twice.empty()) throw InvalidCase("the key \"" + twice + "\" stands twice in one object");
         return all;
     } catch (const Json::parse_error& e) {
-        const std::size_t at = std::min(e.byte, text.size());
-        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-        throw InvalidCase("line " + std::to_string(line) + ": is no JSON");
+        throw NoJson(text_place(text, std::max<std::size_t>(e.byte, 1) - 1) + ": is no JSON");
     }
 }
 
@@ -218,8 +221,14 @@ Case read_case(const std::string& text, const std::string& file, const Surroundi
             out.world->before_each_step([motions, h = out.h](World& w) { drive(w, motions, h); });
         }
         return out;
+    } catch (const NoJson& e) {
+        throw InvalidCase(file + ':' + e.what());
     } catch (const InvalidCase& e) {
-        throw InvalidCase(file + ": " + e.what());
+        const std::string what = e.what();
+        if (what[0] != '/') throw InvalidCase(file + ": " + what);
+        const std::string pointer = what.substr(0, what.find(": "));
+        throw InvalidCase(file + ':' + text_place(text, pointer) + " (" + pointer + ')' +
+                          what.substr(pointer.size()));
     } catch (const Json::exception& e) {  // a number beyond all numbers, say
         throw InvalidCase(file + ": " + e.what());
     }

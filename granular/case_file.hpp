@@ -25,8 +25,8 @@ struct Surroundings {
     Device device = {};
 };
 
-/// InvalidCase, DeviceError; with the JSON pointer of what is wrong; nothing large is allocated before it is known that the memory will
-/// do.
+/// InvalidCase, with line, column and JSON pointer of what is wrong; DeviceError. Nothing large is allocated before it is
+/// known that the memory will do.
 Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings = {});
 
 }  // namespace hilda::granular

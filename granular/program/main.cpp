@@ -66,14 +66,16 @@ int main(int argc, char** argv)
         });
     std::signal(SIGXFSZ, SIG_IGN);
     try {
+        const Device device = *device_of(o.device);
+        make_engine(device);  // one that is not there is refused before the case is read
         std::string text;
         try {
             text = read_file(o.file, std::size_t{64} << 20);
         } catch (const FileError& e) {
             throw InvalidCase(e.what());
         }
-        Case c = read_case(
-            text, o.file, {.memory = available_memory(), .compile = compile, .device = *device_of(o.device)});
+        Case c =
+            read_case(text, o.file, {.memory = available_memory(), .compile = compile, .device = device});
         if (!o.quiet)
             for (const std::string& n : c.notices) std::fprintf(stderr, "hilda: warning: %s\n", n.c_str());
         return run(o, std::move(c));

@@ -3,12 +3,12 @@
 
 #include "granular/files.hpp"
 #include "granular/output.hpp"
+#include "granular/program/progress.hpp"
+#include "granular/text_place.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <omp.h>
-#include <unistd.h>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,33 +18,6 @@ namespace hilda::granular {
 volatile std::sig_atomic_t caught = 0;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
-
-/// One line on a terminal, replaced as the run goes on
-class Progress {
-public:
-    explicit Progress(bool quiet) : shown(!quiet && isatty(STDERR_FILENO) != 0) {}
-    void update(const Case& c, double rate)
-    {
-        if (!shown || seconds_since(last) < 0.2) return;
-        last = Clock::now();
-        const double left =
-            rate > 0 ? (c.end - c.world->t()) / c.h * static_cast<double>(c.world->count()) / rate : 0;
-        std::fprintf(stderr, "\rhilda: t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left   ",
-                     c.world->t(), c.end, 1e-6 * rate, left);
-    }
-    void clear() const
-    {
-        if (shown) std::fprintf(stderr, "\r%78s\r", "");
-    }
-
-private:
-    bool shown;
-    Clock::time_point last = Clock::now();
-};
 
 class Run {
 public:
@@ -62,8 +35,8 @@ public:
         }
         if (!judge_step()) return bad_case;
         try {
-            c.world->to_bytes(
-                "");  // which refuses what is wrong with the particles, while nothing is written
+            // which refuses what is wrong with the particles, while nothing is written
+            c.world->to_bytes("");
         } catch (const InvalidCase& e) {
             throw InvalidCase(o.file + ": " + e.what());
         }
@@ -101,8 +74,9 @@ private:
         const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
         if (c.h > stable) {
             std::fprintf(stderr,
-                         "hilda: %s: %s: /step: must not be above %.3g s, where it is stable, got %g%s\n",
-                         o.force ? "warning" : "error", o.file.c_str(), stable, c.h,
+                         "hilda: %s: %s:%s (/step): must not be above %.3g s, where it is stable, got %g%s\n",
+                         o.force ? "warning" : "error", o.file.c_str(),
+                         text_place(c.text, std::string("/step")).c_str(), stable, c.h,
                          o.force ? "" : "; --force overrides");
             return o.force;
         }

@@ -49,7 +49,7 @@ def main():
 
         # above the limit of stability a step is refused, and taken when it is insisted on
         coarse = runs.case("coarse", step=3e-5, end=3e-5)
-        refused(3, "coarse.json: /step: must not be above .* got 3e-05; --force", case=coarse)
+        refused(3, r"coarse.json:1:\d+ \(/step\): must not be above .* got 3e-05; --force", case=coarse)
         expect("warning" in runs.finish(coarse, "--force"), "a step that is not stable is taken with --force")
 
         # lost grains: who, when, and how fast

@@ -107,7 +107,7 @@ TEST_CASE("what is not there exits with 3, 5 or 7", "[studies][command line]")
     CHECK(call(in, {"plot", "none"}).code == 3);
     CHECK(call(in, {"granular", "heap"}).code == 3);
     CHECK_THAT(call(in, {"granular", "heap"}).err, Contains("heap: is not there"));
-    CHECK(call(in, {"granular", "heap", "--device", "cuda"}).code == 7);
+    CHECK(call(in, {"granular", "heap", "--device", "cuda:99"}).code == 7);
     CHECK_THAT(call(in, {"granular", "--help"}).out, Contains("--checkpoint"));
     CHECK_THAT(call(in, {"run", "double_pendulun"}).err, Contains("double_pendulum"));
     CHECK(call(in, {"models", "double_pendulum", "--write", "none/mine.json"}).code == 5);

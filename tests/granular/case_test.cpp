@@ -253,6 +253,48 @@ TEST_CASE("a value of a text is found by its pointer", "[granular][case]")
                       "file:2:12 (/domain/low): is missing");
 }
 
+TEST_CASE("whatever happens to the bytes of a case, it is read or refused", "[granular][case]")
+{
+    ordered_json c = good();
+    c["fill"] = {{{"type", "poisson"},
+                  {"low", {0, 0, 0.7}},
+                  {"high", {1, 1, 1}},
+                  {"radius", 0.1},
+                  {"material", "glass"}}};
+    c["boundaries"].push_back(
+        {{"type", "box"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"open", {"+z"}}, {"material", "steel"}});
+    const std::string text = c.dump(1);
+    const auto seed = GENERATE(1u, 2u);
+    unsigned state = seed;
+    const auto random = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
+    int refused = 0;
+    for (int k = 0; k < 1000; ++k) {
+        std::string wrong = text;
+        for (unsigned n = 1 + random() % 3; n > 0; --n) {
+            const std::size_t at = random() % wrong.size();
+            switch (random() % 4) {
+                case 0:
+                    wrong[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    wrong.erase(at, 1 + random() % 8);
+                    break;
+                case 2:
+                    wrong.insert(at, 1, "0123456789-eE.,:[]{}\"\\ "[random() % 23]);
+                    break;
+                default:
+                    wrong[at] = "0123456789-eE.,:[]{}\"\\ "[random() % 23];
+            }
+        }
+        try {
+            read_case(wrong, "file", {.memory = 20'000'000});
+        } catch (const granular::InvalidCase&) {
+            ++refused;
+        }
+    }
+    CHECK(refused > 500);
+}
+
 TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")
 {
     const auto begin = [](const std::string& text) { read_case(text, "file").world->step(); };

@@ -47,7 +47,7 @@ public:
     template <class Value>
     [[noreturn]] void refuse(const std::string& key, const std::string& rule, const Value& value) const
     {
-        Json shown = value;
+        const Json& shown = value;
         throw InvalidCase(place_of(key) + ": " + rule + ", got " + shown.dump());
     }
     std::string place_of(const std::string& key) const { return key.empty() ? place : place + "/" + key; }

@@ -381,6 +381,7 @@ void World::before_each_step(std::function<void(World&)> f) { callbacks.push_bac
 
 void World::step(long n)
 {
+    settle_in();
     for (; n > 0; --n) {
         for (const auto& f : callbacks) f(*this);
         settle_in();

@@ -85,7 +85,7 @@ public:
     std::uint32_t add(const Particle& particle);  ///< its id
     void reserve(std::size_t particles);
 
-    /// n steps. ParticleLost.
+    /// n steps. InvalidCase for particles that cannot begin so, also with n = 0; ParticleLost; DeviceError.
     void step(long n = 1);
     double t() const { return time; }
     long steps() const { return number; }

@@ -36,7 +36,7 @@ public:
         if (!judge_step()) return bad_case;
         try {
             // which refuses what is wrong with the particles, while nothing is written
-            c.world->to_bytes("");
+            c.world->step(0);
         } catch (const InvalidCase& e) {
             throw InvalidCase(o.file + ": " + e.what());
         }

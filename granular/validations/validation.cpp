@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/validations/validation.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+namespace {
+
+std::vector<Validation>& list()
+{
+    static std::vector<Validation> all;
+    return all;
+}
+
+}  // namespace
+
+const std::vector<Validation>& validations() { return list(); }
+
+bool enrol(Validation v)
+{
+    const auto before = [](const Validation& a, const Validation& b) { return a.name < b.name; };
+    list().insert(std::upper_bound(list().begin(), list().end(), v, before), v);
+    return true;
+}
+
+}  // namespace hilda::granular

@@ -5,6 +5,7 @@
 #include "granular/program/formula.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
+#include "granular/program/validate.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -34,8 +35,9 @@ std::optional<Device> device_of(const std::string& name)
 int main(int argc, char** argv)
 {
     Options o;
+    bool full = false;
     CLI::App app("hilda-granular: a granular case");
-    app.add_option("CASE", o.file, "a case file in JSON")->required();
+    app.add_option("CASE", o.file, "a case file in JSON, or the name of a validation")->required();
     app.add_option("--output", o.output,
                    "directory of what the run leaves; by default out/ and the name of the file");
     app.add_option("--threads", o.threads, "of the CPU; the results do not depend on it")
@@ -49,6 +51,7 @@ int main(int argc, char** argv)
     app.add_flag("--resume", o.resume, "goes on from the checkpoint in the output directory");
     app.add_flag("--force", o.force, "writes over an earlier run");
     app.add_flag("--no-vtk", o.no_vtk, "writes no particles for ParaView");
+    app.add_flag("--full", full, "all values of a validation, not only those that say most");
     app.add_flag("--quiet", o.quiet, "says nothing but errors");
     try {
         app.parse(argc, argv);
@@ -58,6 +61,11 @@ int main(int argc, char** argv)
         return usage;
     }
     if (o.threads > 0) omp_set_num_threads(o.threads);
+    if (const Validation* v = find_validation(o.file)) return validate(*v, full, o.quiet);
+    if (full && std::filesystem::exists(o.file)) {
+        std::fprintf(stderr, "hilda: error: --full: is for validations, and %s is a file\n", o.file.c_str());
+        return usage;
+    }
     if (o.output.empty()) o.output = "out/" + std::filesystem::path(o.file).stem().string();
     for (const int s : {SIGINT, SIGTERM})
         std::signal(s, [](int which) {
@@ -72,7 +80,7 @@ int main(int argc, char** argv)
         try {
             text = read_file(o.file, std::size_t{64} << 20);
         } catch (const FileError& e) {
-            throw InvalidCase(e.what());
+            throw InvalidCase(e.what() + (std::filesystem::exists(o.file) ? "" : known_validations()));
         }
         Case c =
             read_case(text, o.file, {.memory = available_memory(), .compile = compile, .device = device});

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/program/validate.hpp"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::granular {
+
+namespace {
+
+enum Exit { all_met = 0, numerical = 4, not_met = 6 };
+
+std::string shown(const ValidationTable::Cell& cell)
+{
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.6g", std::get<double>(cell));
+    return number;
+}
+
+/// Columns as wide as what is in them
+void print(const std::vector<std::vector<std::string>>& lines)
+{
+    std::vector<std::size_t> width(lines[0].size(), 0);
+    for (const auto& line : lines)
+        for (std::size_t c = 0; c < line.size(); ++c) width[c] = std::max(width[c], line[c].size());
+    for (const auto& line : lines) {
+        for (std::size_t c = 0; c < line.size(); ++c)
+            std::printf("%*s%s", static_cast<int>(width[c]), line[c].c_str(),
+                        c + 1 < line.size() ? "  " : "\n");
+    }
+}
+
+void print(const ValidationTable& table)
+{
+    std::vector<std::vector<std::string>> lines = {table.columns};
+    for (const auto& row : table.rows) {
+        lines.emplace_back();
+        for (const auto& cell : row) lines.back().push_back(shown(cell));
+    }
+    print(lines);
+}
+
+}  // namespace
+
+const Validation* find_validation(const std::string& name)
+{
+    std::error_code error;
+    if (std::filesystem::exists(name, error)) return nullptr;
+    for (const Validation& v : validations())
+        if (v.name == name) return &v;
+    return nullptr;
+}
+
+std::string known_validations()
+{
+    std::string all;
+    for (const Validation& v : validations()) all += (all.empty() ? "; validations: " : ", ") + v.name;
+    return all;
+}
+
+int validate(const Validation& v, bool full, bool quiet)
+{
+    ValidationOptions options;
+    options.full = full;
+    const bool show = !quiet && isatty(STDERR_FILENO) != 0;
+    if (show) options.progress = [](double part) { std::fprintf(stderr, "\rhilda: %3.0f %%", 100 * part); };
+    const auto clear = [&] {
+        if (show) std::fprintf(stderr, "\r%14s\r", "");
+    };
+    ValidationResult result;
+    try {
+        result = v.run(options);
+    } catch (const ParticleLost& e) {
+        clear();
+        std::fprintf(stderr, "hilda: error[particle_lost]: %s: %s\n", v.name.c_str(), e.what());
+        return numerical;
+    }
+    clear();
+    std::vector<std::vector<std::string>> lines = {{"measured", "least", "most", "", "what"}};
+    for (const ValidationCheck& c : result.checks)
+        lines.push_back(
+            {shown(c.measured), shown(c.least), shown(c.most), c.met() ? "ok" : "FAILED", c.what});
+    const auto met = std::count_if(result.checks.begin(), result.checks.end(),
+                                   [](const ValidationCheck& c) { return c.met(); });
+    if (!quiet) {
+        std::printf("%s: %s\n", v.name.c_str(), v.answers.c_str());
+        for (const ValidationTable& t : result.tables) {
+            constexpr std::size_t most = 60;  // rows; a curve has more
+            const bool curve = &t != &result.tables.front() && t.rows.size() > most;
+            std::printf("\n%s%s\n", t.name.c_str(), curve ? ": a curve, left to the study" : "");
+            if (!curve) print(t);
+        }
+        std::printf("\n");
+        print(lines);
+        std::printf("%ld of %zu met\n", static_cast<long>(met), result.checks.size());
+    }
+    return met == static_cast<long>(result.checks.size()) ? all_met : not_met;
+}
+
+}  // namespace hilda::granular

@@ -2,6 +2,7 @@
 #include "studies/study.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hilda::studies {
 
@@ -13,9 +14,28 @@ std::vector<Study>& list()
     return all;
 }
 
+using Maker = std::vector<Study> (*)();
+
+std::vector<Maker>& makers()
+{
+    static std::vector<Maker> all;
+    return all;
+}
+
 }  // namespace
 
-const std::vector<Study>& studies() { return list(); }
+const std::vector<Study>& studies()
+{
+    for (const Maker make : std::exchange(makers(), {}))
+        for (Study& study : make()) enrol(std::move(study));
+    return list();
+}
+
+bool enrol_later(Maker make)
+{
+    makers().push_back(make);
+    return true;
+}
 
 bool enrol(Study study)
 {

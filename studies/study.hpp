@@ -6,6 +6,7 @@
 #include "lie/integrator.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,12 +69,14 @@ enum : unsigned {
 
 struct Study {
     std::string kind;
-    std::string answers;                        ///< the figure or table it answers, one line
-    unsigned also = 0;                          ///< of what is in takes
-    int (*run)(const StudyOptions&) = nullptr;  ///< returns the exit code; writes into output
+    std::string answers;                               ///< the figure or table it answers, one line
+    unsigned also = 0;                                 ///< of what is in takes
+    std::function<int(const StudyOptions&)> run = {};  ///< returns the exit code; writes into output
 };
 
 const std::vector<Study>& studies();
 bool enrol(Study study);
+/// Studies that follow from another list: it is asked when studies() is, and not before all is enrolled that enrols itself.
+bool enrol_later(std::vector<Study> (*make)());
 
 }  // namespace hilda::studies

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a validation of the granular room is a study with files of its tables", "[studies][granular]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "granular-oblique", "--no-plot", "--check"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("16 of 16 met"));
+
+    const auto rows = csv(in / "out/granular-oblique/study.csv");
+    REQUIRE(rows.size() == 34);  // two laws, every five degrees
+    for (const CsvRow& row : rows) {
+        CHECK(number(row, "from_normal") + number(row, "from_surface") == Approx(90));
+        if (number(row, "from_normal") < 64.5)
+            CHECK(row.at("e_t_sliding").empty());
+        else
+            CHECK(number(row, "e_t") == Approx(number(row, "e_t_sliding")).epsilon(1e-4));
+    }
+    CHECK(csv(in / "out/granular-oblique/reference.csv").size() > 88);
+    CHECK(csv(in / "out/granular-oblique/steps.csv").size() == 24);
+
+    const auto json = nlohmann::json::parse(read(in / "out/granular-oblique/study.json"));
+    CHECK(json["study"] == "granular-oblique");
+    CHECK(json["grid"] == "quick");
+    CHECK(json["checks"].size() == 16);
+    for (const auto& check : json["checks"]) CHECK(check["met"] == true);
+}
+
+TEST_CASE("a study of grains refuses what it has no use for", "[studies][granular]")
+{
+    const Scratch in;
+    CHECK(call(in, {"study", "granular-oblique", "--grid", "coarse"}).code == 2);
+    CHECK(call(in, {"study", "granular-oblique", "--steps", "1e-3"}).code == 2);
+    CHECK(call(in, {"study", "granular-oblique", "--expect", "e_t=1"}).code == 2);
+    CHECK_FALSE(fs::exists(in / "out/granular-oblique"));
+}
+
+TEST_CASE("the studies of grains stand in the list, in its order", "[studies][granular]")
+{
+    const Scratch in;
+    const auto listed = nlohmann::json::parse(call(in, {"study", "--json"}).out);
+    std::vector<std::string> kinds;
+    for (const auto& study : listed) {
+        kinds.push_back(study["kind"]);
+        CHECK_FALSE(study["answers"].get<std::string>().empty());
+    }
+    CHECK(std::is_sorted(kinds.begin(), kinds.end()));
+    for (const char* kind : {"granular-brick", "granular-head-on", "granular-oblique"})
+        CHECK(std::count(kinds.begin(), kinds.end(), kind) == 1);
+}
+
+TEST_CASE("hilda granular runs a validation by its name, unless a file has it", "[studies][granular]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"granular", "oblique"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("16 of 16 met"));
+    CHECK(call(in, {"granular", "oblique", "--quiet"}).out.empty());
+
+    const Ended unknown = call(in, {"granular", "obliqe"});
+    CHECK(unknown.code == 3);
+    CHECK_THAT(unknown.err,
+               Contains("obliqe: is not there") && Contains("validations: ") && Contains("oblique"));
+    CHECK(std::count(unknown.err.begin(), unknown.err.end(), '\n') == 1);
+
+    write(in / "oblique", "{}");
+    CHECK(call(in, {"granular", "oblique"}).code == 3);  // no case
+    CHECK(call(in, {"granular", "oblique", "--full"}).code == 2);
+}

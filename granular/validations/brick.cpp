@@ -28,7 +28,7 @@ constexpr long most_steps = 1'000'000;  // four times what the slowest needs
 std::vector<double> frictions()
 {
     std::vector<double> all;
-    for (int k = 2; k <= 10; ++k) all.push_back(0.05 * k);
+    for (int k = 2; k <= 10; ++k) all.push_back(k / 20.0);
     return all;
 }
 

@@ -33,7 +33,7 @@ constexpr Named schemes[] = {{"symplectic-euler", Scheme::symplectic_euler, 5e-4
 std::vector<double> restitutions()
 {
     std::vector<double> all;
-    for (int k = 1; k <= 10; ++k) all.push_back(0.1 * k);
+    for (int k = 1; k <= 10; ++k) all.push_back(k / 10.0);
     return all;
 }
 

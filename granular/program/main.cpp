@@ -61,7 +61,8 @@ int main(int argc, char** argv)
         return usage;
     }
     if (o.threads > 0) omp_set_num_threads(o.threads);
-    if (const Validation* v = find_validation(o.file)) return validate(*v, full, o.quiet);
+    if (const Validation* v = find_validation(o.file))
+        return validate(*v, {.full = full, .device = *device_of(o.device)}, o.quiet);
     if (full && std::filesystem::exists(o.file)) {
         std::fprintf(stderr, "hilda: error: --full: is for validations, and %s is a file\n", o.file.c_str());
         return usage;

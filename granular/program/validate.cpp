@@ -10,7 +10,7 @@ namespace hilda::granular {
 
 namespace {
 
-enum Exit { all_met = 0, numerical = 4, not_met = 6 };
+enum Ends { all_met = 0, lost = 4, not_met = 6, without_device = 7 };
 
 std::string shown(const ValidationTable::Cell& cell)
 {
@@ -61,10 +61,8 @@ std::string known_validations()
     return all;
 }
 
-int validate(const Validation& v, bool full, bool quiet)
+int validate(const Validation& v, ValidationOptions options, bool quiet)
 {
-    ValidationOptions options;
-    options.full = full;
     const bool show = !quiet && isatty(STDERR_FILENO) != 0;
     if (show) options.progress = [](double part) { std::fprintf(stderr, "\rhilda: %3.0f %%", 100 * part); };
     const auto clear = [&] {
@@ -76,7 +74,11 @@ int validate(const Validation& v, bool full, bool quiet)
     } catch (const ParticleLost& e) {
         clear();
         std::fprintf(stderr, "hilda: error[particle_lost]: %s: %s\n", v.name.c_str(), e.what());
-        return numerical;
+        return lost;
+    } catch (const DeviceError& e) {
+        clear();
+        std::fprintf(stderr, "hilda: error: --device: %s\n", e.what());
+        return without_device;
     }
     clear();
     std::vector<std::vector<std::string>> lines = {{"measured", "least", "most", "", "what"}};

@@ -45,12 +45,12 @@ Particle resting()
     return p;
 }
 
-WorldOptions world_options()
+WorldOptions world_options(Device device = {})
 {
     WorldOptions o;
     o.low = {-1, -1, -1}, o.high = {15, 1, 2};
     o.gravity = {0, 0, -g};
-    o.h = h;
+    o.h = h, o.device = device;
     return o;
 }
 
@@ -89,9 +89,9 @@ struct Slide {
     double most_friction = 0;   ///< largest |F_t|/(μ |F_n|) of all steps
 };
 
-Slide slide(double mu, bool incremental, ValidationTable* motion)
+Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
 {
-    World world(world_options(), {soft()});
+    World world(world_options(device), {soft()});
     world.set_law(0, 0, law(mu, incremental));
     world.add(Boundary{});
     world.set_omega_locked(true);
@@ -129,7 +129,7 @@ ValidationResult run(const ValidationOptions& options)
         for (const double mu : frictions()) {
             options.progress(done++ / 18);
             if (by_increments && !options.full && mu < 0.39) continue;  // the normal force rests: one law
-            const Slide s = slide(mu, by_increments, by_increments ? nullptr : &motion);
+            const Slide s = slide(mu, by_increments, options.device, by_increments ? nullptr : &motion);
             const double d = v_i * v_i / (2 * mu * g), of_double = in_double(mu, by_increments),
                          spring = with_spring(mu), difference = s.way / d - 1;
             table.rows.push_back({by_increments ? "mindlin-incremental" : "mindlin", mu, s.way, d, difference,

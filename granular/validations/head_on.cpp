@@ -43,12 +43,12 @@ struct Meeting {
     double drift = 0;   ///< velocity of their centre of mass [m/s]
 };
 
-WorldOptions weightless(double h, Scheme scheme, double wide)
+WorldOptions weightless(double h, Scheme scheme, double wide, Device device = {})
 {
     WorldOptions o;
     o.low = {-3, -3, -3}, o.high = {3, wide, 3};
     o.gravity = {0, 0, 0};
-    o.h = h, o.scheme = scheme;
+    o.h = h, o.scheme = scheme, o.device = device;
     return o;
 }
 
@@ -86,9 +86,9 @@ double rebound(const Meeting& m, Scheme scheme, double h, bool clamped = false)
 }
 
 /// A world with such meetings, 4 m apart; all of one restitution
-World world_of(const std::vector<Meeting>& all, Scheme scheme, double h)
+World world_of(const std::vector<Meeting>& all, Scheme scheme, double h, Device device)
 {
-    World world(weightless(h, scheme, 4 * static_cast<double>(all.size())), {soft()});
+    World world(weightless(h, scheme, 4 * static_cast<double>(all.size()), device), {soft()});
     world.set_law(0, 0, law(all[0].restitution, false));
     for (std::size_t k = 0; k < all.size(); ++k)
         for (Particle p : approaching(all[k])) {
@@ -99,9 +99,9 @@ World world_of(const std::vector<Meeting>& all, Scheme scheme, double h)
 }
 
 /// |v_end/v_i| of each
-std::vector<double> rebounds(const std::vector<Meeting>& all, Scheme scheme, double h)
+std::vector<double> rebounds(const std::vector<Meeting>& all, Scheme scheme, double h, Device device)
 {
-    World world = world_of(all, scheme, h);
+    World world = world_of(all, scheme, h, device);
     std::vector<double> out(all.size());
     for (bool parted = false; !parted && world.t() < end;) {
         world.step(std::lround(0.01 / h));
@@ -117,12 +117,13 @@ std::vector<double> rebounds(const std::vector<Meeting>& all, Scheme scheme, dou
 struct Momentum {
     double of_step = 0, of_all = 0;
 };
-Momentum lost(double drift)
+Momentum lost(double drift, Device device)
 {
     const double ulp = std::ldexp(1, -23);
     Momentum lost;
     for (const double e : restitutions()) {
-        World world = world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text);
+        World world =
+            world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text, device);
         double start = std::nan(""), last = start;
         while (world.t() < 0.1) {
             world.step();
@@ -153,7 +154,7 @@ double fitted(const std::vector<double>& h, const std::vector<double>& e)
 struct Worst {
     double world = 0, in_double = 0, apart = 0;
 };
-Worst worst(Scheme scheme, double h, int places, bool in_world)
+Worst worst(Scheme scheme, double h, int places, bool in_world, Device device)
 {
     Worst out;
     if (!in_world) out.world = std::nan("");
@@ -167,7 +168,7 @@ Worst worst(Scheme scheme, double h, int places, bool in_world)
             out.in_double = std::max(out.in_double, std::abs(in_double.back() - e));
         }
         if (!in_world) continue;
-        const std::vector<double> v = rebounds(all, scheme, h);
+        const std::vector<double> v = rebounds(all, scheme, h, device);
         for (std::size_t k = 0; k < all.size(); ++k) {
             out.world = std::max(out.world, std::abs(v[k] - e));
             out.apart = std::max(out.apart, std::abs(v[k] - in_double[k]));
@@ -191,14 +192,14 @@ ValidationResult run(const ValidationOptions& options)
     double apart = 0, share = 0;
     for (const Named& s : schemes) {
         for (const double e : restitutions()) {
-            const double v = rebounds({{e}}, s.scheme, step_of_text)[0],
+            const double v = rebounds({{e}}, s.scheme, step_of_text, options.device)[0],
                          in_double = rebound({e}, s.scheme, step_of_text);
             at_text.rows.push_back({s.name, step_of_text, e, v, v - e, in_double, in_double - e});
         }
         std::vector<double> errors;
         for (const double h : steps) {
             const bool in_world = options.full || h > 2e-6 || s.scheme == Scheme::symplectic_euler;
-            const Worst w = worst(s.scheme, h, places, in_world);
+            const Worst w = worst(s.scheme, h, places, in_world, options.device);
             const auto n = errors.size();
             const double order =
                 n == 0 ? std::nan("") : std::log(w.in_double / errors[n - 1]) / std::log(h / steps[n - 1]);
@@ -225,7 +226,7 @@ ValidationResult run(const ValidationOptions& options)
                     {"rebound without tension, above a COR of " + std::to_string(e).substr(0, 3), v - e,
                      gain - 1e-3, gain + 1e-3});
     }
-    const Momentum still = lost(0), drifting = lost(0.37);
+    const Momentum still = lost(0, options.device), drifting = lost(0.37, options.device);
     result.checks.push_back({"momentum of a pair, largest change in a step [ulp]", drifting.of_step, 0, 1});
     result.checks.push_back({"momentum of a pair, largest change in a run [ulp]", drifting.of_all, 0, 1});
     result.checks.push_back({"momentum of a symmetric pair [ulp]", still.of_all, 0, 0});

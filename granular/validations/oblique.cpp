@@ -31,12 +31,12 @@ constexpr double sliding_omega = 2.5 * mu * (1 + e) * v_n / R;
 /// From here on it slides throughout [deg]
 double critical() { return std::atan(3.5 * mu * (1 + e)) * 180 / std::numbers::pi; }
 
-WorldOptions options_of(double h, double wide)
+WorldOptions options_of(double h, double wide, Device device = {})
 {
     WorldOptions o;
     o.low = {-1, -1, -1}, o.high = {8, wide, 3};
     o.gravity = {0, 0, 0};
-    o.h = h;
+    o.h = h, o.device = device;
     return o;
 }
 
@@ -80,9 +80,9 @@ Leaving in_double(double angle, double h, int which)
 }
 
 /// All angles side by side in one world
-std::vector<Leaving> in_world(const std::vector<double>& angles, int which)
+std::vector<Leaving> in_world(const std::vector<double>& angles, int which, Device device)
 {
-    World world(options_of(step, 2 * static_cast<double>(angles.size())), {soft()});
+    World world(options_of(step, 2 * static_cast<double>(angles.size()), device), {soft()});
     world.set_law(0, 0, law(which));
     world.add(Boundary{});
     for (std::size_t k = 0; k < angles.size(); ++k) {
@@ -113,14 +113,15 @@ struct Worst {
 };
 
 /// World beside double precision and the closed form
-ValidationTable compare(const std::vector<double>& angles, Worst& worst, const std::function<void()>& done)
+ValidationTable compare(const std::vector<double>& angles, Device device, Worst& worst,
+                        const std::function<void()>& done)
 {
     ValidationTable table = {"study",
                              {"law", "from_normal", "from_surface", "e_t", "omega", "e_t_double",
                               "omega_double", "e_t_sliding", "omega_sliding", "energy"},
                              {}};
     for (const int which : {0, 1}) {
-        const std::vector<Leaving> of_world = in_world(angles, which);
+        const std::vector<Leaving> of_world = in_world(angles, which, device);
         for (std::size_t k = 0; k < angles.size(); ++k) {
             const double theta = angles[k];
             const Leaving &w = of_world[k], d = in_double(theta, step, which);
@@ -201,7 +202,8 @@ ValidationResult run(const ValidationOptions& options)
     const auto done = [&] { options.progress(++part / parts); };
     Worst worst;
     ValidationResult result;
-    result.tables = {compare(angles, worst, done), reference(degrees, done), refine(result.checks, done)};
+    result.tables = {compare(angles, options.device, worst, done), reference(degrees, done),
+                     refine(result.checks, done)};
     result.checks.insert(
         result.checks.begin(),
         {{"e_t from the closed form where it slides, relative", worst.sliding_e_t, 0, 1e-4},

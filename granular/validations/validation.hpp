@@ -16,7 +16,8 @@
 namespace hilda::granular {
 
 struct ValidationOptions {
-    bool full = false;  ///< every value of the dissertation; else those that say most, in less time
+    bool full = false;   ///< every value of the dissertation; else those that say most, in less time
+    Device device = {};  ///< of every World
     std::function<void(double)> progress = [](double) {};  ///< told the share that is done
 };
 

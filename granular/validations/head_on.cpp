@@ -160,6 +160,7 @@ Worst worst(Scheme scheme, double h, int places, bool in_world, Device device)
     if (!in_world) out.world = std::nan("");
     for (const double e : restitutions()) {
         std::vector<Meeting> all;
+        all.reserve(places);
         for (int k = 0; k < places; ++k)
             all.push_back({.restitution = e, .before = 2 * h * v_i * k / places});
         std::vector<double> in_double;

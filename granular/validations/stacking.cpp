@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The mass of a sphere that brings two others down, over the resistance to rolling (Fang 2022, Fig. 7.7).
+///
+/// The text gives no coefficient of friction. 0.158 is what the masses say where rolling does not matter: those of all
+/// five gaps, in the author's public data (GPU_postprocessing, pyramid_stack.csv), are demanded here.
+
+#include "granular/validations/three_spheres.hpp"
+#include "granular/validations/validation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hilda::granular {
+
+namespace {
+
+constexpr double mu = 0.158;
+
+struct Model {
+    std::string name;
+    StackRun run;
+    double lever_ground;  ///< of the torque that bounds rolling, over R; between spheres it is a half
+};
+const std::array<Model, 3> models = {
+    Model{"constant torque, R/2", {.rolling = StackRolling::half_radius}, 0.5},
+    Model{"EPSD, R/2", {.rolling = StackRolling::epsd, .ground = 0.5}, 0.5},
+    Model{"EPSD, R*", {.rolling = StackRolling::epsd}, 1}};
+
+struct Plateau {
+    double gap, mass;  ///< [kg]
+};
+constexpr std::array<Plateau, 5> demanded = {
+    {{0.20, 1.00}, {0.25, 0.94}, {0.30, 0.90}, {0.35, 0.85}, {0.40, 0.81}}};
+
+std::vector<double> all_mu_r(bool full)
+{
+    if (!full) return {0.07, 0.10, 0.13, 0.16, 0.20, 0.40};
+    std::vector<double> all;
+    for (int k = 7; k <= 20; ++k) all.push_back(k / 100.);
+    all.insert(all.end(), {0.3, 0.4});
+    return all;
+}
+
+/// What one curve, critical mass over μ_r, says
+struct Curve {
+    std::vector<double> mu_r, mass;
+
+    double plateau() const { return mass.back(); }
+    /// Where it comes to a step's width of its plateau, between two points on the line through them
+    double knee() const
+    {
+        const double level = plateau() - 0.01;
+        for (std::size_t k = 1; k < mass.size(); ++k)
+            if (mass[k] >= level && mass[k - 1] < level)
+                return mu_r[k - 1] +
+                       (mu_r[k] - mu_r[k - 1]) * (level - mass[k - 1]) / (mass[k] - mass[k - 1]);
+        return mu_r.front();
+    }
+    /// Least rise from a point to the next, of those below the knee
+    double least_rise() const
+    {
+        double least = mass[1] - mass[0];
+        for (std::size_t k = 1; k < mass.size() && mu_r[k] <= knee(); ++k)
+            least = std::min(least, mass[k] - mass[k - 1]);
+        return least;
+    }
+};
+
+std::string of_gap(const std::string& what, double gap)
+{
+    return what + ", gap " + std::to_string(gap).substr(0, 4) + " R";
+}
+
+/// Where the masses at these coefficients of friction come to `mass`
+double friction_at(const std::vector<double>& mus, const std::vector<double>& masses, double mass)
+{
+    for (std::size_t k = 1; k < mus.size(); ++k)
+        if (masses[k] >= mass)
+            return mus[k - 1] + (mus[k] - mus[k - 1]) * (mass - masses[k - 1]) / (masses[k] - masses[k - 1]);
+    return std::nan("");
+}
+
+class Stacking {
+public:
+    explicit Stacking(const ValidationOptions& options) : options(options), mu_r(all_mu_r(options.full)) {}
+
+    ValidationResult run()
+    {
+        for (const Plateau& p : demanded)
+            if (options.full || std::lround(100 * p.gap) % 10 == 0) plateaus.push_back(p);
+        find_masses();
+        judge_curves();
+        find_friction();
+        judge_bisection();
+        return {.tables = {study, friction}, .checks = checks};
+    }
+
+private:
+    void find_masses()
+    {
+        std::vector<Stack> stacks;
+        for (const Plateau& p : plateaus)
+            for (const double r : mu_r) stacks.push_back({p.gap, mu, r});
+        for (std::size_t m = 0; m < models.size(); ++m) {
+            masses[m] = critical_masses(stacks, models[m].run,
+                                        [&](double share) { tell(0.25 * (double(m) + share)); });
+            for (std::size_t k = 0; k < stacks.size(); ++k) {
+                const Stack& s = stacks[k];
+                study.rows.push_back({models[m].name, s.gap, s.mu_r, s.mu, masses[m][k],
+                                      static_limit(s, models[m].lever_ground, 0.5)});
+            }
+        }
+    }
+
+    Curve curve(std::size_t model, std::size_t gap) const
+    {
+        const auto first = masses[model].begin() + static_cast<std::ptrdiff_t>(gap * mu_r.size());
+        return {mu_r, {first, first + static_cast<std::ptrdiff_t>(mu_r.size())}};
+    }
+
+    void judge_curves()
+    {
+        double apart = 0, more = 0, least = 10, most = 0;
+        for (std::size_t k = 0; k < plateaus.size(); ++k) {
+            const auto [gap, mass] = plateaus[k];
+            const Curve c = curve(0, k), same = curve(1, k), longer = curve(2, k);
+            checks.push_back({of_gap("plateau [kg]", gap), c.plateau(), 0.97 * mass, 1.03 * mass});
+            checks.push_back({of_gap("mu_r of the knee", gap), c.knee(), 0.13, 0.17});
+            checks.push_back({of_gap("least rise below the knee [kg]", gap), c.least_rise(), 0.005, 1});
+            more = k == 0 ? longer.mass[0] - c.mass[0] : std::min(more, longer.mass[0] - c.mass[0]);
+            for (std::size_t j = 0; j < mu_r.size(); ++j) {
+                apart = std::max(apart, std::abs(same.mass[j] - c.mass[j]));
+                const double of_static = c.mass[j] / static_limit({gap, mu, mu_r[j]}, 0.5, 0.5);
+                least = std::min(least, of_static), most = std::max(most, of_static);
+            }
+        }
+        checks.push_back({"least mass over the static limit", least, 0.9, 1.05});
+        checks.push_back({"largest mass over the static limit", most, 0.9, 1.05});
+        checks.push_back({"EPSD with R* holds more at mu_r = 0.07, at least [kg]", more, 0.01, 3});
+        checks.push_back({"EPSD of the same bounds apart, at most [kg]", apart, 0, 0.0301});
+    }
+
+    void find_friction()
+    {
+        const std::vector<double> mus = {0.15, 0.155, 0.16, 0.165};
+        std::vector<Stack> stacks;
+        for (const Plateau& p : plateaus)
+            for (const double m : mus) stacks.push_back({p.gap, m, 0.4});
+        const std::vector<double> found =
+            critical_masses(stacks, models[0].run, [&](double share) { tell(0.75 + 0.1 * share); });
+        for (std::size_t k = 0; k < stacks.size(); ++k)
+            friction.rows.push_back({stacks[k].gap, stacks[k].mu, found[k], static_limit(stacks[k], 0.5, 0.5),
+                                     plateaus[k / mus.size()].mass});
+        for (std::size_t k = 0; k < plateaus.size(); ++k) {
+            const auto first = found.begin() + static_cast<std::ptrdiff_t>(k * mus.size());
+            const double at =
+                friction_at(mus, {first, first + static_cast<std::ptrdiff_t>(mus.size())}, plateaus[k].mass);
+            checks.push_back({of_gap("mu of the plateau", plateaus[k].gap), at, 0.99 * mu, 1.01 * mu});
+        }
+    }
+
+    /// More than the critical mass comes down and less is held, near it and far from it; half of the step changes nothing.
+    void judge_bisection()
+    {
+        std::vector<Stack> stacks;
+        std::vector<double> mass;
+        int expected = 0, fell = 0;
+        for (std::size_t k = 0; k < plateaus.size(); ++k)
+            for (std::size_t j = 0; j < mu_r.size(); j += 2)
+                for (const double off : {-0.1, -0.03, 0.02, 0.1}) {
+                    stacks.push_back({plateaus[k].gap, mu, mu_r[j]});
+                    mass.push_back(masses[0][k * mu_r.size() + j] + off);
+                    expected += off > 0;
+                }
+        const std::vector<double> z = heights(stacks, mass, models[0].run);
+        int wrong = 0;
+        for (std::size_t k = 0; k < z.size(); ++k) {
+            const bool falls = z[k] < come_down;
+            fell += falls;
+            wrong += falls != (k % 4 >= 2);
+        }
+        checks.push_back({"stacks that fell", double(fell), double(expected), double(expected)});
+        checks.push_back({"stacks on the wrong side of their critical mass", double(wrong), 0, 0});
+        tell(0.9);
+
+        StackRun finer = models[0].run;
+        finer.h /= 2;
+        const double coarse[] = {masses[0][1], masses[0][mu_r.size() - 1]};
+        const std::vector<double> fine =
+            critical_masses({{plateaus[0].gap, mu, mu_r[1]}, {plateaus[0].gap, mu, mu_r.back()}}, finer,
+                            [&](double share) { tell(0.9 + 0.1 * share); });
+        for (int k = 0; k < 2; ++k)
+            checks.push_back(
+                {std::string("change by half of the step, ") + (k == 0 ? "rolling" : "sliding") + " [kg]",
+                 std::abs(fine[k] - coarse[k]), 0, 0.0101});
+    }
+
+    void tell(double share) const { options.progress(share); }
+
+    const ValidationOptions& options;
+    std::vector<double> mu_r;
+    std::vector<Plateau> plateaus;
+    std::array<std::vector<double>, models.size()> masses;
+    ValidationTable study{"study", {"rolling", "gap", "mu_r", "mu", "critical_mass", "static_limit"}, {}},
+        friction{"friction", {"gap", "mu", "critical_mass", "static_limit", "demanded"}, {}};
+    std::vector<ValidationCheck> checks;
+};
+
+const bool enrolled = enrol({"stacking", "Fig. 7.7: critical mass of the upper of three spheres",
+                             [](const ValidationOptions& options) { return Stacking(options).run(); }});
+
+}  // namespace
+
+}  // namespace hilda::granular

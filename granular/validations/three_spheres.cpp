@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/validations/three_spheres.hpp"
+
+#include "granular/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace hilda::granular {
+
+namespace {
+
+constexpr double R = 0.15, g = 9.81;
+constexpr int grams = 10, heaviest = 256;  // a step, and what brings every stack down, in steps
+
+Material stuff(const std::string& name) { return {name, 1000, 2e6, 0.3}; }
+
+PairLaw law(const Stack& stack, const StackRun& run, bool ground)
+{
+    const Material m = stuff("");
+    const auto c = static_cast<float>(damping(0.4)), mu = static_cast<float>(stack.mu);
+    const auto mu_r = static_cast<float>(stack.mu_r * (ground ? run.ground : 1));
+    PairLaw law;
+    law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(m, m)), .c = c};
+    law.tangential = Mindlin{.spring = {.k_t = static_cast<float>(8 * effective_shear_modulus(m, m)), .c = c},
+                             .cap = {mu, mu}};
+    if (run.rolling == StackRolling::half_radius)
+        law.rolling = ConstantTorque{.mu_r = mu_r, .slow = 1e-4f, .half_radius = 1};
+    else
+        law.rolling = Epsd{.mu_r = mu_r, .eta_r = 0.3f};
+    return law;
+}
+
+/// A material for every pair of coefficients, and the ground after them
+class Materials {
+public:
+    explicit Materials(const std::vector<Stack>& stacks)
+    {
+        for (const Stack& s : stacks) number.try_emplace({s.mu, s.mu_r}, static_cast<int>(number.size()));
+    }
+    int of(const Stack& s) const { return number.at({s.mu, s.mu_r}); }
+    int ground() const { return static_cast<int>(number.size()); }
+
+    World world(const WorldOptions& options, const StackRun& run) const
+    {
+        World world(options, std::vector<Material>(number.size() + 1, stuff("sphere")));
+        for (const auto& [of, k] : number) {
+            const Stack s{.gap = 0, .mu = of.first, .mu_r = of.second};
+            for (int other = 0; other <= k; ++other) world.set_law(k, other, law(s, run, false));
+            world.set_law(k, ground(), law(s, run, true));
+        }
+        return world;
+    }
+
+private:
+    std::map<std::pair<double, double>, int> number;
+};
+
+}  // namespace
+
+std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<double>& top,
+                            const StackRun& run)
+{
+    WorldOptions options;
+    options.low = {-8 * R, -2 * R, -R}, options.high = {8 * R, 2 * R, 5 * R};
+    options.gravity = {0, 0, -g}, options.h = run.h;
+    const Materials materials(stacks);
+    World world = materials.world(options, run);
+    world.add(Boundary{.material = materials.ground()});
+    const std::size_t n = stacks.size();
+    Particle p;
+    p.radius = R;
+    for (std::size_t k = 0; k < n; ++k) {
+        p.mass = 1, p.material = materials.of(stacks[k]), p.replica = static_cast<std::uint16_t>(k);
+        for (const double side : {-1., 1.}) {
+            p.r = {side * R * (1 + stacks[k].gap / 2), 0, R};
+            world.add(p);
+        }
+    }
+    world.step(std::lround(run.settle / run.h));
+
+    // it touches both, and presses on neither
+    const std::vector<Particle> settled = world.particles();
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec3 left = settled[2 * k].r, right = settled[2 * k + 1].r;
+        const double half = (right.x - left.x) / 2;
+        p.mass = top[k], p.material = materials.of(stacks[k]), p.replica = static_cast<std::uint16_t>(k);
+        p.r = {(left.x + right.x) / 2, 0, (left.z + right.z) / 2 + std::sqrt(4 * R * R - half * half)};
+        world.add(p);
+    }
+    world.step(std::lround(run.watch / run.h));
+
+    const std::vector<Particle> now = world.particles();
+    std::vector<double> z(n);
+    for (std::size_t k = 0; k < n; ++k) z[k] = now[2 * n + k].r.z / R;
+    return z;
+}
+
+std::vector<double> critical_masses(const std::vector<Stack>& stacks, const StackRun& run,
+                                    const std::function<void(double)>& progress)
+{
+    const std::size_t n = stacks.size();
+    std::vector<int> holds(n, 0), falls(n, heaviest);
+    std::vector<double> mass(n);
+    for (int width = heaviest; width > 1; width /= 2) {
+        for (std::size_t k = 0; k < n; ++k) mass[k] = (holds[k] + falls[k]) / 2 * grams / 1000.;
+        const std::vector<double> z = heights(stacks, mass, run);
+        for (std::size_t k = 0; k < n; ++k)
+            (z[k] < come_down ? falls[k] : holds[k]) = (holds[k] + falls[k]) / 2;
+        progress(1 - std::log2(width / 2.) / std::log2(heaviest));
+    }
+    for (std::size_t k = 0; k < n; ++k) mass[k] = falls[k] * grams / 1000.;
+    return mass;
+}
+
+/// With W half of the weight of the upper sphere, θ the slope of the line of centres against the vertical and the friction
+/// between the spheres at its bound, what presses the spheres together is N = W/(cos θ + μ sin θ). The ground holds
+/// N (sin θ - μ cos θ), or the lower spheres slide away; and they roll away when that, on the lever R, is more than
+/// μ N R and the torques of rolling.
+double static_limit(const Stack& s, double lever_ground, double lever_top)
+{
+    const double sine = (1 + s.gap / 2) / 2, cosine = std::sqrt(1 - sine * sine);
+    const double N = 1 / (cosine + s.mu * sine);  // of W = 1
+    const double pushes = N * (sine - s.mu * cosine);
+    const double slides = pushes > s.mu ? s.mu / (pushes - s.mu) : std::numeric_limits<double>::infinity();
+    const double torque = s.mu_r * lever_ground;
+    const double excess = pushes - s.mu * N - s.mu_r * lever_top * N - torque;
+    return 2 * (excess > 0 ? std::min(slides, torque / excess) : slides);
+}
+
+}  // namespace hilda::granular

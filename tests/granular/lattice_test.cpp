@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A lattice of spheres that is pressed upon: what its floor feels.                           Fang (2022), Sec. 7.2.1
+#include "granular/validations/lattice.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+using namespace hilda::granular;
+
+TEST_CASE("a lattice hands on what it weighs and what presses it, with friction straight down (long)",
+          "[granular][lattice]")
+{
+    const std::vector<Press> of = {{Stiffness::linear, 0.2, 5}, {Stiffness::linear, 0, 20}};
+    const std::vector<Pressed> pressed = press(of, {.h = 5e-5, .settle = 0.8, .ramp = 0.2, .hold = 0.2});
+    for (std::size_t n = 0; n < of.size(); ++n) {
+        const Pressed::At& now = pressed[n].after;
+        const auto share = pressed[n].share(of[n].F);
+        const double floor = std::accumulate(now.floor.begin(), now.floor.end(), 0.);
+        CHECK(floor + now.sides == Approx(lattice::spheres + of[n].F).epsilon(2e-3));
+        for (int k = 1; k <= lattice::middle; ++k)
+            CHECK(share[lattice::middle + k] == Approx(share[lattice::middle - k]).margin(2e-3));
+        const auto peak = std::max_element(share.begin(), share.end()) - share.begin();
+        const double centre = share[lattice::middle];
+        if (of[n].mu > 0) {
+            CHECK(std::abs(peak - lattice::middle) <= 1);
+            CHECK(centre == Approx(0.065).margin(0.005));
+        } else {
+            CHECK(std::abs(peak - lattice::middle) >= 5);
+            CHECK(std::abs(peak - lattice::middle) <= 7);
+            CHECK(centre < 0.03);
+        }
+    }
+}

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/validations/lattice.hpp"
 
-#include "granular/world.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -106,7 +104,7 @@ private:
         walls = static_cast<int>(materials.size());
         WorldOptions options;
         options.low = {-half_width - R, -2 * R, -R}, options.high = {half_width + R, 2 * R, 32 * R};
-        options.gravity = {0, 0, -g}, options.h = run.h;
+        options.gravity = {0, 0, -g}, options.h = run.h, options.device = run.device;
         World world(options, std::vector<Material>(materials.size() + 1, {"sphere", density, 1e7, 0.3}));
         for (const auto& [of, k] : materials) {
             for (int other = 0; other <= k; ++other) world.set_law(k, other, law(of.first, of.second, false));

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "granular/world.hpp"
+
 #include <array>
 #include <functional>
 #include <vector>
@@ -28,6 +30,7 @@ struct Press {
 struct PressRun {
     double h = 1e-5;                        ///< [s]
     double settle = 2, ramp = 2, hold = 2;  ///< without F, while it grows, and at its full size [s]
+    Device device = {};
 };
 
 /// Of one lattice before F and at the end; forces over the weight of a sphere

@@ -22,7 +22,7 @@ struct Model {
     StackRun run;
     double lever_ground;  ///< of the torque that bounds rolling, over R; between spheres it is a half
 };
-const std::array<Model, 3> models = {
+const std::array<Model, 3> rolling_models = {
     Model{"constant torque, R/2", {.rolling = StackRolling::half_radius}, 0.5},
     Model{"EPSD, R/2", {.rolling = StackRolling::epsd, .ground = 0.5}, 0.5},
     Model{"EPSD, R*", {.rolling = StackRolling::epsd}, 1}};
@@ -83,7 +83,11 @@ double friction_at(const std::vector<double>& mus, const std::vector<double>& ma
 
 class Stacking {
 public:
-    explicit Stacking(const ValidationOptions& options) : options(options), mu_r(all_mu_r(options.full)) {}
+    explicit Stacking(const ValidationOptions& options)
+        : options(options), mu_r(all_mu_r(options.full)), models(rolling_models)
+    {
+        for (Model& m : models) m.run.device = options.device;
+    }
 
     ValidationResult run()
     {
@@ -201,7 +205,8 @@ private:
     const ValidationOptions& options;
     std::vector<double> mu_r;
     std::vector<Plateau> plateaus;
-    std::array<std::vector<double>, models.size()> masses;
+    std::array<Model, 3> models;
+    std::array<std::vector<double>, 3> masses;
     ValidationTable study{"study", {"rolling", "gap", "mu_r", "mu", "critical_mass", "static_limit"}, {}},
         friction{"friction", {"gap", "mu", "critical_mass", "static_limit", "demanded"}, {}};
     std::vector<ValidationCheck> checks;

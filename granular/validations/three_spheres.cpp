@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/validations/three_spheres.hpp"
 
-#include "granular/world.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,7 +63,7 @@ std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<
 {
     WorldOptions options;
     options.low = {-8 * R, -2 * R, -R}, options.high = {8 * R, 2 * R, 5 * R};
-    options.gravity = {0, 0, -g}, options.h = run.h;
+    options.gravity = {0, 0, -g}, options.h = run.h, options.device = run.device;
     const Materials materials(stacks);
     World world = materials.world(options, run);
     world.add(Boundary{.material = materials.ground()});

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "granular/world.hpp"
+
 #include <functional>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct StackRun {
     double ground = 1;               ///< factor on μ_r at the ground
     double h = 1e-5;                 ///< [s]
     double settle = 0.5, watch = 2;  ///< before and after the third sphere is there [s]
+    Device device = {};
 };
 
 /// Height of the upper sphere's centre at the end, over the radius, for its mass [kg]; all stacks at once

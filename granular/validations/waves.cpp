@@ -109,7 +109,7 @@ std::vector<ValidationCheck> judge(const std::vector<Profile>& all)
 ValidationResult waves(const ValidationOptions& options)
 {
     const std::vector<Press> of = lattices(options.full);
-    PressRun run{.h = 5e-5};  // 2e-5 s changes the shares by 2e-4 at most
+    PressRun run{.h = 5e-5, .device = options.device};  // 2e-5 s changes the shares by 2e-4 at most
     if (!options.full) run.ramp = run.hold = 0.5;
     const std::vector<Pressed> pressed = press(of, run, options.progress);
 

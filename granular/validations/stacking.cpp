@@ -212,7 +212,7 @@ private:
     std::vector<ValidationCheck> checks;
 };
 
-const bool enrolled = enrol({"stacking", "Fig. 7.7: critical mass of the upper of three spheres",
+const bool enrolled = enrol({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
                              [](const ValidationOptions& options) { return Stacking(options).run(); }});
 
 }  // namespace

@@ -134,7 +134,7 @@ ValidationResult waves(const ValidationOptions& options)
 }
 
 const bool enrolled =
-    enrol({"waves", "Figs. 7.9, 7.10: a force on a lattice of spheres, at its floor", waves});
+    enrol({"waves", "a force on a lattice of spheres, at its floor (Figs. 7.9, 7.10)", waves});
 
 }  // namespace
 

@@ -38,16 +38,28 @@ void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes)
     if (bytes > 0) std::memcpy(to, from, bytes);
 }
 
+namespace {
+
+constexpr std::size_t few = 2048;  // not worth waking threads for
+
+}
+
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n)
 {
     out[0] = 0;
-    thrust::inclusive_scan(thrust::device, in, in + n, out + 1);
+    if (n <= few)
+        thrust::inclusive_scan(thrust::seq, in, in + n, out + 1);
+    else
+        thrust::inclusive_scan(thrust::device, in, in + n, out + 1);
     return out[n];
 }
 
 void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n)
 {
-    thrust::stable_sort_by_key(thrust::device, keys, keys + n, values);
+    if (n <= few)
+        thrust::stable_sort_by_key(thrust::seq, keys, keys + n, values);
+    else
+        thrust::stable_sort_by_key(thrust::device, keys, keys + n, values);
 }
 
 }  // namespace hilda::granular::par

@@ -29,10 +29,11 @@ struct Boundary {
     std::int32_t material = 0;
 
     // A tool: a body that moves by what touches it, its weight and F. A mass of 0 is one that moves as it is told.
-    double mass = 0;                                ///< [kg]
-    double inertia = 0;                             ///< about r, whatever the axis [kg m²]; 0: does not turn
     std::array<bool, 3> free = {true, true, true};  ///< along x, y, z
-    Vec3 F = {0, 0, 0};                             ///< [N]
+    bool unused = false;  ///< no byte is left to chance: boundaries are compared and written as they are
+    double mass = 0;      ///< [kg]
+    double inertia = 0;   ///< about r, whatever the axis [kg m²]; 0: does not turn
+    Vec3 F = {0, 0, 0};   ///< [N]
 
     HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };

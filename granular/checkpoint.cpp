@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
-constexpr std::uint64_t format = 2;
+constexpr std::uint64_t format = 3;
 constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
 
 /// FNV-1a over words of eight bytes, and over what is left

@@ -23,7 +23,7 @@ struct PairView {
 
     const std::uint32_t *i, *j;
     const std::uint8_t* law;  ///< index into the table of laws; nullptr where there is one
-    Four* history;            ///< u [m], age [s]; zero where they do not touch
+    Four* history;            ///< u [m], age [s], negative while it slides; zero where they do not touch
     Four* turning;            ///< psi and spin; nullptr where no law resists turning
     Load* load;
     Four* torque;  ///< of rolling and spin on i [N m]; nullptr with turning
@@ -96,7 +96,7 @@ HILDA_HD inline bool meet(Touch<float>& t, const Grid& grid, const Position& p, 
     t.R_i = t.R_eff = v.w, t.R_j = 0;
     t.m_eff = 1 / (w.w + b.inverse_mass());
     set_rates(t, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
-              Vec<float>{w.x, w.y, w.z}, Vec<float>{0, 0, 0});
+              Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
     return true;
 }
 

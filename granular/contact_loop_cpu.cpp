@@ -219,7 +219,8 @@ struct Loop {
         const auto u = rows<Pack>(pairs.history, which);
         History<Pack> history;
         history.u = {u.x, u.y, u.z};
-        history.age = u.w + laws.h;
+        history.slid = u.w < Pack(0.f);  // the sign of the age
+        history.age = abs(u.w) + laws.h;
         const bool turning = pairs.turning != nullptr;
         if (turning) {
             const auto psi = rows<Pack>(pairs.turning, which);
@@ -233,7 +234,8 @@ struct Loop {
             store_rows(to_torque, [&](int k) { return &pairs.torque[which[k]]; });
         }
         const Vec<Pack> M = -t.n.cross(out.F_t);
-        const Pack to_history[4] = {history.u.x, history.u.y, history.u.z, history.age};
+        const Pack to_history[4] = {history.u.x, history.u.y, history.u.z,
+                                    select(history.slid, -history.age, history.age)};
         const Pack to_F[4] = {out.F.x, out.F.y, out.F.z, Pack(0.f)}, to_M[4] = {M.x, M.y, M.z, Pack(0.f)};
         store_rows(to_history, [&](int k) { return &pairs.history[which[k]]; });
         store_rows(to_F, [&](int k) { return &pairs.load[which[k]].F; });

@@ -15,7 +15,7 @@ void DoubleWorld::find_loads()
         }
         t.delta = delta, t.h = options.h;
         History<double>& kept =
-            history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0}).first->second;
+            history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
         kept.age += t.h;
         const Answer<double> out = answer(law, t, kept, law.turns());
         const Vec3 M = -t.n.cross(out.F_t);
@@ -38,7 +38,8 @@ void DoubleWorld::find_loads()
             const Nearest near = nearest(boundary[b], p.r);
             t.R_i = t.R_eff = p.radius, t.R_j = 0, t.n = near.n;
             t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
-            set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega, Vec3{0, 0, 0});
+            set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega,
+                      boundary[b].omega);
             if (!p.fixed) meet(i, -1 - b, t, p.radius - near.distance);
         }
     }

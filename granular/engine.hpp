@@ -71,7 +71,7 @@ public:
     virtual std::size_t bytes() const = 0;
 };
 
-/// DeviceError where there is no such device, or this build knows no GPU
+/// DeviceError where there is no such device, or this build knows no GPU. A process uses one GPU, from one thread.
 std::unique_ptr<Engine> make_engine(Device device);
 std::unique_ptr<Engine> make_gpu_engine(int number);
 /// Names of the GPUs that could be used; empty where there are none, and then `why_not` says why.

@@ -54,7 +54,7 @@ struct FindLoad {
         }
         pairs.touches[k] = 1;
         const Four u = pairs.history[k];
-        History<float> history{{u.x, u.y, u.z}, u.w + laws.h, {0, 0, 0}, 0};
+        History<float> history{{u.x, u.y, u.z}, abs(u.w) + laws.h, {0, 0, 0}, 0, u.w < 0};
         if (turning) {
             const Four psi = pairs.turning[k];
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
@@ -62,7 +62,7 @@ struct FindLoad {
         const Answer<float> out =
             answer(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], t, history, turning);
         const Vec<float> M = -t.n.cross(out.F_t);
-        pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.age};
+        pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
         pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {M.x, M.y, M.z, 0}};
         if (!turning) return;
         pairs.turning[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};

@@ -58,6 +58,7 @@ struct Scene {
     float skin = 0;              ///< [m]
     float radius = 0;            ///< of all [m]; 0 where they differ
     std::uint32_t replicas = 1;  ///< systems in the same place that do not see each other
+    std::uint32_t unused = 0;    ///< no byte of a scene is left to chance: it is written as it is
 };
 
 template <class Backend>

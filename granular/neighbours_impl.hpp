@@ -41,7 +41,7 @@ struct Settle {
             cell += cell < 0 ? cells : cell >= cells ? -cells : 0;
             return true;
         }
-        return cell >= 0 && cell < cells;
+        return cell >= 0 && (cell < cells - 1 || (cell == cells - 1 && at <= grid.last[axis]));
     }
 
     HILDA_HD void operator()(std::uint32_t k) const
@@ -231,7 +231,7 @@ struct Restore {
             history[n] = {sign * s.x, sign * s.y, sign * s.z, s.age};
             touches[n] = 1;
             if (turning != nullptr) {
-                const Four t = saved_turning[k];
+                const Four t = saved_turning != nullptr ? saved_turning[k] : Four{};
                 turning[n] = {sign * t.x, sign * t.y, sign * t.z, t.w};
             }
             return true;
@@ -322,7 +322,7 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
                        pairs.j.data(),
                        nullptr,
                        pairs.history.data(),
-                       reach.turning ? pairs.turning.data() : nullptr,
+                       reach.turning && pairs.turning.size() > 0 ? pairs.turning.data() : nullptr,
                        pairs.load.data(),
                        pairs.torque.data(),
                        pairs.touches.data(),
@@ -364,11 +364,11 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
     par::fill(on, pairs.history.data(), pairs.count, Four{});
     par::fill(on, pairs.touches.data(), pairs.count, std::uint8_t{0});
     if (reach.turning) par::fill(on, pairs.turning.data(), pairs.count, Four{});
-    par::for_each(
-        on, before,
-        detail::Restore{reinterpret_cast<const detail::Saved*>(pairs.load.data()), pairs.torque.data(),
-                        where.data(), pairs.start.data(), pairs.j.data(), pairs.history.data(),
-                        reach.turning ? pairs.turning.data() : nullptr, pairs.touches.data()});
+    par::for_each(on, before,
+                  detail::Restore{reinterpret_cast<const detail::Saved*>(pairs.load.data()),
+                                  old.turning != nullptr ? pairs.torque.data() : nullptr, where.data(),
+                                  pairs.start.data(), pairs.j.data(), pairs.history.data(),
+                                  reach.turning ? pairs.turning.data() : nullptr, pairs.touches.data()});
     pairs.load.resize(pairs.count);
     par::fill(on, pairs.load.data(), pairs.count, Load{});
     if (reach.turning) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The few parallel primitives that everything else is made of: here on the CPU, with OpenMP and Thrust; par_gpu.hpp has
+/// The few parallel primitives that everything else is made of: here on the CPU, with OpenMP and Thrust; par_gpu.cuh has
 /// those of CUDA.
 ///
 /// A functor is a struct with raw pointers and `HILDA_HD void operator()(std::uint32_t) const`. The results of all

@@ -51,6 +51,8 @@ struct Grid {
     double unit = 1;            ///< [m]
     std::int32_t cells[3] = {1, 1, 1};
     std::int32_t width[3] = {widest, widest, widest};  ///< of a cell, in units
+    std::int32_t last[3] = {widest, widest,
+                            widest};       ///< how much of the last cell is in the domain, in units
     std::int32_t periodic[3] = {0, 0, 0};  ///< 1 where what leaves on one side enters on the other
 
     HILDA_HD static std::uint32_t pack(std::uint32_t x, std::uint32_t y, std::uint32_t z)

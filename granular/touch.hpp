@@ -23,17 +23,19 @@ struct Touch {
 /// What a contact keeps from step to step; zero where bodies meet
 template <class R>
 struct History {
-    Vec<R> u;    ///< tangential displacement [m]
-    R age;       ///< [s]
-    Vec<R> psi;  ///< rolling displacement [rad]
-    R spin;      ///< twist about n [rad]
+    Vec<R> u;      ///< tangential displacement [m]
+    R age;         ///< [s]
+    Vec<R> psi;    ///< rolling displacement [rad]
+    R spin;        ///< twist about n [rad]
+    Mask<R> slid;  ///< whether the surfaces slid in the step before
 };
 
 /// The answer of a normal law
 template <class R>
 struct Pressing {
     R F;      ///< along n on body i [N]; damping may make it tensile at the end of a contact
-    R scale;  ///< what the tangential stiffness of this law goes by: √(R_eff δ), √(δ/R_eff) or 1
+    R scale;  ///< what the tangential stiffness of this law goes by: √(R_eff δ), √(δ/R) or 1
+    Number<R> power = 0;  ///< scale goes with this power of δ
 };
 
 }  // namespace hilda::granular

@@ -95,9 +95,17 @@ int World::add(const Boundary& b)
 {
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
+    if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
+        refuse("boundary", "place, velocities and force must be finite", b.r.norm() + b.v.norm());
+    const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
+    if (round && !(b.radius > 0 && std::isfinite(b.radius)))
+        refuse("boundary", "the radius must be positive", b.radius);
+    if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
+        refuse("boundary", "axis must be a unit vector; its length", b.axis.norm());
     if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
         refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
     boundaries.push_back(b);
+    laws_changed = true;
     look_again();
     return static_cast<int>(boundaries.size()) - 1;
 }
@@ -121,22 +129,19 @@ std::uint32_t World::add(const Particle& p)
 void World::reserve(std::size_t n) { waiting.reserve(n); }
 
 /// Cells for particles as large as the largest of these
-void World::set_scene(const std::vector<Particle>& all)
+Scene World::scene_of(const std::vector<Particle>& all) const
 {
-    Grid& grid = scene.grid;
+    Scene in;
+    Grid& grid = in.grid;
     double largest = 0;
-    scene.radius = static_cast<float>(all[0].radius);
-    scene.replicas = 1;
+    in.radius = static_cast<float>(all[0].radius);
     for (const Particle& p : all) {
         largest = std::max(largest, 2 * p.radius);
-        if (static_cast<float>(p.radius) != scene.radius) scene.radius = 0;
-        scene.replicas = std::max(scene.replicas, std::uint32_t{p.replica} + 1);
+        if (static_cast<float>(p.radius) != in.radius) in.radius = 0;
+        in.replicas = std::max(in.replicas, std::uint32_t{p.replica} + 1);
     }
-    if (scene.replicas > 1)
-        for (const Boundary& b : boundaries)
-            if (b.mass > 0) refuse("boundary", "one that is free cannot be in all replicas", scene.replicas);
-    scene.skin = static_cast<float>(options.skin * largest);
-    const double edge = largest + scene.skin;
+    in.skin = static_cast<float>(options.skin * largest);
+    const double edge = largest + in.skin;
     const double low[] = {options.low.x, options.low.y, options.low.z},
                  high[] = {options.high.x, options.high.y, options.high.z};
     double widest = edge;
@@ -156,40 +161,62 @@ void World::set_scene(const std::vector<Particle>& all)
         grid.cells[k] = static_cast<std::int32_t>(cells);
         if (options.periodic[k]) widest = std::max(widest, length / cells);
     }
-    const double cells = double(scene.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
+    const double cells = double(in.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
     if (cells > 0x7fffffff) refuse("domain", "has more than 2^31 cells, with all of its replicas", cells);
     grid.unit = widest / Grid::widest;
-    for (int k = 0; k < 3; ++k)
-        grid.width[k] =
-            options.periodic[k]
-                ? static_cast<std::int32_t>(std::lround((high[k] - low[k]) / grid.cells[k] / grid.unit))
-                : static_cast<std::int32_t>(std::lround(edge / grid.unit));
+    for (int k = 0; k < 3; ++k) {
+        const double length = high[k] - low[k];
+        grid.width[k] = static_cast<std::int32_t>(
+            std::lround((options.periodic[k] ? length / grid.cells[k] : edge) / grid.unit));
+        grid.last[k] = static_cast<std::int32_t>(
+            std::lround(length / grid.unit - double(grid.width[k]) * (grid.cells[k] - 1)));
+    }
+    return in;
 }
 
-/// Those that were added since the last step become part of the arrays, which are then in the order of the ids.
-void World::settle_in()
+/// Cells and places in them. ParticleLost for one that had left the domain; InvalidCase for one that was never in it.
+std::vector<Position> World::places(const Scene& in, const std::vector<Particle>& all) const
 {
-    if (waiting.empty()) return;
-    if (laws.empty()) refuse("world", "no law is set for its materials", "none");
-    const std::vector<Particle> all = particles();
-    Arrays<par::Cpu>& a = engine->arrays();
-    set_scene(all);
-    const Grid& grid = scene.grid;
+    const Grid& grid = in.grid;
     std::vector<Position> position(all.size());
-    for (std::size_t k = 0; k < all.size(); ++k) {
+    for (std::uint32_t k = 0; k < all.size(); ++k) {
         std::int32_t cell[3], at[3];
         const double r[] = {all[k].r.x, all[k].r.y, all[k].r.z};
         for (int c = 0; c < 3; ++c) {
-            const double units = (r[c] - grid.low[c]) / grid.unit;
-            const double whole = std::floor(units / grid.width[c]);
-            if (!(whole >= 0 && whole < grid.cells[c]))
-                refuse(name_of(static_cast<std::uint32_t>(k)),
-                       std::string("is outside the domain along ") + "xyz"[c], r[c]);
+            double units = (r[c] - grid.low[c]) / grid.unit;
+            const double length = double(grid.width[c]) * (grid.cells[c] - 1) + grid.last[c];
+            if (grid.periodic[c] != 0) {
+                units -= length * std::floor(units / length);
+            } else if (!(units >= 0 && units <= length)) {
+                if (k >= particles_in)
+                    refuse(name_of(k), std::string("is outside the domain along ") + "xyz"[c], r[c]);
+                const std::uint32_t* id = engine->arrays().particle.id.data();
+                lose(static_cast<std::uint32_t>(std::find(id, id + particles_in, k) - id),
+                     "has left the domain");
+            }
+            const double whole = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
             cell[c] = static_cast<std::int32_t>(whole);
             at[c] = static_cast<std::int32_t>(std::lround(units - whole * grid.width[c]));
         }
         position[k] = {Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]};
     }
+    return position;
+}
+
+/// Those that were added since the last step become part of the arrays, which are then in the order of the ids. What is
+/// refused before that leaves the world as it was.
+void World::settle_in()
+{
+    if (!refused.empty()) throw InvalidCase(refused);
+    if (waiting.empty()) return;
+    if (laws.empty()) refuse("world", "no law is set for its materials", "none");
+    const std::vector<Particle> all = particles();
+    const Scene next = scene_of(all);
+    const std::vector<Position> position = places(next, all);
+    check_laws(all);
+    Arrays<par::Cpu>& a = engine->arrays();
+    const auto first = static_cast<std::uint32_t>(particles_in);
+    scene = next;
 
     // contacts and accelerations of those that are there go on
     Particles<par::Cpu>& p = a.particle;
@@ -206,11 +233,18 @@ void World::settle_in()
     p.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < p.count; ++k) {
         const Particle& one = all[k];
+        const Four v = to_four(one.v, one.radius);
         p.position.data()[k] = position[k];
-        p.velocity.data()[k] = to_four(one.v, one.radius);
+        p.velocity.data()[k] = v;
         p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
-        p.rest.data()[k] = {
+        Rest rest{
             .way = {}, .v = {}, .material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
+        if (k < first) {
+            const Vec3 left = one.v - to_double(v);
+            const double of[] = {left.x, left.y, left.z};
+            for (int c = 0; c < 3; ++c) rest.v[c] = Rest::narrow(static_cast<float>(of[c]));
+        }
+        p.rest.data()[k] = rest;
         p.id.data()[k] = k;
     }
     if (keeps_accelerations(options.scheme)) {
@@ -222,20 +256,29 @@ void World::settle_in()
     particles_in = all.size();
     if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
     engine->written();
-    check_laws();
     look_for_neighbours();
-    check_overlaps();
+    try {
+        check_overlaps(first);
+    } catch (const InvalidCase& e) {
+        refused = e.what();
+        throw;
+    }
 }
 
 /// All materials that may meet have a law.
-void World::check_laws() const
+void World::check_laws(const std::vector<Particle>& particles) const
 {
     const std::size_t n = materials.size();
     std::vector<char> of_particles(n, 0), all(n, 0);
-    const Particles<par::Cpu>& p = engine->arrays().particle;
-    for (std::uint32_t k = 0; k < p.count; ++k) of_particles[p.rest.data()[k].material] = 1;
+    std::uint16_t replica = 0;
+    for (const Particle& p : particles)
+        of_particles[static_cast<std::size_t>(p.material)] = 1, replica = std::max(replica, p.replica);
     all = of_particles;
-    for (const Boundary& b : boundaries) all[static_cast<std::size_t>(b.material)] = 1;
+    for (const Boundary& b : boundaries) {
+        all[static_cast<std::size_t>(b.material)] = 1;
+        if (b.mass > 0 && replica > 0)
+            refuse("boundary", "one that is free cannot be in all replicas, of which the last is", replica);
+    }
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j)
             if (of_particles[i] != 0 && all[j] != 0 && law_of[i * n + j] == no_law)
@@ -243,13 +286,13 @@ void World::check_laws() const
                        "'" + materials[i].name + "' and '" + materials[j].name + "'");
 }
 
-/// Where particles begin, they are not pressed into each other or into a boundary.
-void World::check_overlaps() const
+/// Where particles begin, they are not pressed into each other or into a boundary: those from the first new one on.
+void World::check_overlaps(std::uint32_t first) const
 {
-    if (number > 0) return;
     constexpr double deepest = 0.05;  // of the smaller radius
     const std::vector<Particle> all = particles();
     for (const Contact& c : contacts()) {
+        if (c.i < first && (c.boundary || c.j < first)) continue;
         const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
         if (c.delta > deepest * R)
             refuse(name_of(c.i) + " and " + (c.boundary ? "boundary " + std::to_string(c.j) : name_of(c.j)),
@@ -276,6 +319,8 @@ World::StepLimits World::step_limits() const
                 if constexpr (requires { l.k_n; }) {
                     limits.collision =
                         std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
+                    if (l.gamma_n > 0)  // a dashpot alone is stable up to 2/γ
+                        limits.collision = std::min(limits.collision, M_PI / static_cast<double>(l.gamma_n));
                 } else {
                     const double E_eff = l.E_eff, v = std::max(fastest, 0.1);
                     limits.collision = std::min(limits.collision,
@@ -314,9 +359,12 @@ void World::keep_neighbours()
     look_for_neighbours();
 }
 
-void World::look_for_neighbours()
+void World::look_for_neighbours() const
 {
-    if (laws_changed) engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
+    if (laws_changed) {
+        check_laws(particles());
+        engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
+    }
     laws_changed = false;
     engine->set_boundaries(boundaries);
     try {
@@ -341,7 +389,7 @@ StepOf World::step_of(Part part) const
             .turns = locked_turning ? 0.f : 1.f};
 }
 
-/// Loads give tools their velocities of the next step.
+/// Loads give tools their velocities of the step.
 void World::push_tools()
 {
     if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
@@ -359,7 +407,7 @@ void World::push_tools()
 /// By their velocities; the longest way of a point on one of them within the domain
 double World::move_boundaries()
 {
-    const double h = options.h, across = (options.high - options.low).norm();
+    const double h = options.h;
     double longest = 0;
     for (Boundary& b : boundaries) {
         b.r += h * b.v;
@@ -370,7 +418,12 @@ double World::move_boundaries()
             const Vec3 turned = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
                                 ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
             b.axis = (1 / turned.norm()) * turned;
-            way += angle * across;
+            // the corner of the domain that is farthest from it
+            const Vec3 a = options.low - b.r, c = options.high - b.r;
+            way +=
+                angle * Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
+                             std::max(std::abs(a.z), std::abs(c.z))}
+                            .norm();
         }
         longest = std::max(longest, way);
     }
@@ -420,8 +473,10 @@ void World::one_step()
         }
         lose(worst, "moves more than a cell in a step");
     };
+    // Some schemes go with the velocity of before, some with that of after.
     const auto go = [&](Part part) {
-        const double way = options.h * std::sqrt(static_cast<double>(engine->advance(step_of(part))));
+        const float before = std::exchange(fastest, std::sqrt(engine->advance(step_of(part))));
+        const double way = options.h * static_cast<double>(par::worse(before, fastest));
         limit(way);
         return way;
     };
@@ -433,12 +488,12 @@ void World::one_step()
         moved += go(Part::before_loads);
         moved_boundaries += move_boundaries();
         find_loads();
-        go(Part::after_loads);
         push_tools();
+        go(Part::after_loads);
     } else {
         if (number > 0 || !keeps_accelerations(options.scheme)) find_loads();
-        moved += go(Part::whole);
         push_tools();
+        moved += go(Part::whole);
         moved_boundaries += move_boundaries();
     }
     take(times.advance);
@@ -470,6 +525,11 @@ std::vector<Particle> World::particles() const
 
 std::vector<Contact> World::contacts() const
 {
+    if (!std::isfinite(moved) && particles_in > 0) {
+        look_for_neighbours();
+        moved = std::numeric_limits<
+            double>::infinity();  // and once more before the next step, as it was asked for
+    }
     const Arrays<par::Cpu>& a = engine->arrays();
     const Particles<par::Cpu>& particle = a.particle;
     const Pairs<par::Cpu>& pairs = a.pairs;
@@ -485,12 +545,14 @@ std::vector<Contact> World::contacts() const
     const auto load = copy_of(pairs.load);
     const auto touches = copy_of(pairs.touches);
     const bool turns = turning.size() > 0;
-    find_loads(
-        par::Cpu(), particle_view(scene, particle),
-        {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr, history.data(),
-         turns ? turning.data() : nullptr, load.data(), turns ? torque.data() : nullptr, touches.data(),
-         pairs.count},
-        {laws.data(), static_cast<int>(laws.size()), boundaries.data(), static_cast<float>(options.h)});
+    // histories of velocity Verlet are those of t; of the others, those of the step before
+    const float h =
+        options.scheme == Scheme::velocity_verlet && number > 0 ? 0 : static_cast<float>(options.h);
+    find_loads(par::Cpu(), particle_view(scene, particle),
+               {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr, history.data(),
+                turns ? turning.data() : nullptr, load.data(), turns ? torque.data() : nullptr,
+                touches.data(), pairs.count},
+               {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
 
     std::vector<Contact> all;
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
@@ -558,6 +620,8 @@ Vec3 World::momentum() const
 
 void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 {
+    if (id >= count()) refuse("velocity", "no particle has this id", id);
+    if (!finite(v) || !finite(omega)) refuse("velocity of " + name_of(id), "must be finite", v.norm());
     settle_in();
     Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)

@@ -52,7 +52,7 @@ struct Contact {
     double delta = 0;    ///< overlap [m]
     Vec3 F = {0, 0, 0};  ///< on i [N]
     Vec3 T = {0, 0, 0};  ///< of rolling and spin on i [N m]
-    Vec3 u = {0, 0, 0};  ///< tangential displacement [m]
+    Vec3 u = {0, 0, 0};  ///< tangential displacement [m]; of mindlin-incremental its elastic force [N]
     std::uint16_t replica = 0;
 };
 
@@ -82,7 +82,9 @@ public:
     /// The law between two materials; for boundaries, of the materials that they are given
     void set_law(int material_i, int material_j, const PairLaw& law);
     int add(const Boundary& boundary);
-    std::uint32_t add(const Particle& particle);  ///< its id
+    /// Its id. One that is added to a running world must overlap nothing by more than 5 % of a radius, and begins with the
+    /// acceleration of gravity.
+    std::uint32_t add(const Particle& particle);
     void reserve(std::size_t particles);
 
     /// n steps. InvalidCase for particles that cannot begin so, also with n = 0; ParticleLost; DeviceError.
@@ -140,11 +142,12 @@ private:
     static constexpr std::uint8_t no_law = 255;
 
     void settle_in();
-    void set_scene(const std::vector<Particle>& all);
-    void check_laws() const;
-    void check_overlaps() const;
+    Scene scene_of(const std::vector<Particle>& all) const;
+    std::vector<Position> places(const Scene& in, const std::vector<Particle>& all) const;
+    void check_laws(const std::vector<Particle>& all) const;
+    void check_overlaps(std::uint32_t first) const;
     void keep_neighbours();
-    void look_for_neighbours();
+    void look_for_neighbours() const;
     void one_step();
     double move_boundaries();
     void push_tools();
@@ -164,10 +167,15 @@ private:
     Scene scene;
     std::size_t particles_in = 0;
     double time = 0;
-    /// Bounds of the ways of particles and of boundaries since neighbours were looked for [m]
-    double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
-    long number = 0, found = 0;
-    bool locked_turning = false, laws_changed = true, forces_changed = false, timed = false;
+    /// Bounds of the ways of particles and of boundaries since neighbours were looked for [m]. Which pairs are known is no
+    /// part of what a world is.
+    mutable double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
+    mutable long found = 0;
+    mutable bool laws_changed = true;
+    float fastest = 0;  ///< of the particles after the last step [m/s]
+    long number = 0;
+    bool locked_turning = false, forces_changed = false, timed = false;
+    std::string refused;  ///< why this world cannot be stepped on
     Times times;
 };
 

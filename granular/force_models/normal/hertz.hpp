@@ -24,7 +24,7 @@ struct Hertz {
     {
         const R a = sqrt(t.R_eff * t.delta), S = 2 * E_eff * a;
         const R F = Number<R>(2) / 3 * S * t.delta + c * sqrt(t.m_eff * S) * t.v_n;
-        return {clamped != 0 ? larger(F, R(0.f)) : F, a};
+        return {clamped != 0 ? larger(F, R(0.f)) : F, a, Number<R>(0.5)};
     }
 
     template <class Keys>

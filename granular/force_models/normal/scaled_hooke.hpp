@@ -22,7 +22,7 @@ struct ScaledHooke {
     {
         const R scale = sqrt(t.delta / larger(t.R_i, t.R_j));
         const R F = scale * (k_n * t.delta + gamma_n * t.m_eff * t.v_n);
-        return {clamped != 0 ? larger(F, R(0.f)) : F, scale};
+        return {clamped != 0 ? larger(F, R(0.f)) : F, scale, Number<R>(0.5)};
     }
 
     template <class Keys>

@@ -24,7 +24,7 @@ struct PseudoForce {
         // kept as the angle over R*, so that one history serves all models
         const Vec<R> s = t.R_eff * carried(history.psi, t.n) + R(t.h) * v_r;
         const Vec<R> test = -(k * s) - gamma * v_r;
-        const auto [F, full] = Cap{mu_r, mu_r}(test, abs(p.F));
+        const auto [F, full] = Cap{mu_r, mu_r}(test, abs(p.F), history.slid);
         const Vec<R> kept = select(full, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * v_r), s);
         history.psi = (R(1.f) / t.R_eff) * kept;
         return t.R_eff * t.n.cross(F);

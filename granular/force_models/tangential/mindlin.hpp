@@ -10,7 +10,8 @@ namespace hilda::granular {
 ///     u ← u + h v_t,   F° = -k u - γ v_t;   F_t = F° where |F°| ≤ μ_s |F_n|,  else μ_k |F_n| F°/|F°| and u = -(F_t + γ v_t)/k
 ///
 /// The cap is on spring and dashpot together, and the spring is solved back from it (Luding 2008); (2.46) caps the spring
-/// alone, and stops a sliding body up to 4 % too early. With μ_s above μ_k this is the rule of the test force.
+/// alone, and stops a sliding body up to 4 % too early. With μ_s above μ_k what slides goes on with μ_k until the test force
+/// is below that.
 struct Mindlin {
     static constexpr const char* name = "mindlin";
 
@@ -23,7 +24,8 @@ struct Mindlin {
         const R k = spring.stiffness(p), gamma = spring.damping(t, p);
         const Vec<R> u = carried(history.u, t.n) + R(t.h) * t.v_t;
         const Vec<R> test = -(k * u) - gamma * t.v_t;
-        const auto [F, slides] = cap(test, abs(p.F));
+        const auto [F, slides] = cap(test, abs(p.F), history.slid);
+        history.slid = slides;
         history.u = select(slides, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * t.v_t), u);
         return F;
     }

@@ -23,10 +23,11 @@ struct MindlinIncremental {
         const R k = spring.stiffness(p), gamma = spring.damping(t, p);
         // k over that of the last step, when the overlap was δ - h δ̇
         const R fell =
-            select(t.v_n < R(0.f), larger(R(1.f) + R(t.h) * t.v_n / (R(2.f) * t.delta), R(0.f)), R(1.f));
+            select(t.v_n < R(0.f), larger(R(1.f) + R(p.power * t.h) * t.v_n / t.delta, R(0.f)), R(1.f));
         const Vec<R> T = fell * carried(history.u, t.n) - (R(t.h) * k) * t.v_t;
         const Vec<R> test = T - gamma * t.v_t;
-        const auto [F, slides] = cap(test, abs(p.F));
+        const auto [F, slides] = cap(test, abs(p.F), history.slid);
+        history.slid = slides;
         history.u = select(slides, F + gamma * t.v_t, T);
         return F;
     }

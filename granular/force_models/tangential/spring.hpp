@@ -47,12 +47,12 @@ struct Cap {
         Vec<R> F;
         Mask<R> slides;
     };
-    /// The test force, or μ_k N along it where it is above μ_s N
+    /// The test force, or μ_k N along it where it is above μ_s N; above μ_k N for what slides already
     template <class R>
-    HILDA_HD Capped<R> operator()(const Vec<R>& test, const R& N) const
+    HILDA_HD Capped<R> operator()(const Vec<R>& test, const R& N, const Mask<R>& slid) const
     {
         const R size = test.norm();
-        const Mask<R> slides = size > mu_s * N;
+        const Mask<R> slides = size > select(slid, R(mu_k), R(mu_s)) * N;
         return {select(slides, mu_k * N / larger(size, R(tiny)), R(1.f)) * test, slides};
     }
 

@@ -70,10 +70,10 @@ std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
                                                   {"+y", {0, -1, 0}}, {"-z", {0, 0, 1}},  {"+z", {0, 0, -1}}};
     std::set<std::string> open;
     for (const auto& [side, place] : keys.list("open")) {
-        const bool known = side->is_string() && std::any_of(std::begin(sides), std::end(sides), [&](auto& s) {
-                               return s.first == side->get<std::string>();
-                           });
-        if (!known || !open.insert(side->get<std::string>()).second)
+        const std::string name = side->is_string() ? side->get<std::string>() : "";
+        const bool known =
+            std::any_of(std::begin(sides), std::end(sides), [&](auto& s) { return s.first == name; });
+        if (!known || !open.insert(name).second)
             throw InvalidCase(place + ": must be one of -x, +x, -y, +y, -z, +z, each once, got " +
                               side->dump());
     }

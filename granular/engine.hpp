@@ -76,5 +76,7 @@ std::unique_ptr<Engine> make_engine(Device device);
 std::unique_ptr<Engine> make_gpu_engine(int number);
 /// Names of the GPUs that could be used; empty where there are none, and then `why_not` says why.
 std::vector<std::string> gpus(std::string& why_not);
+/// What is free on a GPU [bytes]. DeviceError
+std::size_t gpu_memory(int number);
 
 }  // namespace hilda::granular

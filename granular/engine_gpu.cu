@@ -29,7 +29,9 @@ std::vector<std::string> gpus(std::string& why_not)
     return names;
 }
 
-std::unique_ptr<Engine> make_gpu_engine(int number)
+namespace {
+
+void choose(int number)
 {
     std::string why;
     const std::vector<std::string> there = gpus(why);
@@ -38,6 +40,21 @@ std::unique_ptr<Engine> make_gpu_engine(int number)
         throw DeviceError("there is no GPU " + std::to_string(number) + ", only 0 to " +
                           std::to_string(there.size() - 1));
     par::check(cudaSetDevice(number), "the choice of a GPU");
+}
+
+}  // namespace
+
+std::size_t gpu_memory(int number)
+{
+    choose(number);
+    std::size_t free = 0, total = 0;
+    par::check(cudaMemGetInfo(&free, &total), "the memory of a GPU");
+    return free;
+}
+
+std::unique_ptr<Engine> make_gpu_engine(int number)
+{
+    choose(number);
     return std::make_unique<EngineOn<par::Gpu>>();
 }
 

@@ -66,7 +66,7 @@ std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, R
     const long nx = cells(high.x - low.x), ny = cells(high.y - low.y), nz = cells(high.z - low.z);
     constexpr double most_cells = 4e8;
     if (static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz) > most_cells)
-        throw InvalidCase("fill: a box of more than 4e8 cells for random places");
+        throw InvalidCase("the box has more than 4e8 cells for random places");
     std::vector<std::int32_t> in(static_cast<std::size_t>(nx * ny * nz), -1);
     std::vector<Vec3> all;
     const auto index = [&](const Vec3& r, long& x, long& y, long& z) {
@@ -91,7 +91,7 @@ std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, R
     };
     put({random.number(low.x, high.x), random.number(low.y, high.y), random.number(low.z, high.z)});
     constexpr int tries = 30;
-    for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t k = 0; k < all.size(); ++k)  // NOLINT(modernize-loop-convert): the list grows
         for (int n = 0; n < tries; ++n)
             put(all[k] + random.number(f.spacing, 2 * f.spacing) * random.direction());
     return all;

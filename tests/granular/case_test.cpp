@@ -195,13 +195,13 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
         {"/step", "1e-5", "/step: must be a finite number, got \"1e-5\""},
         {"/steps", 5, "/steps: unknown key"},
         {"/domain/high", {1, 1}, "/domain/high: must be three numbers, got [1,1]"},
-        {"/domain/high/2", -1, "domain: the high end along z must be above the low one, got -1"},
+        {"/domain/high/2", -1, "/domain/high/2: must be above the low end, got -1.0"},
         {"/domain/periodic", {true, 1, false}, "/domain/periodic/1: must be true or false, got 1"},
         {"/every", -1, "/every: must be positive, got -1"},
         {"/integrator", "euler", "/integrator: must be one of symplectic-euler, velocity-verlet"},
-        {"/materials/0/E", -7e7, "material 'glass': E must be positive, got -70000000"},
-        {"/materials/0/nu", 0.5, "material 'glass': nu must be between -1 and 0.5, got 0.5"},
-        {"/materials/1/density", 0, "material 'steel': density must be positive, got 0"},
+        {"/materials/0/E", -7e7, "/materials/0/E: must be positive, got -70000000"},
+        {"/materials/0/nu", 0.5, "/materials/0/nu: must be between -1 and 0.5, got 0.5"},
+        {"/materials/1/density", 0, "/materials/1/density: must be positive, got 0"},
         {"/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"},
         {"/laws/0/between/1", "brass", "/laws/0/between/1: no material has this name, got \"brass\""},
         {"/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of none, coulomb, mindlin"},
@@ -297,19 +297,90 @@ TEST_CASE("whatever happens to the bytes of a case, it is read or refused", "[gr
 
 TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")
 {
-    const auto begin = [](const std::string& text) { read_case(text, "file").world->step(); };
+    const auto begin = [](const std::string& text) { granular::settle(read_case(text, "file")); };
     CHECK_NOTHROW(begin(good().dump()));
-    CHECK_THROWS_WITH(begin(with("/particles/0/material", "steel")),
-                      "laws: there is none between two materials that may meet, got 'steel' and 'steel'");
+    const std::string other = with("/particles/0/material", "steel");
+    CHECK_THROWS_WITH(begin(other), "file:" + granular::text_place(other, std::string("/laws")) +
+                                        " (/laws): laws: there is none between two materials that may meet, "
+                                        "got 'steel' and 'steel'");
     ordered_json two = good();
     two["particles"].push_back({{"r", {0.5, 0.5, 0.685}}, {"radius", 0.1}, {"material", "glass"}});
     CHECK_THROWS_WITH(begin(two.dump()),
-                      Catch::StartsWith("particle 0 and particle 1: must not overlap by more than 5 % of a "
-                                        "radius at the start, got 0.015"));
+                      Catch::Contains(" (/particles/0): particle 0 and particle 1: must not overlap by more "
+                                      "than 5 % of a radius at the start, got 0.015"));
     CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 0.09})),
-                      Catch::StartsWith("particle 0 and boundary 0: must not"));
+                      Catch::Contains(" (/particles/0): particle 0 and boundary 0: must not"));
     CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 1.5})),
-                      "particle 0: is outside the domain along z, got 1.5");
+                      Catch::Contains(" (/particles/0): particle 0: is outside the domain along z, got 1.5"));
+    two["particles"][1]["r"] = {0.5, 0.5, 0.75};
+    ordered_json filling = {{"type", "lattice"},
+                            {"low", {0, 0, 0.8}},
+                            {"high", {0.4, 0.4, 1.5}},
+                            {"radius", 0.05},
+                            {"material", "glass"}};
+    two["fill"] = {filling, filling};
+    two["fill"][0]["high"][2] = 1, two["fill"][1]["low"][0] = 0.5, two["fill"][1]["high"][0] = 1;
+    CHECK_THROWS_WITH(begin(two.dump()), Catch::Contains(" (/fill/1): particle ") &&
+                                             Catch::Contains("is outside the domain along z"));
+}
+
+TEST_CASE("entries of a case are set, and what is wrong with them says so", "[granular][case]")
+{
+    ordered_json c = good();
+    const ordered_json filling = {{"type", "lattice"}, {"low", {0, 0, 0.7}}, {"high", {1, 1, 1}},
+                                  {"radius", 0.1},     {"jitter", 1},        {"material", "glass"}};
+    c["fill"] = {filling, filling};
+    const auto set = [&](const std::string& pointer, const std::string& value) {
+        return granular::Surroundings{.settings = {{pointer, value, "--set " + pointer}}};
+    };
+    const granular::Case plain = read_case(c.dump(), "file");
+    CHECK(plain.source.text() == c.dump());  // as it stands there
+    CHECK(read_case(c.dump(), "file", set("/end", "0.25")).end == 0.25);
+    CHECK(read_case(c.dump(), "file", set("/name", "a heap")).name == "a heap");
+    CHECK(read_case(c.dump(), "file", set("/gravity", "[0, 0, 1]")).source.json()["gravity"][2] == 1);
+    const granular::Case moved = read_case(c.dump(), "file", set("/particles/0/r/2", "0.25"));
+    CHECK(moved.world->particles()[0].r.z == 0.25);
+    CHECK(read_case(moved.source.text(), "again").world->particles()[0].r.z == 0.25);
+
+    const auto place = [&](const std::string& p) { return "file:" + granular::text_place(c.dump(), p); };
+    const std::tuple<std::string, std::string, std::string> wrong[] = {
+        {"/materials/1/E", "-1",
+         place("/materials/1/E") + " (/materials/1/E): must be positive, got -1.0 (from "
+                                   "--set /materials/1/E)"},
+        {"/boundaries/0", "{\"type\": \"plane\"}",
+         place("/boundaries/0/material") +
+             " (/boundaries/0/material): no material has this name, got \"\" (from --set "
+             "/boundaries/0)"},
+        {"/materials/2/E", "1",
+         place("/materials") + " (/materials): --set /materials/2/E: there is no \"2\""},
+        {"/materials/-1/E", "1",
+         place("/materials") + " (/materials): --set /materials/-1/E: there is no \"-1\""},
+        {"/step/h", "1", place("/step") + " (/step): --set /step/h: there is no \"h\""},
+        {"/a~b", "1", "file:1:1 (/): --set /a~b: '~' is written ~0 in a pointer, and '/' in a key is ~1"},
+        {"/end", "{\"a\": 1, \"a\": 2}",
+         place("/end") + " (/end): --set /end: the key \"a\" stands twice in one object"},
+        {"/name", "\xff", place("/name") + " (/): --set /name: the value is not UTF-8"},
+        {"step", "1", "file:1:1 (/): --set step: must be /json/pointer=VALUE"},
+    };
+    for (const auto& [pointer, value, message] : wrong) {
+        INFO(pointer);
+        if (pointer == "/name")
+            CHECK_THROWS_WITH(read_case(c.dump(), "file", set(pointer, value)),
+                              Catch::EndsWith("is not UTF-8"));
+        else
+            CHECK_THROWS_WITH(read_case(c.dump(), "file", set(pointer, value)), message);
+    }
+    CHECK_THROWS_WITH(read_case(c.dump(), "file", set("/end", "1e400")), Catch::Contains("--set /end: "));
+
+    // of fills that are alike each is another
+    granular::Surroundings seeded{.seed = 7};
+    const granular::Case sown = read_case(c.dump(), "file", seeded);
+    CHECK(sown.source.json()["fill"][0]["seed"] == 7);
+    CHECK(sown.source.json()["fill"][1]["seed"] == 8);
+    const auto p = sown.world->particles();
+    CHECK_FALSE(p[1].r == p[1 + (p.size() - 1) / 2].r);
+    CHECK_FALSE(p[1].r == plain.world->particles()[1].r);
+    CHECK(read_case(good().dump(), "file", seeded).notices.size() == 1);  // there is nothing to sow
 }
 
 TEST_CASE("a step is measured by the Rayleigh time and by a collision", "[granular][case]")
@@ -344,11 +415,18 @@ TEST_CASE("a case that needs more memory than there is is refused before it take
     CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
                Catch::StartsWith("file: /fill: 1e+15 particles need about ") &&
                    Catch::EndsWith(" GB of memory, and there are 64 GB"));
+    CHECK_THAT(refusal(c.dump(), {.device_memory = 64'000'000'000}),
+               Catch::EndsWith(" GB of memory of the GPU, and there are 64 GB"));
     c["fill"][0]["count"] = 100;
     CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
     CHECK_THAT(refusal(c.dump(), {.memory = 100'000}),
                Catch::StartsWith("file: /fill: 101 particles need about ") &&
                    Catch::EndsWith(" GB of memory, and there are 0.0001 GB"));
+    c["domain"]["high"] = {1, 1, 1e4};
+    c["fill"][0]["low"] = {0, 0, 0.7};
+    c["particles"] = ordered_json::array();
+    CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
+               Catch::StartsWith("file: /domain: ") && Catch::Contains("cells need about"));
 }
 
 TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")

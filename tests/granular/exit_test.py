@@ -27,6 +27,26 @@ def main():
 
         refused(2, "--checkpoin", "--checkpoin", "1")
         refused(2, "--device: must be cpu, cuda or cuda:N", "--device", "gpu")
+        for option, value, message in (
+                ("--end", "0", "must be a positive, finite number, got '0'"), ("--step", "-1e-6", "must be a positive, finite number"),
+                ("--every", "nan", "must be a positive, finite number"), ("--end", "1s", "must be a positive, finite number, got '1s'"),
+                ("--seed", "-1", "must be a whole number from 0"), ("--seed", "1.5", "must be a whole number from 0"),
+                ("--threads", "0", "must be a whole number from 1"), ("--checkpoint", "-1", "must be a finite number, not negative"),
+                ("--set", "step=1", "must be /json/pointer=VALUE"), ("--set", "/step", "must be /json/pointer=VALUE"),
+                ("--output", "", "must be a directory")):
+            refused(2, f"granular: {option}: {message}", option, value)
+        for option in ("--end", "1"), ("--set", "/end=1"), ("--seed", "1"), ("--json",), ("--resume",):
+            process = subprocess.run([sys.argv[1], "head-on", *option], cwd=here, capture_output=True, text=True)
+            expect(process.returncode == 2 and f"granular: {option[0]}: is for cases, and head-on is a validation" in process.stderr,
+                   f"{process.returncode}: {process.stderr}")
+        refused(2, "--full: is for validations, and short.json is a file", "--full")
+        refused(2, "exclude each other", "--force", "--resume")
+        place = r"short.json:1:\d+ \({}\): "
+        refused(3, place.format("/laws/0/mu") + r"must not be negative, got -1.0 \(from --set '/laws/0/mu=-1'\)", "--set", "/laws/0/mu=-1")
+        refused(3, place.format("/steps") + r"unknown key.*\(from --set '/steps=1'\)", "--set", "/steps=1")
+        refused(3, place.format("/laws") + r"--set '/laws/7/mu=1': there is no \"7\"", "--set", "/laws/7/mu=1")
+        refused(3, place.format("/step") + r"must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
+        refused(3, place.format("/end") + r"must not be more than 9e15 steps away", "--end", "1e30")
         refused(7, "--device cuda:99: ", "--device", "cuda:99")
         refused(3, "none.json: is not there", case="none")
         expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "nothing is written by what is refused")
@@ -39,6 +59,29 @@ def main():
         refused(2, "other: is not empty", "--output", "other")
         expect((here / "other" / "letter").read_text() == "precious", "what lies there stays")
         refused(5, "short.json/out", "--output", "short.json/out")
+
+        # one entry after the other, and the whole of it as it was run
+        process = runs.start(short, "--output", "told", "--step", "2.5e-6", "--end", "5e-5", "--every", "2.5e-5", "--seed", "9", "--json", "-v",
+                             "--set", "/name=a cup", "--set", "/laws/0/mu=0.5")
+        out, err = process.communicate()
+        summary = json.loads(out)
+        expect(process.returncode == 0 and summary == runs.summary("told"), f"the summary alone is on stdout: {out}")
+        expect("steps of 2.5e-06 s" in err, f"says what is done: {err}")
+        ran = json.loads((here / "told" / "case.json").read_text())
+        expect([ran[key] for key in ("name", "step", "end", "every")] == ["a cup", 2.5e-6, 5e-5, 2.5e-5], f"case.json: {ran}")
+        expect(ran["laws"][0]["mu"] == 0.5 and ran["fill"][0]["seed"] == 9, f"case.json: {ran}")
+        expect(summary["case"]["set"] == ["/name=a cup", "/laws/0/mu=0.5", "/step=2.5e-06", "/end=5e-05", "/every=2.5e-05", "/fill/0/seed=9"],
+               f"what was set: {summary}")
+        expect(summary["exit_code"] == 0 and summary["counters"] == dict(summary["counters"], steps=20, rows=3), f"counters: {summary}")
+        for key in ("version", "git", "build_type", "flags", "compiler", "libraries", "command_line", "cpu", "threads", "device"):
+            expect(summary["provenance"].get(key), f"provenance has {key}: {summary}")
+        expect(summary["provenance"]["threads"] == 1 and "'/name=a cup'" in summary["provenance"]["command_line"], f"{summary}")
+        (here / "again.json").write_text(json.dumps(ran))
+        runs.finish("again", "--quiet", "--output", "again")
+        expect((here / "again" / "particles.csv").read_bytes() == (here / "told" / "particles.csv").read_bytes(),
+               "case.json of the output runs as the case with its options did")
+        runs.finish(short, "--quiet", "--output", "sown", "--end", "5e-5", "--step", "2.5e-6", "--seed", "10")
+        expect((here / "sown" / "particles.csv").read_bytes() != (here / "told" / "particles.csv").read_bytes(), "another seed, other grains")
 
         # a disk that is full
         process = subprocess.run([sys.argv[1], "short.json", "--output", "full", "--quiet", "--threads", "1"], cwd=here,

@@ -65,7 +65,12 @@ class Runs:
         whole = hashlib.sha256()
         for file in files:
             whole.update(file.name.encode() + b"\0" + file.read_bytes())
+        summary = self.summary(output)
+        whole.update(json.dumps({key: summary[key] for key in summary if key not in ("timing", "provenance")}).encode())
         return whole.hexdigest()
+
+    def summary(self, output):
+        return json.loads((self.folder / output / "summary.json").read_text())
 
     def remove(self, output):
         shutil.rmtree(self.folder / output, ignore_errors=True)
@@ -127,7 +132,8 @@ def ends(runs):
         _, err = process.communicate()
         expect(process.returncode == 128 + which, f"signal {which} ends with its code, not {process.returncode}")
         expect("--resume goes on" in err, f"says how to go on: {err}")
-        expect(json.loads((out / "summary.json").read_text())["status"] == "interrupted", "summary of an interrupted run")
+        summary = runs.summary("cut")
+        expect(summary["status"] == "interrupted" and summary["exit_code"] == 128 + which, f"summary of an interrupted run: {summary}")
 
     for which in (signal.SIGINT, signal.SIGTERM):
         interrupt(which)
@@ -138,7 +144,14 @@ def ends(runs):
     interrupt(signal.SIGINT)
     newest = (out / "checkpoint").read_bytes()
     other = runs.case("other", end=0.06)
-    expect("belongs to another run" in runs.finish(other, "--output", "cut", "--resume", code=5), "a foreign one is refused")
+    for options in ((other,), (case, "--end", "0.06"), (case, "--set", "/laws/0/mu=0.2"), (case, "--seed", "3"), (case, "--step", "4e-6")):
+        err = runs.finish(*options, "--output", "cut", "--resume", code=5)
+        expect("cut/case.json: is another case, or this one with other options" in err, f"a foreign one is refused: {err}")
+    mine = (out / "case.json").read_text()
+    (out / "case.json").write_text((runs.folder / "other.json").read_text())
+    err = runs.finish(other, "--output", "cut", "--resume", code=5)
+    expect("cut/checkpoint: the checkpoint belongs to another run" in err, f"also where case.json is not: {err}")
+    (out / "case.json").write_text(mine)
     (out / "checkpoint").write_bytes(newest[:len(newest) // 2] + bytes([newest[len(newest) // 2] ^ 1]) + newest[len(newest) // 2 + 1:])
     err = runs.finish(case, "--output", "cut", "--resume")
     expect("hilda: warning: cut/checkpoint: the checkpoint is damaged" in err and "the one before" in err, err)
@@ -151,14 +164,42 @@ def ends(runs):
     expect("cut/checkpoint: the checkpoint is damaged" in runs.finish(case, "--output", "cut", "--resume", code=5),
            "damaged ones are refused")
 
+    # a signal between two times at which a checkpoint may be written stops the run at once all the same
+    rare = runs.case("rare", end=0.08, checkpoint_every=0.03, every=0.01)
+    begin = time.monotonic()
+    runs.finish(rare, "--output", "rare")
+    seconds = time.monotonic() - begin
+    rare_sha = runs.sha("rare")
+    slowest = between = 0
+    for which, frame in ((signal.SIGINT, 1), (signal.SIGTERM, 2), (signal.SIGINT, 4), (signal.SIGTERM, 5)):
+        process = runs.start(rare, "--output", "cut2", "--force")
+        while not (runs.folder / "cut2" / "vtk" / f"particles-{frame:06}.vtp").exists():
+            expect(process.poll() is None, "it is not done before the signal")
+            time.sleep(0.001)
+        sent = time.monotonic()
+        process.send_signal(which)
+        _, err = process.communicate()
+        slowest = max(slowest, time.monotonic() - sent)
+        expect(process.returncode == 128 + which and "--resume goes on" in err, f"{process.returncode}: {err}")
+        counters = runs.summary("cut2")["counters"]
+        expect(round(counters["t_checkpoint"] / 0.03, 9) in (0, 1, 2), f"the case says when: {counters}")
+        between += counters["t"] > counters["t_checkpoint"] + 0.004
+        runs.finish(rare, "--output", "cut2", "--resume")
+        expect(runs.sha("cut2") == rare_sha, "what a run that was stopped between leaves is what the whole one does")
+        resumed = runs.summary("cut2")["provenance"].get("resumed_at_step", 0)
+        expect(resumed == round(counters["t_checkpoint"] / 5e-6), f"goes on from there: {resumed}, {counters}")
+        runs.remove("cut2")
+    expect(between > 0, "some were stopped in the middle of an interval")
+    expect(slowest < 0.5 * seconds + 2, f"stops at once: {slowest:.2f} s of {seconds:.2f} s")
+
     # without a floor they fall out of the domain
     lost = runs.case("lost", boundaries=CASE["boundaries"][1:], end=0.1)
     err = runs.finish(lost, "--output", "lost", "--checkpoint", "1e-4", code=4)
     expect("error[particle_lost]: particle " in err and "t = " in err and "velocity" in err, err)
-    summary = json.loads((runs.folder / "lost" / "summary.json").read_text())
-    expect(summary["status"] == "particle_lost" and summary["t"] > 0.01, f"says where it ended: {summary}")
+    summary = runs.summary("lost")
+    expect(summary["status"] == "particle_lost" and summary["counters"]["t"] > 0.01, f"says where it ended: {summary}")
     expect(runs.finish(lost, "--output", "lost", "--resume", code=4) == err, "the last checkpoint stays, and can be loaded")
-    print(f"both signals, fallback, refusals and a lost grain; {whole}")
+    print(f"both signals, fallback, refusals and a lost grain; at most {1e3 * slowest:.0f} ms to stop between; {whole}")
 
 
 def threads(runs, others):

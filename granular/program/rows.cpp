@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/program/rows.hpp"
+
+#include "granular/files.hpp"
+#include "granular/output.hpp"
+
+#include <cstdio>
+
+namespace hilda::granular {
+
+Rows::Rows(std::string directory, const Case& c, long every, bool frames)
+    : directory(std::move(directory)), c(c), every(every), with_frames(frames)
+{
+    csv = "t,kinetic_energy,contacts,pairs";
+    for (const std::string& b : c.boundaries)
+        for (const char* of : {"_Fx", "_Fy", "_Fz", "_Tx", "_Ty", "_Tz"}) csv += ',' + b + of;
+    csv += '\n';
+}
+
+void Rows::record()
+{
+    const World& w = *c.world;
+    const std::vector<Contact> contacts = w.contacts();
+    std::vector<Wrench> on(c.boundaries.size());
+    for (const Contact& at : contacts)
+        if (at.boundary) {
+            on[at.j].F -= at.F;
+            on[at.j].T -= (at.C - c.world->boundary(static_cast<int>(at.j)).r).cross(at.F) + at.T;
+        }
+    char row[128];
+    std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
+                  w.candidates());
+    csv += row;
+    for (const Wrench& l : on)
+        for (const Vec3& part : {l.F, l.T}) {
+            std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", part.x, part.y, part.z);
+            csv += row;
+        }
+    csv += '\n';
+    if (with_frames) {
+        make_directory(directory + "/vtk");
+        write_file(directory + "/vtk/" + frame(rows), particles_vtp(w));
+        frames.emplace_back(w.t(), frame(rows));
+    }
+    ++rows;
+}
+
+void Rows::load()
+{
+    const std::string name = directory + "/run.csv";
+    csv = read_file(name, std::size_t{1} << 32);
+    rows = static_cast<std::size_t>(c.world->steps() / every) + 1;  // with that of t = 0
+    std::size_t at = 0;
+    for (std::size_t k = 0; k <= rows; ++k) {  // and the names
+        at = csv.find('\n', at);
+        if (at++ == std::string::npos)
+            throw FileError(name + ": should have " + std::to_string(rows + 1) + " lines, got " +
+                            std::to_string(k));
+    }
+    csv.resize(at);
+    if (with_frames)
+        for (std::size_t k = 0; k < rows; ++k)
+            frames.emplace_back(static_cast<double>(static_cast<long>(k) * every) * c.h, frame(k));
+}
+
+void Rows::write() const { write_file(directory + "/run.csv", csv); }
+
+void Rows::write_frames() const
+{
+    if (!frames.empty()) write_file(directory + "/vtk/run.pvd", pvd(frames));
+}
+
+std::string Rows::frame(std::size_t k)
+{
+    char name[48];
+    std::snprintf(name, sizeof name, "particles-%06zu.vtp", k);
+    return name;
+}
+
+}  // namespace hilda::granular

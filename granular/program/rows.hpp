@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// run.csv and the frames beside it, as a run goes on.
+
+#pragma once
+
+#include "granular/case_file.hpp"
+
+namespace hilda::granular {
+
+class Rows {
+public:
+    /// In `directory`, a row every so many steps; with a frame each, or none
+    Rows(std::string directory, const Case& c, long every, bool frames);
+
+    /// Of this moment
+    void record();
+    /// Those of an earlier run up to this moment; later ones are made again. FileError
+    void load();
+    void write() const;
+    /// The collection of the frames
+    void write_frames() const;
+    std::size_t count() const { return rows; }
+
+private:
+    static std::string frame(std::size_t k);
+
+    const std::string directory;
+    const Case& c;
+    const long every;
+    const bool with_frames;
+    std::size_t rows = 0;
+    std::string csv;
+    std::vector<std::pair<double, std::string>> frames;
+};
+
+}  // namespace hilda::granular

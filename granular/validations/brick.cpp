@@ -12,7 +12,6 @@
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -110,8 +109,7 @@ Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
         if (motion != nullptr && (n % every == 0 || !std::isnan(out.way)))
             motion->rows.push_back({mu, static_cast<double>(n) * h, x, p.v.x});
         for (const Contact& c : world.contacts())
-            out.most_friction =
-                std::max(out.most_friction, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
+            out.most_friction = worse(out.most_friction, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
     return out;
 }
@@ -135,15 +133,15 @@ ValidationResult run(const ValidationOptions& options)
             table.rows.push_back({by_increments ? "mindlin-incremental" : "mindlin", mu, s.way, d, difference,
                                   of_double, of_double / d - 1, spring, s.way / spring - 1, s.most_friction});
             if (by_increments) {
-                incremental = std::max(incremental, std::abs(difference));
+                incremental = worse(incremental, std::abs(difference));
             } else {
                 char what[64];
                 std::snprintf(what, sizeof what, "distance over v^2/(2 mu g) - 1: mu = %.2f", mu);
                 result.checks.push_back({what, difference, -3e-4, 3e-4});
             }
-            apart = std::max(apart, std::abs(s.way / of_double - 1));
-            from_spring = std::max(from_spring, std::abs(s.way / spring - 1));
-            friction = std::max(friction, s.most_friction);
+            apart = worse(apart, std::abs(s.way / of_double - 1));
+            from_spring = worse(from_spring, std::abs(s.way / spring - 1));
+            friction = worse(friction, s.most_friction);
         }
     result.checks.push_back({"largest of these, incremental law", incremental, 0, 3e-4});
     result.checks.push_back({"distance from the closed form with the spring", from_spring, 0, 1e-5});

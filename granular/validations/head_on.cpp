@@ -129,8 +129,8 @@ Momentum lost(double drift, Device device)
             world.step();
             const double now = world.momentum().x;
             if (std::isnan(start)) start = last = now;  // as the velocities are in the numbers of the world
-            lost.of_step = std::max(lost.of_step, std::abs(now - last) / ulp);
-            lost.of_all = std::max(lost.of_all, std::abs(now - start) / ulp);
+            lost.of_step = worse(lost.of_step, std::abs(now - last) / ulp);
+            lost.of_all = worse(lost.of_all, std::abs(now - start) / ulp);
             last = now;
         }
     }
@@ -166,13 +166,13 @@ Worst worst(Scheme scheme, double h, int places, bool in_world, Device device)
         std::vector<double> in_double;
         for (const Meeting& m : all) {
             in_double.push_back(rebound(m, scheme, h));
-            out.in_double = std::max(out.in_double, std::abs(in_double.back() - e));
+            out.in_double = worse(out.in_double, std::abs(in_double.back() - e));
         }
         if (!in_world) continue;
         const std::vector<double> v = rebounds(all, scheme, h, device);
         for (std::size_t k = 0; k < all.size(); ++k) {
-            out.world = std::max(out.world, std::abs(v[k] - e));
-            out.apart = std::max(out.apart, std::abs(v[k] - in_double[k]));
+            out.world = worse(out.world, std::abs(v[k] - e));
+            out.apart = worse(out.apart, std::abs(v[k] - in_double[k]));
         }
     }
     return out;
@@ -205,7 +205,7 @@ ValidationResult run(const ValidationOptions& options)
             const double order =
                 n == 0 ? std::nan("") : std::log(w.in_double / errors[n - 1]) / std::log(h / steps[n - 1]);
             errors.push_back(w.in_double);
-            apart = std::max(apart, w.apart);
+            apart = worse(apart, w.apart);
             refinement.rows.push_back({s.name, h, w.world, w.in_double, order});
             if (h == step_of_text)
                 result.checks.push_back(

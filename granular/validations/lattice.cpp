@@ -76,10 +76,9 @@ public:
         for (const Contact& c : world.contacts()) {
             if (!c.boundary) continue;
             Pressed::At& of = at[c.replica];
-            if (static_cast<int>(c.j) == floor)
-                of.floor[c.i % lattice::spheres] += c.F.z / (m * g);
-            else
-                of.sides += c.F.z / (m * g);
+            const std::uint32_t k = c.i % lattice::spheres;
+            const bool on_floor = static_cast<int>(c.j) == floor;
+            (on_floor ? k < of.floor.size() ? of.floor[k] : of.others : of.sides) += c.F.z / (m * g);
         }
         for (const Particle& p : world.particles())
             at[p.replica].kinetic += 0.5 * (p.v.dot(p.v) + 0.4 * R * R * p.omega.dot(p.omega)) / (g * R);

@@ -38,6 +38,7 @@ struct Pressed {
     struct At {
         std::array<double, lattice::widest>
             floor{};         ///< upward force of the floor on each of the lowest layer
+        double others = 0;   ///< upward force of the floor on spheres of other layers, pressed through to it
         double sides = 0;    ///< upward force of the side walls
         double kinetic = 0;  ///< kinetic energy [m g R]
     } before, after;

@@ -13,7 +13,6 @@
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hilda::granular {
@@ -109,7 +108,7 @@ struct Worst {
     double sliding_e_t = 0, sliding_omega = 0, e_t = 0, omega = 0, momentum = 0, energy = 0, e_n = 0;
     int falls = 0;  ///< of ω over θ
 
-    static void raise(double& worst, double value) { worst = std::max(worst, std::abs(value)); }
+    static void raise(double& worst, double value) { worst = worse(worst, std::abs(value)); }
 };
 
 /// World beside double precision and the closed form
@@ -140,7 +139,7 @@ ValidationTable compare(const std::vector<double>& angles, Device device, Worst&
                          (w.omega - 2.5 * (1 - w.e_t) * tangential(theta) / R) / sliding_omega);
             Worst::raise(worst.energy, w.energy);
             Worst::raise(worst.e_n, w.e_n - e);
-            if (k > 0 && w.omega < of_world[k - 1].omega * (1 - 1e-6)) ++worst.falls;
+            if (k > 0 && !(w.omega >= of_world[k - 1].omega * (1 - 1e-6))) ++worst.falls;
             done();
         }
     }

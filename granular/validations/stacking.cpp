@@ -7,15 +7,15 @@
 #include "granular/validations/three_spheres.hpp"
 #include "granular/validations/validation.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hilda::granular {
 
 namespace {
 
-constexpr double mu = 0.158;
+constexpr double mu = 0.158, inf = std::numeric_limits<double>::infinity();
 
 struct Model {
     std::string name;
@@ -42,6 +42,9 @@ std::vector<double> all_mu_r(bool full)
     return all;
 }
 
+/// The smaller one; what is not a number is smaller than all numbers
+double lesser(double a, double b) { return -worse(-a, -b); }
+
 /// What one curve, critical mass over μ_r, says
 struct Curve {
     std::vector<double> mu_r, mass;
@@ -62,7 +65,7 @@ struct Curve {
     {
         double least = mass[1] - mass[0];
         for (std::size_t k = 1; k < mass.size() && mu_r[k] <= knee(); ++k)
-            least = std::min(least, mass[k] - mass[k - 1]);
+            least = lesser(least, mass[k] - mass[k - 1]);
         return least;
     }
 };
@@ -125,18 +128,18 @@ private:
 
     void judge_curves()
     {
-        double apart = 0, more = 0, least = 10, most = 0;
+        double apart = 0, most = 0, more = inf, least = inf;
         for (std::size_t k = 0; k < plateaus.size(); ++k) {
             const auto [gap, mass] = plateaus[k];
             const Curve c = curve(0, k), same = curve(1, k), longer = curve(2, k);
             checks.push_back({of_gap("plateau [kg]", gap), c.plateau(), 0.97 * mass, 1.03 * mass});
             checks.push_back({of_gap("mu_r of the knee", gap), c.knee(), 0.13, 0.17});
             checks.push_back({of_gap("least rise below the knee [kg]", gap), c.least_rise(), 0.005, 1});
-            more = k == 0 ? longer.mass[0] - c.mass[0] : std::min(more, longer.mass[0] - c.mass[0]);
+            more = lesser(more, longer.mass[0] - c.mass[0]);
             for (std::size_t j = 0; j < mu_r.size(); ++j) {
-                apart = std::max(apart, std::abs(same.mass[j] - c.mass[j]));
+                apart = worse(apart, std::abs(same.mass[j] - c.mass[j]));
                 const double of_static = c.mass[j] / static_limit({gap, mu, mu_r[j]}, 0.5, 0.5);
-                least = std::min(least, of_static), most = std::max(most, of_static);
+                least = lesser(least, of_static), most = worse(most, of_static);
             }
         }
         checks.push_back({"least mass over the static limit", least, 0.9, 1.05});

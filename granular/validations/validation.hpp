@@ -38,6 +38,9 @@ struct ValidationCheck {
     bool met() const { return measured >= least && measured <= most; }
 };
 
+/// The larger one; what is not a number is larger than all numbers, so that it is not lost where a worst is collected.
+inline double worse(double a, double b) { return a != a || b <= a ? a : b; }
+
 struct ValidationResult {
     std::vector<ValidationTable> tables;
     std::vector<ValidationCheck> checks;

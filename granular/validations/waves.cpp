@@ -42,14 +42,14 @@ struct Profile {
         const int c = lattice::middle;
         centre = peak = share[c], at = 0, asymmetry = 0;
         for (int k = 1; k <= c; ++k) {
-            asymmetry = std::max(asymmetry, std::abs(share[c + k] - share[c - k]));
+            asymmetry = worse(asymmetry, std::abs(share[c + k] - share[c - k]));
             const double both = (share[c + k] + share[c - k]) / 2;
             if (k <= 20 && both > peak) peak = both, at = k;
         }
         asymmetry /= peak;
         total = sum(share);
         weight = sum(p.before.floor) / lattice::spheres;
-        balance = (sum(p.after.floor) + p.after.sides) / (lattice::spheres + of.F) - 1;
+        balance = (sum(p.after.floor) + p.after.others + p.after.sides) / (lattice::spheres + of.F) - 1;
     }
 };
 
@@ -83,8 +83,8 @@ std::vector<ValidationCheck> judge(const std::vector<Profile>& all)
     double total = 0, weight = 0, asymmetry = 0, balance = 0;
     for (const Profile& p : all) {
         if (p.of.F > judged_below) continue;
-        total = std::max(total, std::abs(p.total - 1)), weight = std::max(weight, std::abs(p.weight - 1));
-        asymmetry = std::max(asymmetry, p.asymmetry), balance = std::max(balance, std::abs(p.balance));
+        total = worse(total, std::abs(p.total - 1)), weight = worse(weight, std::abs(p.weight - 1));
+        asymmetry = worse(asymmetry, p.asymmetry), balance = worse(balance, std::abs(p.balance));
     }
     checks.push_back({"what the floor gains, less F, over F", total, 0, 0.015});
     checks.push_back({"what the floor holds without F, less the weight, over it", weight, 0, 0.002});

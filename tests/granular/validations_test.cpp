@@ -68,4 +68,8 @@ TEST_CASE("a check that measures nothing is not met", "[granular][validation]")
     CHECK_FALSE(ValidationCheck{"", none, -inf, inf}.met());
     CHECK(ValidationCheck{"", 1, 1, 1}.met());
     CHECK_FALSE(ValidationCheck{"", 1.1, 0, 1}.met());
+    for (const auto& [a, b] : {std::pair(none, 1.), std::pair(1., none), std::pair(none, none)})
+        CHECK(std::isnan(worse(a, b)));
+    CHECK(worse(1, 2) == 2);
+    CHECK(worse(2, 1) == 2);
 }

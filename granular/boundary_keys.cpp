@@ -15,6 +15,15 @@ Vec3 unit_vector(Keys& keys, const std::string& key)
     return (1 / v.norm()) * v;
 }
 
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// What a formula begins with. Only places must have a value at t = 0: the rest is asked for within steps.
+Vec3 at_begin(const VectorFormula& f)
+{
+    const Vec3 v = f(0);
+    return finite(v) ? v : Vec3{0, 0, 0};
+}
+
 /// Where it is and how it moves, in numbers where all components are numbers
 NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& compile)
 {
@@ -26,9 +35,11 @@ NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& co
             return;
         }
         formula = keys.formulas(key, compile);
-        number = (*formula)(0);
+        number = at_begin(*formula);
     };
     read("r", all.boundary.r, all.motion.r);
+    if (all.motion.r && !finite((*all.motion.r)(0)))
+        keys.refuse("r", "must be finite at t = 0", keys.raw("r"));
     if (all.motion.r && keys.has("v")) keys.refuse("v", "must not stand where r is a formula", keys.raw("v"));
     read("v", all.boundary.v, all.motion.v);
     return all;
@@ -40,7 +51,7 @@ void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
     Boundary& b = tool.boundary;
     if (keys.has_formula("omega")) {
         tool.motion.omega = keys.formulas("omega", compile);
-        b.omega = (*tool.motion.omega)(0);
+        b.omega = at_begin(*tool.motion.omega);
     } else {
         b.omega = keys.vector("omega", {0, 0, 0});
     }
@@ -50,9 +61,11 @@ void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
     if (b.inertia > 0 && tool.motion.omega)
         keys.refuse("omega", "must be numbers where the inertia lets it turn", keys.raw("omega"));
     b.free = keys.flags("free", {true, true, true});
+    if (tool.motion.v && !finite((*tool.motion.v)(0)))
+        keys.refuse("v", "must be finite at t = 0 where a tool is free", keys.raw("v"));
     if (keys.has_formula("F")) {
         tool.motion.F = keys.formulas("F", compile);
-        b.F = (*tool.motion.F)(0);
+        b.F = at_begin(*tool.motion.F);
     } else {
         b.F = keys.vector("F", {0, 0, 0});
     }

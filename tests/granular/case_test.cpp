@@ -90,6 +90,7 @@ TEST_CASE("boundaries move as formulas say", "[granular][case]")
         if (text == "sin(9*t)") return [](double t) { return std::sin(9 * t); };
         if (text == "9*cos(9*t)") return [](double t) { return 9 * std::cos(9 * t); };
         if (text == "sqrt(min(0,0.05-t))") return [](double t) { return t < 0.05 ? 0 : std::sqrt(0.05 - t); };
+        if (text == "1/t") return [](double t) { return 1 / t; };
         throw granular::InvalidCase("is none");
     };
     ordered_json c = good();
@@ -132,6 +133,14 @@ TEST_CASE("boundaries move as formulas say", "[granular][case]")
     refused("v", {0, 0, 1}, "v: must not stand where r is a formula, got [0,0,1]");
     CHECK(refusal(c.dump()) ==
           "file: /boundaries/0/r/2: must be a number where nobody reads formulas, got \"sin(9*t)\"");
+    refused("r", {0, 0, "1/t"}, "r: must be finite at t = 0, got [0,0,\"1/t\"]");
+    c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "1/t"};
+    CHECK_NOTHROW(
+        read_case(c.dump(), "file", {.compile = compile}));  // which is asked for in the middle of steps
+    c["boundaries"][0]["mass"] = 1;
+    CHECK_THAT(refusal(c.dump(), {.compile = compile}),
+               Catch::StartsWith("file: /boundaries/0/v: must be finite at t = 0 where a tool is free"));
+    c["boundaries"][0].erase("mass");
     c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "sqrt(min(0,0.05-t))"};
     auto bursting = read_case(c.dump(), "file", {.compile = compile});
     CHECK_THROWS_WITH(bursting.world->step(100), "boundary 'boundary 0': v is not finite at t = 0.0505 s");

@@ -9,9 +9,9 @@ namespace hilda::granular {
 
 ///     M = -μ_r R* |F_n| ω_rel/|ω_rel|
 ///
-/// Smooth below the turning `slow`, and below what the torque would stop in some steps, so that what rests is left at rest. The lever is R*; with `half_radius` it is half of
-/// the radius against a wall too, which the stacking experiments of the dissertation agree with. With `after` the torque
-/// begins only when a contact has that age.
+/// Smooth below the turning `slow`, and below what the torque would stop in 20 steps, so that what rests is left at rest.
+/// The lever is R*; with `half_radius` it is half of the radius against a wall too, which the stacking experiments of the
+/// dissertation agree with. With `after` the torque begins only when a contact has that age.
 struct ConstantTorque {
     static constexpr const char* name = "constant-torque";
 
@@ -26,7 +26,7 @@ struct ConstantTorque {
         const R turning = t.omega.norm();
         const R lever = half_radius != 0 ? Number<R>(0.5) * larger(t.R_i, t.R_j) : t.R_eff;
         const R most = mu_r * lever * abs(p.F);
-        constexpr float steps = 20;  // as many contacts of one particle may stop it together
+        constexpr float steps = 20;  // several contacts of one particle may brake it together
         const R stopped = (steps * t.h) * most / (Number<R>(0.4) * t.m_eff * t.R_eff * t.R_eff);
         const R M = most / larger(larger(turning, stopped), R(slow > tiny ? slow : tiny));
         return select(history.age >= R(after), -M, R(0.f)) * t.omega;

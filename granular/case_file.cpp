@@ -71,7 +71,7 @@ void read_domain(Keys domain, WorldOptions& o)
 void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<Filling>& fills,
                   const Surroundings& there)
 {
-    constexpr double gigabyte = 1e9, of_output = 2750, of_cell = 4;
+    constexpr double gigabyte = 1e9, of_output = 2560, of_cell = 4;
     std::uint16_t replicas = 0;
     for (const Filling& f : fills) {
         particles += estimate(f);
@@ -154,9 +154,12 @@ void read(Case& out, const Surroundings& surroundings)
     for (const auto& entry : keys.list("boundaries")) {
         Keys b(*entry.first, entry.second);
         const int made_of = material(b, "material");
-        for (NamedBoundary& n :
-             read_boundary(b, b.text("name", "boundary " + std::to_string(out.boundaries.size())),
-                           surroundings.compile)) {
+        const std::string name = b.text("name", "boundary " + std::to_string(out.boundaries.size()));
+        if (name.find_first_of(",\"\n\r") != std::string::npos)
+            b.refuse("name", "must be without commas, quotes and line ends, since it names columns", name);
+        for (NamedBoundary& n : read_boundary(b, name, surroundings.compile)) {
+            if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
+                b.refuse("name", "another boundary has this name", n.name);
             n.boundary.material = made_of;
             n.motion.boundary = in_entry(b.place, [&] { return out.world->add(n.boundary); });
             if (n.motion.moves()) motions.emplace_back(n.motion, b.place);

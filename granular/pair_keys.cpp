@@ -54,6 +54,15 @@ PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<
     law.rolling = read_law<RollingLaws>(pair, "rolling", "none", i, j, by_material);
     law.spin = read_law<SpinLaws>(pair, "spin", "none", i, j, by_material);
     law.cohesion = read_law<CohesionLaws>(pair, "cohesion", "none", i, j, by_material);
+    const bool spring = !law.tangential.is<NoFriction>();
+    const bool turns_a_spring =
+        !(law.rolling.is<NoRolling>() || law.rolling.is<ConstantTorque>()) || !law.spin.is<NoSpin>();
+    if (turns_a_spring && !spring)
+        pair.refuse("tangential",
+                    "must not be none where a spring resists rolling or spin: its stiffness is of that law",
+                    "none");
+    if (pair.has("mu_s") && pair.has("mu") && pair.number("mu_s") < pair.number("mu"))
+        pair.refuse("mu_s", "must not be below mu", pair.number("mu_s"));
     for (const char* key : {"mu", "mu_s", "restitution"}) pair.has(key);  // may stand there for nobody
     return law;
 }

@@ -67,6 +67,9 @@ World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<E
             refuse("domain", std::string("the high end along ") + axis + " must be above the low one", high);
     if (!(o.h > 0) || !std::isfinite(o.h)) refuse("step", "must be positive", o.h);
     if (!(o.skin > 0 && o.skin <= 1)) refuse("skin", "must be in (0, 1] diameters", o.skin);
+    constexpr std::size_t most = 4096;  // whose table of pairs takes 16 MB
+    if (materials.size() > most)
+        refuse("materials", "there must not be more than " + std::to_string(most), materials.size());
     for (const Material& m : materials) {
         const std::string where = "material '" + m.name + "'";
         if (!(m.density > 0) || !std::isfinite(m.density))
@@ -644,8 +647,9 @@ void World::set_force(std::uint32_t id, const Vec3& F)
 
 std::size_t World::bytes_needed(std::size_t n)
 {
+    // with laws of rolling and spin
     constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Rest) + 40,
-                          of_pair = sizeof(Four) + sizeof(Load) + 14, pairs = 6;
+                          of_pair = 3 * sizeof(Four) + sizeof(Load) + 14, pairs = 6;
     return n * (of_particle + pairs * of_pair + 2 * sizeof(Particle));
 }
 

@@ -113,7 +113,13 @@ public:
     void from_bytes(const std::string& bytes, const std::string& of_run, const std::string& file);
 
     double kinetic_energy() const;  ///< [J]
-    Vec3 momentum() const;          ///< [kg m/s]
+    /// Of the domain [m³]
+    double volume() const
+    {
+        const Vec3 wide = options.high - options.low;
+        return wide.x * wide.y * wide.z;
+    }
+    Vec3 momentum() const;  ///< [kg m/s]
     std::size_t count() const { return particles_in + waiting.size(); }
     std::size_t candidates() const { return engine->arrays().pairs.count; }
     long rebuilds() const { return found; }

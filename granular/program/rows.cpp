@@ -12,6 +12,8 @@ Rows::Rows(std::string directory, const Case& c, long every, bool frames)
     : directory(std::move(directory)), c(c), every(every), with_frames(frames)
 {
     csv = "t,kinetic_energy,contacts,pairs";
+    for (const char a : {'x', 'y', 'z'})
+        for (const char b : {'x', 'y', 'z'}) csv += std::string(",stress_") + a + b;
     for (const std::string& b : c.boundaries)
         for (const char* of : {"_Fx", "_Fy", "_Fz", "_Tx", "_Ty", "_Tz"}) csv += ',' + b + of;
     csv += '\n';
@@ -31,6 +33,10 @@ void Rows::record()
     std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
                   w.candidates());
     csv += row;
+    for (const double part : stress(w, w.volume())) {
+        std::snprintf(row, sizeof row, ",%.9g", part);
+        csv += row;
+    }
     for (const Wrench& l : on)
         for (const Vec3& part : {l.F, l.T}) {
             std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", part.x, part.y, part.z);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-long steps_in(double time, double h) { return std::max(1L, std::lround(time / h)); }
+long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
 class Run {
 public:
@@ -95,6 +95,11 @@ private:
                           "/step: %g s is %.2g of the Rayleigh time and %.2g of a collision", c.h,
                           c.h / limits.rayleigh, c.h / limits.collision);
             warn(c.source.placed(what));
+        }
+        if (c.end < c.h) {
+            std::snprintf(what, sizeof what, "/end: must not be before the first step is done, got %g",
+                          c.end);
+            throw InvalidCase(c.source.placed(what));
         }
     }
 

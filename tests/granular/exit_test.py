@@ -47,6 +47,7 @@ def main():
         refused(3, place.format("/laws") + r"--set '/laws/7/mu=1': there is no \"7\"", "--set", "/laws/7/mu=1")
         refused(3, place.format("/step") + r"must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
         refused(3, place.format("/end") + r"must not be more than 9e15 steps away", "--end", "1e30")
+        refused(3, place.format("/end") + r"must not be before the first step is done, got 1e-08", "--end", "1e-8")
         refused(7, "--device cuda:99: ", "--device", "cuda:99")
         refused(3, "none.json: is not there", case="none")
         expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "nothing is written by what is refused")

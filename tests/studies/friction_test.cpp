@@ -93,5 +93,6 @@ TEST_CASE("the friction study names the experiments that it has", "[studies][fri
     CHECK(ended.err == "hilda: error: study friction: unknown experiment 'brik'; did you mean 'brick'?\n");
     const Ended idle = call(in, {"study", "energy", "--check"});
     CHECK(idle.code == 2);
-    CHECK_THAT(idle.err, Contains("--check is for ") && Contains("friction, incline-sweep, stacking"));
+    CHECK_THAT(idle.err,
+               Contains("--check is for ") && Contains(" friction, ") && Contains("incline-sweep, stacking"));
 }

@@ -23,7 +23,6 @@ constexpr double R = 1e-3;
 /// What a GPU does, on this CPU
 struct OneByOne : granular::par::Cpu {};
 
-Material glass() { return {"glass", 2500, 7e7, 0.24}; }
 Material steel() { return {"steel", 7800, 2e8, 0.3}; }
 
 /// Two materials with laws of every kind between them, in a box that is periodic along x, with a plate that falls on them

@@ -16,8 +16,6 @@ namespace {
 
 constexpr double R = 1e-3;
 
-Material glass() { return {"glass", 2500, 7e7, 0.24}; }
-
 WorldOptions room(double h)
 {
     WorldOptions o;

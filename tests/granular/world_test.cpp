@@ -18,8 +18,6 @@ namespace {
 
 constexpr double R = 1e-3;
 
-Material glass() { return {"glass", 2500, 7e7, 0.24}; }
-
 struct Random {
     std::mt19937 engine;
     double number(double low, double high)

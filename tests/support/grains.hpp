@@ -16,4 +16,7 @@ using granular::Vec3;
 using granular::World;
 using granular::WorldOptions;
 
+/// As beads of a millimetre are made of
+inline Material glass() { return {"glass", 2500, 7e7, 0.24}; }
+
 }  // namespace hilda::tests

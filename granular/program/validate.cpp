@@ -48,7 +48,7 @@ void print(const ValidationTable& table)
 const Validation* find_validation(const std::string& name)
 {
     std::error_code error;
-    if (std::filesystem::exists(name, error)) return nullptr;
+    if (std::filesystem::is_regular_file(name, error)) return nullptr;  // a case of that name
     for (const Validation& v : validations())
         if (v.name == name) return &v;
     return nullptr;

@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
-constexpr std::uint64_t format = 3;
+constexpr std::uint64_t format = 4;
 constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
 
 /// FNV-1a over words of eight bytes, and over what is left
@@ -87,7 +87,7 @@ std::string World::to_bytes(const std::string& of_run)
     a.bytes.append(magic, sizeof magic);
     a(format), a(std::uint64_t{0});
     a.list(of_run.data(), of_run.size());
-    a(number), a(found), a(scene);
+    a(number), a(found), a(fastest), a(scene);
     a.list(boundaries.data(), boundaries.size());
     a.list(forces.data(), forces.size());
     const Arrays<par::Cpu>& all = engine->arrays();
@@ -138,7 +138,8 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     a.list(run);
     if (run != of_run) throw FileError(file + ": the checkpoint belongs to another run");
     settle_in();
-    number = a.one<long>(), found = a.one<long>(), scene = a.one<Scene>();
+    number = a.one<long>(), found = a.one<long>();
+    fastest = a.one<float>(), scene = a.one<Scene>();
     a.list(boundaries), a.list(forces);
     forces_changed = true;
     Arrays<par::Cpu>& all = engine->arrays();

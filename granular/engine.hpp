@@ -61,7 +61,7 @@ public:
     /// The longest way of a particle since neighbours were looked for [units]
     virtual float longest_way() = 0;
     /// What the last loads are on boundaries that are not held, by their numbers; zero for the others
-    virtual std::vector<Wrench> on_free_boundaries(const Scene& scene) = 0;
+    virtual const std::vector<Wrench>& on_free_boundaries(const Scene& scene) = 0;
 
     /// Until all that was begun is done: for those who read a clock
     virtual void wait() = 0;

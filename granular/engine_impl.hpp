@@ -169,9 +169,9 @@ public:
                             detail::WayOf{own.particle.position.data(), own.particle.before.data()});
     }
 
-    std::vector<Wrench> on_free_boundaries(const Scene& scene) override
+    const std::vector<Wrench>& on_free_boundaries(const Scene& scene) override
     {
-        std::vector<Wrench> sums(known.size());
+        sums.assign(known.size(), Wrench{});
         on_boundary.resize(free_pairs);
         par::for_each(on, free_pairs,
                       detail::FindOnBoundary{scene.grid, own.particle.position.data(), own.pairs.i.data(),
@@ -271,6 +271,7 @@ private:
     par::Array<Backend, std::uint32_t> counts, before;  ///< then: which pairs are on boundaries that are free
     par::Array<Backend, detail::OnBoundary> on_boundary;
     std::vector<detail::OnBoundary> of_pairs;
+    std::vector<Wrench> sums;
 };
 
 }  // namespace hilda::granular

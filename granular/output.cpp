@@ -105,11 +105,11 @@ std::string pvd(const std::vector<std::pair<double, std::string>>& frames)
     return xml + "</Collection>\n</VTKFile>\n";
 }
 
-std::array<double, 9> stress(const World& world, double volume)
+std::array<double, 9> stress(const World& world, const std::vector<Contact>& contacts, double volume)
 {
     std::array<double, 9> sum{};
     const std::vector<Particle> all = world.particles();
-    for (const Contact& c : world.contacts()) {
+    for (const Contact& c : contacts) {
         // the branch from the centre of j, or from the boundary, to that of i
         const double length = all[c.i].radius + (c.boundary ? 0 : all[c.j].radius) - c.delta;
         const double l[] = {length * c.n.x, length * c.n.y, length * c.n.z}, F[] = {c.F.x, c.F.y, c.F.z};

@@ -18,6 +18,17 @@ struct PairLaw {
     bool turns() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
 };
 
+/// Hertz of a material on itself, and Mindlin where mu is positive
+inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 0)
+{
+    PairLaw law;
+    law.normal = Hertz::of_materials(m, m, restitution);
+    if (mu > 0)
+        law.tangential = Mindlin{.spring = TangentialSpring::of_materials(m, m, restitution),
+                                 .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
+    return law;
+}
+
 /// What a contact does to body i, and the opposite of to body j but for the levers of F_t
 template <class R>
 struct Answer {

@@ -85,7 +85,6 @@ public:
     /// Its id. One that is added to a running world must overlap nothing by more than 5 % of a radius, and begins with the
     /// acceleration of gravity.
     std::uint32_t add(const Particle& particle);
-    void reserve(std::size_t particles);
 
     /// n steps. InvalidCase for particles that cannot begin so, also with n = 0; ParticleLost; DeviceError.
     void step(long n = 1);
@@ -95,7 +94,9 @@ public:
     std::vector<Particle> particles() const;  ///< by id, at t
     std::vector<Contact> contacts() const;    ///< by ids, at t
     /// On a boundary, at t; by the particles of one replica where that is given
-    Wrench wrench(int boundary, int replica = -1) const;
+    Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
+    /// Out of contacts() that are at hand
+    Wrench wrench(const std::vector<Contact>& contacts, int boundary, int replica = -1) const;
 
     /// What f does at the beginning of every step, at t(): it may set velocities of boundaries and forces, and add
     /// particles. Those that were told first are called first; none is told within f. They are no part of a checkpoint.

@@ -37,13 +37,7 @@ World bed(std::size_t n, Device device)
     o.h = h;
     o.device = device;
     World world(o, {glass});
-    const auto c = static_cast<float>(damping(0.9));
-    PairLaw law;
-    law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(glass, glass)), .c = c};
-    law.tangential =
-        Mindlin{.spring = {.k_t = static_cast<float>(8 * effective_shear_modulus(glass, glass)), .c = c},
-                .cap = {0.3f, 0.3f}};
-    world.set_law(0, 0, law);
+    world.set_law(0, 0, hertz_mindlin(glass, 0.9, 0.3));
     for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
     unsigned seed = 1;
     const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) * 0x1p-31 - 1; };

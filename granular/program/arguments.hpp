@@ -14,6 +14,7 @@ enum Exit {
     bad_case = 3,
     numerical = 4,
     io = 5,
+    not_met = 6,
     no_device = 7,
     by_signal = 128
 };

@@ -33,6 +33,16 @@ int run_case(const Options& o)
     return run(o, read_case(text, o.file, here));
 }
 
+void catch_signals()
+{
+    for (const int s : {SIGINT, SIGTERM})
+        std::signal(s, [](int which) {
+            caught = which;
+            std::signal(which, SIG_DFL);  // who asks twice does not want to wait
+        });
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
 int fail(int code, const std::string& what)
 {
     std::fprintf(stderr, "hilda: error: %s\n", what.c_str());
@@ -46,21 +56,15 @@ int main(int argc, char** argv)
     Options o;
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
-    if (const Validation* v = find_validation(o.file)) {
-        if (!o.for_cases.empty())
-            return fail(usage,
-                        "granular: " + o.for_cases + ": is for cases, and " + o.file + " is a validation");
-        return validate(*v, {.full = o.full, .device = o.device}, o.quiet);
-    }
-    if (o.full && std::filesystem::exists(o.file))
+    const Validation* const validation = find_validation(o.file);
+    if (validation != nullptr && !o.for_cases.empty())
+        return fail(usage, "granular: " + o.for_cases + ": is for cases, and " + o.file + " is a validation");
+    if (o.full && validation == nullptr && std::filesystem::exists(o.file))
         return fail(usage, "granular: --full: is for validations, and " + o.file + " is a file");
-    for (const int s : {SIGINT, SIGTERM})
-        std::signal(s, [](int which) {
-            caught = which;
-            std::signal(which, SIG_DFL);  // who asks twice does not want to wait
-        });
-    std::signal(SIGXFSZ, SIG_IGN);
     try {
+        if (validation != nullptr)
+            return validate(*validation, {.full = o.full, .device = o.device}, o.quiet);
+        catch_signals();
         return run_case(o);
     } catch (const InvalidCase& e) {
         return fail(bad_case, e.what());

@@ -23,25 +23,21 @@ void Rows::record()
 {
     const World& w = *c.world;
     const std::vector<Contact> contacts = w.contacts();
-    std::vector<Wrench> on(c.boundaries.size());
-    for (const Contact& at : contacts)
-        if (at.boundary) {
-            on[at.j].F -= at.F;
-            on[at.j].T -= (at.C - c.world->boundary(static_cast<int>(at.j)).r).cross(at.F) + at.T;
-        }
     char row[128];
     std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
                   w.candidates());
     csv += row;
-    for (const double part : stress(w, w.volume())) {
+    for (const double part : stress(w, contacts, w.volume())) {
         std::snprintf(row, sizeof row, ",%.9g", part);
         csv += row;
     }
-    for (const Wrench& l : on)
-        for (const Vec3& part : {l.F, l.T}) {
+    for (int b = 0; b < static_cast<int>(c.boundaries.size()); ++b) {
+        const Wrench on = w.wrench(contacts, b);
+        for (const Vec3& part : {on.F, on.T}) {
             std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", part.x, part.y, part.z);
             csv += row;
         }
+    }
     csv += '\n';
     if (with_frames) {
         make_directory(directory + "/vtk");

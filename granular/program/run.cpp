@@ -138,7 +138,7 @@ private:
     }
 
     /// Files are written by the clock, but hold the world at times that the case sets: there the neighbours are looked for
-    /// anew, as by a world that was loaded, whether a file is written or not. So neither the clock nor a signal settings a
+    /// anew, as by a world that was loaded, whether a file is written or not. So neither the clock nor a signal changes a
     /// bit. For a signal between two of these times, the world of the last is kept in memory.
     int march()
     {

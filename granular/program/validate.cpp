@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/validate.hpp"
 
+#include "granular/program/arguments.hpp"
+
 #include <unistd.h>
 #include <algorithm>
 #include <cstdio>
@@ -9,8 +11,6 @@
 namespace hilda::granular {
 
 namespace {
-
-enum Ends { all_met = 0, lost = 4, not_met = 6, without_device = 7 };
 
 std::string shown(const ValidationTable::Cell& cell)
 {
@@ -74,11 +74,7 @@ int validate(const Validation& v, ValidationOptions options, bool quiet)
     } catch (const ParticleLost& e) {
         clear();
         std::fprintf(stderr, "hilda: error[particle_lost]: %s: %s\n", v.name.c_str(), e.what());
-        return lost;
-    } catch (const DeviceError& e) {
-        clear();
-        std::fprintf(stderr, "hilda: error: --device: %s\n", e.what());
-        return without_device;
+        return numerical;
     }
     clear();
     std::vector<std::vector<std::string>> lines = {{"measured", "least", "most", "", "what"}};
@@ -99,7 +95,7 @@ int validate(const Validation& v, ValidationOptions options, bool quiet)
         print(lines);
         std::printf("%ld of %zu met\n", static_cast<long>(met), result.checks.size());
     }
-    return met == static_cast<long>(result.checks.size()) ? all_met : not_met;
+    return met == static_cast<long>(result.checks.size()) ? ok : not_met;
 }
 
 }  // namespace hilda::granular

@@ -13,8 +13,7 @@ const Validation* find_validation(const std::string& name);
 /// "; validations: A, B", what may stand where a file is looked for in vain
 std::string known_validations();
 
-/// Runs it and prints its tables and checks on stdout; 0 when all are met, 6 when not, 4 when a particle is lost,
-/// 7 when there is no such device.
+/// Runs it and prints its tables and checks on stdout; an exit code. DeviceError
 int validate(const Validation& validation, ValidationOptions options, bool quiet);
 
 }  // namespace hilda::granular

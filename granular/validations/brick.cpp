@@ -57,14 +57,15 @@ PairLaw law(double mu, bool incremental)
 {
     PairLaw law = hertz_mindlin(soft(), restitution, mu);
     if (incremental)
-        law.tangential = MindlinIncremental{.spring = tangential_spring(soft(), restitution),
-                                            .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
+        law.tangential =
+            MindlinIncremental{.spring = TangentialSpring::of_materials(soft(), soft(), restitution),
+                               .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
     return law;
 }
 
 double with_spring(double mu)
 {
-    const TangentialSpring spring = tangential_spring(soft(), restitution);
+    const TangentialSpring spring = TangentialSpring::of_materials(soft(), soft(), restitution);
     const double k = spring.k_t * std::sqrt(0.5 * rest_overlap()), zeta = 0.5 * spring.c;
     return v_i * v_i / (2 * mu * g) + (2 * zeta * zeta - 1) * mu * g / k - 0.5 * h * v_i;
 }

@@ -63,10 +63,11 @@ std::array<Particle, 2> approaching(const Meeting& m)
 PairLaw law(double restitution, bool clamped)
 {
     PairLaw law = hertz_mindlin(soft(), restitution);
-    if (clamped)
-        law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(soft(), soft())),
-                           .c = static_cast<float>(damping(restitution)),
-                           .clamped = 1};
+    if (clamped) {
+        Hertz hertz = Hertz::of_materials(soft(), soft(), restitution);
+        hertz.clamped = 1;
+        law.normal = hertz;
+    }
     return law;
 }
 

@@ -46,8 +46,8 @@ PairLaw law(int which)
 {
     PairLaw law = hertz_mindlin(soft(), e, mu);
     if (which == 1)
-        law.tangential =
-            MindlinIncremental{.spring = tangential_spring(soft(), e), .cap = {friction, friction}};
+        law.tangential = MindlinIncremental{.spring = TangentialSpring::of_materials(soft(), soft(), e),
+                                            .cap = {friction, friction}};
     return law;
 }
 

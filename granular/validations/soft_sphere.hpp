@@ -19,23 +19,4 @@ inline Particle soft_sphere()
     return p;
 }
 
-/// What Mindlin's spring is made of: of this material on itself
-inline TangentialSpring tangential_spring(const Material& m, double restitution)
-{
-    return {.k_t = static_cast<float>(8 * effective_shear_modulus(m, m)),
-            .c = static_cast<float>(damping(restitution))};
-}
-
-/// Hertz of this material, and Mindlin where mu is positive
-inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 0)
-{
-    PairLaw law;
-    law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(m, m)),
-                       .c = static_cast<float>(damping(restitution))};
-    if (mu > 0)
-        law.tangential = Mindlin{.spring = tangential_spring(m, restitution),
-                                 .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
-    return law;
-}
-
 }  // namespace hilda::granular

@@ -17,13 +17,8 @@ Material stuff(const std::string& name) { return {name, 1000, 2e6, 0.3}; }
 
 PairLaw law(const Stack& stack, const StackRun& run, bool ground)
 {
-    const Material m = stuff("");
-    const auto c = static_cast<float>(damping(0.4)), mu = static_cast<float>(stack.mu);
     const auto mu_r = static_cast<float>(stack.mu_r * (ground ? run.ground : 1));
-    PairLaw law;
-    law.normal = Hertz{.E_eff = static_cast<float>(effective_modulus(m, m)), .c = c};
-    law.tangential = Mindlin{.spring = {.k_t = static_cast<float>(8 * effective_shear_modulus(m, m)), .c = c},
-                             .cap = {mu, mu}};
+    PairLaw law = hertz_mindlin(stuff(""), 0.4, stack.mu);
     if (run.rolling == StackRolling::half_radius)
         law.rolling = ConstantTorque{.mu_r = mu_r, .slow = 1e-4f, .half_radius = 1};
     else

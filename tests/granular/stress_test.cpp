@@ -50,7 +50,7 @@ TEST_CASE("a column that a plate presses has the stress of its load over its are
     CHECK(world.wrench(0).F.z == Approx(-F).epsilon(1e-4));
     const double H = world.boundary(1).r.z;
     CHECK(H < 2 * high * R - 1e-4);
-    const auto sigma = stress(world, A * H);
+    const auto sigma = stress(world, world.contacts(), A * H);
     CHECK(sigma[8] == Approx(F / A).epsilon(1e-4));
     only_upright(sigma, 1e-4 * F / A);
 }
@@ -62,7 +62,7 @@ TEST_CASE("a column that bears itself has the stress of its weight at half its h
     const double weight = high * 9.81 * world.particles()[0].mass;
     CHECK(world.wrench(0).F.z == Approx(-weight).epsilon(1e-4));
     // contacts hand on what is above: R (N + 2 (N - 1) + ... + 2) w = R N² w, less what they are pressed together
-    const auto sigma = stress(world, A * 2 * high * R);
+    const auto sigma = stress(world, world.contacts(), A * 2 * high * R);
     double overlaps = 0;
     for (const Contact& c : world.contacts()) overlaps += c.delta * c.F.norm();
     CHECK(sigma[8] == Approx((high * R * weight - overlaps) / (A * 2 * high * R)).epsilon(1e-4));
@@ -86,7 +86,7 @@ TEST_CASE("the stress of smooth grains is symmetric, and that of rough ones at r
                                  (1.1 + 2.2 * (k / 3 % 3)) * R + shift(engine), (1.1 + 2.2 * (k / 9)) * R},
                            .radius = R});
     world.step(50000);
-    const auto sigma = stress(world, width * width * 6 * R);
+    const auto sigma = stress(world, world.contacts(), width * width * 6 * R);
     const double p = sigma[8];
     // half of the weight over the area, and less for what the grains sink into each other's gaps
     const double weight = 27 * 9.81 * world.particles()[0].mass;

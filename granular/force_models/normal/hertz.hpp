@@ -30,9 +30,13 @@ struct Hertz {
     template <class Keys>
     static Hertz read(Keys& keys)
     {
-        return {.E_eff = float(effective_modulus(keys.i, keys.j)),
-                .c = float(damping(keys.restitution())),
-                .clamped = keys.flag("clamped")};
+        Hertz law = of_materials(keys.i, keys.j, keys.restitution());
+        law.clamped = keys.flag("clamped");
+        return law;
+    }
+    static Hertz of_materials(const Material& i, const Material& j, double restitution)
+    {
+        return {.E_eff = float(effective_modulus(i, j)), .c = float(damping(restitution)), .clamped = 0};
     }
 };
 

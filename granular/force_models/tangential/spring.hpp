@@ -32,8 +32,12 @@ struct TangentialSpring {
     {
         if (!keys.material_normal())
             return {.k_t = keys.positive("k_t"), .c = 0, .gamma_t = keys.not_negative("gamma_t")};
-        return {.k_t = float(8 * effective_shear_modulus(keys.i, keys.j)),
-                .c = float(granular::damping(keys.restitution())),
+        return of_materials(keys.i, keys.j, keys.restitution());
+    }
+    static TangentialSpring of_materials(const Material& i, const Material& j, double restitution)
+    {
+        return {.k_t = float(8 * effective_shear_modulus(i, j)),
+                .c = float(granular::damping(restitution)),
                 .gamma_t = 0};
     }
 };

@@ -18,22 +18,52 @@ constexpr int deepest = 64;
 struct NoJson : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+struct Twice : InvalidCase {
+    Twice(const std::string& key, std::string place)
+        : InvalidCase("the key " + key + " stands twice in one object"), place(std::move(place))
+    {}
+    std::string place;
+};
+
+/// Bytes of a text, and how many of them were read
+struct Reader {
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    const char *at, *begin;
+    std::size_t* count;
+
+    reference operator*() const { return *at; }
+    Reader& operator++()
+    {
+        *count = static_cast<std::size_t>(++at - begin);
+        return *this;
+    }
+    bool operator==(const Reader& o) const { return at == o.at; }
+};
 
 Json parse(const std::string& text)
 {
     std::vector<std::set<std::string>> open;
-    std::string twice;
+    std::optional<Twice> twice;
+    std::size_t count = 0;
     const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > deepest) throw InvalidCase("is nested deeper than " + std::to_string(deepest));
         if (event == Json::parse_event_t::object_start) open.emplace_back();
         if (event == Json::parse_event_t::object_end && !open.empty()) open.pop_back();
-        if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
-            twice = parsed.get<std::string>();
+        if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second &&
+            !twice)
+            twice.emplace(parsed.dump(), text_place(text, text.rfind('"', count - 2)));
         return true;
     };
     try {
-        Json all = Json::parse(text, watch);
-        if (!twice.empty()) throw InvalidCase("the key \"" + twice + "\" stands twice in one object");
+        const char* const end = text.data() + text.size();
+        Json all =
+            Json::parse(Reader{text.data(), text.data(), &count}, Reader{end, text.data(), &count}, watch);
+        if (twice) throw Twice(*twice);
         return all;
     } catch (const Json::parse_error& e) {
         throw NoJson(text_place(text, std::max<std::size_t>(e.byte, 1) - 1) + ": is no JSON");
@@ -97,6 +127,8 @@ CaseText::CaseText(std::string text, std::string name) : of_file(std::move(text)
         all = parse(of_file);
     } catch (const NoJson& e) {
         throw InvalidCase(file + ':' + e.what());
+    } catch (const Twice& e) {
+        throw InvalidCase(file + ':' + e.place + ": " + e.what());
     } catch (const InvalidCase& e) {
         throw InvalidCase(file + ": " + e.what());
     }

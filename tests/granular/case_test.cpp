@@ -235,7 +235,10 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
     CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": }", "file"), "file:2:6: is no JSON");
     CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": ", "file"), "file:2:6: is no JSON");
     CHECK_THROWS_WITH(read_case(R"({"hilda_case": 1, "step": 1, "step": 2})", "file"),
-                      "file: the key \"step\" stands twice in one object");
+                      "file:1:30: the key \"step\" stands twice in one object");
+    CHECK_THROWS_WITH(
+        read_case("{\"a\": {\"b\": [{\"c\": 1},\n  {\"c\": 1, \"d\": 2,\n   \"c\": 3}]}}", "file"),
+        "file:3:4: the key \"c\" stands twice in one object");
     CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
     CHECK_THROWS_AS(read_case(R"({"hilda_case": 1e400})", "file"), granular::InvalidCase);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What holds between two materials: one law of each kind.
+/// What holds between two materials: one law of each kind. Friction, rolling and spin are bounded by the force of the normal
+/// law, without the attraction.
 
 #pragma once
 

@@ -99,6 +99,41 @@ TEST_CASE("the contacts of the neighbour list are those of all pairs (long)", "[
     CHECK(world.rebuilds() < 2000);
 }
 
+TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][neighbours]")
+{
+    // nothing but the boundaries says when neighbours are to be looked for
+    const bool turns = GENERATE(false, true);
+    WorldOptions o;
+    o.low = {-50 * R, -50 * R, -50 * R}, o.high = {50 * R, 60 * R, 50 * R};
+    o.h = 5e-6, o.gravity = {0, 0, 0};
+    World world(o, {glass()});
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.5, 0.4));
+    Boundary plate;
+    plate.axis = {1, 0, 0}, plate.r = {turns ? 0 : -4 * R, 0, 0};
+    if (turns)
+        plate.omega = {0, 0, -10};
+    else
+        plate.v = {0.3, 0, 0};
+    world.add(plate);
+    for (int k = 0; k < 20; ++k)
+        world.add(Particle{.r = {(1.3 + 0.3 * k) * R, (1 + 2.2 * (k / 2)) * R, k % 2 * 3 * R}, .radius = R});
+    std::set<unsigned> met;
+    for (int k = 0; k < 3000; ++k) {
+        world.step(3);
+        const auto grains = world.particles();
+        std::set<unsigned> found;
+        for (const Contact& c : world.contacts())
+            if (c.boundary) found.insert(c.i);
+        for (unsigned i = 0; i < grains.size(); ++i) {
+            if (R - nearest(world.boundary(0), grains[i].r).distance > 1e-10) met.insert(i);
+            if (met.count(i) == 0) REQUIRE(grains[i].v.norm() == 0);
+        }
+        for (const unsigned i : met)
+            if (grains[i].v.norm() == 0) CHECK(found.count(i) == 1);  // it meets it now, for the first time
+    }
+    CHECK(met.size() > 3);
+}
+
 TEST_CASE("a run has the same bits for any number of threads", "[granular][deterministic]")
 {
     const int threads = omp_get_max_threads();

@@ -122,8 +122,10 @@ void read(Case& out, const Surroundings& surroundings)
     out.end = keys.positive("end");
     if (constexpr double most = 9e15; out.end / out.h > most)
         keys.refuse("end", "must not be more than 9e15 steps away", out.end);
-    out.every = keys.has("every") ? keys.positive("every") : out.end / 100;
-    out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : out.every;
+    out.every = keys.has("every") ? keys.positive("every") : out.end / 1000;
+    const double seldom = std::max(out.every, out.end / 100);
+    out.frames_every = keys.has("frames_every") ? keys.positive("frames_every") : seldom;
+    out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : seldom;
     o.skin = keys.number("skin", o.skin);
     if (!(o.skin > 0 && o.skin <= 1)) keys.refuse("skin", "must be in (0, 1] diameters", o.skin);
     o.scheme = read_scheme(keys);

@@ -14,7 +14,8 @@ struct Case {
     CaseText source;
     std::string name = {};
     std::unique_ptr<World> world = {};
-    double h = 0, end = 0, every = 0;  ///< step, end, and time between outputs [s]
+    double h = 0, end = 0, every = 0;  ///< step, end, and time between rows [s]
+    double frames_every = 0;           ///< time between frames [s]
     double anew = 0;                   ///< time between the steps at which a checkpoint may be written [s]
     std::vector<std::string> boundaries = {};
     std::vector<std::string> notices = {};  ///< what was mended on the way

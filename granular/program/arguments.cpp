@@ -95,8 +95,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         ->type_name("");
     value("--step", "H", entries[0].second, "step in s, by default the case's")->check(positive);
     value("--end", "T", entries[1].second, "end in s, by default the case's")->check(positive);
-    value("--every", "DT", entries[2].second,
-          "s between rows of run.csv and frames, by default the case's, or end/100")
+    value("--every", "DT", entries[2].second, "s between rows of run.csv, by default the case's, or end/1000")
         ->check(positive);
     app.add_option("--set", set, "change one entry of the case; repeatable")
         ->type_name("/json/pointer=VALUE")

@@ -8,8 +8,8 @@
 
 namespace hilda::granular {
 
-Rows::Rows(std::string directory, const Case& c, long every, bool frames)
-    : directory(std::move(directory)), c(c), every(every), with_frames(frames)
+Rows::Rows(std::string directory, const Case& c, long every, long frames_every)
+    : directory(std::move(directory)), c(c), every(every), frames_every(frames_every)
 {
     csv = "t,kinetic_energy,contacts,pairs";
     for (const char a : {'x', 'y', 'z'})
@@ -22,6 +22,12 @@ Rows::Rows(std::string directory, const Case& c, long every, bool frames)
 void Rows::record()
 {
     const World& w = *c.world;
+    if (frames_every > 0 && w.steps() % frames_every == 0) {
+        make_directory(directory + "/vtk");
+        write_file(directory + "/vtk/" + frame(frames.size()), particles_vtp(w));
+        frames.emplace_back(w.t(), frame(frames.size()));
+    }
+    if (w.steps() % every != 0) return;
     const std::vector<Contact> contacts = w.contacts();
     char row[128];
     std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
@@ -39,11 +45,6 @@ void Rows::record()
         }
     }
     csv += '\n';
-    if (with_frames) {
-        make_directory(directory + "/vtk");
-        write_file(directory + "/vtk/" + frame(rows), particles_vtp(w));
-        frames.emplace_back(w.t(), frame(rows));
-    }
     ++rows;
 }
 
@@ -60,9 +61,9 @@ void Rows::load()
                             std::to_string(k));
     }
     csv.resize(at);
-    if (with_frames)
-        for (std::size_t k = 0; k < rows; ++k)
-            frames.emplace_back(static_cast<double>(static_cast<long>(k) * every) * c.h, frame(k));
+    if (frames_every == 0) return;
+    for (long step = 0; step <= c.world->steps(); step += frames_every)
+        frames.emplace_back(static_cast<double>(step) * c.h, frame(frames.size()));
 }
 
 void Rows::write() const { write_file(directory + "/run.csv", csv); }

@@ -9,10 +9,10 @@ namespace hilda::granular {
 
 class Rows {
 public:
-    /// In `directory`, a row every so many steps; with a frame each, or none
-    Rows(std::string directory, const Case& c, long every, bool frames);
+    /// In `directory`, a row and a frame every so many steps; no frames where that is 0
+    Rows(std::string directory, const Case& c, long every, long frames_every);
 
-    /// Of this moment
+    /// The row and the frame of this moment, where it is one for them
     void record();
     /// Those of an earlier run up to this moment; later ones are made again. FileError
     void load();
@@ -26,8 +26,7 @@ private:
 
     const std::string directory;
     const Case& c;
-    const long every;
-    const bool with_frames;
+    const long every, frames_every;
     std::size_t rows = 0;
     std::string csv;
     std::vector<std::pair<double, std::string>> frames;

@@ -25,7 +25,8 @@ class Run {
 public:
     Run(const Options& o, Case from)
         : o(o), c(std::move(from)), text(c.source.text()), every(steps_in(c.every, c.h)),
-          anew(steps_in(c.anew, c.h)), steps(std::lround(c.end / c.h)), rows(o.output, c, every, !o.no_vtk)
+          frames_every(o.no_vtk ? 0 : steps_in(c.frames_every, c.h)), anew(steps_in(c.anew, c.h)),
+          steps(std::lround(c.end / c.h)), rows(o.output, c, every, frames_every)
     {}
 
     int go()
@@ -148,14 +149,15 @@ private:
             if (rows.count() == 0) rows.record();
             keep();
             while (w.steps() < steps && caught == 0) {
-                const long next =
-                    std::min({(w.steps() / every + 1) * every, (w.steps() / anew + 1) * anew, steps});
+                long next = steps;
+                for (const long between : {every, frames_every, anew})
+                    if (between > 0) next = std::min(next, (w.steps() / between + 1) * between);
                 while (w.steps() < next && caught == 0) {
                     w.step();
                     line.update(c, rate());
                 }
                 if (w.steps() < next) break;
-                if (w.steps() % every == 0) rows.record();
+                rows.record();
                 if (w.steps() % anew == 0 && w.steps() < steps) fixed_time();
             }
         } catch (const ParticleLost& e) {
@@ -258,6 +260,7 @@ private:
                      {"step", c.h},
                      {"end", c.end},
                      {"every", c.every},
+                     {"frames_every", c.frames_every},
                      {"checkpoint_every", c.anew},
                      {"set", set},
                      {"warnings", c.notices}};
@@ -278,7 +281,7 @@ private:
     const Options& o;
     const Case c;
     const std::string text;
-    const long every, anew, steps;
+    const long every, frames_every, anew, steps;
     Rows rows;
     long resumed_at = 0;
     std::string kept;                      ///< the world at the last time that may be a checkpoint's

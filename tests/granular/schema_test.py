@@ -20,7 +20,7 @@ root = pathlib.Path(__file__).resolve().parents[2]
 EVERYTHING = {
     "hilda_case": 1, "name": "everything", "note": "of all a little",
     "domain": {"low": [-1, -1, -1], "high": [2, 2, 2], "periodic": [False, True, False]},
-    "gravity": [0, 0, -1.62], "step": 1e-5, "end": 2e-5, "every": 1e-5, "checkpoint_every": 1e-5, "skin": 0.2,
+    "gravity": [0, 0, -1.62], "step": 1e-5, "end": 2e-5, "every": 1e-5, "frames_every": 2e-5, "checkpoint_every": 1e-5, "skin": 0.2,
     "integrator": "velocity-verlet",
     "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
                   {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
@@ -93,6 +93,7 @@ BY_BOTH = [
     ("/every", 0, "/every: must be positive"),
     ("/checkpoint_every", -1, "/checkpoint_every: must be positive"),
     ("/skin", 0, "/skin: must be in (0, 1]"),
+    ("/frames_every", 0, "/frames_every: must be positive"),
     ("/skin", 1.5, "/skin: must be in (0, 1]"),
     ("/integrator", "euler", "/integrator: must be one of"),
     ("/materials", MISSING, "/materials: must name at least one"),

@@ -81,7 +81,7 @@ void check_memory(double particles, double largest, const WorldOptions& o, const
     const Vec3 size = o.high - o.low;
     const double edge = largest * (1 + o.skin),
                  cells = (size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) * (replicas + 1.);
-    const double in_world = 1e-3 * static_cast<double>(World::bytes_needed(1000));
+    const double in_world = 1e-3 * static_cast<double>(World::bytes_needed(1000, o.orientation));
     const auto check = [&](const char* place, double many, const char* of, double each, std::size_t have,
                            const char* where) {
         if (many * each <= static_cast<double>(have)) return;
@@ -129,6 +129,7 @@ void read(Case& out, const Surroundings& surroundings)
     o.skin = keys.number("skin", o.skin);
     if (!(o.skin > 0 && o.skin <= 1)) keys.refuse("skin", "must be in (0, 1] diameters", o.skin);
     o.scheme = read_scheme(keys);
+    o.orientation = keys.flag("orientation");
 
     std::vector<Material> materials;
     for (const auto& [object, place] : keys.list("materials")) {
@@ -179,13 +180,16 @@ void read(Case& out, const Surroundings& surroundings)
     };
     for (const auto& entry : keys.list("particles")) {
         Keys p(*entry.first, entry.second);
+        if (p.has("orientation") && !o.orientation)
+            p.refuse("orientation", "needs /orientation to be true", p.raw("orientation"));
         const Particle made{.r = p.vector("r"),
                             .radius = p.positive("radius"),
                             .material = material(p, "material"),
                             .v = p.vector("v", {0, 0, 0}),
                             .omega = p.vector("omega", {0, 0, 0}),
                             .fixed = p.flag("fixed"),
-                            .replica = replica(p)};
+                            .replica = replica(p),
+                            .e = p.four("orientation", Particle().e)};
         largest = std::max(largest, 2 * made.radius);
         const std::uint32_t id = in_entry(p.place, [&] { return out.world->add(made); });
         out.entries.emplace_back(id, p.place);

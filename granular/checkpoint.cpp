@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
-constexpr std::uint64_t format = 4;
+constexpr std::uint64_t format = 5;
 constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
 
 /// FNV-1a over words of eight bytes, and over what is left
@@ -96,9 +96,11 @@ std::string World::to_bytes(const std::string& of_run)
     const auto array = [&](const auto& values, std::size_t n) { a.list(values.data(), n); };
     const std::uint32_t n = particle.count;
     array(particle.position, n), array(particle.velocity, n), array(particle.omega, n),
-        array(particle.rest, n);
+        array(particle.rest, n), array(particle.kind, n);
     array(particle.id, n), array(particle.acc, particle.acc.size()),
         array(particle.turn, particle.turn.size());
+    array(particle.orientation, particle.orientation.size());
+    array(particle.orientation_rest, particle.orientation_rest.size());
     // pairs that touch, and no others: the rest is found again
     std::vector<std::uint32_t> i, j;
     std::vector<Four> history, turning;
@@ -146,8 +148,10 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     Particles<par::Cpu>& particle = all.particle;
     Pairs<par::Cpu>& pairs = all.pairs;
     const auto n = a.list(particle.position);
-    a.list(particle.velocity), a.list(particle.omega), a.list(particle.rest), a.list(particle.id);
+    a.list(particle.velocity), a.list(particle.omega), a.list(particle.rest), a.list(particle.kind),
+        a.list(particle.id);
     a.list(particle.acc), a.list(particle.turn);
+    a.list(particle.orientation), a.list(particle.orientation_rest);
     particle.count = static_cast<std::uint32_t>(n);
     particles_in = n;
     pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));

@@ -61,9 +61,11 @@ void DoubleWorld::step(long count)
                 turn = (turns ? 2.5 / (p.mass * p.radius * p.radius) : 0) * T[k];
             }
             if (part != Part::only_loads) {
-                const Change<double> moves = change(scheme, part, p.v, acc, a[k], options.h);
-                p.omega += change(scheme, part, p.omega, turn, alpha[k], options.h).v;
-                p.r += moves.way, p.v += moves.v;
+                const Change<double> moves = change(scheme, part, p.v, acc, a[k], options.h),
+                                     turns_by = change(scheme, part, p.omega, turn, alpha[k], options.h);
+                p.r += moves.way, p.v += moves.v, p.omega += turns_by.v;
+                const auto d = turn_by<double>(turns_by.way, {p.e[0], {p.e[1], p.e[2], p.e[3]}});
+                p.e[0] += d.e0, p.e[1] += d.e.x, p.e[2] += d.e.y, p.e[3] += d.e.z;
             }
             a[k] = acc, alpha[k] = turn;
         }

@@ -152,6 +152,8 @@ public:
                                   .rest = p.rest.data(),
                                   .acc = p.acc.data(),
                                   .turn = p.turn.data(),
+                                  .orientation = p.orientation.data(),
+                                  .orientation_rest = p.orientation_rest.data(),
                                   .start = own.pairs.start.data(),
                                   .other_start = own.pairs.other_start.data(),
                                   .other = own.pairs.other.data(),
@@ -248,7 +250,9 @@ private:
         auto& pf = from.particle;
         auto& qf = from.pairs;
         one(p.position, pf.position), one(p.velocity, pf.velocity), one(p.omega, pf.omega);
-        one(p.rest, pf.rest), one(p.id, pf.id), one(p.acc, pf.acc), one(p.turn, pf.turn);
+        one(p.rest, pf.rest), one(p.kind, pf.kind), one(p.id, pf.id), one(p.acc, pf.acc),
+            one(p.turn, pf.turn);
+        one(p.orientation, pf.orientation), one(p.orientation_rest, pf.orientation_rest);
         one(p.before, pf.before);
         one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.other_start, qf.other_start);
         one(q.other, qf.other), one(q.law, qf.law), one(q.touches, qf.touches), one(q.history, qf.history);

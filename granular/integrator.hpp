@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/neighbours.hpp"
+#include "granular/orientation.hpp"
 
 namespace hilda::granular {
 
@@ -57,6 +58,11 @@ HILDA_HD inline void add(R& v, R d, R& rest)
     rest = (v - (sum - part)) + (all - part);
     v = sum;
 }
+template <class R>
+HILDA_HD inline void add(Vec<R>& v, const Vec<R>& d, Vec<R>& rest)
+{
+    add(v.x, d.x, rest.x), add(v.y, d.y, rest.y), add(v.z, d.z, rest.z);
+}
 
 /// The whole units of a way, and what is left of it
 template <class R>
@@ -70,9 +76,15 @@ HILDA_HD inline R whole_units(R way, R& rest)
 /// A particle as a step sees it
 template <class R>
 struct Moving {
-    Vec<R> v, omega;      ///< [m/s, rad/s]
-    Vec<R> v_rest, rest;  ///< left by rounding, of velocities [m/s] and ways [units]
-    R radius, per_mass;   ///< [m, 1/kg]
+    Vec<R> v, omega;                  ///< [m/s, rad/s]
+    Vec<R> v_rest, omega_rest, rest;  ///< left by rounding, of velocities and of ways [units]
+    R radius, per_mass;               ///< [m, 1/kg]
+};
+
+/// What is to go, in units, and to turn, as a rotation vector [rad]
+template <class R>
+struct Went {
+    Vec<R> units, angle;
 };
 
 struct StepOf {
@@ -80,14 +92,14 @@ struct StepOf {
     Part part;
     Vec<float> gravity;
     float h, per_metre;
-    float turns;  ///< 0: particles do not turn
+    float turns;           ///< 0: particles do not turn
+    std::uint32_t dither;  ///< of what rounding leaves; see half_of
 };
 
-/// One step, or part of one, under F and T; the units to go. acc and turn are those of the step before and become those
-/// of this one.
+/// One step, or part of one, under F and T. acc and turn are those of the step before and become those of this one.
 template <class R>
-HILDA_HD inline Vec<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const Vec<R>& T, Vec<R>& acc,
-                          Vec<R>& turn)
+HILDA_HD inline Went<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const Vec<R>& T, Vec<R>& acc,
+                           Vec<R>& turn)
 {
     Vec<R> a = acc, b = turn;
     const Mask<R> moves = m.per_mass > R(0.f);
@@ -100,14 +112,15 @@ HILDA_HD inline Vec<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const 
     a = select(moves, a, zero);
     if (s.part == Part::only_loads) {
         acc = a, turn = b;
-        return zero;
+        return {zero, zero};
     }
     const Change<R> of_v = change(s.scheme, s.part, m.v, a, acc, s.h);
-    m.omega += change(s.scheme, s.part, m.omega, b, turn, s.h).v;
-    add(m.v.x, of_v.v.x, m.v_rest.x), add(m.v.y, of_v.v.y, m.v_rest.y), add(m.v.z, of_v.v.z, m.v_rest.z);
+    const Change<R> of_omega = change(s.scheme, s.part, m.omega, b, turn, s.h);
+    add(m.v, of_v.v, m.v_rest), add(m.omega, of_omega.v, m.omega_rest);
     acc = a, turn = b;
     const Vec<R> way = select(moves, R(s.per_metre) * of_v.way, zero);
-    return {whole_units(way.x, m.rest.x), whole_units(way.y, m.rest.y), whole_units(way.z, m.rest.z)};
+    return {{whole_units(way.x, m.rest.x), whole_units(way.y, m.rest.y), whole_units(way.z, m.rest.z)},
+            of_omega.way};
 }
 
 /// The arrays that a step reads and writes
@@ -115,7 +128,8 @@ struct Advance {
     Position* position;
     Four *velocity, *omega;
     Rest* rest;
-    Four *acc, *turn;  ///< of the step before; nullptr where the scheme needs none
+    Four *acc, *turn;                      ///< of the step before; nullptr where the scheme needs none
+    Four *orientation, *orientation_rest;  ///< nullptr where it is not kept
     const std::uint32_t *start, *other_start, *other;
     const Load* load;
     const std::uint8_t* touches;  ///< where not, loads are zero

@@ -58,6 +58,16 @@ struct AdvancePack {
         store_rows(in, [&](int k) { return &to[first + std::min<std::uint32_t>(k, valid - 1)]; });
     }
 
+    void turn_pack(std::uint32_t first, std::uint32_t valid, const Vec<Pack>& angle) const
+    {
+        Pack p[4], left[4];
+        load4(to.orientation, first, valid, p), load4(to.orientation_rest, first, valid, left);
+        const EulerParameters<Pack> d = turn_by(angle, {p[0], {p[1], p[2], p[3]}});
+        add(p[0], d.e0, left[0]), add(p[1], d.e.x, left[1]);
+        add(p[2], d.e.y, left[2]), add(p[3], d.e.z, left[3]);
+        store4(to.orientation, first, valid, p), store4(to.orientation_rest, first, valid, left);
+    }
+
     /// The largest |v|²
     float operator()(std::uint32_t first) const
     {
@@ -90,21 +100,24 @@ struct AdvancePack {
         load4(to.omega, first, valid, w);
         load4(to.rest, first, valid, rest);
         if (to.acc != nullptr) load4(to.acc, first, valid, a), load4(to.turn, first, valid, b);
-        Moving<Pack> m{{v[0], v[1], v[2]},
-                       {w[0], w[1], w[2]},
-                       {high(rest[1]), low(rest[2]), high(rest[2])},
-                       {low(rest[0]), high(rest[0]), low(rest[1])},
-                       v[3],
-                       w[3]};
+        Moving<Pack> m{.v = {v[0], v[1], v[2]},
+                       .omega = {w[0], w[1], w[2]},
+                       .v_rest = {low(rest[1]), high(rest[1]), low(rest[2])},
+                       .omega_rest = {high(rest[2]), low(rest[3]), high(rest[3])},
+                       .rest = rest_of_way<Pack>(rest[0]),
+                       .radius = v[3],
+                       .per_mass = w[3]};
         Vec<Pack> acc{a[0], a[1], a[2]}, turn{b[0], b[1], b[2]};
         const Vec<Pack> torque{v[3] * M[0] + T[0], v[3] * M[1] + T[1], v[3] * M[2] + T[2]};
-        const Vec<Pack> units = go(to.step, m, {F[0], F[1], F[2]}, torque, acc, turn);
+        const Went<Pack> went = go(to.step, m, {F[0], F[1], F[2]}, torque, acc, turn);
 
         v[0] = m.v.x, v[1] = m.v.y, v[2] = m.v.z, w[0] = m.omega.x, w[1] = m.omega.y, w[2] = m.omega.z;
         store4(to.velocity, first, valid, v);
         store4(to.omega, first, valid, w);
-        rest[0] = halves(m.rest.x, m.rest.y), rest[1] = halves(m.rest.z, m.v_rest.x);
-        rest[2] = halves(m.v_rest.y, m.v_rest.z);
+        const std::uint32_t dither = to.step.dither;
+        rest[0] = word_of_way(m.rest, dither), rest[1] = halves(m.v_rest.x, m.v_rest.y, dither);
+        rest[2] = halves(m.v_rest.z, m.omega_rest.x, dither);
+        rest[3] = halves(m.omega_rest.y, m.omega_rest.z, dither);
         store4(to.rest, first, valid, rest);
         if (to.acc != nullptr) {
             a[0] = acc.x, a[1] = acc.y, a[2] = acc.z, b[0] = turn.x, b[1] = turn.y, b[2] = turn.z;
@@ -112,8 +125,10 @@ struct AdvancePack {
         }
         if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
             load4(to.position, first, valid, at);
-            at[1].v += to_int(units.x).v, at[2].v += to_int(units.y).v, at[3].v += to_int(units.z).v;
+            at[1].v += to_int(went.units.x).v, at[2].v += to_int(went.units.y).v,
+                at[3].v += to_int(went.units.z).v;
             store4(to.position, first, valid, at);
+            if (to.orientation != nullptr) turn_pack(first, valid, went.angle);
         }
         return largest(select(w[3] > none, m.v.dot(m.v), none));
     }

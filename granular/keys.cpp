@@ -79,14 +79,24 @@ std::string Keys::text(const std::string& key, const std::string& otherwise)
     return has(key) ? text(key) : otherwise;
 }
 
-Vec3 Keys::vector(const std::string& key)
+const Keys::Json& Keys::numbers(const std::string& key, std::size_t count, const char* rule)
 {
     const Json& value = at(key);
-    const bool three = value.is_array() && value.size() == 3;
-    for (int k = 0; three && k < 3; ++k)
+    if (!value.is_array() || value.size() != count) refuse(key, rule, value);
+    for (std::size_t k = 0; k < count; ++k)
         if (!value[k].is_number() || !std::isfinite(value[k].get<double>()))
             refuse(key + "/" + std::to_string(k), "must be a finite number", value[k]);
-    if (!three) refuse(key, "must be three numbers", value);
+    return value;
+}
+
+std::array<double, 4> Keys::four(const std::string& key, const std::array<double, 4>& otherwise)
+{
+    return has(key) ? numbers(key, 4, "must be four numbers").get<std::array<double, 4>>() : otherwise;
+}
+
+Vec3 Keys::vector(const std::string& key)
+{
+    const Json& value = numbers(key, 3, "must be three numbers");
     return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 

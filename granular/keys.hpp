@@ -30,6 +30,7 @@ public:
     bool flag(const std::string& key);  ///< false where it is not there
     std::string text(const std::string& key);
     std::string text(const std::string& key, const std::string& otherwise);
+    std::array<double, 4> four(const std::string& key, const std::array<double, 4>& otherwise);
     Vec3 vector(const std::string& key);
     Vec3 vector(const std::string& key, const Vec3& otherwise);
     std::array<bool, 3> flags(const std::string& key, const std::array<bool, 3>& otherwise);
@@ -56,6 +57,7 @@ public:
 
 private:
     const Json& at(const std::string& key);
+    const Json& numbers(const std::string& key, std::size_t count, const char* rule);
 
     const Json& of;
     std::set<std::string> known;

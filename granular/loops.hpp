@@ -77,6 +77,14 @@ struct AdvanceOne {
     HILDA_HD static Vec<float> vec(const Four& f) { return {f.x, f.y, f.z}; }
     HILDA_HD static void put(Four& to, const Vec<float>& v) { to.x = v.x, to.y = v.y, to.z = v.z; }
 
+    HILDA_HD void turn_one(std::uint32_t k, const Vec<float>& angle) const
+    {
+        Four p = to.orientation[k], left = to.orientation_rest[k];
+        const EulerParameters<float> d = turn_by(angle, {p.x, {p.y, p.z, p.w}});
+        add(p.x, d.e0, left.x), add(p.y, d.e.x, left.y), add(p.z, d.e.y, left.z), add(p.w, d.e.z, left.w);
+        to.orientation[k] = p, to.orientation_rest[k] = left;
+    }
+
     HILDA_HD float operator()(std::uint32_t k) const
     {
         Vec<float> F{0, 0, 0}, T{0, 0, 0};
@@ -99,27 +107,29 @@ struct AdvanceOne {
             T = v.w * M + T;
         }
         Rest rest = to.rest[k];
-        const auto wide = [](const std::uint16_t* three) {
-            return Vec<float>{Rest::wide(three[0]), Rest::wide(three[1]), Rest::wide(three[2])};
-        };
-        const auto narrow = [](std::uint16_t* three, const Vec<float>& from) {
-            three[0] = Rest::narrow(from.x), three[1] = Rest::narrow(from.y), three[2] = Rest::narrow(from.z);
-        };
-        Moving<float> m{vec(v), vec(w), wide(rest.v), wide(rest.way), v.w, w.w};
+        Moving<float> m{.v = vec(v),
+                        .omega = vec(w),
+                        .v_rest = from_halves(rest.v),
+                        .omega_rest = from_halves(rest.omega),
+                        .rest = rest_of_way<float>(rest.way),
+                        .radius = v.w,
+                        .per_mass = w.w};
         Vec<float> acc{0, 0, 0}, turn{0, 0, 0};
         if (to.acc != nullptr) acc = vec(to.acc[k]), turn = vec(to.turn[k]);
-        const Vec<float> units = go(to.step, m, F, T, acc, turn);
+        const Went<float> went = go(to.step, m, F, T, acc, turn);
 
         put(v, m.v), put(w, m.omega);
         to.velocity[k] = v, to.omega[k] = w;
-        narrow(rest.way, m.rest), narrow(rest.v, m.v_rest);
+        const std::uint32_t dither = to.step.dither;
+        rest.way = word_of_way(m.rest, dither);
+        put_halves(rest.v, m.v_rest, dither), put_halves(rest.omega, m.omega_rest, dither);
         to.rest[k] = rest;
         if (to.acc != nullptr) put(to.acc[k], acc), put(to.turn[k], turn);
         if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
             Position p = to.position[k];
-            p.x += static_cast<std::int32_t>(units.x), p.y += static_cast<std::int32_t>(units.y),
-                p.z += static_cast<std::int32_t>(units.z);
+            p.x += to_int(went.units.x), p.y += to_int(went.units.y), p.z += to_int(went.units.z);
             to.position[k] = p;
+            if (to.orientation != nullptr) turn_one(k, went.angle);
         }
         return w.w > 0 ? m.v.dot(m.v) : 0;
     }

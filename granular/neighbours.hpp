@@ -14,20 +14,24 @@ struct Particles {
     par::Array<Backend, Four> velocity;  ///< [m/s], radius [m]
     par::Array<Backend, Four> omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
     par::Array<Backend, Rest> rest;
+    par::Array<Backend, Kind> kind;
     par::Array<Backend, std::uint32_t> id;
-    par::Array<Backend, Four> acc, turn;   ///< of the step before; none where the scheme asks for none
-    par::Array<Backend, Position> before;  ///< where neighbours were last looked for
+    par::Array<Backend, Four> acc, turn;  ///< of the step before; none where the scheme asks for none
+    par::Array<Backend, Four> orientation, orientation_rest;  ///< e0, e; none where it is not kept
+    par::Array<Backend, Position> before;                     ///< where neighbours were last looked for
     std::uint32_t count = 0;
 
     void resize(std::uint32_t n)
     {
-        position.resize(n), velocity.resize(n), omega.resize(n), rest.resize(n), id.resize(n);
+        position.resize(n), velocity.resize(n), omega.resize(n), rest.resize(n), kind.resize(n);
+        id.resize(n);
         count = n;
     }
     std::size_t bytes() const
     {
-        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + id.bytes() + acc.bytes() +
-               turn.bytes() + before.bytes();
+        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + kind.bytes() +
+               id.bytes() + acc.bytes() + turn.bytes() + orientation.bytes() + orientation_rest.bytes() +
+               before.bytes();
     }
 };
 

@@ -25,7 +25,7 @@ HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
 struct Settle {
     Grid grid;
     Position* position;
-    const Rest* rest;
+    const Kind* kind;
     const std::uint32_t* id;
     std::uint64_t* key;
     std::uint32_t* order;
@@ -57,7 +57,7 @@ struct Settle {
         p.cell = Grid::pack(x, y, z);
         position[k] = p;
         const std::uint64_t row =
-            (static_cast<std::uint64_t>(rest[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
+            (static_cast<std::uint64_t>(kind[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
         const std::uint64_t number = row * grid.cells[0] + x;
         key[k] = number << 32 | id[k];
     }
@@ -88,7 +88,7 @@ struct Search {
     Grid grid;
     const Position* position;
     const Four *velocity, *omega;
-    const Rest* rest;
+    const Kind* kind;
     const std::uint32_t* cell_start;
     float metre, skin;
     const Boundary* boundary;
@@ -114,7 +114,7 @@ struct Search {
         const std::uint32_t cell = position[k].cell;
         const std::int32_t x = Grid::x_of(cell), y = Grid::y_of(cell), z = Grid::z_of(cell);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
-        const std::uint32_t replica = rest[k].replica;
+        const std::uint32_t replica = kind[k].replica;
         // Of the 27 cells around, those after this one in the order z, y, x of an endless grid: rows (y, z) of three
         // cells, which are neighbours in memory but where the domain is periodic.
         for (int row = 0; row < 5; ++row) {
@@ -171,8 +171,8 @@ struct FillPairs {
             const bool particle = (other & PairView::boundary) == 0;
             if (particle) take_next(&others[other]);
             if (law_of != nullptr)
-                law[n] = law_of[search.rest[k].material * materials +
-                                (particle ? search.rest[other].material
+                law[n] = law_of[search.kind[k].material * materials +
+                                (particle ? search.kind[other].material
                                           : search.boundary[other & ~PairView::boundary].material)];
             ++n;
         });
@@ -282,7 +282,7 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     const Grid& g = reach.scene.grid;
     key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);
     par::for_each(on, n,
-                  detail::Settle{g, p.position.data(), p.rest.data(), p.id.data(), key.data(), order.data()});
+                  detail::Settle{g, p.position.data(), p.kind.data(), p.id.data(), key.data(), order.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n);
     if (n > 0) {
         std::uint64_t last = 0;
@@ -301,8 +301,10 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
         par::gather(on, to, array.data(), order.data(), n);
         par::copy_bytes(on, array.data(), to, n * sizeof(T));
     };
-    permute(p.position), permute(p.velocity), permute(p.omega), permute(p.rest), permute(p.id);
+    permute(p.position), permute(p.velocity), permute(p.omega), permute(p.rest), permute(p.kind),
+        permute(p.id);
     if (p.acc.size() > 0) permute(p.acc), permute(p.turn);
+    if (p.orientation.size() > 0) permute(p.orientation), permute(p.orientation_rest);
     p.before.resize(n);
     par::copy_bytes(on, p.before.data(), p.position.data(), n * sizeof(Position));
     par::for_each(on, n, detail::Invert{order.data(), where.data()});
@@ -335,7 +337,7 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
                                 .position = p.position.data(),
                                 .velocity = p.velocity.data(),
                                 .omega = p.omega.data(),
-                                .rest = p.rest.data(),
+                                .kind = p.kind.data(),
                                 .cell_start = cell_start.data(),
                                 .metre = static_cast<float>(scene.grid.unit),
                                 .skin = scene.skin,

@@ -26,13 +26,16 @@ void append(std::string& to, const Vec3& v)
 
 std::string particles_csv(const World& world)
 {
-    std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z\n";
-    csv.reserve(220 * world.count());
+    const bool orientation = world.keeps_orientation();
+    std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
+    csv += orientation ? ",e0,e1,e2,e3\n" : "\n";
+    csv.reserve((orientation ? 300 : 220) * world.count());
     std::size_t id = 0;
     for (const Particle& p : world.particles()) {
         csv += std::to_string(id++) + ',' + std::to_string(p.material) + ',';
         append(csv, p.radius);
         append(csv, p.r), append(csv, p.v), append(csv, p.omega);
+        for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', append(csv, p.e[k]);
         csv += '\n';
     }
     return csv;
@@ -69,7 +72,7 @@ std::string particles_vtp(const World& world)
         blocks.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
     std::vector<float> radius;
-    std::vector<double> r, v, omega;
+    std::vector<double> r, v, omega, e;
     std::vector<std::int32_t> material, id;
     for (const Particle& p : all) {
         id.push_back(static_cast<std::int32_t>(id.size()));
@@ -77,10 +80,13 @@ std::string particles_vtp(const World& world)
         r.insert(r.end(), {p.r.x, p.r.y, p.r.z});
         v.insert(v.end(), {p.v.x, p.v.y, p.v.z});
         omega.insert(omega.end(), {p.omega.x, p.omega.y, p.omega.z});
+        e.insert(e.end(), p.e.begin(), p.e.end());
     }
     add("<PointData>\n", "Float32", "radius", 1, radius);
     add("", "Float64", "velocity", 3, v);
     add("", "Float64", "angular velocity", 3, omega);
+    // in the order that Glyph With Custom Source takes as a quaternion
+    if (world.keeps_orientation()) add("", "Float64", "orientation", 4, e);
     add("", "Int32", "material", 1, material);
     add("", "Int32", "id", 1, id);
     add("</PointData>\n<Points>\n", "Float64", "Points", 3, r);

@@ -39,6 +39,12 @@ struct PackMask {
 struct Ints {
     using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
     V v;
+
+    Ints operator<<(int n) const { return {v << n}; }
+    Ints operator>>(int n) const { return {v >> n}; }
+    Ints operator|(Ints o) const { return {v | o.v}; }
+    Ints operator&(std::int32_t o) const { return {v & o}; }
+    Ints operator^(std::int32_t o) const { return {v ^ o}; }
 };
 
 /// 64-bit integers
@@ -73,6 +79,7 @@ template <>
 struct RealType<Pack> {
     using Number = float;
     using Mask = PackMask;
+    using Int = Ints;
 };
 
 inline Pack select(PackMask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
@@ -102,6 +109,9 @@ inline unsigned bits(PackMask m)
 inline Pack to_float(Ints a) { return __builtin_convertvector(a.v, Pack::V); }
 inline Pack to_float(Longs a) { return __builtin_convertvector(a.v, Pack::V); }
 inline Ints to_int(Pack a) { return {__builtin_convertvector(a.v, Ints::V)}; }
+inline Ints smaller(Ints a, std::int32_t b) { return {a.v < b ? a.v : b - Ints::V{}}; }
+inline Ints as_int(Pack a) { return {Ints::V(a.v)}; }
+inline Pack as_float(Ints bits) { return Pack::V(bits.v); }
 inline Longs wide(Ints a) { return {__builtin_convertvector(a.v, Longs::V)}; }
 
 /// To the nearest whole number, of less than 2^31
@@ -115,6 +125,16 @@ inline Pack rint(Pack a)
 #endif
 }
 
+/// The same as integers
+inline Ints nearest_int(Pack a)
+{
+#ifdef __AVX512F__
+    return {Ints::V(_mm512_cvtps_epi32(__m512(a.v)))};
+#else
+    return to_int(rint(a));
+#endif
+}
+
 inline float largest(Pack a)
 {
     float most = a.v[0];
@@ -123,26 +143,13 @@ inline float largest(Pack a)
 }
 
 /// The two halves of words, and words of halves; see Rest
-inline Pack low(Ints words)
-{
-    const Ints::V bits = words.v << 16;
-    Pack out;
-    std::memcpy(&out, &bits, sizeof out);
-    return out;
-}
-inline Pack high(Ints words)
-{
-    const Ints::V bits = words.v & static_cast<std::int32_t>(0xFFFF0000);
-    Pack out;
-    std::memcpy(&out, &bits, sizeof out);
-    return out;
-}
-inline Ints halves(Pack low, Pack high)
+inline Pack low(Ints words) { return as_float(words << 16); }
+inline Pack high(Ints words) { return as_float(words & static_cast<std::int32_t>(0xFFFF0000)); }
+inline Ints halves(Pack low, Pack high, std::uint32_t dither)
 {
     using Words __attribute__((vector_size(4 * lanes))) = std::uint32_t;
-    Words a, b;
-    std::memcpy(&a, &low, sizeof a), std::memcpy(&b, &high, sizeof b);
-    return {Ints::V(((a + 0x8000u) >> 16) | ((b + 0x8000u) & 0xFFFF0000u))};
+    const Words a = Words(low.v) + dither, b = Words(high.v) + dither;
+    return {Ints::V((a >> 16) | (b & 0xFFFF0000u))};
 }
 
 }  // namespace hilda::granular

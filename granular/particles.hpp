@@ -6,7 +6,6 @@
 #include "granular/real.hpp"
 
 #include <cstdint>
-#include <cstring>
 
 namespace hilda::granular {
 
@@ -21,26 +20,55 @@ struct alignas(16) Four {
     float x = 0, y = 0, z = 0, w = 0;
 };
 
-/// What rounding left of ways and velocities, for the next step: single precision without its lower half
-struct alignas(16) Rest {
-    std::uint16_t way[3] = {0, 0, 0};  ///< [units]
-    std::uint16_t v[3] = {0, 0, 0};    ///< [m/s]
+/// What a particle is made of, and which system it belongs to
+struct Kind {
     std::uint16_t material = 0, replica = 0;
-
-    HILDA_HD static float wide(std::uint16_t half)
-    {
-        const std::uint32_t bits = static_cast<std::uint32_t>(half) << 16;
-        float f = 0;
-        memcpy(&f, &bits, sizeof f);
-        return f;
-    }
-    HILDA_HD static std::uint16_t narrow(float f)
-    {
-        std::uint32_t bits = 0;
-        memcpy(&bits, &f, sizeof bits);
-        return static_cast<std::uint16_t>((bits + 0x8000u) >> 16);
-    }
 };
+
+/// What rounding left of ways, velocities and turnings for the next step: three times ten bits of a unit, and numbers of
+/// single precision without their lower half.
+struct alignas(16) Rest {
+    std::int32_t way = 0;                                  ///< see word_of_way
+    std::uint16_t v[3] = {0, 0, 0}, omega[3] = {0, 0, 0};  ///< [m/s, rad/s]
+};
+
+/// What is cut off is rounded up as often as it is nearer to the upper: `dither` goes evenly through [0, 2^16), so that
+/// what is small and the same in every step is not lost. Mirrored numbers become mirrored ones.
+constexpr std::uint32_t to_nearest = 1u << 15;
+HILDA_HD inline std::uint16_t half_of(float x, std::uint32_t dither)
+{
+    return static_cast<std::uint16_t>((static_cast<std::uint32_t>(as_int(x)) + dither) >> 16);
+}
+HILDA_HD inline float from_half(std::uint16_t half)
+{
+    return as_float(static_cast<std::int32_t>(std::uint32_t{half} << 16));
+}
+HILDA_HD inline Vec<float> from_halves(const std::uint16_t* three)
+{
+    return {from_half(three[0]), from_half(three[1]), from_half(three[2])};
+}
+HILDA_HD inline void put_halves(std::uint16_t* three, const Vec<float>& x, std::uint32_t dither)
+{
+    three[0] = half_of(x.x, dither), three[1] = half_of(x.y, dither), three[2] = half_of(x.z, dither);
+}
+
+template <class R>
+HILDA_HD inline Vec<R> rest_of_way(const Int<R>& word)  ///< [units]
+{
+    const auto part = [](const Int<R>& of) { return R(0x1p-10f) * to_float(of >> 22); };
+    return {part(word << 22), part(word << 12), part(word << 2)};
+}
+template <class R>
+HILDA_HD inline Int<R> word_of_way(const Vec<R>& rest, std::uint32_t dither)
+{
+    const std::int32_t off = as_int(0x1p-16f * static_cast<float>(dither) - 0.5f);
+    const auto part = [&](const R& x) {
+        constexpr auto sign = static_cast<std::int32_t>(0x80000000);
+        const R grains = R(0x1p10f) * x;
+        return smaller(nearest_int(grains + as_float((as_int(grains) & sign) ^ off)), 511) & 1023;
+    };
+    return part(rest.x) | (part(rest.y) << 10) | (part(rest.z) << 20);
+}
 
 /// Cells of a box-shaped domain, at least as wide as the largest particle and the skin
 struct Grid {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #ifdef __CUDACC__
 #define HILDA_HD __host__ __device__
@@ -15,16 +16,19 @@
 
 namespace hilda::granular {
 
-/// What belongs to a real type: the number that a parameter is, and the answer to a comparison
+/// What belongs to a real type: the number that a parameter is, the answer to a comparison, and whole numbers of 32 bits
 template <class R>
 struct RealType {
     using Number = R;
     using Mask = bool;
+    using Int = std::int32_t;
 };
 template <class R>
 using Number = typename RealType<R>::Number;
 template <class R>
 using Mask = typename RealType<R>::Mask;
+template <class R>
+using Int = typename RealType<R>::Int;
 
 HILDA_HD inline float sqrt(float x) { return ::sqrtf(x); }
 HILDA_HD inline double sqrt(double x) { return ::sqrt(x); }
@@ -33,6 +37,22 @@ HILDA_HD inline float abs(float x) { return ::fabsf(x); }
 HILDA_HD inline double abs(double x) { return ::fabs(x); }
 HILDA_HD inline float select(bool condition, float a, float b) { return condition ? a : b; }
 HILDA_HD inline double select(bool condition, double a, double b) { return condition ? a : b; }
+HILDA_HD inline float to_float(std::int32_t n) { return static_cast<float>(n); }
+HILDA_HD inline std::int32_t to_int(float x) { return static_cast<std::int32_t>(x); }
+HILDA_HD inline std::int32_t nearest_int(float x) { return static_cast<std::int32_t>(::rintf(x)); }
+HILDA_HD inline std::int32_t smaller(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
+HILDA_HD inline std::int32_t as_int(float x)  ///< its bits
+{
+    std::int32_t n = 0;
+    memcpy(&n, &x, sizeof n);
+    return n;
+}
+HILDA_HD inline float as_float(std::int32_t bits)
+{
+    float x = 0;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
 
 template <class R>
 HILDA_HD inline R smaller(R a, R b)

@@ -93,8 +93,8 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (p.id.data()[k] == id) {
             p.velocity.data()[k] = to_four(v, p.velocity.data()[k].w);
-            for (std::uint16_t& rest : p.rest.data()[k].v) rest = 0;
             p.omega.data()[k] = to_four(omega, p.omega.data()[k].w);
+            p.rest.data()[k] = {.way = p.rest.data()[k].way};
         }
     engine->written();
 }
@@ -157,13 +157,16 @@ void World::look_for_neighbours() const
 
 StepOf World::step_of(Part part) const
 {
+    // multiples of the golden ratio fill an interval most evenly
+    const double golden = 0.6180339887498949 * static_cast<double>(number + 1);
     return {.scheme = options.scheme,
             .part = part,
             .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
                         static_cast<float>(options.gravity.z)},
             .h = static_cast<float>(options.h),
             .per_metre = static_cast<float>(1 / scene.grid.unit),
-            .turns = locked_turning ? 0.f : 1.f};
+            .turns = locked_turning ? 0.f : 1.f,
+            .dither = static_cast<std::uint32_t>(0x1p16 * (golden - std::floor(golden)))};
 }
 
 /// Loads give tools their velocities of the step.

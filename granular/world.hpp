@@ -42,6 +42,8 @@ struct Particle {
     bool fixed = false;                     ///< keeps its place
     double mass = 0;                        ///< [kg]; 0: from its density
     std::uint16_t replica = 0;              ///< meets those of the same replica alone
+    /// Euler parameters e0, e1, e2, e3 from its frame to the global one, kept where WorldOptions say so
+    std::array<double, 4> e = {1, 0, 0, 0};
 };
 
 struct Contact {
@@ -63,6 +65,7 @@ struct WorldOptions {
     double h = 0;                  ///< step [s]
     double skin = 0.1;             ///< of the neighbour list, in diameters of the largest particle
     Scheme scheme = Scheme::symplectic_euler;
+    bool orientation = false;  ///< of particles is kept: 32 bytes for each
     Device device = {};
 };
 
@@ -134,7 +137,8 @@ public:
     double copy_rate() { return engine->copy_rate(); }  ///< of its memory [B/s], read and written
     std::size_t bytes() const { return engine->bytes(); }
     /// About what so many particles in a dense bed will take, with what it takes to make them
-    static std::size_t bytes_needed(std::size_t particles);
+    static std::size_t bytes_needed(std::size_t particles, bool orientation = false);
+    bool keeps_orientation() const { return options.orientation; }
     /// Looks for neighbours before the next step, as a world does that was loaded from a file
     void look_again() { moved = std::numeric_limits<double>::infinity(); }
 

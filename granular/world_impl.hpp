@@ -31,6 +31,19 @@ inline double sphere_mass(double radius, double density)
 }
 
 inline Vec3 to_double(const Four& v) { return {v.x, v.y, v.z}; }
+inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
+/// What single precision leaves of x
+inline float left_of(double x) { return static_cast<float>(x - static_cast<float>(x)); }
+inline Vec<float> left_of(const Vec3& v) { return {left_of(v.x), left_of(v.y), left_of(v.z)}; }
+inline double length(const std::array<double, 4>& e)
+{
+    return std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+}
+inline std::array<double, 4> unit(const std::array<double, 4>& e)
+{
+    const double l = length(e);
+    return {e[0] / l, e[1] / l, e[2] / l, e[3] / l};
+}
 inline Four to_four(const Vec3& v, double w)
 {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};

@@ -17,6 +17,10 @@ std::uint32_t World::add(const Particle& p)
         refuse(where, "place and velocities must be finite", p.r.x);
     if (p.material < 0 || p.material >= static_cast<int>(materials.size()))
         refuse(where, "no material has this number", p.material);
+    if (std::abs(length(p.e) - 1) > 1e-6 || !std::isfinite(length(p.e)))
+        refuse(where, "Euler parameters must have the length 1", length(p.e));
+    if (!options.orientation && p.e != Particle().e)
+        refuse(where, "has an orientation, and this world keeps none; e0", p.e[0]);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
     waiting.push_back(p);
     if (!(p.mass > 0))
@@ -129,24 +133,27 @@ void World::settle_in()
     p.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < p.count; ++k) {
         const Particle& one = all[k];
-        const Four v = to_four(one.v, one.radius);
         p.position.data()[k] = position[k];
-        p.velocity.data()[k] = v;
+        p.velocity.data()[k] = to_four(one.v, one.radius);
         p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
-        Rest rest{
-            .way = {}, .v = {}, .material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
-        if (k < first) {
-            const Vec3 left = one.v - to_double(v);
-            const double of[] = {left.x, left.y, left.z};
-            for (int c = 0; c < 3; ++c) rest.v[c] = Rest::narrow(static_cast<float>(of[c]));
-        }
-        p.rest.data()[k] = rest;
+        p.kind.data()[k] = {.material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
+        Rest& rest = p.rest.data()[k] = {};
+        put_halves(rest.v, left_of(one.v), to_nearest);
+        put_halves(rest.omega, left_of(one.omega), to_nearest);
         p.id.data()[k] = k;
     }
     if (keeps_accelerations(options.scheme)) {
         p.acc.resize(p.count), p.turn.resize(p.count);
         std::copy(acc_of.begin(), acc_of.end(), p.acc.data());
         std::copy(turn_of.begin(), turn_of.end(), p.turn.data());
+    }
+    if (options.orientation) {
+        p.orientation.resize(p.count), p.orientation_rest.resize(p.count);
+        for (std::uint32_t k = 0; k < p.count; ++k) {
+            const auto [e0, e1, e2, e3] = unit(all[k].e);
+            p.orientation.data()[k] = to_four({e0, e1, e2}, e3);
+            p.orientation_rest.data()[k] = {left_of(e0), left_of(e1), left_of(e2), left_of(e3)};
+        }
     }
     waiting.clear();
     particles_in = all.size();

@@ -17,17 +17,22 @@ std::vector<Particle> World::particles() const
     for (std::uint32_t k = 0; k < in.count; ++k) {
         const Four v = in.velocity.data()[k], w = in.omega.data()[k];
         const Rest& rest = in.rest.data()[k];
+        const Kind kind = in.kind.data()[k];
         Particle& p = all[in.id.data()[k]];
-        p.r = place(grid, in.position.data()[k]) +
-              grid.unit * Vec3{Rest::wide(rest.way[0]), Rest::wide(rest.way[1]), Rest::wide(rest.way[2])};
-        p.v = to_double(v) + Vec3{Rest::wide(rest.v[0]), Rest::wide(rest.v[1]), Rest::wide(rest.v[2])},
-        p.omega = to_double(w);
+        p.r = place(grid, in.position.data()[k]) + grid.unit * to_double(rest_of_way<float>(rest.way));
+        p.v = to_double(v) + to_double(from_halves(rest.v));
+        p.omega = to_double(w) + to_double(from_halves(rest.omega));
+        if (in.orientation.size() > 0) {
+            const Four e = in.orientation.data()[k], left = in.orientation_rest.data()[k];
+            p.e = unit(
+                {double(e.x) + left.x, double(e.y) + left.y, double(e.z) + left.z, double(e.w) + left.w});
+        }
         p.radius = v.w;
-        p.material = rest.material;
-        p.replica = rest.replica;
+        p.material = kind.material;
+        p.replica = kind.replica;
         p.fixed = w.w == 0;
         p.mass =
-            p.fixed ? sphere_mass(p.radius, materials[rest.material].density) : 1 / static_cast<double>(w.w);
+            p.fixed ? sphere_mass(p.radius, materials[kind.material].density) : 1 / static_cast<double>(w.w);
     }
     all.insert(all.end(), waiting.begin(), waiting.end());
     return all;
@@ -72,7 +77,7 @@ std::vector<Contact> World::contacts() const
         c.boundary = (j & PairView::boundary) != 0;
         c.i = particle.id.data()[i];
         c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
-        c.replica = particle.rest.data()[i].replica;
+        c.replica = particle.kind.data()[i].replica;
         const Position at = particle.position.data()[i];
         const double R = particle.velocity.data()[i].w;
         const Vec3 r = place(scene.grid, at);
@@ -159,12 +164,13 @@ World::StepLimits World::step_limits() const
     return limits;
 }
 
-std::size_t World::bytes_needed(std::size_t n)
+std::size_t World::bytes_needed(std::size_t n, bool orientation)
 {
     // with laws of rolling and spin
-    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Rest) + 40,
+    constexpr std::size_t of_particle =
+                              3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Rest) + sizeof(Kind) + 40,
                           of_pair = 3 * sizeof(Four) + sizeof(Load) + 14, pairs = 6;
-    return n * (of_particle + pairs * of_pair + 2 * sizeof(Particle));
+    return n * (of_particle + (orientation ? 2 * sizeof(Four) : 0) + pairs * of_pair + 2 * sizeof(Particle));
 }
 
 }  // namespace hilda::granular

@@ -32,7 +32,7 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     WorldOptions o;
     o.low = {0, -8 * R, -8 * R}, o.high = {12 * R, 8 * R, 20 * R};
     o.periodic = {true, false, false};
-    o.h = 5e-6, o.scheme = scheme;
+    o.h = 5e-6, o.scheme = scheme, o.orientation = scheme != Scheme::chung;
     World world(o, {glass(), steel()}, std::move(engine));
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
     world.set_law(0, 0, law);

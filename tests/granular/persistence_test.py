@@ -20,7 +20,7 @@ import time
 CASE = {
     "hilda_case": 1, "name": "cup",
     "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
-    "step": 5e-6, "end": 0.2, "every": 1e-2, "frames_every": 1.5e-2, "checkpoint_every": 1e-3,
+    "step": 5e-6, "end": 0.2, "every": 1e-2, "frames_every": 1.5e-2, "checkpoint_every": 1e-3, "orientation": True,
     "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
                   {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
     "laws": [{"between": ["glass", "glass"], "restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"},

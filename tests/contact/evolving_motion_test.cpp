@@ -25,7 +25,6 @@ struct Row {
     double F_N;
 };
 
-// an independent integration of the same motions in minimal coordinates
 // clang-format off
 const std::vector<Row> planar_slide{
     {1, {0, -0.043798520215, -1.499760193906}, {0, -0.049273796838, -1.999730214353}, 10.959128729898},

@@ -123,7 +123,9 @@ void read(Case& out, const Surroundings& surroundings)
     if (constexpr double most = 9e15; out.end / out.h > most)
         keys.refuse("end", "must not be more than 9e15 steps away", out.end);
     out.every = keys.has("every") ? keys.positive("every") : out.end / 1000;
-    const double seldom = std::max(out.every, out.end / 100);
+    // whole numbers of rows, which are whole numbers of steps apart
+    const double row = out.h * std::max(1., std::round(out.every / out.h)),
+                 seldom = row * std::max(1., std::round(out.end / 100 / row));
     out.frames_every = keys.has("frames_every") ? keys.positive("frames_every") : seldom;
     out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : seldom;
     o.skin = keys.number("skin", o.skin);

@@ -45,6 +45,18 @@ struct Reader {
     bool operator==(const Reader& o) const { return at == o.at; }
 };
 
+/// Of the string whose closing quote is at `end`
+std::size_t opening_quote(const std::string& text, std::size_t end)
+{
+    std::size_t at = end;
+    for (bool escaped = true; escaped;) {
+        at = text.rfind('"', at - 1);
+        const std::size_t before = at > 0 ? text.find_last_not_of('\\', at - 1) : std::string::npos;
+        escaped = (at - 1 - before) % 2 == 1;  // by so many backslashes
+    }
+    return at;
+}
+
 Json parse(const std::string& text)
 {
     std::vector<std::set<std::string>> open;
@@ -56,7 +68,7 @@ Json parse(const std::string& text)
         if (event == Json::parse_event_t::object_end && !open.empty()) open.pop_back();
         if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second &&
             !twice)
-            twice.emplace(parsed.dump(), text_place(text, text.rfind('"', count - 2)));
+            twice.emplace(parsed.dump(), text_place(text, opening_quote(text, count - 1)));
         return true;
     };
     try {

@@ -151,7 +151,11 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     a.list(particle.velocity), a.list(particle.omega), a.list(particle.rest), a.list(particle.kind),
         a.list(particle.id);
     a.list(particle.acc), a.list(particle.turn);
-    a.list(particle.orientation), a.list(particle.orientation_rest);
+    a.list(particle.orientation);
+    if (a.list(particle.orientation_rest) != (options.orientation ? n : 0))
+        throw FileError(file +
+                        ": the checkpoint is of a world that keeps orientations where this one does not, or "
+                        "the other way round");
     particle.count = static_cast<std::uint32_t>(n);
     particles_in = n;
     pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));

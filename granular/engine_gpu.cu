@@ -39,6 +39,17 @@ void choose(int number)
     if (number < 0 || number >= static_cast<int>(there.size()))
         throw DeviceError("there is no GPU " + std::to_string(number) + ", only 0 to " +
                           std::to_string(there.size() - 1));
+    constexpr int least = 8;  // of what this is compiled for
+    int major = 0;
+    par::check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, number),
+               "what a GPU can do");
+    if (major < least)
+        throw DeviceError("GPU " + std::to_string(number) + ", " + there[static_cast<std::size_t>(number)] +
+                          ", has compute capability " + std::to_string(major) + " and not " +
+                          std::to_string(least));
+    static int chosen = number;
+    if (number != chosen)
+        throw DeviceError("a process uses one GPU, and this one has used GPU " + std::to_string(chosen));
     par::check(cudaSetDevice(number), "the choice of a GPU");
 }
 

@@ -64,15 +64,6 @@ HILDA_HD inline void add(Vec<R>& v, const Vec<R>& d, Vec<R>& rest)
     add(v.x, d.x, rest.x), add(v.y, d.y, rest.y), add(v.z, d.z, rest.z);
 }
 
-/// The whole units of a way, and what is left of it
-template <class R>
-HILDA_HD inline R whole_units(R way, R& rest)
-{
-    const R all = way + rest, whole = rint(all);
-    rest = all - whole;
-    return whole;
-}
-
 /// A particle as a step sees it
 template <class R>
 struct Moving {
@@ -81,10 +72,10 @@ struct Moving {
     R radius, per_mass;               ///< [m, 1/kg]
 };
 
-/// What is to go, in units, and to turn, as a rotation vector [rad]
+/// What is to go [units], with what was left of the step before, and to turn, as a rotation vector [rad]
 template <class R>
 struct Went {
-    Vec<R> units, angle;
+    Vec<R> way, angle;
 };
 
 struct StepOf {
@@ -92,8 +83,9 @@ struct StepOf {
     Part part;
     Vec<float> gravity;
     float h, per_metre;
-    float turns;           ///< 0: particles do not turn
-    std::uint32_t dither;  ///< of what rounding leaves; see half_of
+    float turns;           ///< 0: torques do not turn particles
+    float even;            ///< dither of ways; see carried
+    std::uint32_t random;  ///< that of velocities and turnings; see upper_half
 };
 
 /// One step, or part of one, under F and T. acc and turn are those of the step before and become those of this one.
@@ -112,15 +104,13 @@ HILDA_HD inline Went<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const
     a = select(moves, a, zero);
     if (s.part == Part::only_loads) {
         acc = a, turn = b;
-        return {zero, zero};
+        return {m.rest, zero};
     }
     const Change<R> of_v = change(s.scheme, s.part, m.v, a, acc, s.h);
     const Change<R> of_omega = change(s.scheme, s.part, m.omega, b, turn, s.h);
     add(m.v, of_v.v, m.v_rest), add(m.omega, of_omega.v, m.omega_rest);
     acc = a, turn = b;
-    const Vec<R> way = select(moves, R(s.per_metre) * of_v.way, zero);
-    return {{whole_units(way.x, m.rest.x), whole_units(way.y, m.rest.y), whole_units(way.z, m.rest.z)},
-            of_omega.way};
+    return {select(moves, R(s.per_metre) * of_v.way, zero) + m.rest, of_omega.way};
 }
 
 /// The arrays that a step reads and writes

@@ -109,15 +109,18 @@ struct AdvancePack {
                        .per_mass = w[3]};
         Vec<Pack> acc{a[0], a[1], a[2]}, turn{b[0], b[1], b[2]};
         const Vec<Pack> torque{v[3] * M[0] + T[0], v[3] * M[1] + T[1], v[3] * M[2] + T[2]};
-        const Went<Pack> went = go(to.step, m, {F[0], F[1], F[2]}, torque, acc, turn);
+        const Went<Pack> all = go(to.step, m, {F[0], F[1], F[2]}, torque, acc, turn);
 
         v[0] = m.v.x, v[1] = m.v.y, v[2] = m.v.z, w[0] = m.omega.x, w[1] = m.omega.y, w[2] = m.omega.z;
         store4(to.velocity, first, valid, v);
         store4(to.omega, first, valid, w);
-        const std::uint32_t dither = to.step.dither;
-        rest[0] = word_of_way(m.rest, dither), rest[1] = halves(m.v_rest.x, m.v_rest.y, dither);
-        rest[2] = halves(m.v_rest.z, m.omega_rest.x, dither);
-        rest[3] = halves(m.omega_rest.y, m.omega_rest.z, dither);
+        const std::uint32_t dither = to.step.random;
+        const Carried<Pack> went = carried(all.way, to.step.even);
+        const auto half = [&](const Pack& left) { return upper_half(left, dither); };
+        rest[0] = went.word;
+        rest[1] = halves(half(m.v_rest.x), half(m.v_rest.y));
+        rest[2] = halves(half(m.v_rest.z), half(m.omega_rest.x));
+        rest[3] = halves(half(m.omega_rest.y), half(m.omega_rest.z));
         store4(to.rest, first, valid, rest);
         if (to.acc != nullptr) {
             a[0] = acc.x, a[1] = acc.y, a[2] = acc.z, b[0] = turn.x, b[1] = turn.y, b[2] = turn.z;
@@ -125,10 +128,9 @@ struct AdvancePack {
         }
         if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
             load4(to.position, first, valid, at);
-            at[1].v += to_int(went.units.x).v, at[2].v += to_int(went.units.y).v,
-                at[3].v += to_int(went.units.z).v;
+            at[1].v += went.x.v, at[2].v += went.y.v, at[3].v += went.z.v;
             store4(to.position, first, valid, at);
-            if (to.orientation != nullptr) turn_pack(first, valid, went.angle);
+            if (to.orientation != nullptr) turn_pack(first, valid, all.angle);
         }
         return largest(select(w[3] > none, m.v.dot(m.v), none));
     }

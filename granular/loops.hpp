@@ -20,20 +20,23 @@ struct FindLoad {
     {
         const std::uint32_t i = pairs.i[k], j = pairs.j[k];
         const Position p_i = particles.position[i];
-        const Four v_i = particles.velocity[i];
         Touch<float> t{};
         t.h = laws.h;
         bool touches = false;
         if ((j & PairView::boundary) != 0) {
-            touches =
-                meet(t, particles.grid, p_i, v_i, particles.omega[i], laws.boundary[j & ~PairView::boundary]);
+            touches = meet(t, particles.grid, p_i, particles.velocity[i], particles.omega[i],
+                           laws.boundary[j & ~PairView::boundary]);
         } else {
-            const Four v_j = particles.velocity[j];
+            // most pairs do not touch, and of those no more is read than that takes
+            const float all = particles.radius;
+            const float R_i = all > 0 ? all : particles.velocity[i].w,
+                        R_j = all > 0 ? all : particles.velocity[j].w;
             const Difference d = difference(particles.grid, p_i, particles.position[j]);
-            const std::int64_t D = in_units(v_i.w, per_metre) + in_units(v_j.w, per_metre), x = d.x, y = d.y,
+            const std::int64_t D = in_units(R_i, per_metre) + in_units(R_j, per_metre), x = d.x, y = d.y,
                                z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;
             touches = q > 0;
             if (touches) {
+                const Four v_i = particles.velocity[i], v_j = particles.velocity[j];
                 set_overlap(
                     t, static_cast<float>(q), static_cast<float>(d2), static_cast<float>(D),
                     Vec<float>{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
@@ -116,20 +119,21 @@ struct AdvanceOne {
                         .per_mass = w.w};
         Vec<float> acc{0, 0, 0}, turn{0, 0, 0};
         if (to.acc != nullptr) acc = vec(to.acc[k]), turn = vec(to.turn[k]);
-        const Went<float> went = go(to.step, m, F, T, acc, turn);
+        const Went<float> all = go(to.step, m, F, T, acc, turn);
 
         put(v, m.v), put(w, m.omega);
         to.velocity[k] = v, to.omega[k] = w;
-        const std::uint32_t dither = to.step.dither;
-        rest.way = word_of_way(m.rest, dither);
+        const std::uint32_t dither = to.step.random;
+        const Carried<float> went = carried(all.way, to.step.even);
+        rest.way = went.word;
         put_halves(rest.v, m.v_rest, dither), put_halves(rest.omega, m.omega_rest, dither);
         to.rest[k] = rest;
         if (to.acc != nullptr) put(to.acc[k], acc), put(to.turn[k], turn);
         if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
             Position p = to.position[k];
-            p.x += to_int(went.units.x), p.y += to_int(went.units.y), p.z += to_int(went.units.z);
+            p.x += went.x, p.y += went.y, p.z += went.z;
             to.position[k] = p;
-            if (to.orientation != nullptr) turn_one(k, went.angle);
+            if (to.orientation != nullptr) turn_one(k, all.angle);
         }
         return w.w > 0 ? m.v.dot(m.v) : 0;
     }

@@ -56,6 +56,9 @@ struct LeftDomain {
     std::uint32_t id;
 };
 
+/// More than 2^31 pairs: the largest particle is too large for so many small ones, or the skin too wide.
+struct TooManyPairs {};
+
 /// Where particles are and how far neighbours are looked for
 struct Scene {
     Grid grid;
@@ -85,7 +88,7 @@ template <class Backend>
 class Neighbours {
 public:
     /// Puts particles into the cells where they are, sorts them, finds pairs and gives them the histories of the pairs of
-    /// before. Throws LeftDomain, with the particles where they were.
+    /// before. Throws LeftDomain, with the particles where they were, and TooManyPairs.
     void find(const Reach& reach, Particles<Backend>& particles, Pairs<Backend>& pairs);
 
     std::size_t bytes() const;

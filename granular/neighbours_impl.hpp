@@ -4,7 +4,10 @@
 
 #include "granular/neighbours.hpp"
 
+#include <bit>
 #include <cstring>
+#include <numeric>
+#include <vector>
 
 namespace hilda::granular {
 
@@ -74,6 +77,26 @@ struct StartCells {
         const std::uint32_t here = k < particles ? static_cast<std::uint32_t>(key[k] >> 32) : cells;
         for (std::uint32_t c = k > 0 ? static_cast<std::uint32_t>(key[k - 1] >> 32) + 1 : 0; c <= here; ++c)
             start[c] = k;
+    }
+};
+
+/// The same, a cell at a time: no thread has many empty ones to fill
+struct FindStart {
+    const std::uint64_t* key;
+    std::uint32_t particles;
+    std::uint32_t* start;
+
+    HILDA_HD void operator()(std::uint32_t c) const
+    {
+        std::uint32_t low = 0, high = particles;
+        while (low < high) {
+            const std::uint32_t middle = low + (high - low) / 2;
+            if ((key[middle] >> 32) < c)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        start[c] = low;
     }
 };
 
@@ -153,6 +176,18 @@ struct CountPairs {
         count[k] = n;
     }
 };
+
+struct AsFloat {
+    const std::uint32_t* number;
+    HILDA_HD float operator()(std::uint32_t k) const { return static_cast<float>(number[k]); }
+};
+template <class Backend>
+std::uint64_t sum(Backend on, const std::uint32_t* numbers, std::uint32_t n)
+{
+    std::vector<std::uint32_t> all(n);
+    par::copy_to_host(on, all.data(), numbers, n * sizeof *numbers);
+    return std::accumulate(all.begin(), all.end(), std::uint64_t{0});
+}
 
 struct FillPairs {
     Search search;
@@ -280,10 +315,12 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     const Backend on;
     const std::uint32_t n = p.count;
     const Grid& g = reach.scene.grid;
+    const auto cells =
+        static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * reach.scene.replicas;
     key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);
     par::for_each(on, n,
                   detail::Settle{g, p.position.data(), p.kind.data(), p.id.data(), key.data(), order.data()});
-    par::stable_sort_by_key(on, key.data(), order.data(), n);
+    par::stable_sort_by_key(on, key.data(), order.data(), n, 32 + std::bit_width(cells));
     if (n > 0) {
         std::uint64_t last = 0;
         par::copy_to_host(on, &last, key.data() + n - 1, sizeof last);
@@ -309,10 +346,11 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     par::copy_bytes(on, p.before.data(), p.position.data(), n * sizeof(Position));
     par::for_each(on, n, detail::Invert{order.data(), where.data()});
 
-    const auto cells =
-        static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * reach.scene.replicas;
     cell_start.resize(cells + 1);
-    par::for_each(on, n + 1, detail::StartCells{key.data(), n, cells, cell_start.data()});
+    if constexpr (std::is_same_v<Backend, par::Cpu>)
+        par::for_each(on, n + 1, detail::StartCells{key.data(), n, cells, cell_start.data()});
+    else
+        par::for_each(on, cells + 1, detail::FindStart{key.data(), n, cell_start.data()});
 }
 
 template <class Backend>
@@ -346,6 +384,10 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
     counts.resize(n);
     pairs.start.resize(n + 1), pairs.other_start.resize(n + 1);
     par::for_each(on, n, detail::CountPairs{search, counts.data()});
+    // numbers of pairs are of 32 bits, the highest for boundaries
+    const double most = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
+    if (most >= PairView::boundary && detail::sum(on, counts.data(), n) >= PairView::boundary)
+        throw TooManyPairs();
     pairs.count = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), pairs.start.data(), n));
     pairs.i.resize(pairs.count), pairs.j.resize(pairs.count), pairs.other.resize(pairs.count);
     pairs.history.resize(pairs.count), pairs.touches.resize(pairs.count);

@@ -85,7 +85,7 @@ std::string particles_vtp(const World& world)
     add("<PointData>\n", "Float32", "radius", 1, radius);
     add("", "Float64", "velocity", 3, v);
     add("", "Float64", "angular velocity", 3, omega);
-    // in the order that Glyph With Custom Source takes as a quaternion
+    // in the order of the quaternions of vtkGlyph3DMapper, which draws the representation 3D Glyphs
     if (world.keeps_orientation()) add("", "Float64", "orientation", 4, e);
     add("", "Int32", "material", 1, material);
     add("", "Int32", "id", 1, id);

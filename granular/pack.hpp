@@ -45,6 +45,8 @@ struct Ints {
     Ints operator|(Ints o) const { return {v | o.v}; }
     Ints operator&(std::int32_t o) const { return {v & o}; }
     Ints operator^(std::int32_t o) const { return {v ^ o}; }
+    Ints operator+(std::int32_t o) const { return {v + o}; }
+    Ints operator+(Ints o) const { return {v + o.v}; }
 };
 
 /// 64-bit integers
@@ -109,7 +111,6 @@ inline unsigned bits(PackMask m)
 inline Pack to_float(Ints a) { return __builtin_convertvector(a.v, Pack::V); }
 inline Pack to_float(Longs a) { return __builtin_convertvector(a.v, Pack::V); }
 inline Ints to_int(Pack a) { return {__builtin_convertvector(a.v, Ints::V)}; }
-inline Ints smaller(Ints a, std::int32_t b) { return {a.v < b ? a.v : b - Ints::V{}}; }
 inline Ints as_int(Pack a) { return {Ints::V(a.v)}; }
 inline Pack as_float(Ints bits) { return Pack::V(bits.v); }
 inline Longs wide(Ints a) { return {__builtin_convertvector(a.v, Longs::V)}; }
@@ -125,16 +126,6 @@ inline Pack rint(Pack a)
 #endif
 }
 
-/// The same as integers
-inline Ints nearest_int(Pack a)
-{
-#ifdef __AVX512F__
-    return {Ints::V(_mm512_cvtps_epi32(__m512(a.v)))};
-#else
-    return to_int(rint(a));
-#endif
-}
-
 inline float largest(Pack a)
 {
     float most = a.v[0];
@@ -145,11 +136,10 @@ inline float largest(Pack a)
 /// The two halves of words, and words of halves; see Rest
 inline Pack low(Ints words) { return as_float(words << 16); }
 inline Pack high(Ints words) { return as_float(words & static_cast<std::int32_t>(0xFFFF0000)); }
-inline Ints halves(Pack low, Pack high, std::uint32_t dither)
+inline Ints halves(Ints low, Ints high)
 {
     using Words __attribute__((vector_size(4 * lanes))) = std::uint32_t;
-    const Words a = Words(low.v) + dither, b = Words(high.v) + dither;
-    return {Ints::V((a >> 16) | (b & 0xFFFF0000u))};
+    return {Ints::V((Words(low.v) >> 16) | Words(high.v))};
 }
 
 }  // namespace hilda::granular

@@ -55,7 +55,7 @@ public:
     {
         if (n > room) {
             release(Backend(), first);
-            first = nullptr, room = 0;
+            first = nullptr, count = room = 0;
             const std::size_t wanted = n + n / 32;
             first = static_cast<T*>(allocate(Backend(), wanted * sizeof(T)));
             room = wanted;
@@ -97,7 +97,8 @@ float largest(Cpu, std::size_t n, const Functor& f, std::size_t few = 2048)
 
 /// out[0] = 0, out[k + 1] = out[k] + in[k]: n + 1 numbers. Returns the last.
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
-void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n);
+/// Keys differ in their lowest `bits` alone.
+void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int bits);
 
 template <class T>
 struct FillWith {

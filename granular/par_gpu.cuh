@@ -7,8 +7,6 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
-#include <new>
-#include <stdexcept>
 #include <string>
 
 namespace hilda::granular {
@@ -23,7 +21,7 @@ struct Gpu {};
 inline void check(cudaError_t code, const char* doing)
 {
     if (code == cudaSuccess) return;
-    if (code == cudaErrorMemoryAllocation) throw std::bad_alloc();
+    cudaGetLastError();  // so that the next call does not tell it again
     device_failed(std::string(doing) + ": " + cudaGetErrorString(code) + " (CUDA error " +
                   std::to_string(static_cast<int>(code)) + ')');
 }
@@ -31,7 +29,8 @@ inline void check(cudaError_t code, const char* doing)
 inline void* allocate(Gpu, std::size_t bytes)
 {
     void* memory = nullptr;
-    if (bytes > 0) check(cudaMalloc(&memory, bytes), "memory of the GPU");
+    if (bytes > 0)
+        check(cudaMalloc(&memory, bytes), (std::to_string(bytes) + " bytes of the GPU's memory").c_str());
     return memory;
 }
 inline void release(Gpu, void* memory) noexcept
@@ -85,7 +84,8 @@ __global__ void largest_kernel(std::uint32_t n, Functor f, unsigned* most)
     const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
     unsigned bits = k < n ? __float_as_uint(f(k)) & 0x7fffffffu : 0u;
     bits = __reduce_max_sync(0xffffffffu, bits);
-    if (threadIdx.x % 32 == 0 && bits > 0) atomicMax(most, bits);
+    // it only grows: most warps see that theirs is not the largest, and need not wait for the others
+    if (threadIdx.x % 32 == 0 && bits > *static_cast<volatile unsigned*>(most)) atomicMax(most, bits);
 }
 struct LargestTag;
 template <class Functor>
@@ -98,9 +98,10 @@ float largest(Gpu on, std::size_t n, const Functor& f)
     largest_kernel<<<blocks(n), block>>>(static_cast<std::uint32_t>(n), f,
                                          reinterpret_cast<unsigned*>(memory.data()));
     check(cudaGetLastError(), "a search on the GPU");
-    float most = 0;
-    copy_to_host(on, &most, memory.data(), sizeof most);
-    return most;
+    static float* most = nullptr;  // in memory that a GPU writes to without a copy between
+    if (most == nullptr) check(cudaMallocHost(&most, sizeof *most), "memory for a GPU to write to");
+    copy_to_host(on, most, memory.data(), sizeof *most);
+    return *most;
 }
 
 struct ScanTag;
@@ -121,7 +122,7 @@ inline std::uint64_t exclusive_scan(Gpu on, const std::uint32_t* in, std::uint32
 
 struct SortTag;
 struct SortedTag;
-inline void stable_sort_by_key(Gpu on, std::uint64_t* keys, std::uint32_t* values, std::size_t n)
+inline void stable_sort_by_key(Gpu on, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int bits)
 {
     if (n == 0) return;
     auto& sorted = scratch<SortedTag>();
@@ -129,12 +130,13 @@ inline void stable_sort_by_key(Gpu on, std::uint64_t* keys, std::uint32_t* value
     auto* keys_out = reinterpret_cast<std::uint64_t*>(sorted.data());
     auto* values_out = reinterpret_cast<std::uint32_t*>(keys_out + n);
     const auto count = static_cast<std::int64_t>(n);
-    std::size_t bytes = 0;
-    check(cub::DeviceRadixSort::SortPairs(nullptr, bytes, keys, keys_out, values, values_out, count),
+    std::size_t size = 0;
+    check(cub::DeviceRadixSort::SortPairs(nullptr, size, keys, keys_out, values, values_out, count, 0, bits),
           "a sort on the GPU");
     auto& memory = scratch<SortTag>();
-    memory.resize(bytes);
-    check(cub::DeviceRadixSort::SortPairs(memory.data(), bytes, keys, keys_out, values, values_out, count),
+    memory.resize(size);
+    check(cub::DeviceRadixSort::SortPairs(memory.data(), size, keys, keys_out, values, values_out, count, 0,
+                                          bits),
           "a sort on the GPU");
     copy_bytes(on, keys, keys_out, n * sizeof *keys);
     copy_bytes(on, values, values_out, n * sizeof *values);

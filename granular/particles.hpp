@@ -28,30 +28,38 @@ struct Kind {
 /// What rounding left of ways, velocities and turnings for the next step: three times ten bits of a unit, and numbers of
 /// single precision without their lower half.
 struct alignas(16) Rest {
-    std::int32_t way = 0;                                  ///< see word_of_way
+    std::int32_t way = 0;                                  ///< see carried
     std::uint16_t v[3] = {0, 0, 0}, omega[3] = {0, 0, 0};  ///< [m/s, rad/s]
 };
 
-/// What is cut off is rounded up as often as it is nearer to the upper: `dither` goes evenly through [0, 2^16), so that
-/// what is small and the same in every step is not lost. Mirrored numbers become mirrored ones.
+/// Takes x to its upper half, to the next larger |x| as often as it is nearer to that one: `dither` is at random in
+/// [0, 2^16), so that what is small and the same in every step is not lost. Mirrored numbers become mirrored ones: two bodies that move alike keep their momentum to the bit.
 constexpr std::uint32_t to_nearest = 1u << 15;
-HILDA_HD inline std::uint16_t half_of(float x, std::uint32_t dither)
+template <class R>
+HILDA_HD inline Int<R> upper_half(const R& x, std::uint32_t dither)
 {
-    return static_cast<std::uint16_t>((static_cast<std::uint32_t>(as_int(x)) + dither) >> 16);
-}
-HILDA_HD inline float from_half(std::uint16_t half)
-{
-    return as_float(static_cast<std::int32_t>(std::uint32_t{half} << 16));
-}
-HILDA_HD inline Vec<float> from_halves(const std::uint16_t* three)
-{
-    return {from_half(three[0]), from_half(three[1]), from_half(three[2])};
+    return (as_int(x) + static_cast<std::int32_t>(dither)) & static_cast<std::int32_t>(0xFFFF0000);
 }
 HILDA_HD inline void put_halves(std::uint16_t* three, const Vec<float>& x, std::uint32_t dither)
 {
-    three[0] = half_of(x.x, dither), three[1] = half_of(x.y, dither), three[2] = half_of(x.z, dither);
+    const auto half = [&](float of) {
+        return static_cast<std::uint16_t>(static_cast<std::uint32_t>(upper_half(of, dither)) >> 16);
+    };
+    three[0] = half(x.x), three[1] = half(x.y), three[2] = half(x.z);
+}
+HILDA_HD inline Vec<float> from_halves(const std::uint16_t* three)
+{
+    const auto whole = [](std::uint16_t half) {
+        return as_float(static_cast<std::int32_t>(std::uint32_t{half} << 16));
+    };
+    return {whole(three[0]), whole(three[1]), whole(three[2])};
 }
 
+/// The whole units of a way, and a word of what is left of it, in 1024ths; `dither` goes evenly through (-1/2, 1/2).
+template <class R>
+struct Carried {
+    Int<R> x, y, z, word;
+};
 template <class R>
 HILDA_HD inline Vec<R> rest_of_way(const Int<R>& word)  ///< [units]
 {
@@ -59,15 +67,18 @@ HILDA_HD inline Vec<R> rest_of_way(const Int<R>& word)  ///< [units]
     return {part(word << 22), part(word << 12), part(word << 2)};
 }
 template <class R>
-HILDA_HD inline Int<R> word_of_way(const Vec<R>& rest, std::uint32_t dither)
+HILDA_HD inline Carried<R> carried(const Vec<R>& way, float dither)
 {
-    const std::int32_t off = as_int(0x1p-16f * static_cast<float>(dither) - 0.5f);
-    const auto part = [&](const R& x) {
-        constexpr auto sign = static_cast<std::int32_t>(0x80000000);
-        const R grains = R(0x1p10f) * x;
-        return smaller(nearest_int(grains + as_float((as_int(grains) & sign) ^ off)), 511) & 1023;
+    const auto split = [&](const R& all, Int<R>& units) {
+        const R whole = rint(all);
+        const Int<R> grains = to_int(rint(R(0x1p10f) * (all - whole) + R(dither)));
+        units = to_int(whole) + ((grains + 512) >> 10);  // grains are from -512 to 511 in a word
+        return grains & 1023;
     };
-    return part(rest.x) | (part(rest.y) << 10) | (part(rest.z) << 20);
+    Carried<R> out;
+    const Int<R> x = split(way.x, out.x), y = split(way.y, out.y), z = split(way.z, out.z);
+    out.word = x | (y << 10) | (z << 20);
+    return out;
 }
 
 /// Cells of a box-shaped domain, at least as wide as the largest particle and the skin

@@ -33,14 +33,13 @@ using Int = typename RealType<R>::Int;
 HILDA_HD inline float sqrt(float x) { return ::sqrtf(x); }
 HILDA_HD inline double sqrt(double x) { return ::sqrt(x); }
 HILDA_HD inline float rint(float x) { return ::rintf(x); }
+HILDA_HD inline double rint(double x) { return ::rint(x); }
 HILDA_HD inline float abs(float x) { return ::fabsf(x); }
 HILDA_HD inline double abs(double x) { return ::fabs(x); }
 HILDA_HD inline float select(bool condition, float a, float b) { return condition ? a : b; }
 HILDA_HD inline double select(bool condition, double a, double b) { return condition ? a : b; }
 HILDA_HD inline float to_float(std::int32_t n) { return static_cast<float>(n); }
 HILDA_HD inline std::int32_t to_int(float x) { return static_cast<std::int32_t>(x); }
-HILDA_HD inline std::int32_t nearest_int(float x) { return static_cast<std::int32_t>(::rintf(x)); }
-HILDA_HD inline std::int32_t smaller(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
 HILDA_HD inline std::int32_t as_int(float x)  ///< its bits
 {
     std::int32_t n = 0;

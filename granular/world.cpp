@@ -23,6 +23,15 @@ private:
     std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
 };
 
+/// SplitMix64 (Steele, Lea and Flood 2014)
+std::uint64_t mixed(std::uint64_t count)
+{
+    std::uint64_t z = count * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
 }  // namespace
 
 World::World(const WorldOptions& o, std::vector<Material> all)
@@ -93,8 +102,9 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (p.id.data()[k] == id) {
             p.velocity.data()[k] = to_four(v, p.velocity.data()[k].w);
+            put_halves(p.rest.data()[k].v, left_of(v), to_nearest);
+            put_halves(p.rest.data()[k].omega, left_of(omega), to_nearest);
             p.omega.data()[k] = to_four(omega, p.omega.data()[k].w);
-            p.rest.data()[k] = {.way = p.rest.data()[k].way};
         }
     engine->written();
 }
@@ -149,7 +159,10 @@ void World::look_for_neighbours() const
     } catch (const LeftDomain& lost) {
         const Particles<par::Cpu>& p = engine->arrays().particle;
         const auto* at = std::find(p.id.data(), p.id.data() + p.count, lost.id);
+        one_is_lost = true;
         lose(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
+    } catch (const TooManyPairs&) {
+        refuse("particles", "there must not be more than 2^31 pairs within the skin, of particles", count());
     }
     moved = moved_boundaries = 0;
     ++found;
@@ -157,8 +170,9 @@ void World::look_for_neighbours() const
 
 StepOf World::step_of(Part part) const
 {
-    // multiples of the golden ratio fill an interval most evenly
-    const double golden = 0.6180339887498949 * static_cast<double>(number + 1);
+    // both parts of a step have one of their own
+    const auto count = static_cast<std::uint64_t>(2 * number + (part == Part::after_loads ? 2 : 1));
+    const double golden = 0.6180339887498949 * static_cast<double>(count);  // fills an interval most evenly
     return {.scheme = options.scheme,
             .part = part,
             .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
@@ -166,7 +180,8 @@ StepOf World::step_of(Part part) const
             .h = static_cast<float>(options.h),
             .per_metre = static_cast<float>(1 / scene.grid.unit),
             .turns = locked_turning ? 0.f : 1.f,
-            .dither = static_cast<std::uint32_t>(0x1p16 * (golden - std::floor(golden)))};
+            .even = static_cast<float>(golden - std::floor(golden) - 0.5),
+            .random = static_cast<std::uint32_t>(mixed(count) >> 48)};
 }
 
 /// Loads give tools their velocities of the step.

@@ -39,10 +39,10 @@ struct Particle {
     double radius = 0;   ///< [m]
     int material = 0;
     Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< [m/s, rad/s]
-    bool fixed = false;                     ///< keeps its place
+    bool fixed = false;                     ///< keeps its place; turns on with omega
     double mass = 0;                        ///< [kg]; 0: from its density
     std::uint16_t replica = 0;              ///< meets those of the same replica alone
-    /// Euler parameters e0, e1, e2, e3 from its frame to the global one, kept where WorldOptions say so
+    /// Euler parameters e0, e1, e2, e3 from its frame to the global one, made of length 1; kept where WorldOptions say so
     std::array<double, 4> e = {1, 0, 0, 0};
 };
 
@@ -154,7 +154,11 @@ private:
 
     void settle_in();
     Scene scene_of(const std::vector<Particle>& all) const;
-    std::vector<Position> places(const Scene& in, const std::vector<Particle>& all) const;
+    struct Placed {
+        Position position;
+        Vec<float> left;  ///< that whole units do not tell [units]
+    };
+    std::vector<Placed> places(const Scene& in, const std::vector<Particle>& all) const;
     void check_laws(const std::vector<Particle>& all) const;
     void check_overlaps(std::uint32_t first) const;
     void keep_neighbours();
@@ -183,7 +187,8 @@ private:
     mutable double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
     mutable long found = 0;
     mutable bool laws_changed = true;
-    float fastest = 0;  ///< of the particles after the last step [m/s]
+    mutable bool one_is_lost = false;  ///< out of the domain: the pairs of before are the last that there are
+    float fastest = 0;                 ///< of the particles after the last step [m/s]
     long number = 0;
     bool locked_turning = false, forces_changed = false, timed = false;
     std::string refused;  ///< why this world cannot be stepped on

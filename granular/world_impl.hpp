@@ -32,8 +32,13 @@ inline double sphere_mass(double radius, double density)
 
 inline Vec3 to_double(const Four& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
-/// What single precision leaves of x
-inline float left_of(double x) { return static_cast<float>(x - static_cast<float>(x)); }
+/// What single precision leaves of x. Written to memory on the way: GCC 12 with -O3 and AVX takes a row of such numbers to
+/// single precision and back as if nothing had happened.
+inline float left_of(double x)
+{
+    const volatile float near = static_cast<float>(x);
+    return static_cast<float>(x - near);
+}
 inline Vec<float> left_of(const Vec3& v) { return {left_of(v.x), left_of(v.y), left_of(v.z)}; }
 inline double length(const std::array<double, 4>& e)
 {

@@ -17,8 +17,8 @@ std::uint32_t World::add(const Particle& p)
         refuse(where, "place and velocities must be finite", p.r.x);
     if (p.material < 0 || p.material >= static_cast<int>(materials.size()))
         refuse(where, "no material has this number", p.material);
-    if (std::abs(length(p.e) - 1) > 1e-6 || !std::isfinite(length(p.e)))
-        refuse(where, "Euler parameters must have the length 1", length(p.e));
+    if (!(std::abs(length(p.e) - 1) < 1e-3))
+        refuse(where, "Euler parameters must have the length 1, to a thousandth", length(p.e));
     if (!options.orientation && p.e != Particle().e)
         refuse(where, "has an orientation, and this world keeps none; e0", p.e[0]);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
@@ -75,12 +75,13 @@ Scene World::scene_of(const std::vector<Particle>& all) const
 }
 
 /// Cells and places in them. ParticleLost for one that had left the domain; InvalidCase for one that was never in it.
-std::vector<Position> World::places(const Scene& in, const std::vector<Particle>& all) const
+std::vector<World::Placed> World::places(const Scene& in, const std::vector<Particle>& all) const
 {
     const Grid& grid = in.grid;
-    std::vector<Position> position(all.size());
+    std::vector<Placed> placed(all.size());
     for (std::uint32_t k = 0; k < all.size(); ++k) {
         std::int32_t cell[3], at[3];
+        float left[3];
         const double r[] = {all[k].r.x, all[k].r.y, all[k].r.z};
         for (int c = 0; c < 3; ++c) {
             double units = (r[c] - grid.low[c]) / grid.unit;
@@ -96,11 +97,14 @@ std::vector<Position> World::places(const Scene& in, const std::vector<Particle>
             }
             const double whole = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
             cell[c] = static_cast<std::int32_t>(whole);
-            at[c] = static_cast<std::int32_t>(std::lround(units - whole * grid.width[c]));
+            const double in_cell = units - whole * grid.width[c];
+            at[c] = static_cast<std::int32_t>(std::lround(in_cell));
+            left[c] = static_cast<float>(in_cell - at[c]);
         }
-        position[k] = {Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]};
+        placed[k] = {{Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
+                     {left[0], left[1], left[2]}};
     }
-    return position;
+    return placed;
 }
 
 /// Those that were added since the last step become part of the arrays, which are then in the order of the ids. What is
@@ -112,7 +116,7 @@ void World::settle_in()
     if (laws.empty()) refuse("world", "no law is set for its materials", "none");
     const std::vector<Particle> all = particles();
     const Scene next = scene_of(all);
-    const std::vector<Position> position = places(next, all);
+    const std::vector<Placed> placed = places(next, all);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
     const auto first = static_cast<std::uint32_t>(particles_in);
@@ -133,11 +137,13 @@ void World::settle_in()
     p.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < p.count; ++k) {
         const Particle& one = all[k];
-        p.position.data()[k] = position[k];
+        const Carried<float> left = carried(placed[k].left, 0);
+        const Position at = placed[k].position;
+        p.position.data()[k] = {at.cell, at.x + left.x, at.y + left.y, at.z + left.z};
         p.velocity.data()[k] = to_four(one.v, one.radius);
         p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
         p.kind.data()[k] = {.material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
-        Rest& rest = p.rest.data()[k] = {};
+        Rest& rest = p.rest.data()[k] = {.way = left.word};
         put_halves(rest.v, left_of(one.v), to_nearest);
         put_halves(rest.omega, left_of(one.omega), to_nearest);
         p.id.data()[k] = k;

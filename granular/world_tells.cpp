@@ -40,7 +40,7 @@ std::vector<Particle> World::particles() const
 
 std::vector<Contact> World::contacts() const
 {
-    if (!std::isfinite(moved) && particles_in > 0) {
+    if (!std::isfinite(moved) && particles_in > 0 && !one_is_lost) {
         look_for_neighbours();
         moved = std::numeric_limits<
             double>::infinity();  // and once more before the next step, as it was asked for

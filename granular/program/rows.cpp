@@ -5,6 +5,7 @@
 #include "granular/output.hpp"
 
 #include <cstdio>
+#include <filesystem>
 
 namespace hilda::granular {
 
@@ -24,8 +25,8 @@ void Rows::record()
     const World& w = *c.world;
     if (frames_every > 0 && w.steps() % frames_every == 0) {
         make_directory(directory + "/vtk");
-        write_file(directory + "/vtk/" + frame(frames.size()), particles_vtp(w));
-        frames.emplace_back(w.t(), frame(frames.size()));
+        write_file(directory + "/vtk/" + frame(next_frame), particles_vtp(w));
+        frames.emplace_back(w.t(), frame(next_frame++));
     }
     if (w.steps() % every != 0) return;
     const std::vector<Contact> contacts = w.contacts();
@@ -62,8 +63,10 @@ void Rows::load()
     }
     csv.resize(at);
     if (frames_every == 0) return;
-    for (long step = 0; step <= c.world->steps(); step += frames_every)
-        frames.emplace_back(static_cast<double>(step) * c.h, frame(frames.size()));
+    // an earlier part may have run with --no-vtk
+    for (long step = 0; step <= c.world->steps(); step += frames_every, ++next_frame)
+        if (std::filesystem::exists(directory + "/vtk/" + frame(next_frame)))
+            frames.emplace_back(static_cast<double>(step) * c.h, frame(next_frame));
 }
 
 void Rows::write() const { write_file(directory + "/run.csv", csv); }

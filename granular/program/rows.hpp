@@ -27,7 +27,7 @@ private:
     const std::string directory;
     const Case& c;
     const long every, frames_every;
-    std::size_t rows = 0;
+    std::size_t rows = 0, next_frame = 0;
     std::string csv;
     std::vector<std::pair<double, std::string>> frames;
 };

@@ -166,6 +166,14 @@ private:
         } catch (const NotFinite& e) {
             line.clear();
             return failed("not_finite", e.what());
+        } catch (const DeviceError&) {
+            line.clear();
+            save();
+            throw;
+        } catch (const std::bad_alloc&) {
+            line.clear();
+            save();
+            throw;
         }
         line.clear();
         if (w.steps() == steps) return ok;

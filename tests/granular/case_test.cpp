@@ -239,6 +239,8 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
     CHECK_THROWS_WITH(
         read_case("{\"a\": {\"b\": [{\"c\": 1},\n  {\"c\": 1, \"d\": 2,\n   \"c\": 3}]}}", "file"),
         "file:3:4: the key \"c\" stands twice in one object");
+    CHECK_THROWS_WITH(read_case("{\"a\\\\\\\"b\": 1, \"a\\\\\\\"b\": 2}", "file"),
+                      Catch::StartsWith("file:1:15: the key"));
     CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
     CHECK_THROWS_AS(read_case(R"({"hilda_case": 1e400})", "file"), granular::InvalidCase);
 }

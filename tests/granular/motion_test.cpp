@@ -71,6 +71,61 @@ TEST_CASE("a particle in free fall is where its scheme puts it", "[granular][int
     }
 }
 
+TEST_CASE("a particle goes its way however short it is in a step", "[granular][integrator]")
+{
+    // ways of a step are counted in 2^-29 of a cell, and remainders in 1024ths of that
+    const double h = 1e-7, R = 0.05, grain = 1.1 * 2 * R / (1 << 29) / 1024;
+    const long steps = 200000;
+    for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet}) {
+        WorldOptions o;
+        o.low = {-1, -1, -1}, o.high = {1, 1, 1};
+        o.h = h, o.gravity = {0, 0, 0}, o.scheme = scheme;
+        World world = glass_world(o);
+        const double grains[] = {0.01, 0.3, 0.9, 5, 700, 1023.7, 2e5};
+        std::vector<Vec3> begin;
+        for (int k = 0; k < 7; ++k)
+            for (const double sign : {-1., 1.}) {
+                const double v = sign * grains[k] * grain / h;
+                begin.push_back({0.12 * (k - 3) + 0.01234567, sign * 0.2, 0.3});
+                world.add(Particle{.r = begin.back(), .radius = R, .v = {v, -v, v}});
+            }
+        world.step(steps);
+        for (std::size_t k = 0; k < begin.size(); ++k) {
+            const Particle p = world.particles()[k];
+            const Vec3 went = p.r - begin[k];
+            INFO("scheme " << static_cast<int>(scheme) << ", " << p.v.x * h / grain << " grains in a step");
+            const double way = p.v.x * h * static_cast<double>(steps);
+            // to single precision, some grains, and what two places in double precision are told with
+            const double margin = 1e-6 * std::abs(way) + 8 * grain + 1e-15;
+            CHECK(std::abs(went.x - way) < margin);
+            CHECK(std::abs(went.y + way) < margin);
+            CHECK(std::abs(went.z - way) < margin);
+        }
+    }
+}
+
+TEST_CASE("a velocity is kept to what double precision says of it, however it was set", "[granular]")
+{
+    World world = glass_world(room(1e-6));
+    const Vec3 v = {1e-6, 0.1, -1. / 3}, omega = {100. / 7, -1e-4 / 3, 1. / 7};
+    world.add(Particle{.r = {-0.01, 0, 0}, .radius = R, .v = v, .omega = omega});
+    world.add(Particle{.r = {0.01, 0, 0}, .radius = R});
+    world.set_velocity(1, v, omega);
+    world.step(0);
+    const auto far = [](const Vec3& a, const Vec3& b) {
+        return std::max({std::abs(a.x / b.x - 1), std::abs(a.y / b.y - 1), std::abs(a.z / b.z - 1)});
+    };
+    for (const Particle& p : world.particles()) CHECK(std::max(far(p.v, v), far(p.omega, omega)) < 1e-9);
+    const auto before = world.particles();
+    world.add(Particle{.r = {0, 0.01, 0}, .radius = R});
+    world.step(0);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+        const Particle p = world.particles()[k];
+        CHECK(std::max(far(p.v, v), far(p.omega, omega)) < 1e-9);
+        CHECK((p.r - before[k].r).norm() < 1e-14);  // a grain is 4e-15 m
+    }
+}
+
 TEST_CASE("all schemes come to the same heap as the step is refined", "[granular][integrator]")
 {
     // where each particle is after 12 ms, with neighbours looked for many times on the way

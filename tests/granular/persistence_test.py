@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -199,6 +200,21 @@ def ends(runs):
     summary = runs.summary("lost")
     expect(summary["status"] == "particle_lost" and summary["counters"]["t"] > 0.01, f"says where it ended: {summary}")
     expect(runs.finish(lost, "--output", "lost", "--resume", code=4) == err, "the last checkpoint stays, and can be loaded")
+    lost = runs.case("lost2", boundaries=CASE["boundaries"][1:], end=0.1, checkpoint_every=5e-6)
+    runs.finish(lost, "--output", "lost2", code=4)
+    expect(runs.summary("lost2")["status"] == "particle_lost" and (runs.folder / "lost2" / "contacts.csv").exists(),
+           "also where neighbours are looked for anew in every step")
+
+    # frames that a part of the run did not write are not told
+    cut = runs.start("rare", "--output", "some", "--no-vtk", "--checkpoint", "1e-4")
+    while not (runs.folder / "some" / "checkpoint").exists():
+        expect(cut.poll() is None, "it is not done before the signal")
+        time.sleep(0.001)
+    cut.send_signal(signal.SIGINT)
+    cut.communicate()
+    runs.finish("rare", "--output", "some", "--resume")
+    told = re.findall('file="(.*?)"', (runs.folder / "some" / "vtk" / "run.pvd").read_text())
+    expect(told and all((runs.folder / "some" / "vtk" / name).exists() for name in told), f"frames that are there: {told}")
     print(f"both signals, fallback, refusals and a lost grain; at most {1e3 * slowest:.0f} ms to stop between; {whole}")
 
 

@@ -56,7 +56,7 @@ BY_THE_PROGRAM = [
     ("/domain/high/2", -1.5, "/domain/high/2: must be above the low end"),
     ("/laws/0/between/1", "brass", "/laws/0/between/1: no material"),
     ("/orientation", False, "/particles/0/orientation: needs /orientation to be true"),
-    ("/particles/0/orientation/0", 0.7, "/particles/0: particle 0: Euler parameters must have the length 1, got 1.06"),
+    ("/particles/0/orientation/0", 0.7, "/particles/0: particle 0: Euler parameters must have the length 1, to a thousandth, got 1.06"),
     ("/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of"),
     ("/laws/1", MISSING, "/laws: laws: there is none between two materials that may meet, got 'glass' and 'steel'"),
     ("/boundaries/0/material", "wood", "/boundaries/0/material: no material"),

@@ -100,6 +100,13 @@ public:
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
     /// Out of contacts() that are at hand
     Wrench wrench(const std::vector<Contact>& contacts, int boundary, int replica = -1) const;
+    /// Sums over all contacts at t, in a sixth of the time that contacts() takes
+    struct Totals {
+        std::size_t contacts = 0;
+        std::array<double, 9> stress = {};  ///< Love-Weber, over the domain [Pa]; see stress()
+        std::vector<Wrench> on_boundary;    ///< by their numbers
+    };
+    Totals totals() const;
 
     /// What f does at the beginning of every step, at t(): it may set velocities of boundaries and forces, and add
     /// particles. Those that were told first are called first; none is told within f. They are no part of a checkpoint.
@@ -161,6 +168,9 @@ private:
     std::vector<Placed> places(const Scene& in, const std::vector<Particle>& all) const;
     void check_laws(const std::vector<Particle>& all) const;
     void check_overlaps(std::uint32_t first) const;
+    struct LoadsNow;
+    LoadsNow loads_now() const;
+    Contact contact(const LoadsNow& now, std::uint32_t pair) const;
     void keep_neighbours();
     void look_for_neighbours() const;
     void one_step();

@@ -3,7 +3,6 @@
 #include "granular/world_impl.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace hilda::granular {
 
@@ -36,86 +35,6 @@ std::vector<Particle> World::particles() const
     }
     all.insert(all.end(), waiting.begin(), waiting.end());
     return all;
-}
-
-std::vector<Contact> World::contacts() const
-{
-    if (!std::isfinite(moved) && particles_in > 0 && !one_is_lost) {
-        look_for_neighbours();
-        moved = std::numeric_limits<
-            double>::infinity();  // and once more before the next step, as it was asked for
-    }
-    const Arrays<par::Cpu>& a = engine->arrays();
-    const Particles<par::Cpu>& particle = a.particle;
-    const Pairs<par::Cpu>& pairs = a.pairs;
-    const std::size_t many = pairs.count;
-    const auto copy_of = [&](const auto& array) {
-        using T = std::remove_reference_t<decltype(*array.data())>;
-        par::Array<par::Cpu, T> copy(std::min(array.size(), many));
-        par::copy_bytes(par::Cpu(), copy.data(), array.data(), copy.size() * sizeof(T));
-        return copy;
-    };
-    const auto history = copy_of(pairs.history), turning = copy_of(pairs.turning),
-               torque = copy_of(pairs.torque);
-    const auto load = copy_of(pairs.load);
-    const auto touches = copy_of(pairs.touches);
-    const bool turns = turning.size() > 0;
-    // histories of velocity Verlet are those of t; of the others, those of the step before
-    const float h =
-        options.scheme == Scheme::velocity_verlet && number > 0 ? 0 : static_cast<float>(options.h);
-    find_loads(par::Cpu(), particle_view(scene, particle),
-               {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr, history.data(),
-                turns ? turning.data() : nullptr, load.data(), turns ? torque.data() : nullptr,
-                touches.data(), pairs.count},
-               {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
-
-    std::vector<Contact> all;
-    for (std::uint32_t n = 0; n < pairs.count; ++n) {
-        if (touches.data()[n] == 0) continue;
-        const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
-        Contact c;
-        c.boundary = (j & PairView::boundary) != 0;
-        c.i = particle.id.data()[i];
-        c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
-        c.replica = particle.kind.data()[i].replica;
-        const Position at = particle.position.data()[i];
-        const double R = particle.velocity.data()[i].w;
-        const Vec3 r = place(scene.grid, at);
-        if (c.boundary) {
-            const Nearest near = nearest(boundaries[c.j], r);
-            c.n = near.n, c.delta = R - near.distance;
-            c.C = r - near.distance * near.n;
-        } else {
-            const Difference d = difference(scene.grid, at, particle.position.data()[j]);
-            const Vec3 apart = scene.grid.unit * Vec3{double(d.x), double(d.y), double(d.z)};
-            c.n = (1 / apart.norm()) * apart;
-            c.delta = R + particle.velocity.data()[j].w - apart.norm();
-            c.C = r - R * c.n;
-        }
-        if (turns) c.T = to_double(torque.data()[n]);
-        c.F = to_double(load.data()[n].F), c.u = to_double(history.data()[n]);
-        if (!c.boundary && c.j < c.i) {
-            std::swap(c.i, c.j);
-            c.C += c.delta * c.n;  // at the radius of the other
-            c.n = -c.n, c.F = -c.F, c.T = -c.T, c.u = -c.u;
-        }
-        all.push_back(c);
-    }
-    std::sort(all.begin(), all.end(), [](const Contact& x, const Contact& y) {
-        return std::tuple(x.boundary, x.i, x.j) < std::tuple(y.boundary, y.i, y.j);
-    });
-    return all;
-}
-
-Wrench World::wrench(const std::vector<Contact>& contacts, int b, int replica) const
-{
-    Wrench sum;
-    for (const Contact& c : contacts) {
-        if (!c.boundary || static_cast<int>(c.j) != b || (replica >= 0 && c.replica != replica)) continue;
-        sum.F -= c.F;
-        sum.T -= (c.C - boundaries[c.j].r).cross(c.F) + c.T;
-    }
-    return sum;
 }
 
 double World::kinetic_energy() const

@@ -29,17 +29,16 @@ void Rows::record()
         frames.emplace_back(w.t(), frame(next_frame++));
     }
     if (w.steps() % every != 0) return;
-    const std::vector<Contact> contacts = w.contacts();
+    const World::Totals totals = w.totals();
     char row[128];
-    std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), contacts.size(),
+    std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts,
                   w.candidates());
     csv += row;
-    for (const double part : stress(w, contacts, w.volume())) {
+    for (const double part : totals.stress) {
         std::snprintf(row, sizeof row, ",%.9g", part);
         csv += row;
     }
-    for (int b = 0; b < static_cast<int>(c.boundaries.size()); ++b) {
-        const Wrench on = w.wrench(contacts, b);
+    for (const Wrench& on : totals.on_boundary) {
         for (const Vec3& part : {on.F, on.T}) {
             std::snprintf(row, sizeof row, ",%.9g,%.9g,%.9g", part.x, part.y, part.z);
             csv += row;

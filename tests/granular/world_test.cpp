@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Many grains: who touches whom, what is conserved, what does not depend on the order of things.
+#include "granular/output.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <omp.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
+#include <tuple>
 
 using namespace hilda;
 using namespace hilda::tests;
@@ -132,6 +135,40 @@ TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][n
             if (grains[i].v.norm() == 0) CHECK(found.count(i) == 1);  // it meets it now, for the first time
     }
     CHECK(met.size() > 3);
+}
+
+TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deterministic]")
+{
+    const int threads = omp_get_max_threads();
+    Random random{std::mt19937(5)};
+    constexpr int n = 12;
+    World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
+    PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
+    law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
+    world.set_law(0, 0, law);
+    add_walls(world, width_of(n));
+    for (const Particle& p : heap(n, 0.3, random)) world.add(p);
+    world.step(14000);
+    omp_set_num_threads(1);
+    const World::Totals one = world.totals();
+    omp_set_num_threads(3);
+    const World::Totals three = world.totals();
+    omp_set_num_threads(threads);
+    const auto contacts = world.contacts();
+    CHECK(std::is_sorted(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+        return std::tuple(a.boundary, a.i, a.j) < std::tuple(b.boundary, b.i, b.j);
+    }));
+    REQUIRE(contacts.size() > 2500);
+    CHECK(one.contacts == contacts.size());
+    CHECK(one.stress == three.stress);
+    const auto sigma = stress(world, contacts, world.volume());
+    for (int k = 0; k < 9; ++k) CHECK(one.stress[k] == Approx(sigma[k]).margin(1e-7 * sigma[8]));
+    for (int b = 0; b < 5; ++b) {
+        const granular::Wrench on = world.wrench(contacts, b);
+        CHECK((one.on_boundary[b].F - on.F).norm() <= 1e-12 * on.F.norm());
+        CHECK((one.on_boundary[b].T - on.T).norm() <= 1e-12 * on.T.norm());
+        CHECK(one.on_boundary[b].F == three.on_boundary[b].F);
+    }
 }
 
 TEST_CASE("a run has the same bits for any number of threads", "[granular][deterministic]")

@@ -101,10 +101,13 @@ void seed_fills(Case& c, std::uint64_t seed)
     const Json& all = c.source.json();
     const std::size_t fills = all.is_object() && all.contains("fill") ? all.at("fill").size() : 0;
     if (fills == 0) c.notices.emplace_back("--seed: this case fills nothing");
-    for (std::size_t k = 0; k < fills; ++k)
+    for (std::size_t k = 0; k < fills; ++k) {
+        const Json& one = all.at("fill").at(k);
+        if (one.is_object() && one.contains("file")) continue;
         c.source.set({.pointer = "/fill/" + std::to_string(k) + "/seed",
                       .value = std::to_string(seed + k),
                       .asked = "--seed " + std::to_string(seed)});
+    }
 }
 
 void read(Case& out, const Surroundings& surroundings)
@@ -205,8 +208,13 @@ void read(Case& out, const Surroundings& surroundings)
     for (const auto& entry : keys.list("fill")) {
         Keys f(*entry.first, entry.second);
         fillings.push_back(read_filling(f));
-        fillings.back().material = material(f, "material");
-        fillings.back().replica = replica(f);
+        Filling& made = fillings.back();
+        const bool listed = made.kind == Filling::Kind::listed;
+        made.material = listed && !f.has("material") ? -1 : material(f, "material");
+        made.replica = replica(f);
+        if (!o.orientation)
+            for (Particle& p : made.particles) p.e = Particle().e;
+        if (listed) out.files_read += "\n" + f.place_of("file") + ' ' + std::to_string(made.checksum);
         f.end();
     }
     keys.end();

@@ -19,6 +19,7 @@ struct Case {
     double anew = 0;                   ///< time between the steps at which a checkpoint may be written [s]
     std::vector<std::string> boundaries = {};
     std::vector<std::string> notices = {};  ///< what was mended on the way
+    std::string files_read = {};            ///< checksums of other files that it is made of
     /// Ids of the first particles of entries, and their JSON pointers
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};
 };

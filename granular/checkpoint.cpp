@@ -17,20 +17,6 @@ constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
 constexpr std::uint64_t format = 5;
 constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
 
-/// FNV-1a over words of eight bytes, and over what is left
-std::uint64_t checksum(const char* bytes, std::size_t count)
-{
-    std::uint64_t h = 0xcbf29ce484222325u;
-    const auto take = [&](std::uint64_t w) { h = (h ^ w) * 0x100000001b3u, h ^= h >> 29; };
-    for (; count >= 8; bytes += 8, count -= 8) {
-        std::uint64_t w = 0;
-        std::memcpy(&w, bytes, 8);
-        take(w);
-    }
-    for (; count > 0; ++bytes, --count) take(static_cast<unsigned char>(*bytes));
-    return h;
-}
-
 struct Pack {
     std::string bytes;
     template <class T>

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -17,6 +18,8 @@ public:
 /// Writes beside the file, brings that to the disk and renames it.
 void write_file(const std::string& file, const std::string& bytes);
 std::string read_file(const std::string& file, std::size_t most);
+/// FNV-1a over words of eight bytes, and over what is left
+std::uint64_t checksum(const char* bytes, std::size_t count);
 /// Makes a directory and those above it.
 void make_directory(const std::string& directory);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/fill.hpp"
 
+#include "granular/files.hpp"
+#include "granular/split_mix.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,16 +11,12 @@ namespace hilda::granular {
 
 namespace {
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the standard library's distributions differ between compilers.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state(seed) {}
     double number()  ///< in [0, 1)
     {
-        std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+        return static_cast<double>(SplitMix::mixed(state += SplitMix::step) >> 11) * 0x1p-53;
     }
     double number(double low, double high) { return low + (high - low) * number(); }
     Vec3 direction()
@@ -97,12 +96,31 @@ std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, R
     return all;
 }
 
+Filling listed(Keys& keys)
+{
+    Filling f;
+    f.kind = Filling::Kind::listed;
+    const std::string file = keys.text("file");
+    try {
+        const std::string text = read_file(file, std::size_t{1} << 36);
+        f.particles = particles_of_csv(text, file);
+        f.checksum = checksum(text.data(), text.size());
+    } catch (const FileError& e) {
+        throw InvalidCase(keys.place_of("file") + ": " + e.what());
+    } catch (const InvalidCase& e) {
+        throw InvalidCase(keys.place_of("file") + ": " + e.what());
+    }
+    for (const Particle& p : f.particles) f.radius = std::max(f.radius, p.radius);
+    return f;
+}
+
 }  // namespace
 
 Filling read_filling(Keys& keys)
 {
     Filling f;
     const std::string kind = keys.text("type");
+    if (kind == "csv") return listed(keys);
     if (kind == "lattice")
         f.kind = Filling::Kind::lattice;
     else if (kind == "hcp")
@@ -110,7 +128,7 @@ Filling read_filling(Keys& keys)
     else if (kind == "poisson")
         f.kind = Filling::Kind::poisson;
     else
-        keys.refuse("type", "must be one of lattice, hcp, poisson", kind);
+        keys.refuse("type", "must be one of lattice, hcp, poisson, csv", kind);
     f.low = keys.vector("low"), f.high = keys.vector("high");
     f.radius = keys.positive("radius");
     f.least_radius = keys.number("least_radius", f.radius);
@@ -134,6 +152,7 @@ Filling read_filling(Keys& keys)
 
 double estimate(const Filling& f)
 {
+    if (f.kind == Filling::Kind::listed) return static_cast<double>(f.particles.size());
     const Vec3 size = f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius}, a = distances(f);
     const Vec3 n{size.x / a.x, size.y / a.y, size.z / a.z};
     // Bridson's algorithm leaves 0.58 particles in a cube of the spacing
@@ -144,6 +163,14 @@ double estimate(const Filling& f)
 
 std::vector<Particle> fill(const Filling& f)
 {
+    if (f.kind == Filling::Kind::listed) {
+        std::vector<Particle> all = f.particles;
+        for (Particle& p : all) {
+            p.replica = f.replica;
+            if (f.material >= 0) p.material = f.material;
+        }
+        return all;
+    }
     const Vec3 margin{f.radius, f.radius, f.radius}, low = f.low + margin, high = f.high - margin;
     Random random(f.seed);
     std::vector<Vec3> places =

@@ -33,7 +33,8 @@ struct alignas(16) Rest {
 };
 
 /// Takes x to its upper half, to the next larger |x| as often as it is nearer to that one: `dither` is at random in
-/// [0, 2^16), so that what is small and the same in every step is not lost. Mirrored numbers become mirrored ones: two bodies that move alike keep their momentum to the bit.
+/// [0, 2^16), so that what is small and the same in every step is not lost. Mirrored numbers become mirrored ones: two
+/// bodies that are mirror images keep their momentum of zero to the bit.
 constexpr std::uint32_t to_nearest = 1u << 15;
 template <class R>
 HILDA_HD inline Int<R> upper_half(const R& x, std::uint32_t dither)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/split_mix.hpp"
 #include "granular/world_impl.hpp"
 
 #include <algorithm>
@@ -22,15 +23,6 @@ public:
 private:
     std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
 };
-
-/// SplitMix64 (Steele, Lea and Flood 2014)
-std::uint64_t mixed(std::uint64_t count)
-{
-    std::uint64_t z = count * 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
 
 }  // namespace
 
@@ -181,7 +173,7 @@ StepOf World::step_of(Part part) const
             .per_metre = static_cast<float>(1 / scene.grid.unit),
             .turns = locked_turning ? 0.f : 1.f,
             .even = static_cast<float>(golden - std::floor(golden) - 0.5),
-            .random = static_cast<std::uint32_t>(mixed(count) >> 48)};
+            .random = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
 }
 
 /// Loads give tools their velocities of the step.

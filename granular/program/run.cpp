@@ -124,7 +124,8 @@ private:
         for (const char* name : {"checkpoint", "checkpoint.1"}) {
             if (!fs::exists(file(name))) continue;
             try {
-                c.world->from_bytes(read_file(file(name), std::size_t{1} << 40), text, file(name));
+                c.world->from_bytes(read_file(file(name), std::size_t{1} << 40), text + c.files_read,
+                                    file(name));
             } catch (const FileError& e) {
                 if (damage.empty()) damage = e.what();
                 continue;
@@ -202,7 +203,7 @@ private:
         kept.clear();
         kept.shrink_to_fit();  // so that there are not two
         const Clock::time_point from = Clock::now();
-        kept = c.world->to_bytes(text);
+        kept = c.world->to_bytes(text + c.files_read);
         kept_at = c.world->t();
         kept_when = Clock::now();
         keep_seconds = seconds_since(from);

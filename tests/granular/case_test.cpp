@@ -4,10 +4,14 @@
 #include "granular/files.hpp"
 #include "granular/fill.hpp"
 #include "granular/keys.hpp"
+#include "granular/output.hpp"
 #include "granular/text_place.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+#include <cstdio>
+#include <filesystem>
 #include <regex>
 
 using namespace hilda;
@@ -446,6 +450,71 @@ TEST_CASE("a case that needs more memory than there is is refused before it take
     c["particles"] = ordered_json::array();
     CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
                Catch::StartsWith("file: /domain: ") && Catch::Contains("cells need about"));
+}
+
+TEST_CASE("a run goes on from the table that another left", "[granular][fill]")
+{
+    ordered_json c = good();
+    c["orientation"] = true;
+    c["particles"].push_back({{"r", {0.3, 0.2, 1. / 3}},
+                              {"radius", 0.05},
+                              {"material", "steel"},
+                              {"v", {0.1, 1. / 7, 1}},
+                              {"omega", {1e-3, 1, 1. / 3}},
+                              {"orientation", {0.6, 0, 0.8, 0}}});
+    c["laws"].push_back({{"between", {"steel", "steel"}}, {"restitution", 0.5}});
+    granular::Case first = read_case(c.dump(), "file");
+    first.world->step(500);
+    const std::string table = particles_csv(*first.world);
+    const auto listed = granular::particles_of_csv(table, "table");
+    const auto there = first.world->particles();
+    REQUIRE(listed.size() == there.size());
+    for (std::size_t k = 0; k < there.size(); ++k) {
+        CHECK(listed[k].r == there[k].r);
+        CHECK(listed[k].v == there[k].v);
+        CHECK(listed[k].omega == there[k].omega);
+        CHECK(listed[k].e == there[k].e);
+        CHECK(listed[k].radius == there[k].radius);
+        CHECK(listed[k].material == there[k].material);
+    }
+
+    const std::string file =
+        std::filesystem::temp_directory_path() / ("hilda-table-" + std::to_string(getpid()) + ".csv");
+    granular::write_file(file, table);
+    c.erase("particles");
+    c["fill"] = {{{"type", "csv"}, {"file", file}}};
+    granular::Case next = read_case(c.dump(), "file");
+    next.world->step(0);
+    const auto begun = next.world->particles();
+    REQUIRE(begun.size() == there.size());
+    for (std::size_t k = 0; k < there.size(); ++k) {
+        CHECK((begun[k].r - there[k].r).norm() < 1e-12);
+        CHECK((begun[k].v - there[k].v).norm() <= 1e-9 * there[k].v.norm());
+    }
+    granular::write_file(file, table + "1,2\n");
+    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ':') &&
+                                      Catch::Contains("must have as many cells as there are names"));
+    std::remove(file.c_str());
+    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ": is not there"));
+}
+
+TEST_CASE("a table that does not tell of particles is refused with its line", "[granular][fill]")
+{
+    const std::tuple<const char*, const char*> wrong[] = {
+        {"", "t: has no particles"},
+        {"x,y,z,radius\n", "t: has no particles"},
+        {"x,y,radius\n1,2,3\n", "t:2: there is no column z"},
+        {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
+        {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
+        {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1.000000"},
+        {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: there is no column vy"},
+        {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be a number of a material, got '0.5'"},
+        {"x,y,z,radius\n1,2,3\n", "t:2: must have as many cells as there are names, 4, got 3"}};
+    for (const auto& [table, message] : wrong)
+        CHECK_THROWS_WITH(granular::particles_of_csv(table, "t"), message);
+    const auto all = granular::particles_of_csv("\r\n radius , z,y,x,colour\r\n1, 4,3 ,2,red\r\n", "t");
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].r == granular::Vec3{2, 3, 4});
 }
 
 TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")

@@ -72,6 +72,7 @@ BY_THE_PROGRAM = [
     ("/fill/0/least_radius", 0.06, "/fill/0/least_radius: must be positive, and not above the radius"),
     ("/fill/0", {"type": "lattice", "low": [0, 0, 0], "high": [1, 1, 1], "radius": 1e-5, "material": "steel"},
      "/fill: 1.08e+14 particles need about "),
+    ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: is not there"),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: the box must be at least a diameter wide"),
     ("/step", 0.1, "/step: must not be above"),
 ]
@@ -167,6 +168,8 @@ BY_BOTH = [
     ("/particles/0/fixed", "no", "/particles/0/fixed: must be true or false"),
     ("/particles/0/mass", 1, "/particles/0/mass: unknown key"),
     ("/fill/0/type", "heap", "/fill/0/type: must be one of"),
+    ("/fill/0", {"type": "csv", "material": "steel"}, "/fill/0/file: is missing"),
+    ("/fill/0/file", "a.csv", "/fill/0/file: unknown key"),
     ("/fill/0/spacing", 0.9, "/fill/0/spacing: must be at least one diameter"),
     ("/fill/0/jitter", 2, "/fill/0/jitter: must be in [0, 1]"),
     ("/fill/0/count", -1, "/fill/0/count: must be a whole number"),

@@ -75,7 +75,7 @@ TEST_CASE("a particle goes its way however short it is in a step", "[granular][i
 {
     // ways of a step are counted in 2^-29 of a cell, and remainders in 1024ths of that
     const double h = 1e-7, R = 0.05, grain = 1.1 * 2 * R / (1 << 29) / 1024;
-    const long steps = 200000;
+    const long steps = 50000;
     for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet}) {
         WorldOptions o;
         o.low = {-1, -1, -1}, o.high = {1, 1, 1};

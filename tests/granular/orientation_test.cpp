@@ -113,7 +113,7 @@ TEST_CASE("orientations go with the schemes, and in double precision the same wa
     for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::forward_euler,
                                 Scheme::extended_taylor, Scheme::chung}) {
         INFO("scheme " << static_cast<int>(scheme));
-        WorldOptions o = lying(1e-5);
+        WorldOptions o = lying(2e-5);
         o.gravity = {0, 0, -g}, o.scheme = scheme;
         const Particle ball{.r = {0, 0, R - m * g / 2e4}, .radius = R, .v = v * way, .mass = m};
         World world(o, {soft()});

@@ -142,13 +142,21 @@ TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deter
     const int threads = omp_get_max_threads();
     Random random{std::mt19937(5)};
     constexpr int n = 12;
-    World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
+    WorldOptions o = box(width_of(n), width_of(n) + 4 * R);
+    o.gravity = {1, 2, -9.81};
+    World world(o, {glass()});
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     world.set_law(0, 0, law);
     add_walls(world, width_of(n));
-    for (const Particle& p : heap(n, 0.3, random)) world.add(p);
-    world.step(14000);
+    // each overlaps its neighbours by a hundredth of a diameter
+    const auto loose = heap(n, 0, random);
+    for (int k = 0; k < n * n * n; ++k) {
+        Particle p = loose[static_cast<std::size_t>(k)];
+        p.r = 1.98 * R * Vec3{k % n + 0.5, k / n % n + 0.5, k / (n * n) % n + 0.5};
+        world.add(p);
+    }
+    world.step(40);
     omp_set_num_threads(1);
     const World::Totals one = world.totals();
     omp_set_num_threads(3);

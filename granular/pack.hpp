@@ -44,7 +44,6 @@ struct Ints {
     Ints operator>>(int n) const { return {v >> n}; }
     Ints operator|(Ints o) const { return {v | o.v}; }
     Ints operator&(std::int32_t o) const { return {v & o}; }
-    Ints operator^(std::int32_t o) const { return {v ^ o}; }
     Ints operator+(std::int32_t o) const { return {v + o}; }
     Ints operator+(Ints o) const { return {v + o.v}; }
 };

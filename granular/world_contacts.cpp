@@ -8,6 +8,17 @@ namespace hilda::granular {
 
 using namespace detail;
 
+namespace {
+
+/// What a contact with a boundary does to it
+void add_wrench(Wrench& to, const Contact& c, const Boundary& b)
+{
+    to.F -= c.F;
+    to.T -= (c.C - b.r).cross(c.F) + c.T;
+}
+
+}  // namespace
+
 /// Loads at t, by pairs
 struct World::LoadsNow {
     const Arrays<par::Cpu>& of;
@@ -109,8 +120,7 @@ Wrench World::wrench(const std::vector<Contact>& contacts, int b, int replica) c
     Wrench sum;
     for (const Contact& c : contacts) {
         if (!c.boundary || static_cast<int>(c.j) != b || (replica >= 0 && c.replica != replica)) continue;
-        sum.F -= c.F;
-        sum.T -= (c.C - boundaries[c.j].r).cross(c.F) + c.T;
+        add_wrench(sum, c, boundaries[c.j]);
     }
     return sum;
 }
@@ -129,7 +139,7 @@ World::Totals World::totals() const
         std::array<double, 9> stress = {};
     };
     std::vector<Sum> sums((pairs.count + piece - 1) / piece);
-    const auto add = [](Sum& to, const Vec3& l, const Four& F) {
+    const auto add_stress = [](Sum& to, const Vec3& l, const Four& F) {
         const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) to.stress[3 * a + b] += from_j[a] * on_i[b];
@@ -139,8 +149,8 @@ World::Totals World::totals() const
         for (std::uint32_t n = k * piece; n < std::min((k + 1) * piece, pairs.count); ++n) {
             const std::uint32_t j = pairs.j.data()[n];
             if (now.touches.data()[n] != 0 && (j & PairView::boundary) == 0)
-                add(sums[k], apart_of(scene.grid, position[pairs.i.data()[n]], position[j]),
-                    now.load.data()[n].F);
+                add_stress(sums[k], apart_of(scene.grid, position[pairs.i.data()[n]], position[j]),
+                           now.load.data()[n].F);
         }
     };
     par::for_each(par::Cpu(), sums.size(), particles, 1);
@@ -149,11 +159,9 @@ World::Totals World::totals() const
         const std::uint32_t j = pairs.j.data()[n];
         if (now.touches.data()[n] == 0 || (j & PairView::boundary) == 0) continue;
         const Contact c = contact(now, n);
-        Wrench& on = all.on_boundary[c.j];
-        on.F -= c.F;
-        on.T -= (c.C - boundaries[c.j].r).cross(c.F) + c.T;
+        add_wrench(all.on_boundary[c.j], c, boundaries[c.j]);
         const double R = now.of.particle.velocity.data()[pairs.i.data()[n]].w;
-        add(sum, (R - c.delta) * c.n, now.load.data()[n].F);
+        add_stress(sum, (R - c.delta) * c.n, now.load.data()[n].F);
     }
     for (const Sum& s : sums) {
         sum.contacts += s.contacts;

@@ -211,6 +211,7 @@ private:
 
     void save()
     {
+        if (kept.empty()) return;  // a failure before or while it was taken: what is on the disk stays
         rows.write();
         std::rename(file("checkpoint").c_str(),
                     file("checkpoint.1").c_str());  // there is none the first time

@@ -16,8 +16,8 @@
 ///
 /// Only what is given enters the canonical text where a default depends on other keys.
 
-#include "contact/contact_force.hpp"
-#include "contact/evolving_friction.hpp"
+#include "contact/compliant/contact_force.hpp"
+#include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"

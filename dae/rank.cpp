@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dae/rank.hpp"
 
-#include "lie/massless.hpp"
+#include "lie/solver/elimination.hpp"
 
 #include <SuiteSparseQR.hpp>
 

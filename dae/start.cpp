@@ -2,7 +2,7 @@
 #include "dae/start.hpp"
 
 #include "dae/rank.hpp"
-#include "lie/give_way.hpp"
+#include "lie/bounded_rows.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "lie/saddle.hpp"
+#include "lie/solver/saddle.hpp"
 
 namespace hilda::dae {
 

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/material.hpp"
-#include "granular/motion.hpp"
+#include "granular/case/motion.hpp"
+#include "granular/core/material.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "lie/saddle.hpp"
+#include "lie/solver/saddle.hpp"
 
 namespace hilda::lie {
 

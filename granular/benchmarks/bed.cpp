@@ -9,7 +9,7 @@
 /// Then, for the bed at rest, how each part of a step uses the memory: bytes that it cannot do without, over its time, as a
 /// part of the rate of a plain copy.
 
-#include "granular/world.hpp"
+#include "granular/world/world.hpp"
 
 #include <chrono>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/motion.hpp"
+#include "granular/case/motion.hpp"
 
 namespace hilda::granular {
 

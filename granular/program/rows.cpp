@@ -2,7 +2,7 @@
 #include "granular/program/rows.hpp"
 
 #include "granular/files.hpp"
-#include "granular/output.hpp"
+#include "granular/world/output.hpp"
 
 #include <cstdio>
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/case_file.hpp"
+#include "granular/case/case_file.hpp"
 
 namespace hilda::granular {
 

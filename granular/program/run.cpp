@@ -2,10 +2,10 @@
 #include "granular/program/run.hpp"
 
 #include "granular/files.hpp"
-#include "granular/output.hpp"
 #include "granular/program/progress.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/program/rows.hpp"
+#include "granular/world/output.hpp"
 
 #include <cmath>
 #include <cstdio>

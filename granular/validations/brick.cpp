@@ -8,9 +8,9 @@
 ///
 /// where the last term is that of symplectic Euler.
 
-#include "granular/double_world.hpp"
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
+#include "granular/world/double_world.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -4,9 +4,9 @@
 /// In the numbers of World and, beside it, in double precision. What a run is off by depends on where in a step the
 /// spheres meet: the order is that of the worst of several such places and of all restitutions.
 
-#include "granular/double_world.hpp"
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
+#include "granular/world/double_world.hpp"
 
 #include <algorithm>
 #include <cmath>

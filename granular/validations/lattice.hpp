@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/world.hpp"
+#include "granular/world/world.hpp"
 
 #include <array>
 #include <functional>

@@ -9,9 +9,9 @@
 /// Below, the sphere sticks for a while and the springs decide. At all angles ω = 5/2 (1 - e_t) v_t/R, the angular momentum
 /// about the point of contact: the lever of friction is R, not R - δ.
 
-#include "granular/double_world.hpp"
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
+#include "granular/world/double_world.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "granular/world.hpp"
+#include "granular/world/world.hpp"
 
 #include <numbers>
 

@@ -6,7 +6,7 @@
 
 #pragma once
 
-#include "granular/world.hpp"
+#include "granular/world/world.hpp"
 
 #include <functional>
 #include <string>

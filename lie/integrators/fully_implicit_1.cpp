@@ -8,7 +8,7 @@
 /// loads: K at t_n. That costs iterations, never accuracy; a load whose stiffness k passes about m/h² needs a
 /// smaller step.
 
-#include "lie/newton_step.hpp"
+#include "lie/steps/newton_step.hpp"
 
 namespace hilda::lie {
 namespace {

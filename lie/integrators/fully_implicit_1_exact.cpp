@@ -12,8 +12,8 @@
 /// of these here takes a factorisation. Dropping J_r alone would already lose quadratic convergence in spatial
 /// motion.
 
-#include "lie/newton_matrix.hpp"
-#include "lie/newton_step.hpp"
+#include "lie/solver/newton_matrix.hpp"
+#include "lie/steps/newton_step.hpp"
 
 namespace hilda::lie {
 namespace {

@@ -14,7 +14,7 @@
 /// The unknowns are (x, κ λ) with κ = β h² (1 - α_f) / (1 - α_m), so that the Newton matrix without gyroscopic
 /// and curvature terms is K at t_n. The state carries a_n of each body.
 
-#include "lie/newton_step.hpp"
+#include "lie/steps/newton_step.hpp"
 
 namespace hilda::lie {
 namespace {

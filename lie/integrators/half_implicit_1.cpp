@@ -12,7 +12,7 @@
 /// ṙ_{n+1} and ω̄_{n+1} are reported as the scheme stores them. They are the velocities at t_n + h/2 rather than
 /// at t_{n+1}, which is its first-order error; converting them would hide what the orders are measured for.
 
-#include "lie/half_implicit_step.hpp"
+#include "lie/steps/half_implicit_step.hpp"
 
 namespace hilda::lie {
 namespace {

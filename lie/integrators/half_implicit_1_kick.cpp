@@ -14,7 +14,7 @@
 ///
 /// The state carries ṙ_{n-½}, ω̄_{n-½} of all bodies, then ṙ_{n-3/2}, ω̄_{n-3/2}.
 
-#include "lie/leapfrog_step.hpp"
+#include "lie/steps/leapfrog_step.hpp"
 
 namespace hilda::lie {
 namespace {

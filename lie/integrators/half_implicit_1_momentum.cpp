@@ -11,7 +11,7 @@
 /// that left the node before. No gyroscopic torque is evaluated. It is rA-rattle without its projection of velocities.
 /// K stays the Newton matrix; what J_r differs from 1 goes into the residual.
 
-#include "lie/leapfrog_step.hpp"
+#include "lie/steps/leapfrog_step.hpp"
 
 namespace hilda::lie {
 namespace {

@@ -12,7 +12,7 @@
 /// alternating error of O(h) unless the start is at rest: the trapezoid rule never damps the velocity
 /// residual's parasitic root -1.
 
-#include "lie/half_implicit_step.hpp"
+#include "lie/steps/half_implicit_step.hpp"
 
 namespace hilda::lie {
 namespace {

@@ -15,7 +15,7 @@
 /// matrix is K. Start: r̈_{-1} = r̈_0, r_0 - r_{-1} = h ṙ_0 - ½h² r̈_0, ψ_0 = h ω̄_0 - ½h² ω̄̇_0. The state carries
 /// r_n - r_{n-1} and ψ_n of each body.
 
-#include "lie/half_implicit_step.hpp"
+#include "lie/steps/half_implicit_step.hpp"
 
 namespace hilda::lie {
 namespace {

@@ -15,7 +15,7 @@
 /// Positions are found by Newton's method with K at t_n, velocities by one solve with K at t_{n+1}; so are the
 /// accelerations and multipliers reported, from the equations of motion at the node.
 
-#include "lie/node_step.hpp"
+#include "lie/steps/node_step.hpp"
 
 namespace hilda::lie {
 namespace {

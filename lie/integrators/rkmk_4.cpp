@@ -11,7 +11,7 @@
 /// satisfies Φ and its derivative to rounding. Iterations counted are those of the projection of positions,
 /// which uses K as it stands at the last stage.
 
-#include "lie/node_step.hpp"
+#include "lie/steps/node_step.hpp"
 
 namespace hilda::lie {
 namespace {

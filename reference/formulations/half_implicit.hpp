@@ -27,8 +27,8 @@
 
 #pragma once
 
-#include "lie/newton_matrix.hpp"
-#include "lie/newton_step.hpp"
+#include "lie/solver/newton_matrix.hpp"
+#include "lie/steps/newton_step.hpp"
 
 namespace hilda::reference {
 

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "lie/newton_step.hpp"
+#include "lie/steps/newton_step.hpp"
 #include "reference/formulations/rp_step_equations.hpp"
 
 namespace hilda::reference {

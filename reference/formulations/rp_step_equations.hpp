@@ -24,7 +24,7 @@
 
 #pragma once
 
-#include "lie/newton_matrix.hpp"
+#include "lie/solver/newton_matrix.hpp"
 #include "lie/system.hpp"
 #include "reference/formulations/rp.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// SUNDIALS IDA on the rp equations as integrators, one for each way to ask for the constraints. See
 /// ida_solver.hpp
-#include "reference/ida_solver.hpp"
+#include "reference/solvers/ida_solver.hpp"
 
 namespace hilda::reference {
 namespace {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/model_file.hpp"
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
 #include <map>
 

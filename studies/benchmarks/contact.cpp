@@ -4,8 +4,8 @@
 ///
 ///     build/native/studies/hilda_benchmarks --benchmark_filter=contact/
 
-#include "studies/incline.hpp"
-#include "studies/stack.hpp"
+#include "studies/experiments/chapter4/incline.hpp"
+#include "studies/experiments/chapter4/stack.hpp"
 
 #include <benchmark/benchmark.h>
 

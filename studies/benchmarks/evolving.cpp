@@ -6,7 +6,7 @@
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter=evolving/
 
-#include "contact/evolving_contact.hpp"
+#include "contact/evolving/contact.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "dae/start.hpp"

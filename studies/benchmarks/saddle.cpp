@@ -2,7 +2,7 @@
 /// Time of the parts of a step of the N-bar pendulum: loads, constraints, their variation, and assembling,
 /// factoring and solving the saddle system, whole by KLU or condensed.
 
-#include "lie/saddle.hpp"
+#include "lie/solver/saddle.hpp"
 #include "studies/benchmarks/chain.hpp"
 
 #include <benchmark/benchmark.h>

@@ -5,8 +5,8 @@
 /// Here it is spatial: ten revolute joints with parallel axes, whose redundant rows are found and dropped at
 /// the start.
 
-#include "reference/trusted.hpp"
-#include "studies/problem.hpp"
+#include "reference/solvers/reference_solution.hpp"
+#include "studies/framework/problem.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 /// Bodies that touch: a ball that slides until it rolls, an ellipsoid that bounces, an edge mill. What contacts remember
 /// leaves no equations of motion between the steps, so the truth is a run with small ones.
 
-#include "studies/evolving_truth.hpp"
-#include "studies/problem.hpp"
+#include "studies/experiments/chapter5/evolving_reference.hpp"
+#include "studies/framework/problem.hpp"
 
 namespace hilda::studies {
 

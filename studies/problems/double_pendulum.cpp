@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The planar double pendulum: two bars on revolute joints about x.        Fang (2022), Table 3.2, Fig. 3.4
 
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
-#include "reference/closed_form.hpp"
-#include "reference/trusted.hpp"
+#include "reference/motions/closed_form.hpp"
+#include "reference/solvers/reference_solution.hpp"
 
 namespace hilda::studies {
 

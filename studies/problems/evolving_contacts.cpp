@@ -2,8 +2,8 @@
 /// Contacts that are constraints, with the contact points as unknowns: a ball in a bowl (Fang 2022, Sec. 5.5.1), an
 /// ellipsoid that rocks, one that wobbles, a rattleback.
 
-#include "studies/evolving_truth.hpp"
-#include "studies/problem.hpp"
+#include "studies/experiments/chapter5/evolving_reference.hpp"
+#include "studies/framework/problem.hpp"
 
 namespace hilda::studies {
 

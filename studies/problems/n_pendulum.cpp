@@ -4,8 +4,8 @@
 
 #include "studies/problems/n_pendulum.hpp"
 
-#include "reference/trusted.hpp"
-#include "studies/table.hpp"
+#include "reference/solvers/reference_solution.hpp"
+#include "studies/framework/table.hpp"
 
 #include <random>
 

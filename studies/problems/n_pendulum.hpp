@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
 #include <cstdint>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A bar driven to and fro on a revolute joint about x.
 
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
-#include "reference/trusted.hpp"
+#include "reference/solvers/reference_solution.hpp"
 
 namespace hilda::studies {
 

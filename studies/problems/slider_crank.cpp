@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The spatial slider-crank, its crank driven at one turn a second: Fang (2022), Table 3.4.
 
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
-#include "reference/trusted.hpp"
+#include "reference/solvers/reference_solution.hpp"
 
 namespace hilda::studies {
 

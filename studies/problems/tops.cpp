@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Two symmetric tops whose motion is known in closed form: one thrown, one on its tip.
 
-#include "studies/problem.hpp"
+#include "studies/framework/problem.hpp"
 
-#include "reference/closed_form.hpp"
-#include "reference/trusted.hpp"
+#include "reference/motions/closed_form.hpp"
+#include "reference/solvers/reference_solution.hpp"
 
 namespace hilda::studies {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A surface and a friction law in one file, as a user would add them, with keys of their own in the model file.
 
-#include "contact/friction.hpp"
+#include "contact/friction/friction.hpp"
 #include "contact/implicit_surface.hpp"
 #include "contact/surface_types.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "dae/joints.hpp"
 #include "dae/start.hpp"
-#include "reference/closed_form.hpp"
+#include "reference/motions/closed_form.hpp"
 #include "tests/support/mechanisms.hpp"
 
 namespace hilda::tests {

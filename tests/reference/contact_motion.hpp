@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "reference/contact_instant.hpp"
+#include "reference/motions/contact_instant.hpp"
 #include "tests/support/finite_difference.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// What judges, and what it may judge
 #include "studies/exit_codes.hpp"
-#include "studies/judged_run.hpp"
-#include "studies/truth.hpp"
+#include "studies/framework/evaluated_run.hpp"
+#include "studies/framework/reference_solution.hpp"
 #include "tests/studies/adaptive_scheme.hpp"
 #include "tests/studies/csv.hpp"
 

@@ -2,7 +2,7 @@
 /// The steps that a force stands, and that `hilda run` refuses beyond.
 
 #include "studies/exit_codes.hpp"
-#include "studies/single_run.hpp"
+#include "studies/running/single_run.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/support/bristle_contacts.hpp"
 

@@ -2,7 +2,7 @@
 /// Bodies put into contact, for tests of contacts that evolve.
 #pragma once
 
-#include "contact/evolving_contact.hpp"
+#include "contact/evolving/contact.hpp"
 #include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"

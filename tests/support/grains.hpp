@@ -2,8 +2,8 @@
 /// Grains for tests of the granular room.
 #pragma once
 
-#include "granular/double_world.hpp"
 #include "granular/validations/soft_sphere.hpp"
+#include "granular/world/double_world.hpp"
 
 namespace hilda::tests {
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "contact/triangle_mesh.hpp"
+#include "contact/mesh/triangle_mesh.hpp"
 
 #include <map>
 #include <numbers>

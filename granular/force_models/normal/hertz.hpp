@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/material.hpp"
-#include "granular/touch.hpp"
+#include "granular/core/contact_point.hpp"
+#include "granular/core/material.hpp"
 
 namespace hilda::granular {
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/touch.hpp"
+#include "granular/core/contact_point.hpp"
 
 namespace hilda::granular {
 

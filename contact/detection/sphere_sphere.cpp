@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/surfaces/sphere.hpp"
+#include "contact/detection/detectors.hpp"
+#include "dae/json_source.hpp"
+
+namespace hilda::contact {
+
+namespace {
+
+/// With signed radii, negative for the bowl, one formula serves: C_i = c_i - R_i n and C_j = c_j + R_j n. The
+/// normal runs along the line of centres: from j to i between balls, the other way in a bowl.
+class SphereSphere final : public Detector {
+public:
+    SphereSphere(const Shape& i, double R_i, const Shape& j, double R_j)
+        : c_bar_i(i.position), R_i(R_i), c_bar_j(j.position), R_j(R_j), sign(R_i > 0 && R_j > 0 ? 1 : -1)
+    {}
+
+    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    {
+        const Vec3 c_i = bi.r + bi.A * c_bar_i, c_j = bj.r + bj.A * c_bar_j;
+        const double distance = (c_i - c_j).norm();
+        if (!(distance > 0))
+            throw NoSingleTouch("the centres of two spheres coincide: there is no contact normal");
+        const Vec3 n = (c_i - c_j) / (sign * distance);
+        const Mat3 P = Mat3::Identity() - n * n.transpose();
+        return {.C_i = c_i - R_i * n,
+                .C_j = c_j + R_j * n,
+                .n = n,
+                .gap = sign * distance - (R_i + R_j),
+                .K_i = 1 / R_i * P,
+                .K_j = 1 / R_j * P};
+    }
+
+private:
+    const Vec3 c_bar_i;
+    const double R_i;
+    const Vec3 c_bar_j;
+    const double R_j;
+    const double sign;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j)
+{
+    const auto* a = dynamic_cast<const Sphere*>(i.surface.get());
+    const auto* b = dynamic_cast<const Sphere*>(j.surface.get());
+    if (a == nullptr || b == nullptr) return nullptr;
+    const double R_i = a->sigma() * a->R, R_j = b->sigma() * b->R;
+    if (!(1 / R_i + 1 / R_j > 0))
+        lie::reject("contact::make_detector", "a ball must be smaller than the bowl it touches",
+                    "a ball of radius " + dae::shortest(a->concave ? b->R : a->R) + " in a bowl of radius " +
+                        dae::shortest(a->concave ? a->R : b->R));
+    return std::make_unique<SphereSphere>(i, R_i, j, R_j);
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/evolving/contact.hpp"
+
+#include "contact/tangent_basis.hpp"
+#include "lie/check.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+// Of K_i + K_j, times L: below, the contact points run away.
+constexpr double least_relative_curvature = 1e-6;
+constexpr int most_iterations = 50;
+
+double smaller_size(const Shape& i, const Shape& j)
+{
+    const double a = i.surface->size(), b = j.surface->size();
+    if (a > 0 && b > 0) return std::min(a, b);
+    if (!(a + b > 0))
+        lie::reject("contact::EvolvingContact", "one of the surfaces must be curved",
+                    i.surface->name() + " and " + j.surface->name());
+    return a + b;
+}
+
+/// |∇G| at a point of a surface
+double length(const Vec3& gradient, const Vec3& a)
+{
+    const double g = gradient.norm();
+    if (g > 0) return g;
+    std::ostringstream what;
+    what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z()
+         << "), in its own frame";
+    throw lie::NumericalFailure("contact_lost", what.str());
+}
+
+}  // namespace
+
+/// One body's part of the contact at its point ᾱ, in global axes
+struct EvolvingContact::Side {
+    Vec3 arm;  // A ᾱ
+    Vec3 n;    // A n̄
+    double G;  // G/|∇G|
+
+    Side(const Shape& shape, const Motion& body, const double* alpha)
+    {
+        const Vec3 a = shape.to_surface(Vec3::Map(alpha)), gradient = shape.surface->gradient(a);
+        const double g = length(gradient, a);
+        arm = body.A * Vec3::Map(alpha);
+        n = shape.surface->sigma() / g * (body.A * (shape.orientation * gradient));
+        G = shape.surface->value(a) / g;
+    }
+};
+
+namespace {
+
+/// The same with second derivatives
+struct CurvedSide {
+    Vec3 arm, n, u, a;
+    double G, g;
+    Mat3 axes;
+    Mat3 H;   // A ∇²G/|∇G| Aᵀ
+    Mat3 dn;  // ∂n/∂(A ᾱ)
+    double sigma;
+
+    CurvedSide(const Shape& shape, const Motion& body, const double* alpha)
+    {
+        a = shape.to_surface(Vec3::Map(alpha));
+        const Surface::Derivatives d = shape.surface->derivatives(a);
+        g = length(d.gradient, a);
+        axes = body.A * shape.orientation;
+        sigma = shape.surface->sigma();
+        arm = body.A * Vec3::Map(alpha);
+        u = axes * d.gradient / g;
+        n = sigma * u;
+        G = d.G / g;
+        H = axes * d.hessian * axes.transpose() / g;
+        dn = sigma * (H - u * (u.transpose() * H));
+    }
+    Mat3 shape_operator() const { return dn - (dn * u) * u.transpose(); }
+};
+
+/// Velocity of the material point of a body that lies at this arm
+Vec3 velocity(const Motion& body, const Vec3& arm)
+{
+    return body.rdot + (body.A * body.omega_bar).cross(arm);
+}
+
+}  // namespace
+
+EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
+                                 NormalRows normal_rows, const Unilateral& unilateral)
+    : EvolvingContact(i, shape_i, j, shape_j, friction, {}, normal_rows, unilateral)
+{}
+
+EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
+                                 const ImplicitFriction& law, NormalRows normal_rows,
+                                 const Unilateral& unilateral)
+    : EvolvingContact(i, shape_i, j, shape_j, Friction::implicit, law, normal_rows, unilateral)
+{}
+
+EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
+                                 const ImplicitFriction& law, NormalRows normal_rows,
+                                 const Unilateral& unilateral)
+    : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(smaller_size(shape_i, shape_j)),
+      friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
+      common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j))
+{
+    if (gives_way()) law.validate();
+    if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
+        lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",
+                    unilateral.restitution);
+}
+
+EvolvingContact::Mat32 EvolvingContact::tangents(const At& x) const
+{
+    if (normal_rows == NormalRows::fixed_xy) return Mat3::Identity().leftCols<2>();
+    return Mat32::Map(x.remembered);
+}
+
+EvolvingContact::Mat32 EvolvingContact::tangents_across(const At& x, const Vec3& n) const
+{
+    const Mat32 T = Mat32::Map(x.remembered);
+    return T - n * (n.transpose() * T);
+}
+
+void EvolvingContact::phi(const At& x, double* out) const
+{
+    const Side side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
+    Vec3::Map(out) = (x.bi.r - x.bj.r) + (side_i.arm - side_j.arm);
+    Eigen::Vector2d::Map(out + 3) = L * (tangents(x).transpose() * (side_i.n + side_j.n));
+    out[5] = side_i.G, out[6] = side_j.G;
+}
+
+void EvolvingContact::variation(const At& x, Derivatives& out) const
+{
+    const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
+    const Mat32 T = tangents(x);
+    Mat32 across = Mat32::Zero(), turning = Mat32::Zero();  // rows of the slip and of ω_i - ω_j, transposed
+    if (friction != Friction::none) across = tangents_across(x, side_i.n);
+    if (law.resists_rolling())
+        turning = -lie::tilde(side_i.n) *
+                  levers(side_i.shape_operator() + side_j.shape_operator(), side_i.n) * across;
+    const auto fill = [&](const CurvedSide& side, const Motion& body, double sign, auto& of_body,
+                          int column) {
+        // -A ~ᾱ: row c is -e_cᵀ ~(Aᾱ) A = (e_c-th row of A) turned
+        of_body.template block<3, 3>(0, 0) = sign * Mat3::Identity();
+        of_body.template block<3, 3>(0, 3) = -sign * (lie::tilde(side.arm) * body.A);
+        of_body.template block<2, 3>(3, 3) = -L * (T.transpose() * lie::tilde(side.n) * body.A);
+        out.of_alpha.template block<3, 3>(0, column) = sign * body.A;
+        out.of_alpha.template block<2, 3>(3, column) = L * (T.transpose() * side.dn * body.A);
+        out.of_alpha.template block<1, 3>(column == 0 ? 5 : 6, column) = side.u.transpose() * body.A;
+        if (friction == Friction::none) return;
+        of_body.template block<2, 3>(7, 0) = sign * across.transpose();
+        of_body.template block<2, 3>(7, 3) = -sign * (across.transpose() * lie::tilde(side.arm) * body.A);
+        if (law.resists_rolling()) of_body.template block<2, 3>(9, 3) = sign * (turning.transpose() * body.A);
+    };
+    fill(side_i, x.bi, 1, out.of_i, 0);
+    fill(side_j, x.bj, -1, out.of_j, 3);
+}
+
+void EvolvingContact::gamma(const At& x, double* out) const
+{
+    const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
+    const Vec3 n = side_i.n;
+    const Vec3 omega_i = x.bi.A * x.bi.omega_bar, omega_j = x.bj.A * x.bj.omega_bar;
+
+    // Montana's equations without charts: (K_i + K_j) A_i ᾱ̇_i = n × (ω_i - ω_j) - K_j s, and + K_i s for j
+    const Mat32 T = tangent_basis(n);
+    const Vec3 slip = velocity(x.bi, side_i.arm) - velocity(x.bj, side_j.arm),
+               turned = n.cross(omega_i - omega_j);
+    const Mat3 K_i = side_i.shape_operator(), K_j = side_j.shape_operator();
+    const Eigen::Matrix2d K = T.transpose() * (K_i + K_j) * T;
+    const Eigen::Matrix2d inverse = K.inverse();
+    const Vec3 adot_i = T * (inverse * (T.transpose() * (turned - K_j * slip)));
+    const Vec3 adot_j = T * (inverse * (T.transpose() * (turned + K_i * slip)));
+
+    const auto of = [&](const Shape& shape, const CurvedSide& side, const Vec3& omega, const Vec3& adot,
+                        Vec3& point, Vec3& normal, double& on_surface, Vec3& material) {
+        const Vec3 centripetal = omega.cross(omega.cross(side.arm));
+        point = centripetal + 2 * omega.cross(adot);
+        material = centripetal + omega.cross(adot);
+        on_surface = -adot.dot(side.H * adot);
+        // what third derivatives of G would give, along ᾱ̇
+        Vec3 bent = Vec3::Zero();
+        if (const double speed = adot.norm(); speed > 0) {
+            const double step = 1e-5 * L;
+            const Vec3 along = side.axes.transpose() * (adot / speed);
+            bent = speed * speed *
+                   (side.axes * (shape.surface->normal_derivative(side.a + step * along) * along -
+                                 shape.surface->normal_derivative(side.a - step * along) * along)) /
+                   (2 * step);
+        }
+        normal = omega.cross(omega.cross(side.n)) + 2 * omega.cross(side.dn * adot) + bent;
+    };
+    Vec3 point_i, point_j, normal_i, normal_j, material_i, material_j;
+    of(shape_i, side_i, omega_i, adot_i, point_i, normal_i, out[5], material_i);
+    of(shape_j, side_j, omega_j, adot_j, point_j, normal_j, out[6], material_j);
+    Vec3::Map(out) = point_j - point_i;
+    Eigen::Vector2d::Map(out + 3) = -L * (tangents(x).transpose() * (normal_i + normal_j));
+    if (friction != Friction::none)
+        Eigen::Vector2d::Map(out + 7) = tangents_across(x, n).transpose() * (material_j - material_i);
+    if (law.resists_rolling()) Eigen::Vector2d::Map(out + 9).setZero();  // of bodies that do not roll as yet
+}
+
+Mat3 EvolvingContact::levers(const Mat3& K_sum, const Vec3& n) const
+{
+    const Mat32 T = tangent_basis(n);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> kappa;
+    kappa.computeDirect(T.transpose() * K_sum * T);
+    const Eigen::Vector2d longest = Eigen::Vector2d::Constant(10 * L);
+    const Mat32 along = T * kappa.eigenvectors();
+    return along * kappa.eigenvalues().cwiseInverse().cwiseMin(longest).asDiagonal() * along.transpose();
+}
+
+void EvolvingContact::compliance(const At& x, lie::Rows::Compliant* out) const
+{
+    const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
+    const auto set = [&](lie::Rows::Compliant& pair, const double* by, double K, double D, double factor) {
+        pair.K = K, pair.D = D, pair.n = n;
+        pair.S = Eigen::Vector2d::Map(by);
+        pair.mu = factor * (by[2] != 0 ? law.mu_k : law.mu_s);
+    };
+    if (!gives_way()) return;
+    set(out[slips], x.remembered + slides_by, law.K_E, law.K_D, 1);
+    if (!law.resists_rolling()) return;
+    const Touch at = touch(x);
+    const double kappa = 2 / levers(at.K_i + at.K_j, n).trace();
+    set(out[rolls], x.remembered + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
+        2 * law.eta_r);
+}
+
+/// S, Z and what slips, out of the multipliers of the step that led here
+void EvolvingContact::give_way(const At& x, bool start, double* remembered) const
+{
+    constexpr double at_bound = 1e-4;  // of |λ|, see lie::GiveWay
+    const double h = start ? 0 : x.t - remembered[instant];
+    remembered[instant] = x.t;
+    if (start || x.idle) {
+        std::fill(remembered + slides_by, remembered + 14, 0.);
+        return;
+    }
+    lie::Rows::Compliant pair[2];
+    compliance(x, pair);
+    const Vec3 Psi = x.lambda->segment<3>(first_row);
+    const double N = Psi.dot(pair[slips].n) > 0 ? Psi.norm() : 0;
+    for (const Pair p : {slips, rolls}) {
+        if (p == rolls && !law.resists_rolling()) continue;
+        double* by = remembered + (p == slips ? slides_by : rolls_by);
+        const lie::Rows::Compliant& c = pair[p];
+        const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
+        Eigen::Vector2d::Map(by) += h * c.mobility(h) * (lambda - c.K * c.S);
+        by[2] = lambda.norm() > (1 - at_bound) * c.mu * N;
+    }
+}
+
+unsigned EvolvingContact::nonzero(int row) const
+{
+    constexpr unsigned turns = 0b111000;
+    if (row < 3) {
+        const unsigned one = 1u << row | turns;
+        return one | one << 6;
+    }
+    if (row < 5) return turns | turns << 6;
+    if (row < 7) return 0;
+    if (row > 8) return turns | turns << 6;
+    return 0b111111111111;
+}
+
+Touch EvolvingContact::touch(const At& x) const
+{
+    const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
+    Touch touch;
+    touch.C_i = x.bi.r + side_i.arm, touch.C_j = x.bj.r + side_j.arm;
+    touch.n = side_j.n;
+    touch.gap = touch.n.dot((x.bi.r - x.bj.r) + (side_i.arm - side_j.arm));
+    touch.K_i = side_i.shape_operator(), touch.K_j = side_j.shape_operator();
+    return touch;
+}
+
+void EvolvingContact::track(const At& x, bool afresh, double* alpha) const
+{
+    Vec3 a_i = Vec3::Zero(), a_j = Vec3::Zero();
+    bool found = false;
+    if (!afresh) {
+        CommonNormal::Pair p = common_normal.placed(x.bi, x.bj);
+        p.a_i = shape_i.to_surface(Vec3::Map(x.alpha)), p.a_j = shape_j.to_surface(Vec3::Map(x.alpha + 3));
+        for (int k = 0; k < most_iterations && !found; ++k) {
+            const double correction = common_normal.improve(p);
+            if (!std::isfinite(correction)) break;
+            found = correction < 1e-12 * L;
+        }
+        a_i = shape_i.to_body(p.a_i), a_j = shape_j.to_body(p.a_j);
+    }
+    if (!found) {
+        const Touch at = detector->detect(x.bi, x.bj, nullptr);
+        a_i = x.bi.A.transpose() * (at.C_i - x.bi.r);
+        a_j = x.bj.A.transpose() * (at.C_j - x.bj.r);
+    }
+    Vec3::Map(alpha) = a_i;
+    Vec3::Map(alpha + 3) = a_j;
+}
+
+bool EvolvingContact::remember(const At& x, bool start, double* remembered) const
+{
+    const Touch at = touch(x);
+    const auto fail = [&](const std::string& status, const std::string& what, double value) {
+        if (fallback) return false;
+        std::ostringstream text;
+        text.precision(3);
+        text << "contact '" << name << "': " << what << ' ' << value;
+        throw lie::NumericalFailure(status, text.str());
+    };
+    const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
+    if (!x.idle) {
+        if (const double facing = n_i.dot(at.n); !(facing < -0.5))
+            return fail("contact_lost", "the normals are no longer opposite, their product is", facing);
+        if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
+            return fail("contact_singular",
+                        "the surfaces fit each other too well for one contact point: the least sum of "
+                        "curvatures, times a size, is",
+                        least);
+    }
+    Mat32 T;
+    if (start) {
+        T = tangent_basis(n_i);
+        remembered[rebounded] = -std::numeric_limits<double>::infinity();
+    } else {
+        const Mat32 before = Mat32::Map(remembered);
+        const Vec3 along = before.col(0) - n_i * n_i.dot(before.col(0));
+        T.col(0) = along.norm() > 0.1 ? Vec3(along.normalized()) : Vec3(tangent_basis(n_i).col(0));
+        T.col(1) = n_i.cross(T.col(0));
+    }
+    Mat32::Map(remembered) = T;
+    if (gives_way()) give_way(x, start, remembered);
+    return true;
+}
+
+double EvolvingContact::separation_speed(const At& x) const
+{
+    const Touch at = touch(x);
+    return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
+}
+
+double EvolvingContact::velocity_error(const At& x) const
+{
+    const Touch at = touch(x);
+    const Vec3 slip = velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r);
+    return friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip));
+}
+
+std::string EvolvingContact::objection(const At& x) const
+{
+    if (const std::string why = common_normal.misfit(x.bi, x.bj); !why.empty()) return why;
+    Touch at;
+    try {
+        at = detector->detect(x.bi, x.bj, nullptr);
+    } catch (const NoSingleTouch& e) {
+        return e.what();
+    }
+    // where there is none, this throws
+    shape_i.surface->normal(shape_i.to_surface(x.bi.A.transpose() * (at.C_i - x.bi.r)));
+    shape_j.surface->normal(shape_j.to_surface(x.bj.A.transpose() * (at.C_j - x.bj.r)));
+    const double least = least_curvature(at);
+    if (least * L > least_relative_curvature) return {};
+    std::ostringstream what;
+    what.precision(6);
+    if (least < -least_relative_curvature / L)
+        what << "a surface does not fit into the other: the sum of their curvatures must be positive, got ";
+    else
+        what << "the surfaces fit each other along a line or a face, and have no single contact point: the "
+                "least sum of their curvatures must be positive, got ";
+    what << least << " 1/m";
+    return what.str();
+}
+
+std::string EvolvingContact::row_name(int row) const
+{
+    constexpr const char* names[] = {"Psi x",     "Psi y",        "Psi z",       "N 1",
+                                     "N 2",       "G of i",       "G of j",      "rolling 1",
+                                     "rolling 2", "resistance 1", "resistance 2"};
+    constexpr const char* sliding[] = {"sliding 1", "sliding 2"};
+    return gives_way() && (row == 7 || row == 8) ? sliding[row - 7] : names[row];
+}
+
+EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eigen::VectorXd& lambda) const
+{
+    Multipliers m;
+    m.Psi = lambda.segment<3>(first_row);
+    m.N = lambda.segment<2>(first_row + 3);
+    m.G = lambda.segment<2>(first_row + 5);
+    m.rolling.setZero();
+    m.friction.setZero();
+    m.resistance.setZero();
+    const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
+    m.F_N = m.Psi.dot(n);
+    m.tangential = m.Psi - m.F_N * n;
+    if (friction != Friction::none) {
+        m.rolling = lambda.segment<2>(first_velocity_row);
+        m.friction = -tangents_across(x, n) * m.rolling;
+    }
+    if (law.resists_rolling()) m.resistance = lambda.segment<2>(first_velocity_row + 2);
+    return m;
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/friction/friction.hpp"
+
+#include "lie/check.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+// Built on first use: files enrol their laws before main, in an order nobody fixes.
+std::vector<FrictionLaw>& list()
+{
+    static std::vector<FrictionLaw> laws;
+    return laws;
+}
+
+// K_i + K_j of a determinant below this part of its squared norm cannot be inverted: a plane on a plane.
+constexpr double singular = 1e-9;
+
+}  // namespace
+
+double reduced(double a, double b)
+{
+    if (!std::isfinite(a)) return b;
+    if (!std::isfinite(b)) return a;
+    return a * b / (a + b);
+}
+
+Rates mean_rates(const Slip& slip, double h)
+{
+    const double per_step = 1 / h;
+    return {.s = per_step * slip.ds,
+            .p_i = per_step * slip.q_i,
+            .p_j = per_step * slip.q_j,
+            .psi = per_step * slip.psi};
+}
+
+Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj)
+{
+    const Vec3& n = slip.n;
+    const Vec3 omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar, omega = omega_i - omega_j;
+    const auto flat = [&](const Vec3& v) -> Vec3 { return v - n * n.dot(v); };
+    const Vec3 v =
+        flat(bj.rdot + omega_j.cross(touch.C_j - bj.r) - bi.rdot - omega_i.cross(touch.C_i - bi.r));
+    Rates r{
+        .s = v + touch.gap * omega_j.cross(n), .p_i = Vec3::Zero(), .p_j = Vec3::Zero(), .psi = omega.dot(n)};
+
+    // (K_i + K_j) ṗ = q, of a body with an edge along the edge alone
+    const Mat3 K = touch.K_i + touch.K_j;
+    const bool edge_j = touch.edge_j.squaredNorm() > 0;
+    const Vec3 edge = touch.edge_i + touch.edge_j;  // at most one of the two
+    const Vec3 u = slip.u, w = n.cross(u), Ku = K * u, Kw = K * w;
+    const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
+    if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
+    const auto solve = [&](const Vec3& q) -> Vec3 {
+        if (edge.squaredNorm() > 0) return edge * (edge.dot(q) / edge.dot(K * edge));
+        const double x = u.dot(q), y = w.dot(q);
+        return ((d * x - b * y) * u + (a * y - b * x) * w) / det;
+    };
+    for (int pass = 0; pass < 2; ++pass) {  // the gap is small against the radii: a part (gap κ)² is left out
+        if (edge_j) {
+            r.p_j = solve(omega.cross(n) - touch.K_i * r.s);
+            r.p_i = r.p_j + r.s;
+        } else {
+            r.p_i = solve(omega.cross(n) + touch.K_j * r.s);
+            r.p_j = r.p_i - r.s;
+        }
+        if (pass == 0) r.s = v + touch.gap * (omega_j.cross(n) + touch.K_j * r.p_j);
+    }
+    return r;
+}
+
+std::shared_ptr<const FrictionModel> frictionless()
+{
+    struct Frictionless final : FrictionModel {
+        void advance(const Meeting&, History&) const override {}
+        Wrench load(const Meeting&, const Rates&, const History&) const override { return {}; }
+        Springs springs(const Meeting&) const override { return {}; }
+    };
+    static const auto none = std::make_shared<const Frictionless>();
+    return none;
+}
+
+FrictionParameters FrictionParameters::as_in_dissertation() const
+{
+    FrictionParameters p = *this;
+    p.tracking = {.beta = 1, .carrier = Carrier::i};
+    p.capped = p.relative_rolling = p.reduced_mass = false;
+    return p;
+}
+
+void FrictionParameters::validate() const
+{
+    const auto check = [](const char* what, double value, bool fine) {
+        if (!fine || !std::isfinite(value)) lie::reject("friction", what, value);
+    };
+    check("mu_k must not be negative", mu_k, mu_k >= 0);
+    check("mu_s must not be below mu_k", mu_s, mu_s >= mu_k);
+    check("K_E must be positive", K_E, K_E > 0);
+    check("zeta must not be negative", zeta, zeta >= 0);
+    check("eta_r must not be negative", eta_r, eta_r >= 0);
+    check("eta_psi must not be negative", eta_psi, eta_psi >= 0);
+    check("E_star must not be negative", E_star, E_star >= 0);
+    check("mu_r must not be negative", mu_r, mu_r >= 0);
+    for (const auto& D : {D_slide, D_roll, D_spin})
+        if (D) check("a damping coefficient must not be negative", *D, *D >= 0);
+    if (eta_psi > 0 && E_star > 0)
+        lie::reject("friction", "eta_psi and E_star exclude each other; E_star", E_star);
+}
+
+const std::vector<FrictionLaw>& friction_laws() { return list(); }
+
+const FrictionLaw& friction_law(const std::string& name)
+{
+    std::string all;
+    for (const FrictionLaw& law : list()) {
+        if (law.name == name) return law;
+        all += (all.empty() ? "" : ", ") + law.name;
+    }
+    lie::reject("contact::friction_law", "there are " + all, "'" + name + "'");
+}
+
+bool enrol(FrictionLaw law)
+{
+    std::vector<FrictionLaw>& all = list();
+    const auto at =
+        std::lower_bound(all.begin(), all.end(), law,
+                         [](const FrictionLaw& a, const FrictionLaw& b) { return a.name < b.name; });
+    all.insert(at, std::move(law));
+    return true;
+}
+
+}  // namespace hilda::contact

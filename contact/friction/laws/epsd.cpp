@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Sliding as in Sec. 4.3.1; rolling by an elastic-plastic spring and dashpot on the rolling rotation.
+///
+///     M^k += k_r ω_t h, |M^k| ≤ μ_r R N;   M^d = C_r ω_t, none at the bound          Fang (2022), Sec. 2.2.1.4
+///     k_r = K_E R²,   C_r = ζ 2 √(I_r k_r),   I_r = I + m R²                   Ai et al. (2011), model C
+///
+/// ω_t is the part of ω_i - ω_j in the tangent plane, 1/R = κ_i + κ_j. The spring is carried like those of
+/// slide-roll-spin; published codes keep it as a vector of the global frame.
+
+#include "contact/friction/laws/spring.hpp"
+#include "dae/object_reader.hpp"
+
+namespace hilda::contact {
+namespace {
+
+class Epsd final : public Sliding {
+public:
+    explicit Epsd(const FrictionParameters& p) : Sliding(p) {}
+
+    void advance(const Meeting& now, History& h) const override
+    {
+        slide(now, h);
+        const Slip& s = now.slip;
+        const Spring spring = rolling(now);
+        h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
+        give_way(h.Theta_i, h.roll_i, spring.cap, spring.cap);
+    }
+
+    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    {
+        Wrench out;
+        add_sliding(now, rates, h, out);
+        const Slip& s = now.slip;
+        const Spring spring = rolling(now);
+        const Vec3 elastic = spring.K * tangent(h.Theta_i, s.n, s.u);
+        Vec3 tau = elastic;
+        if (h.roll_i.damped) tau += spring.D * (now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j);
+        out.T_roll_E = elastic.cross(s.n);
+        out.T_roll_E_j = -out.T_roll_E;
+        out.T_i = tau.cross(s.n);
+        out.T_j = -out.T_i;
+        return out;
+    }
+
+    bool needs_curvature() const override { return p.mu_r > 0; }
+
+    Springs springs(const Meeting& now) const override
+    {
+        const Spring spring = rolling(now);
+        return {.K_slide = p.K_E, .D_slide = D_slide(now), .K_roll = spring.K, .D_roll = spring.D};
+    }
+
+private:
+    struct Spring {
+        double K = 0, D = 0, cap = 0;
+    };
+
+    Spring rolling(const Meeting& now) const
+    {
+        const double kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        if (!(kappa > 0)) return {};
+        const double R = 1 / kappa, K = p.K_E * R * R;
+        return {.K = K,
+                .D = p.D_roll.value_or(2 * p.zeta * std::sqrt((now.I_roll + now.m * R * R) * K)),
+                .cap = p.mu_r * R * now.N / K};
+    }
+};
+
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
+{
+    p.mu_r = o.not_negative("mu_r", 0);
+    return std::make_shared<Epsd>(p);
+}
+
+const bool enrolled =
+    enrol<Epsd>({.name = "epsd",
+                 .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
+                 .read = read});
+
+}  // namespace
+}  // namespace hilda::contact

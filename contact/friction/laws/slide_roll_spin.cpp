@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Sliding, rolling and spinning friction from the motion of the contact point.           Fang (2022), Sec. 4.3
+///
+///     S += q_i - q_j                 F   = K_E S + D Δs/h              on i at C, -F on j               (4.1, 4.2)
+///     Θ += K_i q_i + K_j q_j         T   = (K_R Θ + D_R Δθ/h) × n      on i, -T on j
+///     Ψ += ψ                         T_ψ = -(K_ψ Ψ + D_ψ ψ/h) n        on i, opposite on j                   (4.8)
+///
+/// Each deflection gives way at μ_s N and slips at μ_k N:
+///
+///     |S| ≤ μ N / K_E;   |Θ| ≤ (κ/2) μ N / K_E,  K_R = 4 η_r K_E / κ²,  κ = κ_i + κ_j                   (4.6, 4.7)
+///     |Ψ| ≤ κ μ N / K_E, K_ψ = η_ψ K_E / κ²,     or with a Hertzian patch of radius a                        (4.9)
+///     |Ψ| ≤ μ N / (K_E a), K_ψ = a² K_E / 2,     a³ = 3 N / (4 κ E*)                                    (A.21-A.23)
+///
+/// Balanced, the default: n × (K_i q_i + K_j q_j) is the turn of i against j but for the spin, so one vector Θ gives
+/// opposite torques and no angular momentum is made. κ in rolling is the tensor K_i + K_j:
+///
+///     T = (4 η_r K_E κ⁻² Θ + D κ⁻¹ Δθ/h) × n,   |κ⁻¹ Θ| ≤ μ N / (2 K_E),   D = ζ 4 √(I η_r K_E)
+///
+/// a spring that stores what is put into it, whichever way it rolls; on a sphere it is that of (4.6). Curvatures whose
+/// 1/κ is longer than the lever of the meeting count as that long. In spinning κ is the mean.
+///
+/// As in the dissertation: Θ_i += κ_i q_i and Θ_j += κ_j q_j apart, with κ along the way of each contact point (the
+/// mean where there is none), T_i = (K_R Θ_i + ...) × n and T_j = -(K_R Θ_j + ...) × n. Their sum is not zero
+/// unless the bodies are alike. The text calls the vector itself the torque; a torque about the axis of rolling is
+/// its cross product with n.
+
+#include "contact/friction/laws/spring.hpp"
+#include "contact/normal/normal_law.hpp"
+#include "dae/object_reader.hpp"
+
+#include <utility>
+
+namespace hilda::contact {
+namespace {
+
+constexpr double no_way = 1e-14;        // [m], [rad]: a shorter vector has no direction
+constexpr double no_curvature = 1e-12;  // part of a curvature that is rounding
+constexpr double flat = 1e-9;           // [1/m]: a smaller κ_i + κ_j has no rolling to resist
+
+/// Curvature along t, or the mean where t has no direction
+double curvature(const Mat3& K, const Vec3& t)
+{
+    const double squared = t.squaredNorm();
+    return squared > no_way * no_way ? t.dot(K * t) / squared : 0.5 * K.trace();
+}
+
+/// K_i + K_j in (u, w), and its inverse: the lever arms of rolling. Curvatures below 1/lever count as that.
+struct RollingLevers {
+    explicit RollingLevers(const Meeting& now)
+    {
+        const Vec3 &n = now.slip.n, &u = now.slip.u, w = n.cross(u);
+        const Mat3 sum = now.touch.K_i + now.touch.K_j;
+        const Vec3 Ku = sum * u, Kw = sum * w;
+        K << u.dot(Ku), u.dot(Kw), u.dot(Kw), w.dot(Kw);
+        const double mean = 0.5 * K.trace(), apart = std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
+        least = mean - apart;
+        if (const double floor = 1 / now.lever; least < floor) {
+            // the same principal directions, with the smaller curvatures raised
+            const double raised = std::max(mean + apart, floor);
+            const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+            if (apart > no_curvature * std::abs(mean))
+                K = floor * I + (raised - floor) / (2 * apart) * (K - least * I);
+            else
+                K = raised * I;
+            least = floor;
+        }
+        L << K(1, 1), -K(0, 1), -K(0, 1), K(0, 0);
+        L /= K(0, 0) * K(1, 1) - K(0, 1) * K(0, 1);
+    }
+
+    double longest() const { return 1 / least; }
+
+    Eigen::Matrix2d K, L;  ///< [1/m, m]
+    double least;          ///< [1/m]
+};
+
+class SlideRollSpin final : public Sliding {
+public:
+    explicit SlideRollSpin(const FrictionParameters& p) : Sliding(p) {}
+
+    void advance(const Meeting& now, History& h) const override
+    {
+        slide(now, h);
+        if (p.eta_r > 0) p.relative_rolling ? roll_together(now, h) : roll_apart(now, h);
+        if (p.eta_psi > 0 || p.E_star > 0) {
+            const Spring spring = spinning(now);
+            h.Psi += now.slip.psi;
+            give_way(h.Psi, h.spin, spring.cap_s, spring.cap_k);
+        }
+    }
+
+    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    {
+        Wrench out;
+        add_sliding(now, rates, h, out);
+        if (p.eta_r > 0) add_rolling(now, rates, h, out);
+        if (p.eta_psi > 0 || p.E_star > 0) {
+            const Spring spring = spinning(now);
+            out.T_spin_E = -spring.K * h.Psi;
+            out.T_spin = within(out.T_spin_E, h.spin.damped ? -D_spin(now, spring.K) * rates.psi : 0.,
+                                spring.K * spring.cap_s, p.capped);
+            out.T_i += out.T_spin * now.slip.n;
+            out.T_j -= out.T_spin * now.slip.n;
+        }
+        return out;
+    }
+
+    Springs springs(const Meeting& now) const override
+    {
+        Springs all{.K_slide = p.K_E, .D_slide = D_slide(now)};
+        if (p.eta_r > 0) {
+            // along the direction of the smaller curvature, where rolling is stiffest
+            const double longest = RollingLevers(now).longest();
+            all.K_roll = 4 * p.eta_r * p.K_E * longest * longest, all.D_roll = D_roll(now, all.K_roll);
+        }
+        if (p.eta_psi > 0 || p.E_star > 0) {
+            const Spring spring = spinning(now);
+            all.K_spin = spring.K, all.D_spin = D_spin(now, spring.K);
+        }
+        return all;
+    }
+
+    bool needs_curvature() const override { return p.eta_r > 0 || p.eta_psi > 0 || p.E_star > 0; }
+
+private:
+    struct Spring {
+        double K = 0, cap_s = 0, cap_k = 0;
+    };
+
+    /// Eqs. 4.6, 4.7
+    Spring rolling(const Meeting& now, double kappa) const
+    {
+        kappa = std::max(kappa, 1 / now.lever);
+        const double K = 4 * p.eta_r * p.K_E / (kappa * kappa), lever = kappa / (2 * p.K_E);
+        return {.K = K, .cap_s = lever * p.mu_s * now.N, .cap_k = lever * p.mu_k * now.N};
+    }
+
+    /// Eq. 4.9, or A.21 to A.23
+    Spring spinning(const Meeting& now) const
+    {
+        const double kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        if (!(kappa > flat) || !(now.N > 0)) return {};
+        double K = 0, per_newton = 0;  // of the bound of Psi
+        if (p.E_star > 0) {
+            const double a = std::cbrt(3 * now.N / (4 * kappa * p.E_star));
+            K = 0.5 * a * a * p.K_E;
+            per_newton = 1 / (p.K_E * a);
+        } else {
+            K = p.eta_psi * p.K_E / (kappa * kappa);
+            per_newton = kappa / p.K_E;
+        }
+        return {.K = K, .cap_s = per_newton * p.mu_s * now.N, .cap_k = per_newton * p.mu_k * now.N};
+    }
+
+    double D_roll(const Meeting& now, double K) const
+    {
+        return p.D_roll.value_or(2 * p.zeta * std::sqrt(now.I_roll * K));
+    }
+    double D_spin(const Meeting& now, double K) const
+    {
+        return p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K));
+    }
+
+    void roll_together(const Meeting& now, History& h) const
+    {
+        const Slip& s = now.slip;
+        h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
+        const double per_newton = 1 / (2 * p.K_E);
+        give_way(h.Theta_i, (RollingLevers(now).L * h.Theta_i).norm(), h.roll_i, per_newton * p.mu_s * now.N,
+                 per_newton * p.mu_k * now.N);
+    }
+
+    /// Each along its own way, each carried by its own body and then written in the common frame
+    void roll_apart(const Meeting& now, History& h) const
+    {
+        const Slip& s = now.slip;
+        const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
+        const Spring spring = rolling(now, kappa_i + kappa_j);
+        h.Theta_i = components(tangent(h.Theta_i, s.n, s.u_i) + kappa_i * s.p_i, s.n, s.u);
+        h.Theta_j = components(tangent(h.Theta_j, s.n, s.u_j) + kappa_j * s.p_j, s.n, s.u);
+        give_way(h.Theta_i, h.roll_i, spring.cap_s, spring.cap_k);
+        give_way(h.Theta_j, h.roll_j, spring.cap_s, spring.cap_k);
+    }
+
+    void add_rolling(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    {
+        p.relative_rolling ? add_relative(now, rates, h, out) : add_each(now, rates, h, out);
+    }
+
+    void add_relative(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    {
+        const Slip& s = now.slip;
+        const RollingLevers levers(now);
+        const double k = 4 * p.eta_r * p.K_E;
+        const Vec2 elastic = k * (levers.L * (levers.L * h.Theta_i));
+        Vec2 tau = elastic;
+        if (h.roll_i.damped) {
+            const Vec2 rate = components(now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j, s.n, s.u);
+            if (p.D_roll)
+                tau += *p.D_roll * rate;
+            else
+                tau += 2 * p.zeta * std::sqrt(now.I_roll * k) * (levers.L * rate);
+        }
+        const double bound = 2 * p.eta_r * p.mu_s * now.N;  // of κ τ
+        if (const double size = (levers.K * tau).norm(); p.capped && size > bound) tau *= bound / size;
+        const Vec3 T = tangent(tau, s.n, s.u).cross(s.n);
+        out.T_roll_E = tangent(elastic, s.n, s.u).cross(s.n);
+        out.T_roll_E_j = -out.T_roll_E;
+        out.T_i += T;
+        out.T_j -= T;
+    }
+
+    void add_each(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    {
+        const Slip& s = now.slip;
+        const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
+        const Spring spring = rolling(now, kappa_i + kappa_j);
+        const auto torque = [&](const Vec2& Theta, const Regime& regime, const Vec3& rate,
+                                Vec3& elastic) -> Vec3 {
+            const Vec3 tau = spring.K * tangent(Theta, s.n, s.u);
+            elastic = tau.cross(s.n);
+            const Vec3 damping = regime.damped ? Vec3(D_roll(now, spring.K) * rate) : Vec3(Vec3::Zero());
+            return within(tau, damping, spring.K * spring.cap_s, p.capped).cross(s.n);
+        };
+        out.T_i += torque(h.Theta_i, h.roll_i, kappa_i * rates.p_i, out.T_roll_E);
+        out.T_j -= torque(h.Theta_j, h.roll_j, kappa_j * rates.p_j, out.T_roll_E_j);
+        out.T_roll_E_j *= -1;
+    }
+};
+
+/// Where spinning is resisted by a Hertzian patch, its modulus is that of the normal law unless told otherwise.
+std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw& normal)
+{
+    o.exclude("eta_psi", "spin");
+    p.eta_r = o.not_negative("eta_r", 0);
+    if (o.look("spin") != nullptr) {
+        o.one_of("spin", {"hertz"});
+        const auto* hertz = dynamic_cast<const Hertz*>(&normal);
+        p.E_star = hertz != nullptr && !o.has("E_star") ? hertz->E_star : o.positive("E_star");
+    } else {
+        p.eta_psi = o.not_negative("eta_psi", 0);
+    }
+    return std::make_shared<SlideRollSpin>(p);
+}
+
+const bool enrolled =
+    enrol<SlideRollSpin>({.name = "slide-roll-spin",
+                          .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
+                          .read = read});
+
+}  // namespace
+}  // namespace hilda::contact

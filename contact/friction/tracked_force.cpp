@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/friction/tracked_force.hpp"
+
+#include <cstring>
+
+namespace hilda::contact {
+
+namespace {
+
+// Rounding of a pose that went through other coordinates and back, over 1 m and the distance from the origin; and
+// of a time, over 1 s and itself
+constexpr double at_rest = 1e-12;
+
+/// All that a contact remembers in real numbers: the histories, the last way of the contact point over each body, which
+/// gives the rolling of the dissertation its curvature, the track and the instant
+struct Kept {
+    Vec2 S = Vec2::Zero(), Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();
+    Vec2 p_i = Vec2::Zero(), p_j = Vec2::Zero();
+    Track track = {};
+    double Psi = 0, t = 0;
+};
+constexpr size_t numbers = 5 * 2 + 6 * 3 + 2;
+static_assert(sizeof(Kept) == numbers * sizeof(double), "what is kept is numbers and nothing else");
+
+Kept kept(const lie::State& x, int first)
+{
+    Kept all;
+    std::memcpy(static_cast<void*>(&all), x.remembered.data() + first, sizeof all);
+    return all;
+}
+
+/// The one whole number: a bit for each flag that is not as in a memory without a past, so that zero is such a one
+int flags_of(const Memory& m)
+{
+    int flags = m.found | m.touching << 1, bit = 2;
+    for (const Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin}) {
+        flags |= r->slipping << bit++;
+        flags |= !r->damped << bit++;
+    }
+    return flags;
+}
+
+void set_flags(int flags, Memory& m)
+{
+    int bit = 0;
+    const auto next = [&] { return (flags >> bit++ & 1) != 0; };
+    m.found = next(), m.touching = next();
+    for (Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin})
+        r->slipping = next(), r->damped = !next();
+}
+
+/// F [N, global] at C and T [N m, global] on body b
+void put(int b, const Vec3& F, const Vec3& C, const Vec3& T, const lie::State& x, lie::Loads& out)
+{
+    if (b == dae::ground) return;
+    const Motion& body = x.body[b];
+    out.F[b] += F;
+    out.n_bar[b] += body.A.transpose() * ((C - body.r).cross(F) + T);
+}
+
+}  // namespace
+
+TrackedForce::TrackedForce(const std::string& name, const dae::Model& model, int i, int j)
+    : i(i), j(j), model(model), name_i(model.body_name(i)), name_j(model.body_name(j))
+{
+    this->name = name;
+    if (i == j) lie::reject(in_words(), "a contact needs two different bodies", "'" + name_i + "' twice");
+}
+
+Inertia TrackedForce::inertia(const dae::Model& model, int b)
+{
+    if (b == dae::ground) return {};
+    return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
+}
+
+int TrackedForce::remembered() const { return numbers; }
+
+Memory TrackedForce::recall(const lie::State& x) const
+{
+    Memory m;
+    set_flags(x.memory[first_memory], m);
+    const Kept all = kept(x, first_remembered);
+    m.track = all.track;
+    m.history.S = all.S, m.history.Theta_i = all.Theta_i, m.history.Theta_j = all.Theta_j;
+    m.history.Psi = all.Psi;
+    return m;
+}
+
+void TrackedForce::keep(const Instant& now, lie::State& x) const
+{
+    const Memory& m = now.memory;
+    x.memory[first_memory] = flags_of(m);
+    const Slip& s = now.meeting.slip;
+    Kept all;
+    all.S = m.history.S, all.Theta_i = m.history.Theta_i, all.Theta_j = m.history.Theta_j;
+    all.Psi = m.history.Psi;
+    all.track = m.track;
+    all.t = x.t;
+    if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
+    std::memcpy(x.remembered.data() + first_remembered, static_cast<const void*>(&all), sizeof all);
+}
+
+TrackedForce::Instant TrackedForce::at(const lie::State& x) const
+{
+    Instant now{.meeting = {}, .memory = recall(x)};
+    try {
+        now.meeting = meet(x, now.memory);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e, x);
+    }
+    Slip& s = now.meeting.slip;
+    if (now.meeting.N > 0 && now.memory.touching) {
+        const Kept last = kept(x, first_remembered);
+        const double length = at_rest * (1 + now.meeting.touch.C().norm());
+        if (std::abs(x.t - last.t) <= at_rest * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
+            s.p_j.norm() < length && std::abs(s.psi) < at_rest) {
+            const Vec3 n = s.n, u = s.u;
+            s = no_slip(now.meeting.touch, u);
+            s.p_i = tangent(last.p_i, n, u), s.p_j = tangent(last.p_j, n, u);
+            now.remembered = true;
+            return now;
+        }
+    }
+    pair().advance(now.meeting, motion(x, i), motion(x, j), now.memory);
+    return now;
+}
+
+Wrench TrackedForce::load(const Instant& now, const lie::State& x) const
+{
+    const Meeting& m = now.meeting;
+    if (!(m.N > 0)) return {};
+    return pair().load(m, speeds(now, x), now.memory);
+}
+
+Rates TrackedForce::speeds(const Instant& now, const lie::State& x) const
+{
+    return rates(now.meeting.touch, now.meeting.slip, motion(x, i), motion(x, j));
+}
+
+void TrackedForce::add(const lie::State& x, lie::Loads& out) const
+{
+    if (!works(x)) return;
+    const Instant now = at(x);
+    const Meeting& m = now.meeting;
+    if (!(m.N > 0)) return;
+    const Wrench w = load(now, x);
+    const Vec3 F = presses() ? Vec3(m.N * m.touch.n + w.F) : w.F, C = m.touch.C();
+    put(i, F, C, w.T_i, x, out);
+    put(j, -F, C, w.T_j, x, out);
+}
+
+Wrench TrackedForce::friction(const lie::State& x) const { return works(x) ? load(at(x), x) : Wrench(); }
+
+double TrackedForce::instant_of_memory(const lie::State& x) const { return kept(x, first_remembered).t; }
+
+void TrackedForce::remember(lie::State& x) const
+{
+    if (works(x)) keep(at(x), x);
+}
+
+int TrackedForce::contacts_of(int body, const lie::State& x) const
+{
+    int count = 0;
+    for (const auto& force : model.forces()) {
+        const auto* other = dynamic_cast<const TrackedForce*>(force.get());
+        if (other == nullptr || (other->i != body && other->j != body)) continue;
+        if (other != this && other->held_by() != nullptr && other->held_by() == held_by())
+            continue;  // of the same contact, of which one works at a time
+        if (other == this || other->close(x)) ++count;
+    }
+    return std::max(1, count);
+}
+
+void TrackedForce::rethrow(const lie::NumericalFailure& e, const lie::State& x) const
+{
+    std::ostringstream what;
+    what << e.what() << "; bodies '" << name_i << "', '" << name_j << "', t = " << x.t << " s";
+    throw lie::NumericalFailure(e.status, what.str());
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/friction/tracker.hpp"
+
+#include "lie/check.hpp"
+
+namespace hilda::contact {
+
+namespace {
+
+constexpr double rounding = 1e-15;  // of positions: a way shorter than this part of them has no direction
+
+/// From where the old point c_bar of a body has gone to the new one, in the tangent plane and as long as along the surface
+Vec3 way(const Vec3& c_bar, const Vec3& C, const Vec3& n, const Motion& b, const Surface& surface)
+{
+    const Vec3 s = b.A * c_bar, d = C - (b.r + s);
+    const Vec3 t = d - n * n.dot(d);
+    const double flat = t.norm();
+    if (flat <= rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
+    return surface.arc(d.norm()) / flat * t;
+}
+
+/// u_0 ⊥ n_0 after the smallest rotation that takes n_0 to n                                        Sec. A.6
+Vec3 carried(const Vec3& u_0, const Vec3& n_0, const Vec3& n)
+{
+    const double cosine = n.dot(n_0);
+    if (!(cosine > -0.99))
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "the normal of a contact turns round within a step");
+    Vec3 u = u_0 - n.dot(u_0) / (1 + cosine) * (n_0 + n);
+    u -= n * n.dot(u);
+    return u / u.norm();
+}
+
+}  // namespace
+
+Track track(const Touch& touch, const Vec3& u, const Motion& bi, const Motion& bj)
+{
+    return {.c_i = bi.A.transpose() * (touch.C_i - bi.r),
+            .c_j = bj.A.transpose() * (touch.C_j - bj.r),
+            .n_i = bi.A.transpose() * touch.n,
+            .n_j = bj.A.transpose() * touch.n,
+            .u_i = bi.A.transpose() * u,
+            .u_j = bj.A.transpose() * u};
+}
+
+Slip no_slip(const Touch& touch, const Vec3& u)
+{
+    const Vec3 zero = Vec3::Zero();
+    return {.n = touch.n,
+            .u = u,
+            .u_i = u,
+            .u_j = u,
+            .psi = 0,
+            .p_i = zero,
+            .p_j = zero,
+            .q_i = zero,
+            .q_j = zero,
+            .ds = zero};
+}
+
+Slip follow(const Track& from, const Touch& to, const Shape& i, const Shape& j, const Motion& bi,
+            const Motion& bj, const Tracking& how)
+{
+    Slip s;
+    s.n = to.n;
+    s.u_i = carried(bi.A * from.u_i, bi.A * from.n_i, s.n);
+    s.u_j = carried(bj.A * from.u_j, bj.A * from.n_j, s.n);
+    s.psi = std::atan2(s.n.dot(s.u_j.cross(s.u_i)), s.u_j.dot(s.u_i));
+    s.p_i = way(from.c_i, to.C_i, s.n, bi, *i.surface);
+    s.p_j = way(from.c_j, to.C_j, s.n, bj, *j.surface);
+    if (how.carrier == Carrier::mid) {
+        const double part = how.beta * s.psi / 2, cosine = std::cos(part), sine = std::sin(part);
+        s.u = (s.u_i + s.u_j).normalized();  // halfway, without another sine
+        s.q_i = turned(s.p_i, s.n, cosine, -sine);
+        s.q_j = turned(s.p_j, s.n, cosine, sine);
+    } else {
+        s.u = s.u_i;
+        s.q_i = s.p_i;
+        s.q_j = turned(s.p_j, s.n, std::cos(how.beta * s.psi), std::sin(how.beta * s.psi));
+    }
+    s.ds = s.q_i - s.q_j;
+    return s;
+}
+
+}  // namespace hilda::contact

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/mesh/height_map.hpp"
+
+#include "contact/surface_types.hpp"
+#include "contact/surfaces/positive.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+using Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd, Eigen::Vector4d;
+
+constexpr const char* where = "contact::HeightMap";
+constexpr int fewest = 4;             // samples either way: what a cubic needs
+constexpr double on_the_edge = 1e-9;  // outside of the grid, in cells: rounding
+constexpr double converged = 1e-9;    // of the size; the error that is left is its square
+
+/// The n + 2 coefficients of the not-a-knot cubic spline through n samples. With δ² the second difference of neighbours
+/// and m_i = δ²c_i, which is Δx² f'' at a sample,
+///
+///     c_i + m_i / 6 = f_i,   m_(i-1) + 4 m_i + m_(i+1) = 6 δ²f_i   0 < i < n - 1
+///     m_0 - 2 m_1 + m_2 = 0, and so at the other end               not a knot
+///
+/// The second of these with the third gives m_1 = δ²f_1 at once, and what is left is tridiagonal.
+VectorXd spline(const VectorXd& f)
+{
+    const Eigen::Index n = f.size();
+    VectorXd m = VectorXd::Zero(n), pivot = VectorXd::Constant(n, 4);
+    for (Eigen::Index i = 1; i < n - 1; ++i) m[i] = f[i - 1] - 2 * f[i] + f[i + 1];
+    // rows 2..n-3, with m_1 and m_(n-2) known
+    for (Eigen::Index i = 2; i < n - 2; ++i) m[i] *= 6;
+    if (n > 4) m[2] -= m[1], m[n - 3] -= m[n - 2];
+    for (Eigen::Index i = 3; i < n - 2; ++i) pivot[i] -= 1 / pivot[i - 1], m[i] -= m[i - 1] / pivot[i - 1];
+    for (Eigen::Index i = n - 3; i > 1; --i) m[i] = (m[i] - (i < n - 3 ? m[i + 1] : 0)) / pivot[i];
+    m[0] = 2 * m[1] - m[2];
+    m[n - 1] = 2 * m[n - 2] - m[n - 3];
+
+    VectorXd c(n + 2);
+    c.segment(1, n) = f - m / 6;
+    c[0] = m[0] + 2 * c[1] - c[2];
+    c[n + 1] = m[n - 1] + 2 * c[n] - c[n - 1];
+    return c;
+}
+
+MatrixXd checked_coefficients(const MatrixXd& heights)
+{
+    for (const Eigen::Index samples : {heights.rows(), heights.cols()})
+        if (samples < fewest) lie::reject(where, "a height map needs 4 samples either way", samples);
+    if (!heights.allFinite()) lie::reject(where, "the heights must be finite", "one that is not");
+    MatrixXd along_x(heights.rows() + 2, heights.cols()), c(heights.rows() + 2, heights.cols() + 2);
+    for (Eigen::Index j = 0; j < heights.cols(); ++j) along_x.col(j) = spline(heights.col(j));
+    for (Eigen::Index i = 0; i < c.rows(); ++i) c.row(i) = spline(along_x.row(i).transpose()).transpose();
+    return c;
+}
+
+Vector2d checked_corner(const Vector2d& corner)
+{
+    if (!corner.allFinite()) lie::reject(where, "the corner must be finite", corner.transpose());
+    return corner;
+}
+
+Vector2d checked_spacing(const Vector2d& spacing)
+{
+    for (const double d : {spacing.x(), spacing.y()}) positive(where, "the spacing of a height map", d);
+    return spacing;
+}
+
+std::string point(const char* before, const Vec3& a)
+{
+    std::ostringstream what;
+    what.precision(6);
+    what << before << " (" << a.x() << ", " << a.y() << ", " << a.z() << ")";
+    return what.str();
+}
+
+/// The four B-splines over a cell, and their derivatives, at u = 0..1
+struct Basis {
+    Vector4d B, B1, B2;
+
+    explicit Basis(double u)
+    {
+        const double v = 1 - u;
+        B = Vector4d(v * v * v, 4 - 3 * u * u * (1 + v), 4 - 3 * v * v * (1 + u), u * u * u) / 6;
+        B1 = Vector4d(-v * v, u * (3 * u - 4), v * (4 - 3 * v), u * u) / 2;
+        B2 = Vector4d(v, 3 * u - 2, 3 * v - 2, u);
+    }
+};
+
+}  // namespace
+
+HeightMap::HeightMap(const MatrixXd& heights, const Vector2d& corner, const Vector2d& spacing)
+    : corner(checked_corner(corner)), spacing(checked_spacing(spacing)), c(checked_coefficients(heights)),
+      length(0.5 * extent().minCoeff())
+{}
+
+Vector2d HeightMap::extent() const
+{
+    return spacing.cwiseProduct(
+        Vector2d(static_cast<double>(c.rows() - 3), static_cast<double>(c.cols() - 3)));
+}
+
+HeightMap::Height HeightMap::at(const Vector2d& x) const
+{
+    const Vector2d s = (x - corner).cwiseQuotient(spacing);
+    const auto cell = [](double s_k, Eigen::Index coefficients) {
+        return std::clamp(static_cast<Eigen::Index>(s_k), Eigen::Index{0}, coefficients - 4);
+    };
+    const Eigen::Index i = cell(s.x(), c.rows()), j = cell(s.y(), c.cols());
+    const Basis u(s.x() - static_cast<double>(i)), v(s.y() - static_cast<double>(j));
+    const Eigen::Matrix4d C = c.block<4, 4>(i, j);
+    const Vector4d Cv = C * v.B, Cv1 = C * v.B1;
+    Height h;
+    h.f = u.B.dot(Cv);
+    h.slope = Vector2d(u.B1.dot(Cv), u.B.dot(Cv1)).cwiseQuotient(spacing);
+    h.bend(0, 0) = u.B2.dot(Cv) / (spacing.x() * spacing.x());
+    h.bend(0, 1) = h.bend(1, 0) = u.B1.dot(Cv1) / (spacing.x() * spacing.y());
+    h.bend(1, 1) = u.B.dot(C * v.B2) / (spacing.y() * spacing.y());
+    return h;
+}
+
+Surface::Derivatives HeightMap::derivatives(const Vec3& a) const
+{
+    if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
+    const Vector2d beyond =
+        ((a.head<2>() - corner - 0.5 * extent()).cwiseAbs() - 0.5 * extent()).cwiseQuotient(spacing);
+    if (!(beyond.maxCoeff() <= on_the_edge))
+        throw lie::NumericalFailure("nonfinite", point("a height map has no height beyond its grid, at", a));
+    const Height h = at(a.head<2>());
+    Derivatives d{a.z() - h.f, Vec3(-h.slope.x(), -h.slope.y(), 1), Mat3::Zero()};
+    d.hessian.topLeftCorner<2, 2>() = -h.bend;
+    return d;
+}
+
+/// Of the samples no further away than the surface straight above or below, and that point, the nearest
+Vector2d HeightMap::near_sample(const Vec3& a) const
+{
+    const Vector2d upper = corner + extent();
+    Vector2d best = a.head<2>().cwiseMax(corner).cwiseMin(upper);
+    double least = (a - Vec3(best.x(), best.y(), at(best).f)).squaredNorm();
+    const double reach = std::sqrt(least);
+    Eigen::Index first[2], last[2];
+    for (int k = 0; k < 2; ++k) {
+        const double most = extent()[k] / spacing[k];
+        first[k] = static_cast<Eigen::Index>(
+            std::clamp(std::ceil((a[k] - reach - corner[k]) / spacing[k]), 0.0, most));
+        last[k] = static_cast<Eigen::Index>(
+            std::clamp(std::floor((a[k] + reach - corner[k]) / spacing[k]), 0.0, most));
+    }
+    for (Eigen::Index i = first[0]; i <= last[0]; ++i)
+        for (Eigen::Index j = first[1]; j <= last[1]; ++j) {
+            const Vector2d x =
+                corner + spacing.cwiseProduct(Vector2d(static_cast<double>(i), static_cast<double>(j)));
+            const double distance = (a - Vec3(x.x(), x.y(), at(x).f)).squaredNorm();
+            if (distance < least) least = distance, best = x;
+        }
+    return best;
+}
+
+/// Newton's method on E = |x - a|²/2 over (x, y), downhill and within the grid:
+///
+///     ∂E = x - a + (f - a_z) ∇f,   ∂²E = I + ∇f ∇fᵀ + (f - a_z) ∇²f
+Vec3 HeightMap::project(const Vec3& a) const
+{
+    if (!a.allFinite())
+        throw lie::NumericalFailure("nonfinite", point("no nearest point of a height map to", a));
+    constexpr int most = 100;
+    constexpr double small = 1e-6;  // a step that leads downhill, though E may not tell for rounding
+    const Vector2d upper = corner + extent();
+    const auto energy = [&](const Vector2d& x, double f) {
+        return 0.5 * ((x - a.head<2>()).squaredNorm() + (f - a.z()) * (f - a.z()));
+    };
+    Vector2d x = near_sample(a);
+    Height h = at(x);
+    for (int k = 0; k < most; ++k) {
+        const Vector2d slope = x - a.head<2>() + (h.f - a.z()) * h.slope;
+        Eigen::Matrix2d M = Eigen::Matrix2d::Identity() + h.slope * h.slope.transpose();
+        if (const Eigen::Matrix2d exact = M + (h.f - a.z()) * h.bend;
+            exact.determinant() > 0 && exact.trace() > 0)
+            M = exact;  // else not near a minimum
+        Vector2d step = -(M.inverse() * slope);
+        const double before = energy(x, h.f);
+        Vector2d next = x;
+        for (int half = 0; half < 40; ++half, step *= 0.5) {
+            next = (x + step).cwiseMax(corner).cwiseMin(upper);
+            h = at(next);
+            if (step.norm() <= small * length || energy(next, h.f) <= before) break;
+        }
+        const double correction = step.norm(), moved = (next - x).norm();
+        x = next;
+        if (correction <= converged * length) return {x.x(), x.y(), h.f};
+        if (moved <= converged * length) break;  // against the edge
+    }
+    throw lie::NumericalFailure(
+        "contact_not_converged",
+        point("the nearest point of a height map is on the edge of its grid, from", a));
+}
+
+namespace {
+
+const bool enrolled = enrol(
+    {.name = "height-map", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const MatrixXd heights = read_rows(o, "heights");
+         if (std::min(heights.rows(), heights.cols()) < fewest)
+             o.fail("heights", "heights must have at least 4 rows of at least 4 numbers, got " +
+                                   std::to_string(heights.rows()) + " of " + std::to_string(heights.cols()));
+         const std::vector<double> spacing = o.numbers("spacing", 2);
+         if (!(spacing[0] > 0 && spacing[1] > 0))
+             o.fail("spacing", "spacing must be positive, got " + dae::described(*o.look("spacing")));
+         Vector2d corner = Vector2d::Zero();
+         if (o.has("corner"))
+             corner = Vector2d::Map(o.numbers("corner", 2).data());
+         else
+             o.keep("corner", {.value = dae::Json::List{{.value = 0.0}, {.value = 0.0}}});
+         return std::make_shared<HeightMap>(heights, corner, Vector2d(spacing[0], spacing[1]));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::contact

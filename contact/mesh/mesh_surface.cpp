@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/mesh/mesh_surface.hpp"
+
+#include "contact/surface_types.hpp"
+#include "contact/tangent_basis.hpp"
+#include "lie/check.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hilda::contact {
+
+namespace {
+
+// over the longest edge at a vertex
+constexpr double fit_reach = 2.5;    // of the vertices to which its patch is fitted
+constexpr double blend_reach = 1.5;  // of the patch: everywhere on the mesh some vertex is within 0.6
+
+constexpr int terms = 10;            // of a cubic
+constexpr int enough = 14;           // vertices to fit one to
+constexpr double growth = 1.3;       // of the reach where they are not enough,
+constexpr int most_growths = 3;      // so often
+constexpr double determined = 1e-7;  // pivot over pivot of the normal equations
+constexpr double most_turn = 80;     // of the normal within the reach [deg]
+
+using Terms = Eigen::Matrix<double, terms, 1>;
+
+Terms monomials(double x, double y)
+{
+    Terms m;
+    m << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
+    return m;
+}
+
+double longest_edge(const TriangleMesh& mesh, int vertex)
+{
+    double longest = 0;
+    for (const int t : mesh.around[vertex])
+        for (const int v : mesh.triangles[t])
+            longest = std::max(longest, (mesh.vertices[v] - mesh.vertices[vertex]).norm());
+    return longest;
+}
+
+/// The vertices within a distance that edges join to one, with that one first. `seen` is false before and after.
+std::vector<int> neighbours(const TriangleMesh& mesh, int vertex, double distance, std::vector<bool>& seen)
+{
+    std::vector<int> found = {vertex};
+    seen[vertex] = true;
+    for (size_t k = 0; k < found.size(); ++k)
+        for (const int t : mesh.around[found[k]])
+            for (const int v : mesh.triangles[t])
+                if (!seen[v] && (mesh.vertices[v] - mesh.vertices[vertex]).norm() < distance) {
+                    seen[v] = true;
+                    found.push_back(v);
+                }
+    for (const int v : found) seen[v] = false;
+    return found;
+}
+
+constexpr const char* where = "contact::MeshSurface: ";
+
+[[noreturn]] void refuse(const std::string& what)
+{
+    throw lie::InvalidInput(where + ("the mesh is too coarse to be smooth: " + what));
+}
+
+void check_turn(const TriangleMesh& mesh, const std::vector<int>& near)
+{
+    for (const int v : near) {
+        const Vec3 &n = mesh.vertex_normal[near[0]], &m = mesh.vertex_normal[v];
+        const double turn = std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / std::numbers::pi;
+        if (turn <= most_turn) continue;
+        std::ostringstream what;
+        what.precision(3);
+        what << "from vertex " << near[0] << " to vertex " << v << ", near to it, its normal turns by "
+             << turn << " deg, at most " << most_turn;
+        refuse(what.str());
+    }
+}
+
+}  // namespace
+
+MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(given)), concave(concave)
+{
+    Eigen::AlignedBox3d box;
+    patches.resize(mesh.vertices.size());
+    std::vector<bool> seen(std::max(mesh.vertices.size(), mesh.triangles.size()), false);
+    for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+        if (mesh.around[v].empty()) continue;
+        box.extend(mesh.vertices[v]);
+        patches[v] = fitted(v, seen);
+    }
+    length = 0.5 * std::cbrt(box.volume());
+
+    // From each vertex outward over the triangles that its patch can reach from within their band
+    std::vector<std::vector<int>> counting(mesh.triangles.size());
+    for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+        std::vector<int> reached = mesh.around[v], tested = reached;
+        for (const int t : tested) seen[t] = true;
+        for (size_t k = 0; k < reached.size(); ++k) {
+            counting[reached[k]].push_back(v);  // in ascending order: sums are the same at every triangle
+            for (const int corner : mesh.triangles[reached[k]])
+                for (const int t : mesh.around[corner]) {
+                    if (seen[t]) continue;
+                    seen[t] = true;
+                    tested.push_back(t);
+                    if (mesh.distance(t, mesh.vertices[v]) < patches[v].rho + half_edge(t))
+                        reached.push_back(t);
+                }
+        }
+        for (const int t : tested) seen[t] = false;
+    }
+    first.push_back(0);
+    for (const std::vector<int>& patches_of : counting) {
+        list.insert(list.end(), patches_of.begin(), patches_of.end());
+        first.push_back(static_cast<int>(list.size()));
+    }
+}
+
+double MeshSurface::half_edge(int triangle) const
+{
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const std::vector<Vec3>& x = mesh.vertices;
+    return 0.5 * std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
+}
+
+/// Least squares with weights (1 - r²/R²)², which let a vertex at the reach R come and go unnoticed. Lengths are over
+/// R, so that the condition of the normal equations does not depend on the size of the mesh.
+MeshSurface::Patch MeshSurface::fitted(int vertex, std::vector<bool>& seen) const
+{
+    const double edge = longest_edge(mesh, vertex);
+    double R = fit_reach * edge;
+    Patch patch{mesh.vertices[vertex], Mat3::Identity(), blend_reach * edge, {}};
+    patch.E << tangent_basis(mesh.vertex_normal[vertex]), mesh.vertex_normal[vertex];
+    size_t known = 0;
+    for (int grown = 0; grown <= most_growths; ++grown, R *= growth) {
+        const std::vector<int> near = neighbours(mesh, vertex, R, seen);
+        known = near.size();
+        if (known < enough) continue;
+        check_turn(mesh, near);
+
+        Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+        Terms right = Terms::Zero();
+        for (const int v : near) {
+            const Vec3 x = patch.E.transpose() * (mesh.vertices[v] - patch.v) / R;
+            const double w = (1 - x.squaredNorm()) * (1 - x.squaredNorm());
+            const Terms m = monomials(x.x(), x.y());
+            for (int i = 0; i < terms; ++i) {
+                right[i] += w * m[i] * x.z();
+                for (int j = 0; j <= i; ++j) normal(i, j) += w * m[i] * m[j];
+            }
+        }
+        const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> ldlt(normal);
+        if (!(ldlt.vectorD().minCoeff() > determined * ldlt.vectorD().maxCoeff())) continue;
+        const Terms f = ldlt.solve(right);
+        const double scale[] = {R, 1, 1 / R, 1 / (R * R)};
+        constexpr int degree[terms] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
+        for (int i = 0; i < terms; ++i) patch.f[i] = scale[degree[i]] * f[i];
+        return patch;
+    }
+    refuse("the " + std::to_string(known) + " vertices near vertex " + std::to_string(vertex) +
+           " do not determine a cubic");
+}
+
+Surface::Derivatives MeshSurface::Patch::at(const Vec3& a) const
+{
+    const Vec3 local = E.transpose() * (a - v);
+    const double x = local.x(), y = local.y();
+    const double f_x = f[1] + 2 * f[3] * x + f[4] * y + 3 * f[6] * x * x + 2 * f[7] * x * y + f[8] * y * y;
+    const double f_y = f[2] + f[4] * x + 2 * f[5] * y + f[7] * x * x + 2 * f[8] * x * y + 3 * f[9] * y * y;
+    const double f_xx = 2 * f[3] + 6 * f[6] * x + 2 * f[7] * y;
+    const double f_xy = f[4] + 2 * f[7] * x + 2 * f[8] * y;
+    const double f_yy = 2 * f[5] + 2 * f[8] * x + 6 * f[9] * y;
+    const double height = f[0] + x * (f[1] + x * (f[3] + x * f[6])) + y * (f[2] + y * (f[5] + y * f[9])) +
+                          x * y * (f[4] + x * f[7] + y * f[8]);
+    const Vec3 t_x = E.col(0), t_y = E.col(1);
+    const Mat3 half = t_x * (0.5 * f_xx * t_x + f_xy * t_y).transpose() + 0.5 * f_yy * t_y * t_y.transpose();
+    return {local.z() - height, E.col(2) - f_x * t_x - f_y * t_y, -half - half.transpose()};
+}
+
+Surface::Derivatives MeshSurface::derivatives(const Vec3& a) const
+{
+    if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
+    const TriangleMesh::Nearest near = mesh.nearest(a);
+    if (!(near.distance <= half_edge(near.triangle))) return distance(a, near);
+
+    // W = Σ w, V = Σ w Q with their derivatives, and G = V / W
+    Derivatives W{0, Vec3::Zero(), Mat3::Zero()}, V = W;
+    for (int k = first[near.triangle]; k < first[near.triangle + 1]; ++k) {
+        const Patch& patch = patches[list[k]];
+        const Vec3 d = a - patch.v;
+        const double rho2 = patch.rho * patch.rho, s = 1 - d.squaredNorm() / rho2;
+        if (!(s > 0)) continue;
+        const Derivatives Q = patch.at(a);
+        const double w = s * s * s;
+        const Vec3 w_1 = -6 * s * s / rho2 * d;
+        const Mat3 w_2 = 24 * s / (rho2 * rho2) * d * d.transpose() - 6 * s * s / rho2 * Mat3::Identity();
+        const Mat3 mixed = w_1 * Q.gradient.transpose();
+        W.G += w;
+        W.gradient += w_1;
+        W.hessian += w_2;
+        V.G += w * Q.G;
+        V.gradient += w * Q.gradient + Q.G * w_1;
+        V.hessian += w * Q.hessian + mixed + mixed.transpose() + Q.G * w_2;
+    }
+    Derivatives G{V.G / W.G, Vec3::Zero(), Mat3::Zero()};
+    G.gradient = (V.gradient - G.G * W.gradient) / W.G;
+    const Mat3 half = 0.5 * (V.hessian - G.G * W.hessian) - G.gradient * W.gradient.transpose();
+    G.hessian = (half + half.transpose()) / W.G;
+    return G;
+}
+
+/// That to a face, an edge or a vertex
+Surface::Derivatives MeshSurface::distance(const Vec3& a, const TriangleMesh::Nearest& near) const
+{
+    const double side = (a - near.point).dot(mesh.normal(near.triangle, near.feature)) < 0 ? -1 : 1;
+    const Vec3 n = (a - near.point) / near.distance;
+    Mat3 bent = Mat3::Zero();
+    if (near.feature > 0) bent = Mat3::Identity() - n * n.transpose();
+    if (near.feature > 0 && near.feature < 4) {
+        const Triangle& t = mesh.triangles[near.triangle];
+        const Vec3 e = (mesh.vertices[t[near.feature % 3]] - mesh.vertices[t[near.feature - 1]]).normalized();
+        bent -= e * e.transpose();
+    }
+    return {side * near.distance, side * n, side / near.distance * bent};
+}
+
+namespace {
+
+std::shared_ptr<const Surface> read(dae::ObjectReader& o)
+{
+    std::vector<Vec3> vertices;
+    std::vector<Triangle> triangles;
+    const Eigen::MatrixXd x = read_rows(o, "vertices", 3), t = read_rows(o, "triangles", 3);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) vertices.emplace_back(x.row(k).transpose());
+    for (Eigen::Index k = 0; k < t.rows(); ++k) {
+        Triangle triangle;
+        for (int corner = 0; corner < 3; ++corner) {
+            const double v = t(k, corner);
+            if (!(v >= 0 && v < static_cast<double>(vertices.size()) && v == std::trunc(v)))
+                o.fail("triangles", "triangles[" + std::to_string(k) + "][" + std::to_string(corner) +
+                                        "] must be the number of a vertex, from 0 to " +
+                                        std::to_string(vertices.size() - 1) + ", got " + dae::shortest(v));
+            triangle[corner] = static_cast<int>(v);
+        }
+        triangles.push_back(triangle);
+    }
+    if (const auto fault = TriangleMesh::fault(vertices, triangles))
+        o.fail(fault->of_vertices ? "vertices" : "triangles", fault->what);
+    const bool concave = o.flag("concave", false);
+    try {
+        return std::make_shared<MeshSurface>(TriangleMesh(std::move(vertices), std::move(triangles)),
+                                             concave);
+    } catch (const lie::InvalidInput& e) {
+        o.fail("vertices", std::string(e.what()).substr(std::string_view(where).size()));
+    }
+}
+
+const bool enrolled = enrol({.name = "mesh", .read = read});
+
+}  // namespace
+
+}  // namespace hilda::contact

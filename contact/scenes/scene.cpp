@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/scenes/scene.hpp"
+
+#include "contact/scenes/free_bodies.hpp"
+#include "lie/check.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+int Scene::add(const Inertia& of, const Motion& start)
+{
+    if (of.moves() && !(of.m > 0)) lie::reject("contact::Scene", "a mass must be positive", of.m);
+    inertia.push_back(of);
+    inverse.push_back({of.moves() ? 1 / of.m : 0, of.J_bar_inverse()});
+    body.push_back(start);
+    F.emplace_back();
+    T.emplace_back();
+    return static_cast<int>(body.size()) - 1;
+}
+
+int Scene::add(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
+               std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction)
+{
+    for (const int b : {i, j})
+        if (b < 0 || b >= static_cast<int>(body.size()))
+            lie::reject("contact::Scene", "no body has this number", b);
+    if (i == j) lie::reject("contact::Scene", "a contact needs two different bodies", i);
+    pair.push_back({.contact = Contact(name, shape_i, shape_j, inertia[i], inertia[j], std::move(law),
+                                       std::move(friction)),
+                    .i = i,
+                    .j = j});
+    return static_cast<int>(pair.size()) - 1;
+}
+
+int Scene::add(const Kind& kind) { return crowd.add(kind); }
+
+int Scene::enter(int kind, const Motion& start)
+{
+    const int b = add(crowd.kind(kind).inertia, start);
+    crowd.enter(b, kind);
+    return b;
+}
+
+void Scene::between(const std::string& name, int kind_i, int kind_j, std::shared_ptr<const NormalLaw> law,
+                    std::shared_ptr<const FrictionModel> friction)
+{
+    const Kind &i = crowd.kind(kind_i), &j = crowd.kind(kind_j);
+    crowd.set(kind_i, kind_j,
+              std::make_unique<Contact>(name, i.shape, j.shape, i.inertia, j.inertia, std::move(law),
+                                        std::move(friction)));
+}
+
+void Scene::check(double h) const
+{
+    double weight = 0;  // all that may rest on a contact
+    for (const Inertia& of : inertia)
+        if (of.moves()) weight += gravity.norm() * of.m;
+    struct Checked {
+        const Contact& contact;
+        int i, j;
+        const Memory& memory;
+    };
+    std::vector<Checked> all;
+    for (const Pair& p : pair) all.push_back({p.contact, p.i, p.j, p.memory});
+    const auto near = crowd.near(body);
+    for (const auto& p : near) all.push_back({*p.law, p.i, p.j, p.state.memory});
+    std::vector<int> contacts(body.size());
+    for (const Checked& p : all) {
+        const Motion &bi = body[p.i], &bj = body[p.j];
+        if (const std::string why = p.contact.objection(bi, bj); !why.empty())
+            throw lie::InvalidInput("contact '" + p.contact.name + "': " + why);
+        if (p.contact.close(bi, bj, p.memory)) ++contacts[p.i], ++contacts[p.j];
+    }
+    for (const Checked& p : all) {
+        const Motion &bi = body[p.i], &bj = body[p.j];
+        const double bound = p.contact.stable_step(p.contact.hardest(bi, bj, p.memory, weight), bi, bj,
+                                                   std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
+        if (h > bound) {
+            std::ostringstream what;
+            what << "contact '" << p.contact.name << "': the step must not exceed its stability bound of "
+                 << bound << " s, got " << h;
+            throw lie::InvalidInput(what.str());
+        }
+    }
+}
+
+/// Loads of one contact at t_n
+template <class Kept>
+void Scene::touch(const Contact& contact, int i, int j, Kept& kept, double h)
+{
+    const Motion &bi = body[i], &bj = body[j];
+    kept.meeting = contact.meet(bi, bj, kept.memory);
+    contact.advance(kept.meeting, bi, bj, kept.memory);
+    if (!(kept.meeting.N > 0)) {
+        kept.wrench = {};
+        return;
+    }
+    kept.wrench = contact.load(kept.meeting, mean_rates(kept.meeting.slip, h), kept.memory);
+    const Vec3 C = kept.meeting.touch.C(), on_i = kept.meeting.N * kept.meeting.touch.n + kept.wrench.F;
+    F[i] += on_i;
+    T[i] += (C - bi.r).cross(on_i) + kept.wrench.T_i;
+    F[j] -= on_i;
+    T[j] += (bj.r - C).cross(on_i) + kept.wrench.T_j;
+}
+
+void Scene::step(double h)
+{
+    for (size_t b = 0; b < body.size(); ++b) {
+        F[b].setZero();
+        T[b].setZero();
+    }
+    for (Pair& p : pair) touch(p.contact, p.i, p.j, p, h);
+    for (auto& p : crowd.find(body)) touch(*p.law, p.i, p.j, p.state, h);
+    for (size_t b = 0; b < body.size(); ++b) {
+        Motion& m = body[b];
+        const Inverse& of = inverse[b];
+        if (of.m > 0) {
+            m.rddot = gravity + of.m * F[b];
+            m.rdot += h * m.rddot;
+        }
+        if (inertia[b].turns()) {
+            const Mat3& J_bar = inertia[b].J_bar;
+            m.omegadot_bar = of.J_bar * (m.A.transpose() * T[b] - m.omega_bar.cross(J_bar * m.omega_bar));
+            m.omega_bar += h * m.omegadot_bar;
+        }
+        drift(m, h);
+    }
+    t += h;
+}
+
+double Scene::kinetic_energy() const { return contact::kinetic_energy(inertia, body); }
+
+}  // namespace hilda::contact

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Reads and writes rows of four words, one for each lane, as packs: a transposition on the way.
+
+#pragma once
+
+#include "granular/backend/pack.hpp"
+
+namespace hilda::granular {
+
+namespace detail {
+
+#ifdef __AVX512F__
+/// Four words of sixteen rows as four registers; row k at rows + stride k or where `at` says
+template <class At>
+inline void load_transposed(const At& at, __m512i out[4])
+{
+    // registers 0 … 3 have in their quarters q the rows 4 q + r
+    __m512i a[4];
+    for (int r = 0; r < 4; ++r) {
+        a[r] = _mm512_castsi128_si512(_mm_load_si128(at(r)));
+        a[r] = _mm512_inserti32x4(a[r], _mm_load_si128(at(4 + r)), 1);
+        a[r] = _mm512_inserti32x4(a[r], _mm_load_si128(at(8 + r)), 2);
+        a[r] = _mm512_inserti32x4(a[r], _mm_load_si128(at(12 + r)), 3);
+    }
+    const __m512i low01 = _mm512_unpacklo_epi32(a[0], a[1]), high01 = _mm512_unpackhi_epi32(a[0], a[1]);
+    const __m512i low23 = _mm512_unpacklo_epi32(a[2], a[3]), high23 = _mm512_unpackhi_epi32(a[2], a[3]);
+    out[0] = _mm512_unpacklo_epi64(low01, low23), out[1] = _mm512_unpackhi_epi64(low01, low23);
+    out[2] = _mm512_unpacklo_epi64(high01, high23), out[3] = _mm512_unpackhi_epi64(high01, high23);
+}
+
+template <class At>
+inline void store_transposed(const __m512i in[4], const At& at)
+{
+    const __m512i low01 = _mm512_unpacklo_epi32(in[0], in[1]), high01 = _mm512_unpackhi_epi32(in[0], in[1]);
+    const __m512i low23 = _mm512_unpacklo_epi32(in[2], in[3]), high23 = _mm512_unpackhi_epi32(in[2], in[3]);
+    const __m512i a[4] = {_mm512_unpacklo_epi64(low01, low23), _mm512_unpackhi_epi64(low01, low23),
+                          _mm512_unpacklo_epi64(high01, high23), _mm512_unpackhi_epi64(high01, high23)};
+    for (int r = 0; r < 4; ++r) {
+        _mm_store_si128(at(r), _mm512_castsi512_si128(a[r]));
+        _mm_store_si128(at(4 + r), _mm512_extracti32x4_epi32(a[r], 1));
+        _mm_store_si128(at(8 + r), _mm512_extracti32x4_epi32(a[r], 2));
+        _mm_store_si128(at(12 + r), _mm512_extracti32x4_epi32(a[r], 3));
+    }
+}
+#endif
+
+}  // namespace detail
+
+/// Word w of row k goes to lane k of out[w]; rows are 16 bytes, aligned
+template <class Word, class Row, class At>
+inline void load_rows(const At& at, Word out[4])
+{
+    static_assert(sizeof(Row) % 16 == 0 && sizeof(Word) == 4 * lanes);
+#ifdef __AVX512F__
+    __m512i words[4];
+    detail::load_transposed([&](int k) { return reinterpret_cast<const __m128i*>(at(k)); }, words);
+    std::memcpy(out, words, sizeof words);
+#else
+    float words[4][lanes];
+    for (int k = 0; k < lanes; ++k) {
+        float row[4];
+        std::memcpy(row, at(k), sizeof row);
+        for (int w = 0; w < 4; ++w) words[w][k] = row[w];
+    }
+    std::memcpy(out, words, sizeof words);
+#endif
+}
+
+template <class Word, class At>
+inline void store_rows(const Word in[4], const At& at)
+{
+    static_assert(sizeof(Word) == 4 * lanes);
+#ifdef __AVX512F__
+    __m512i words[4];
+    std::memcpy(words, in, sizeof words);
+    detail::store_transposed(words, [&](int k) { return reinterpret_cast<__m128i*>(at(k)); });
+#else
+    float words[4][lanes];
+    std::memcpy(words, in, sizeof words);
+    for (int k = 0; k < lanes; ++k) {
+        const float row[4] = {words[0][k], words[1][k], words[2][k], words[3][k]};
+        std::memcpy(at(k), row, sizeof row);
+    }
+#endif
+}
+
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__)
+/// Bit k tells of flag k
+inline unsigned flags(const std::uint8_t* from)
+{
+    const __m128i f = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+    return _mm_test_epi8_mask(f, f);
+}
+inline void set_flags(std::uint8_t* to, unsigned bits)
+{
+    const __m128i ones = _mm_and_si128(_mm_movm_epi8(static_cast<__mmask16>(bits)), _mm_set1_epi8(1));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), ones);
+}
+/// Writes first + k for each bit k, and may write up to `lanes` numbers in all; returns how many it wrote.
+inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
+{
+    const __m512i numbers =
+        _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)),
+                         _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), numbers));
+    return static_cast<std::uint32_t>(__builtin_popcount(bits));
+}
+#else
+inline unsigned flags(const std::uint8_t* from)
+{
+    unsigned bits = 0;
+    for (int k = 0; k < lanes; ++k) bits |= (from[k] != 0 ? 1u : 0u) << k;
+    return bits;
+}
+inline void set_flags(std::uint8_t* to, unsigned bits)
+{
+    for (int k = 0; k < lanes; ++k) to[k] = bits >> k & 1;
+}
+inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
+{
+    std::uint32_t n = 0;
+    for (; bits != 0; bits &= bits - 1) to[n++] = first + static_cast<std::uint32_t>(__builtin_ctz(bits));
+    return n;
+}
+#endif
+
+inline unsigned highest_bits(const std::uint32_t* words)
+{
+    PackMask m;
+    std::memcpy(&m, words, sizeof m);
+    return bits(m);
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Numbers side by side in the registers of a CPU. Every lane goes its own way, so that a result does not depend on which
+/// lane it was found in.
+
+#pragma once
+
+#ifdef __CUDACC__
+#error "packs are for loops on the CPU"
+#endif
+
+#include "granular/backend/par.hpp"
+
+#include <cstring>
+
+#ifdef __AVX512F__
+#include <immintrin.h>
+#else
+#include <emmintrin.h>
+#endif
+
+namespace hilda::granular {
+
+#ifdef __AVX512F__
+constexpr int lanes = 16;
+#else
+constexpr int lanes = 8;
+#endif
+
+/// The comparison of packs: all bits of a lane set, or none
+struct PackMask {
+    using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
+    V v;
+
+    PackMask operator&(const PackMask& o) const { return {v & o.v}; }
+    PackMask operator|(const PackMask& o) const { return {v | o.v}; }
+    PackMask operator~() const { return {~v}; }
+};
+
+struct Ints {
+    using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
+    V v;
+
+    Ints operator<<(int n) const { return {v << n}; }
+    Ints operator>>(int n) const { return {v >> n}; }
+    Ints operator|(Ints o) const { return {v | o.v}; }
+    Ints operator&(std::int32_t o) const { return {v & o}; }
+    Ints operator+(std::int32_t o) const { return {v + o}; }
+    Ints operator+(Ints o) const { return {v + o.v}; }
+};
+
+/// 64-bit integers
+struct Longs {
+    using V __attribute__((vector_size(8 * lanes))) = std::int64_t;
+    V v;
+};
+
+struct Pack {
+    using V __attribute__((vector_size(4 * lanes))) = float;
+    V v;
+
+    Pack() = default;
+    Pack(V v) : v(v) {}
+    Pack(float all) : v(all - V{}) {}
+
+    friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+    friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+    friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+    friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+    Pack operator-() const { return -v; }
+    Pack& operator+=(Pack o) { return *this = *this + o; }
+    Pack& operator-=(Pack o) { return *this = *this - o; }
+    Pack& operator*=(Pack o) { return *this = *this * o; }
+    friend PackMask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+    friend PackMask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+    friend PackMask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+    friend PackMask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+};
+
+template <>
+struct RealType<Pack> {
+    using Number = float;
+    using Mask = PackMask;
+    using Int = Ints;
+};
+
+inline Pack select(PackMask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
+inline Pack abs(Pack a) { return select(PackMask{a.v < 0}, -a, a); }
+#ifdef __AVX512F__
+inline Pack sqrt(Pack a) { return Pack::V(_mm512_sqrt_ps(__m512(a.v))); }
+inline unsigned bits(PackMask m) { return _mm512_movepi32_mask(__m512i(m.v)); }
+#else
+inline Pack sqrt(Pack a)
+{
+    __m128 part[lanes / 4];
+    std::memcpy(part, &a.v, sizeof part);
+    for (__m128& p : part) p = _mm_sqrt_ps(p);
+    std::memcpy(&a.v, part, sizeof part);
+    return a;
+}
+inline unsigned bits(PackMask m)
+{
+    __m128 part[lanes / 4];
+    std::memcpy(part, &m.v, sizeof part);
+    unsigned out = 0;
+    for (int k = 0; k < lanes / 4; ++k) out |= unsigned(_mm_movemask_ps(part[k])) << 4 * k;
+    return out;
+}
+#endif
+
+inline Pack to_float(Ints a) { return __builtin_convertvector(a.v, Pack::V); }
+inline Pack to_float(Longs a) { return __builtin_convertvector(a.v, Pack::V); }
+inline Ints to_int(Pack a) { return {__builtin_convertvector(a.v, Ints::V)}; }
+inline Ints as_int(Pack a) { return {Ints::V(a.v)}; }
+inline Pack as_float(Ints bits) { return Pack::V(bits.v); }
+inline Longs wide(Ints a) { return {__builtin_convertvector(a.v, Longs::V)}; }
+
+/// To the nearest whole number, of less than 2^31
+inline Pack rint(Pack a)
+{
+#ifdef __AVX512F__
+    return Pack::V(_mm512_roundscale_ps(__m512(a.v), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
+#else
+    for (int k = 0; k < lanes; ++k) a.v[k] = ::rintf(a.v[k]);
+    return a;
+#endif
+}
+
+inline float largest(Pack a)
+{
+    float most = a.v[0];
+    for (int k = 1; k < lanes; ++k) most = par::worse(most, a.v[k]);
+    return most;
+}
+
+/// The two halves of words, and words of halves; see Rest
+inline Pack low(Ints words) { return as_float(words << 16); }
+inline Pack high(Ints words) { return as_float(words & static_cast<std::int32_t>(0xFFFF0000)); }
+inline Ints halves(Ints low, Ints high)
+{
+    using Words __attribute__((vector_size(4 * lanes))) = std::uint32_t;
+    return {Ints::V((Words(low.v) >> 16) | Words(high.v))};
+}
+
+}  // namespace hilda::granular

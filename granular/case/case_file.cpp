@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/case_file.hpp"
+
+#include "granular/case/boundary_keys.hpp"
+#include "granular/case/fill.hpp"
+#include "granular/case/pair_keys.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+namespace {
+
+using Json = Keys::Json;
+
+/// What the library refuses in an entry gets its place.
+template <class F>
+auto in_entry(const std::string& place, const F& f)
+{
+    try {
+        return f();
+    } catch (const InvalidCase& e) {
+        throw InvalidCase(place + ": " + e.what());
+    }
+}
+
+Scheme read_scheme(Keys& keys)
+{
+    const std::pair<const char*, Scheme> all[] = {{"symplectic-euler", Scheme::symplectic_euler},
+                                                  {"velocity-verlet", Scheme::velocity_verlet},
+                                                  {"forward-euler", Scheme::forward_euler},
+                                                  {"extended-taylor", Scheme::extended_taylor},
+                                                  {"chung", Scheme::chung}};
+    const std::string name = keys.text("integrator", all[0].first);
+    std::string names;
+    for (const auto& [known, scheme] : all) {
+        if (name == known) return scheme;
+        names += (names.empty() ? "" : ", ") + std::string(known);
+    }
+    keys.refuse("integrator", "must be one of " + names, name);
+}
+
+std::uint16_t read_replica(Keys& keys)
+{
+    const long replica = keys.count("replica", 0);
+    if (replica > 0xffff) keys.refuse("replica", "must be below 65536", replica);
+    return static_cast<std::uint16_t>(replica);
+}
+
+Material read_material(Keys& m)
+{
+    Material made{
+        .name = m.text("name"), .density = m.positive("density"), .E = m.positive("E"), .nu = m.number("nu")};
+    if (!(made.nu > -1 && made.nu < 0.5)) m.refuse("nu", "must be between -1 and 0.5", made.nu);
+    m.end();
+    return made;
+}
+
+void read_domain(Keys domain, WorldOptions& o)
+{
+    o.low = domain.vector("low"), o.high = domain.vector("high");
+    for (const auto& [low, high, axis] :
+         {std::tuple{o.low.x, o.high.x, 0}, {o.low.y, o.high.y, 1}, {o.low.z, o.high.z, 2}})
+        if (!(low < high)) domain.refuse("high/" + std::to_string(axis), "must be above the low end", high);
+    o.periodic = domain.flags("periodic", o.periodic);
+    domain.end();
+}
+
+/// Against the memory that there is. A close-packed crystal, with six contacts a particle, takes most when its contacts
+/// are written: with laws of rolling and spin 3460 bytes a particle.
+void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<Filling>& fills,
+                  const Surroundings& there)
+{
+    constexpr double gigabyte = 1e9, of_output = 2560, of_cell = 4;
+    std::uint16_t replicas = 0;
+    for (const Filling& f : fills) {
+        particles += estimate(f);
+        largest = std::max(largest, 2 * f.radius);
+        replicas = std::max(replicas, f.replica);
+    }
+    const Vec3 size = o.high - o.low;
+    const double edge = largest * (1 + o.skin),
+                 cells = (size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) * (replicas + 1.);
+    const double in_world = 1e-3 * static_cast<double>(World::bytes_needed(1000, o.orientation));
+    const auto check = [&](const char* place, double many, const char* of, double each, std::size_t have,
+                           const char* where) {
+        if (many * each <= static_cast<double>(have)) return;
+        char what[200];
+        std::snprintf(what, sizeof what, "%s: %.3g %s need about %.3g GB of memory%s, and there are %.3g GB",
+                      place, many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
+        throw InvalidCase(what);
+    };
+    check("/fill", particles, "particles", of_output + in_world, there.memory, "");
+    check("/fill", particles, "particles", in_world, there.device_memory, " of the GPU");
+    if (particles > 0)
+        check("/domain", cells, "cells", of_cell, std::min(there.memory, there.device_memory), "");
+}
+
+void seed_fills(Case& c, std::uint64_t seed)
+{
+    const Json& all = c.source.json();
+    const std::size_t fills = all.is_object() && all.contains("fill") ? all.at("fill").size() : 0;
+    if (fills == 0) c.notices.emplace_back("--seed: this case fills nothing");
+    for (std::size_t k = 0; k < fills; ++k) {
+        const Json& one = all.at("fill").at(k);
+        if (one.is_object() && one.contains("file")) continue;
+        c.source.set({.pointer = "/fill/" + std::to_string(k) + "/seed",
+                      .value = std::to_string(seed + k),
+                      .asked = "--seed " + std::to_string(seed)});
+    }
+}
+
+void read(Case& out, const Surroundings& surroundings)
+{
+    Keys keys(out.source.json(), "");
+    if (keys.count("hilda_case", -1) != 1) throw InvalidCase("/hilda_case: must be 1");
+    out.name = keys.text("name", "case");
+    keys.text("note", "");
+
+    WorldOptions o;
+    read_domain(keys.object("domain"), o);
+    o.device = surroundings.device;
+    o.gravity = keys.vector("gravity", {0, 0, -9.81});
+    out.h = o.h = keys.positive("step");
+    out.end = keys.positive("end");
+    if (constexpr double most = 9e15; out.end / out.h > most)
+        keys.refuse("end", "must not be more than 9e15 steps away", out.end);
+    out.every = keys.has("every") ? keys.positive("every") : out.end / 1000;
+    // whole numbers of rows, which are whole numbers of steps apart
+    const double row = out.h * std::max(1., std::round(out.every / out.h)),
+                 seldom = row * std::max(1., std::round(out.end / 100 / row));
+    out.frames_every = keys.has("frames_every") ? keys.positive("frames_every") : seldom;
+    out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : seldom;
+    o.skin = keys.number("skin", o.skin);
+    if (!(o.skin > 0 && o.skin <= 1)) keys.refuse("skin", "must be in (0, 1] diameters", o.skin);
+    o.scheme = read_scheme(keys);
+    o.orientation = keys.flag("orientation");
+
+    std::vector<Material> materials;
+    for (const auto& [object, place] : keys.list("materials")) {
+        Keys m(*object, place);
+        materials.push_back(read_material(m));
+    }
+    if (materials.empty()) throw InvalidCase("/materials: must name at least one");
+    const auto material = [&](Keys& k, const std::string& key) {
+        const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
+        for (std::size_t n = 0; n < materials.size(); ++n)
+            if (materials[n].name == name) return static_cast<int>(n);
+        k.refuse(key, "no material has this name", name);
+    };
+    out.world = std::make_unique<World>(o, materials);
+    for (const auto& entry : keys.list("laws")) {
+        Keys pair(*entry.first, entry.second);
+        const auto of = read_between(pair, materials);
+        const PairLaw law = read_pair(pair, materials[of[0]], materials[of[1]], out.notices);
+        in_entry(pair.place,
+                 [&] { out.world->set_law(static_cast<int>(of[0]), static_cast<int>(of[1]), law); });
+        pair.end();
+    }
+    std::vector<std::pair<Motion, std::string>> motions;
+    std::string free;  // the first entry that has a mass
+    for (const auto& entry : keys.list("boundaries")) {
+        Keys b(*entry.first, entry.second);
+        const int made_of = material(b, "material");
+        const std::string name = b.text("name", "boundary " + std::to_string(out.boundaries.size()));
+        if (name.find_first_of(",\"\n\r") != std::string::npos)
+            b.refuse("name", "must be without commas, quotes and line ends, since it names columns", name);
+        for (NamedBoundary& n : read_boundary(b, name, surroundings.compile)) {
+            if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
+                b.refuse("name", "another boundary has this name", n.name);
+            n.boundary.material = made_of;
+            n.motion.boundary = in_entry(b.place, [&] { return out.world->add(n.boundary); });
+            if (n.motion.moves()) motions.emplace_back(n.motion, b.place);
+            if (n.boundary.mass > 0 && free.empty()) free = b.place;
+            out.boundaries.push_back(n.name);
+        }
+        b.end();
+    }
+    double largest = 0;
+    const auto replica = [&](Keys& k) {
+        const std::uint16_t number = read_replica(k);
+        if (number > 0 && !free.empty())
+            k.refuse("replica", "must be 0 where a boundary is free, as " + free, number);
+        return number;
+    };
+    for (const auto& entry : keys.list("particles")) {
+        Keys p(*entry.first, entry.second);
+        if (p.has("orientation") && !o.orientation)
+            p.refuse("orientation", "needs /orientation to be true", p.raw("orientation"));
+        const Particle made{.r = p.vector("r"),
+                            .radius = p.positive("radius"),
+                            .material = material(p, "material"),
+                            .v = p.vector("v", {0, 0, 0}),
+                            .omega = p.vector("omega", {0, 0, 0}),
+                            .fixed = p.flag("fixed"),
+                            .replica = replica(p),
+                            .e = p.four("orientation", Particle().e)};
+        largest = std::max(largest, 2 * made.radius);
+        const std::uint32_t id = in_entry(p.place, [&] { return out.world->add(made); });
+        out.entries.emplace_back(id, p.place);
+        if (p.has("force")) {
+            const Vec3 F = p.vector("force");
+            in_entry(p.place, [&] { out.world->set_force(id, F); });
+        }
+        p.end();
+    }
+    std::vector<Filling> fillings;
+    for (const auto& entry : keys.list("fill")) {
+        Keys f(*entry.first, entry.second);
+        fillings.push_back(read_filling(f));
+        Filling& made = fillings.back();
+        const bool listed = made.kind == Filling::Kind::listed;
+        made.material = listed && !f.has("material") ? -1 : material(f, "material");
+        made.replica = replica(f);
+        if (!o.orientation)
+            for (Particle& p : made.particles) p.e = Particle().e;
+        if (listed) out.files_read += "\n" + f.place_of("file") + ' ' + std::to_string(made.checksum);
+        f.end();
+    }
+    keys.end();
+    check_memory(static_cast<double>(out.world->count()), largest, o, fillings, surroundings);
+    for (std::size_t k = 0; k < fillings.size(); ++k) {
+        const std::string place = "/fill/" + std::to_string(k);
+        out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()), place);
+        in_entry(place, [&] {
+            for (const Particle& p : fill(fillings[k])) out.world->add(p);
+        });
+    }
+    if (motions.empty()) return;
+    std::vector<Motion> all;
+    for (const auto& [motion, place] : motions) {
+        all.push_back(motion);
+        try {
+            drive(*out.world, {motion}, out.h);
+        } catch (const NotFinite& e) {
+            throw InvalidCase(place + ": " + e.what());
+        }
+    }
+    out.world->before_each_step([all, h = out.h](World& w) { drive(w, all, h); });
+}
+
+}  // namespace
+
+Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings)
+{
+    Case out{.source = CaseText(text, file)};
+    for (const Setting& setting : surroundings.settings) out.source.set(setting);
+    try {
+        if (surroundings.seed) seed_fills(out, *surroundings.seed);
+        read(out, surroundings);
+    } catch (const InvalidCase& e) {
+        throw InvalidCase(out.source.placed(e.what()));
+    } catch (const Json::exception& e) {
+        throw InvalidCase(out.source.placed(e.what()));
+    }
+    return out;
+}
+
+void settle(const Case& c)
+{
+    try {
+        c.world->step(0);
+    } catch (const InvalidCase& e) {
+        // the world speaks of particles by their ids
+        const std::string what = e.what();
+        std::string place;
+        unsigned id = 0;
+        if (std::sscanf(what.c_str(), "particle %u", &id) == 1) {
+            for (const auto& [first, entry] : c.entries)
+                if (first <= id) place = entry;
+        } else if (what.starts_with("laws: ") || what.starts_with("world: no law")) {
+            place = "/laws";
+        } else if (what.starts_with("domain: ")) {
+            place = "/domain";
+        }
+        throw InvalidCase(c.source.placed(place.empty() ? what : place + ": " + what));
+    }
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/fill.hpp"
+
+#include "granular/case/split_mix.hpp"
+#include "granular/files.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::granular {
+
+namespace {
+
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state(seed) {}
+    double number()  ///< in [0, 1)
+    {
+        return static_cast<double>(SplitMix::mixed(state += SplitMix::step) >> 11) * 0x1p-53;
+    }
+    double number(double low, double high) { return low + (high - low) * number(); }
+    Vec3 direction()
+    {
+        const double z = number(-1, 1), angle = number(0, 2 * M_PI), across = std::sqrt(1 - z * z);
+        return {across * std::cos(angle), across * std::sin(angle), z};
+    }
+
+private:
+    std::uint64_t state;
+};
+
+/// Distances of centres in a row, of rows and of layers
+Vec3 distances(const Filling& f)
+{
+    const double a = f.spacing;
+    if (f.kind != Filling::Kind::hcp) return {a, a, a};
+    return {a, a * std::sqrt(3.) / 2, a * std::sqrt(2. / 3)};
+}
+
+/// Rows along x, layers along z
+std::vector<Vec3> lattice(const Filling& f, const Vec3& low, const Vec3& high)
+{
+    const bool hcp = f.kind == Filling::Kind::hcp;
+    const auto [a, row, layer] = distances(f);
+    std::vector<Vec3> all;
+    for (int k = 0; low.z + k * layer <= high.z; ++k)
+        for (int j = 0;; ++j) {
+            const double y = low.y + j * row + (hcp && k % 2 == 1 ? row / 3 : 0);
+            if (!(y <= high.y)) break;
+            for (int i = 0;; ++i) {
+                const double x = low.x + i * a + (hcp && (j + k) % 2 == 1 ? a / 2 : 0);
+                if (!(x <= high.x)) break;
+                if (f.most > 0 && all.size() == f.most) return all;
+                all.push_back({x, y, low.z + k * layer});
+            }
+        }
+    return all;
+}
+
+/// Bridson's algorithm: from every point some tries at between one and two spacings
+std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, Random& random)
+{
+    const double cell = f.spacing / std::sqrt(3.);
+    const auto cells = [&](double length) { return static_cast<long>(length / cell) + 1; };
+    const long nx = cells(high.x - low.x), ny = cells(high.y - low.y), nz = cells(high.z - low.z);
+    constexpr double most_cells = 4e8;
+    if (static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz) > most_cells)
+        throw InvalidCase("the box has more than 4e8 cells for random places");
+    std::vector<std::int32_t> in(static_cast<std::size_t>(nx * ny * nz), -1);
+    std::vector<Vec3> all;
+    const auto index = [&](const Vec3& r, long& x, long& y, long& z) {
+        x = static_cast<long>((r.x - low.x) / cell), y = static_cast<long>((r.y - low.y) / cell),
+        z = static_cast<long>((r.z - low.z) / cell);
+    };
+    const auto put = [&](const Vec3& r) {
+        if (!(r.x >= low.x && r.x <= high.x && r.y >= low.y && r.y <= high.y && r.z >= low.z &&
+              r.z <= high.z))
+            return false;
+        long x = 0, y = 0, z = 0;
+        index(r, x, y, z);
+        for (long c = std::max(0L, z - 2); c <= std::min(nz - 1, z + 2); ++c)
+            for (long b = std::max(0L, y - 2); b <= std::min(ny - 1, y + 2); ++b)
+                for (long a = std::max(0L, x - 2); a <= std::min(nx - 1, x + 2); ++a)
+                    if (const std::int32_t other = in[static_cast<std::size_t>((c * ny + b) * nx + a)];
+                        other >= 0)
+                        if ((all[static_cast<std::size_t>(other)] - r).norm() < f.spacing) return false;
+        in[static_cast<std::size_t>((z * ny + y) * nx + x)] = static_cast<std::int32_t>(all.size());
+        all.push_back(r);
+        return true;
+    };
+    put({random.number(low.x, high.x), random.number(low.y, high.y), random.number(low.z, high.z)});
+    constexpr int tries = 30;
+    for (std::size_t k = 0; k < all.size(); ++k)  // NOLINT(modernize-loop-convert): the list grows
+        for (int n = 0; n < tries; ++n)
+            put(all[k] + random.number(f.spacing, 2 * f.spacing) * random.direction());
+    return all;
+}
+
+Filling listed(Keys& keys)
+{
+    Filling f;
+    f.kind = Filling::Kind::listed;
+    const std::string file = keys.text("file");
+    try {
+        const std::string text = read_file(file, std::size_t{1} << 36);
+        f.particles = particles_of_csv(text, file);
+        f.checksum = checksum(text.data(), text.size());
+    } catch (const FileError& e) {
+        throw InvalidCase(keys.place_of("file") + ": " + e.what());
+    } catch (const InvalidCase& e) {
+        throw InvalidCase(keys.place_of("file") + ": " + e.what());
+    }
+    for (const Particle& p : f.particles) f.radius = std::max(f.radius, p.radius);
+    return f;
+}
+
+}  // namespace
+
+Filling read_filling(Keys& keys)
+{
+    Filling f;
+    const std::string kind = keys.text("type");
+    if (kind == "csv") return listed(keys);
+    if (kind == "lattice")
+        f.kind = Filling::Kind::lattice;
+    else if (kind == "hcp")
+        f.kind = Filling::Kind::hcp;
+    else if (kind == "poisson")
+        f.kind = Filling::Kind::poisson;
+    else
+        keys.refuse("type", "must be one of lattice, hcp, poisson, csv", kind);
+    f.low = keys.vector("low"), f.high = keys.vector("high");
+    f.radius = keys.positive("radius");
+    f.least_radius = keys.number("least_radius", f.radius);
+    if (!(f.least_radius > 0 && f.least_radius <= f.radius))
+        keys.refuse("least_radius", "must be positive, and not above the radius", f.least_radius);
+    const double spacing = keys.number("spacing", 1.05);
+    if (!(spacing >= 1)) keys.refuse("spacing", "must be at least one diameter", spacing);
+    f.spacing = 2 * f.radius * spacing;
+    f.jitter = keys.number("jitter", 0);
+    if (!(f.jitter >= 0 && f.jitter <= 1)) keys.refuse("jitter", "must be in [0, 1]", f.jitter);
+    f.most = static_cast<std::size_t>(keys.count("count", 0));
+    f.seed = static_cast<std::uint64_t>(keys.count("seed", 1));
+    f.v = keys.vector("v", {0, 0, 0});
+    f.random_v = keys.not_negative("random_v");
+    for (const auto& [low, high, axis] :
+         {std::tuple{f.low.x, f.high.x, 0}, {f.low.y, f.high.y, 1}, {f.low.z, f.high.z, 2}})
+        if (!(high - low >= 2 * f.radius))
+            keys.refuse("high/" + std::to_string(axis), "the box must be at least a diameter wide", high);
+    return f;
+}
+
+double estimate(const Filling& f)
+{
+    if (f.kind == Filling::Kind::listed) return static_cast<double>(f.particles.size());
+    const Vec3 size = f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius}, a = distances(f);
+    const Vec3 n{size.x / a.x, size.y / a.y, size.z / a.z};
+    // Bridson's algorithm leaves 0.58 particles in a cube of the spacing
+    if (f.kind == Filling::Kind::poisson) return 0.58 * (n.x + 0.4) * (n.y + 0.4) * (n.z + 0.4);
+    const double all = (std::floor(n.x) + 1) * (std::floor(n.y) + 1) * (std::floor(n.z) + 1);
+    return f.most > 0 ? std::min(all, static_cast<double>(f.most)) : all;
+}
+
+std::vector<Particle> fill(const Filling& f)
+{
+    if (f.kind == Filling::Kind::listed) {
+        std::vector<Particle> all = f.particles;
+        for (Particle& p : all) {
+            p.replica = f.replica;
+            if (f.material >= 0) p.material = f.material;
+        }
+        return all;
+    }
+    const Vec3 margin{f.radius, f.radius, f.radius}, low = f.low + margin, high = f.high - margin;
+    Random random(f.seed);
+    std::vector<Vec3> places =
+        f.kind == Filling::Kind::poisson ? poisson(f, low, high, random) : lattice(f, low, high);
+    if (f.kind == Filling::Kind::poisson)  // from below, as they would be poured in
+        std::sort(places.begin(), places.end(), [](const Vec3& a, const Vec3& b) {
+            return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
+        });
+    if (f.most > 0 && places.size() > f.most) places.resize(f.most);
+    const double free = f.jitter * (f.spacing / 2 - f.radius) / std::sqrt(3.);
+    std::vector<Particle> all;
+    all.reserve(places.size());
+    for (const Vec3& r : places) {
+        Particle p;
+        p.radius = random.number(f.least_radius, f.radius);
+        p.material = f.material, p.replica = f.replica;
+        p.r = r + Vec3{random.number(-free, free), random.number(-free, free), random.number(-free, free)};
+        p.r = {std::clamp(p.r.x, low.x, high.x), std::clamp(p.r.y, low.y, high.y),
+               std::clamp(p.r.z, low.z, high.z)};
+        p.v = f.v + f.random_v * random.direction();
+        all.push_back(p);
+    }
+    return all;
+}
+
+}  // namespace hilda::granular

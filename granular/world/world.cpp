@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/split_mix.hpp"
+#include "granular/world/world_impl.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace hilda::granular {
+
+using namespace detail;
+
+namespace {
+
+/// Time since it was last taken [s]
+class Lap {
+public:
+    double take()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(last, now)).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+World::World(const WorldOptions& o, std::vector<Material> all)
+    : World(o, std::move(all), make_engine(o.device))
+{}
+
+World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<Engine> on)
+    : options(o), materials(std::move(all)), engine(std::move(on))
+{
+    for (const auto& [low, high, axis] :
+         {std::tuple{o.low.x, o.high.x, 'x'}, {o.low.y, o.high.y, 'y'}, {o.low.z, o.high.z, 'z'}})
+        if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
+            refuse("domain", std::string("the high end along ") + axis + " must be above the low one", high);
+    if (!(o.h > 0) || !std::isfinite(o.h)) refuse("step", "must be positive", o.h);
+    if (!(o.skin > 0 && o.skin <= 1)) refuse("skin", "must be in (0, 1] diameters", o.skin);
+    constexpr std::size_t most = 4096;  // whose table of pairs takes 16 MB
+    if (materials.size() > most)
+        refuse("materials", "there must not be more than " + std::to_string(most), materials.size());
+    for (const Material& m : materials) {
+        const std::string where = "material '" + m.name + "'";
+        if (!(m.density > 0) || !std::isfinite(m.density))
+            refuse(where, "density must be positive", m.density);
+        if (!(m.E > 0) || !std::isfinite(m.E)) refuse(where, "E must be positive", m.E);
+        if (!(m.nu > -1 && m.nu < 0.5)) refuse(where, "nu must be between -1 and 0.5", m.nu);
+    }
+    law_of.assign(materials.size() * materials.size(), no_law);
+}
+
+World::~World() = default;
+
+void World::set_law(int i, int j, const PairLaw& law)
+{
+    const int n = static_cast<int>(materials.size());
+    for (const int m : {i, j})
+        if (m < 0 || m >= n) refuse("law", "no material has this number", m);
+    if (laws.size() >= 255) refuse("law", "no more than 255 laws are possible", laws.size() + 1);
+    law_of[i * n + j] = law_of[j * n + i] = static_cast<std::uint8_t>(laws.size());
+    laws.push_back(law);
+    laws_changed = true;
+    look_again();
+}
+
+int World::add(const Boundary& b)
+{
+    if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
+        refuse("boundary", "no material has this number", b.material);
+    if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
+        refuse("boundary", "place, velocities and force must be finite", b.r.norm() + b.v.norm());
+    const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
+    if (round && !(b.radius > 0 && std::isfinite(b.radius)))
+        refuse("boundary", "the radius must be positive", b.radius);
+    if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
+        refuse("boundary", "axis must be a unit vector; its length", b.axis.norm());
+    if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
+        refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
+    boundaries.push_back(b);
+    laws_changed = true;
+    look_again();
+    return static_cast<int>(boundaries.size()) - 1;
+}
+
+void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
+{
+    if (id >= count()) refuse("velocity", "no particle has this id", id);
+    if (!finite(v) || !finite(omega)) refuse("velocity of " + name_of(id), "must be finite", v.norm());
+    settle_in();
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        if (p.id.data()[k] == id) {
+            p.velocity.data()[k] = to_four(v, p.velocity.data()[k].w);
+            put_halves(p.rest.data()[k].v, left_of(v), to_nearest);
+            put_halves(p.rest.data()[k].omega, left_of(omega), to_nearest);
+            p.omega.data()[k] = to_four(omega, p.omega.data()[k].w);
+        }
+    engine->written();
+}
+
+void World::set_force(std::uint32_t id, const Vec3& F)
+{
+    if (id >= count()) refuse("force", "no particle has this id", id);
+    if (!finite(F)) refuse("force on " + name_of(id), "must be finite", F.norm());
+    forces.resize(count());
+    forces[id] = to_four(F, 0);
+    forces_changed = true;
+}
+
+/// The particle at k of the arrays is lost: where, when and how fast.
+void World::lose(std::uint32_t k, const std::string& how) const
+{
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    const std::uint32_t id = p.id.data()[k];
+    const Vec3 v = to_double(p.velocity.data()[k]);
+    std::ostringstream what;
+    what << name_of(id) << ' ' << how << " at t = " << time << " s, with a velocity of (" << v.x << ", "
+         << v.y << ", " << v.z << ") m/s";
+    throw ParticleLost(what.str(), id, time);
+}
+
+/// The list of pairs holds until two have come nearer to each other by the skin.
+void World::keep_neighbours()
+{
+    const double far = 0.5 * scene.skin;
+    if (moved <= far && moved_boundaries <= far) return;
+    // The sum of the longest ways of each step is a bound; the longest way of one particle may be less.
+    if (std::isfinite(moved) && moved_boundaries <= far) {
+        const double measured = engine->longest_way() * scene.grid.unit;
+        if (measured <= 0.8 * far) {
+            moved = measured;
+            return;
+        }
+    }
+    look_for_neighbours();
+}
+
+void World::look_for_neighbours() const
+{
+    if (laws_changed) {
+        check_laws(particles());
+        engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
+    }
+    laws_changed = false;
+    engine->set_boundaries(boundaries);
+    try {
+        engine->find_neighbours(scene);
+    } catch (const LeftDomain& lost) {
+        const Particles<par::Cpu>& p = engine->arrays().particle;
+        const auto* at = std::find(p.id.data(), p.id.data() + p.count, lost.id);
+        one_is_lost = true;
+        lose(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
+    } catch (const TooManyPairs&) {
+        refuse("particles", "there must not be more than 2^31 pairs within the skin, of particles", count());
+    }
+    moved = moved_boundaries = 0;
+    ++found;
+}
+
+StepOf World::step_of(Part part) const
+{
+    // both parts of a step have one of their own
+    const auto count = static_cast<std::uint64_t>(2 * number + (part == Part::after_loads ? 2 : 1));
+    const double golden = 0.6180339887498949 * static_cast<double>(count);  // fills an interval most evenly
+    return {.scheme = options.scheme,
+            .part = part,
+            .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
+                        static_cast<float>(options.gravity.z)},
+            .h = static_cast<float>(options.h),
+            .per_metre = static_cast<float>(1 / scene.grid.unit),
+            .turns = locked_turning ? 0.f : 1.f,
+            .even = static_cast<float>(golden - std::floor(golden) - 0.5),
+            .random = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
+}
+
+/// Loads give tools their velocities of the step.
+void World::push_tools()
+{
+    if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
+        return;
+    const std::vector<Wrench>& on = engine->on_free_boundaries(scene);
+    for (std::size_t k = 0; k < boundaries.size(); ++k) {
+        Boundary& b = boundaries[k];
+        if (!(b.mass > 0)) continue;
+        const Vec3 a = (1 / b.mass) * (on[k].F + b.F) + options.gravity;
+        b.v += options.h * Vec3{b.free[0] ? a.x : 0, b.free[1] ? a.y : 0, b.free[2] ? a.z : 0};
+        if (b.inertia > 0) b.omega += (options.h / b.inertia) * on[k].T;
+    }
+}
+
+/// By their velocities; the longest way of a point on one of them within the domain
+double World::move_boundaries()
+{
+    const double h = options.h;
+    double longest = 0;
+    for (Boundary& b : boundaries) {
+        b.r += h * b.v;
+        double way = h * b.v.norm();
+        const double angle = h * b.omega.norm();
+        if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
+            const Vec3 e = (h / angle) * b.omega;
+            const Vec3 turned = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
+                                ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
+            b.axis = (1 / turned.norm()) * turned;
+            // the corner of the domain that is farthest from it
+            const Vec3 a = options.low - b.r, c = options.high - b.r;
+            way +=
+                angle * Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
+                             std::max(std::abs(a.z), std::abs(c.z))}
+                            .norm();
+        }
+        longest = std::max(longest, way);
+    }
+    return longest;
+}
+
+void World::before_each_step(std::function<void(World&)> f) { callbacks.push_back(std::move(f)); }
+
+void World::step(long n)
+{
+    settle_in();
+    for (; n > 0; --n) {
+        for (const auto& f : callbacks) f(*this);
+        settle_in();
+        one_step();
+        time = static_cast<double>(++number) * options.h;
+    }
+}
+
+void World::one_step()
+{
+    const auto h = static_cast<float>(options.h);
+    const bool verlet = options.scheme == Scheme::velocity_verlet;
+    Lap lap;
+    const auto take = [&](double& to) {
+        if (timed) engine->wait();
+        to += lap.take();
+    };
+    const auto find_loads = [&] {
+        take(times.advance);
+        keep_neighbours();
+        engine->set_boundaries(boundaries);
+        take(times.neighbours);
+        engine->find_loads(scene, h);
+        take(times.loads);
+    };
+    if (forces_changed) engine->set_forces(forces);
+    forces_changed = false;
+    const auto limit = [&](double way) {
+        if (way < scene.grid.unit * Grid::widest) return;
+        const Particles<par::Cpu>& p = engine->arrays().particle;
+        std::uint32_t worst = 0;
+        double most = -1;
+        for (std::uint32_t k = 0; k < p.count && !std::isnan(most); ++k) {
+            const double speed = to_double(p.velocity.data()[k]).norm();
+            if (!(speed <= most)) most = speed, worst = k;
+        }
+        lose(worst, "moves more than a cell in a step");
+    };
+    // Some schemes go with the velocity of before, some with that of after.
+    const auto go = [&](Part part) {
+        const float before = std::exchange(fastest, std::sqrt(engine->advance(step_of(part))));
+        const double way = options.h * static_cast<double>(par::worse(before, fastest));
+        limit(way);
+        return way;
+    };
+    if (number == 0 && keeps_accelerations(options.scheme)) {
+        find_loads();
+        engine->advance(step_of(Part::only_loads));
+    }
+    if (verlet) {
+        moved += go(Part::before_loads);
+        moved_boundaries += move_boundaries();
+        find_loads();
+        push_tools();
+        go(Part::after_loads);
+    } else {
+        if (number > 0 || !keeps_accelerations(options.scheme)) find_loads();
+        push_tools();
+        moved += go(Part::whole);
+        moved_boundaries += move_boundaries();
+    }
+    take(times.advance);
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/solver/elimination.hpp"
+
+#include "lie/check.hpp"
+
+#include <algorithm>
+
+namespace hilda::lie {
+
+namespace {
+
+// Diagonal of R, as a part of its largest entry: below, the unknowns are not determined to any digit worth having.
+constexpr double worst_diagonal = 1e-13;
+
+}  // namespace
+
+Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
+{
+    int row = 0, alpha = 0;
+    const auto plain_until = [&](int end) {
+        bool begun = false;
+        for (; row < end; ++row) {
+            if (empty[row]) {
+                left_out.push_back({row, 1, 0, 0});
+                begun = false;
+                continue;
+            }
+            if (!begun) group.push_back({row, 0, 0, left.rows(), 0, -1, {}, {}, {}, {}});
+            begun = true;
+            ++group.back().rows;
+            left.entry.insert(left.entry.end(), pattern.entry.begin() + pattern.start[row],
+                              pattern.entry.begin() + pattern.start[row + 1]);
+            left.start.push_back(static_cast<int>(left.entry.size()));
+        }
+    };
+    for (size_t n = 0; n < pattern.massless.size(); ++n) {
+        const Rows::Massless& m = pattern.massless[n];
+        plain_until(m.first);
+        if (empty[m.first + m.rows - 1]) {
+            left_out.push_back({m.first, m.rows, alpha, m.count});
+            row += m.rows;
+            alpha += m.count;
+            continue;
+        }
+        group.push_back({m.first, m.rows, m.count, left.rows(), alpha, static_cast<int>(n), {}, {}, {}, {}});
+        Group& g = group.back();
+        g.QR.setZero(m.rows, m.count);
+        g.Z.setZero(m.rows, m.rows - m.count);
+        g.beta.setZero(m.count);
+        g.of_p.setZero(m.rows);
+        for (int k = 0; k < m.rows - m.count; ++k) {
+            // the bodies of all rows of the group, in the order in which they appear
+            for (int e = pattern.start[m.first]; e < pattern.start[m.first + m.rows]; ++e) {
+                const int body = pattern.entry[e].body;
+                const bool known = std::any_of(left.entry.begin() + left.start.back(), left.entry.end(),
+                                               [&](const Rows::Entry& other) { return other.body == body; });
+                if (!known)
+                    left.entry.push_back(
+                        {.body = body, .nonzero = 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+            }
+            left.start.push_back(static_cast<int>(left.entry.size()));
+        }
+        row += m.rows;
+        alpha += m.count;
+    }
+    plain_until(pattern.rows());
+    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !empty[k];
+    for (size_t n = 0; n < pattern.compliant.size(); ++n)
+        for (const Group& g : group)
+            if (const int k = pattern.compliant[n].first - g.first; k >= 0 && k < g.rows) {
+                soft.push_back(static_cast<int>(n));
+                left.compliant.push_back(pattern.compliant[n]);
+                left.compliant.back().first = g.reduced_first + k;
+            }
+}
+
+void Elimination::reflect(const Group& g, Few& v, bool transpose)
+{
+    for (int n = 0; n < g.count; ++n) {
+        const int k = transpose ? n : g.count - 1 - n;
+        double sum = v[k];
+        for (int r = k + 1; r < g.rows; ++r) sum += g.QR(r, k) * v[r];
+        sum *= g.beta[k];
+        v[k] -= sum;
+        for (int r = k + 1; r < g.rows; ++r) v[r] -= sum * g.QR(r, k);
+    }
+}
+
+void Elimination::factor(const Rows& full)
+{
+    for (size_t n = 0; n < soft.size(); ++n) left.compliant[n].softness = full.compliant[soft[n]].softness;
+    for (Group& g : group) {
+        if (g.count == 0) {
+            std::copy(full.entry.begin() + full.start[g.first],
+                      full.entry.begin() + full.start[g.first + g.rows],
+                      left.entry.begin() + left.start[g.reduced_first]);
+            continue;
+        }
+        const Rows::Massless& m = full.massless[g.massless];
+        g.QR = m.D;
+        double largest = 0, smallest = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < g.count; ++k) {
+            double below = 0;
+            for (int r = k + 1; r < g.rows; ++r) below += g.QR(r, k) * g.QR(r, k);
+            const double head = g.QR(k, k), norm = std::sqrt(head * head + below);
+            const double diagonal = head > 0 ? -norm : norm, v = head - diagonal;
+            largest = std::max(largest, norm), smallest = std::min(smallest, norm);
+            if (!(norm > 0)) break;
+            g.beta[k] = -v / diagonal;
+            for (int r = k + 1; r < g.rows; ++r) g.QR(r, k) /= v;
+            g.QR(k, k) = diagonal;
+            for (int c = k + 1; c < g.count; ++c) {
+                double sum = g.QR(k, c);
+                for (int r = k + 1; r < g.rows; ++r) sum += g.QR(r, k) * g.QR(r, c);
+                sum *= g.beta[k];
+                g.QR(k, c) -= sum;
+                for (int r = k + 1; r < g.rows; ++r) g.QR(r, c) -= sum * g.QR(r, k);
+            }
+        }
+        if (!(smallest > worst_diagonal * largest))
+            throw SingularMatrix("the rows of a contact do not determine its contact points",
+                                 smallest / largest);
+        for (int k = 0; k < g.rows - g.count; ++k) {
+            Few z = Few::Unit(g.rows, g.count + k);
+            reflect(g, z, false);
+            g.Z.col(k) = z;
+            const auto first = left.entry.begin() + left.start[g.reduced_first + k];
+            const auto last = left.entry.begin() + left.start[g.reduced_first + k + 1];
+            for (auto entry = first; entry != last; ++entry) entry->r.setZero(), entry->pi.setZero();
+            for (int r = 0; r < g.rows; ++r)
+                for (int e = full.start[g.first + r]; e < full.start[g.first + r + 1]; ++e)
+                    for (auto entry = first; entry != last; ++entry)
+                        if (entry->body == full.entry[e].body) {
+                            entry->r += z[r] * full.entry[e].r;
+                            entry->pi += z[r] * full.entry[e].pi;
+                        }
+        }
+    }
+}
+
+void Elimination::reduce(const Rows& full, const Eigen::VectorXd& whole, bool only_g,
+                         Eigen::VectorXd& reduced)
+{
+    const auto body_part = static_cast<int>(whole.size()) - full.rows() - full.unknowns();
+    bodies = body_part / 6;
+    if (only_g)
+        reduced.head(body_part).setZero();
+    else
+        reduced.head(body_part) = whole.head(body_part);
+    const auto g_part = whole.segment(body_part, full.rows());
+    const auto p_part = whole.tail(full.unknowns());
+    for (Group& g : group) {
+        if (g.count == 0) {
+            reduced.segment(body_part + g.reduced_first, g.rows) = g_part.segment(g.first, g.rows);
+            continue;
+        }
+        for (int k = 0; k < g.rows - g.count; ++k) {
+            double sum = 0;
+            for (int r = 0; r < g.rows; ++r) sum += g.Z(r, k) * g_part[g.first + r];
+            reduced[body_part + g.reduced_first + k] = sum;
+        }
+        g.of_p.setZero();
+        if (only_g || p_part.segment(g.alpha, g.count).isZero(0)) continue;
+        for (int c = 0; c < g.count; ++c) {  // R⁻ᵀ p
+            double sum = p_part[g.alpha + c];
+            for (int r = 0; r < c; ++r) sum -= g.QR(r, c) * g.of_p[r];
+            g.of_p[c] = sum / g.QR(c, c);
+        }
+        reflect(g, g.of_p, false);
+        for (int r = 0; r < g.rows; ++r)
+            for (int e = full.start[g.first + r]; e < full.start[g.first + r + 1]; ++e) {
+                reduced.segment<3>(6 * full.entry[e].body) -= g.of_p[r] * full.entry[e].r;
+                reduced.segment<3>(6 * full.entry[e].body + 3) -= g.of_p[r] * full.entry[e].pi;
+            }
+    }
+}
+
+void Elimination::expand(const Rows& full, const Eigen::VectorXd& reduced, Eigen::VectorXd& whole) const
+{
+    const int body_part = 6 * bodies;
+    whole.head(body_part) = reduced.head(body_part);
+    auto g_part = whole.segment(body_part, full.rows());
+    auto alpha_part = whole.tail(full.unknowns());
+    for (const LeftOut& l : left_out) {
+        g_part.segment(l.first, l.rows).setZero();
+        alpha_part.segment(l.alpha, l.count).setZero();
+    }
+    for (const Group& g : group) {
+        if (g.count == 0) {
+            g_part.segment(g.first, g.rows) = reduced.segment(body_part + g.reduced_first, g.rows);
+            continue;
+        }
+        Few rest(g.rows);
+        for (int r = 0; r < g.rows; ++r) rest[r] = g_part[g.first + r] - full.dot(g.first + r, reduced);
+        reflect(g, rest, true);
+        for (int c = g.count - 1; c >= 0; --c) {
+            double sum = rest[c];
+            for (int d = c + 1; d < g.count; ++d) sum -= g.QR(c, d) * alpha_part[g.alpha + d];
+            alpha_part[g.alpha + c] = sum / g.QR(c, c);
+        }
+        for (int r = 0; r < g.rows; ++r) {
+            double sum = g.of_p[r];
+            for (int k = 0; k < g.rows - g.count; ++k)
+                sum += g.Z(r, k) * reduced[body_part + g.reduced_first + k];
+            g_part[g.first + r] = sum;
+        }
+    }
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/solver/saddle.hpp"
+
+#include <algorithm>
+
+namespace hilda::lie {
+
+Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
+    : system(system), metric(metric), solver(solver), bodies(system.bodies()), m(system.rows()),
+      unknowns(system.pattern().unknowns()), C(system.pattern()), empty(m, 0), work(size()), residual(size()),
+      right_side(size())
+{
+    // which of the rows are empty is known with the first state
+    if (solver == LinearSolver::klu || unknowns == 0 || C.opening.empty()) choose_solver();
+}
+
+void Saddle::choose_solver()
+{
+    if (unknowns > 0 && solver != LinearSolver::klu) {
+        elimination = std::make_unique<Elimination>(C, empty);
+        reduced.resize(6 * bodies + elimination->reduced().rows());
+    }
+    scale = Eigen::VectorXd::Ones(elimination ? reduced.size() : size());
+    scaled = false;
+    analyse();
+    chosen = true;
+    condensed = nullptr;
+    if (solver == LinearSolver::klu) return;
+    Mass unit;
+    unit.m.assign(bodies, 1);
+    unit.J_bar.assign(bodies, Mat3::Identity());
+    condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, solved());
+    if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
+}
+
+/// Rows that are empty in the state last evaluated are not part of what is factored.
+void Saddle::leave_out_empty()
+{
+    bool changed = false;
+    for (const int k : C.opening)
+        if (const char now = C.empty(k); now != empty[k]) {
+            empty[k] = now;
+            changed = true;
+        }
+    if (!chosen || (changed && elimination))
+        choose_solver();
+    else if (changed)
+        scaled = false;
+}
+
+void Saddle::analyse()
+{
+    const Rows& R = solved();
+    const int rows = R.rows();
+    slot.clear(), mass_slot.clear(), opening_slot.clear(), soft_slot.clear();
+    // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
+    std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
+    std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
+    for (int k = 0; k < rows; ++k)
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n)
+            for (int c = 0; c < 6; ++c)
+                if (R.entry[n].nonzero >> c & 1) {
+                    const int at = 6 * R.entry[n].body + c, s = static_cast<int>(slot.size());
+                    lower[at].emplace_back(6 * bodies + k, s);
+                    of_row[k].emplace_back(at, s);
+                    slot.push_back({0, 0, 1});
+                }
+    int alpha = 0;
+    for (const Rows::Massless& group : R.massless)
+        for (int c = 0; c < group.count; ++c, ++alpha)
+            for (int k = 0; k < group.rows; ++k) {
+                const int s = static_cast<int>(slot.size());
+                of_alpha[alpha].emplace_back(6 * bodies + group.first + k, s);
+                of_row[group.first + k].emplace_back(6 * bodies + rows + alpha, s);
+                slot.push_back({0, 0, 1});
+            }
+
+    std::vector<int> column_start(1, 0), row_index;
+    const auto end_column = [&] { column_start.push_back(static_cast<int>(row_index.size())); };
+    for (int b = 0; b < bodies; ++b)
+        for (int c = 0; c < 6; ++c) {
+            const int first = c < 3 ? c : 3, last = c < 3 ? c : 5;
+            for (int d = first; d <= last; ++d) {
+                mass_slot.push_back(static_cast<int>(row_index.size()));
+                row_index.push_back(6 * b + d);
+            }
+            for (const auto& [row, s] : lower[6 * b + c]) {
+                slot[s].lower = static_cast<int>(row_index.size());
+                row_index.push_back(row);
+            }
+            end_column();
+        }
+    for (int k = 0; k < rows; ++k) {
+        for (const auto& [row, s] : of_row[k]) {
+            slot[s].upper = static_cast<int>(row_index.size());
+            row_index.push_back(row);
+        }
+        if (std::find(R.opening.begin(), R.opening.end(), k) != R.opening.end()) {
+            opening_slot.push_back(static_cast<int>(row_index.size()));
+            row_index.push_back(6 * bodies + k);
+        }
+        if (R.gives_way(k)) {
+            if (row_index.back() != 6 * bodies + k) row_index.push_back(6 * bodies + k);
+            soft_slot.push_back(static_cast<int>(row_index.size()) - 1);
+        }
+        end_column();
+    }
+    if (!R.massless.empty())
+        for (const auto& column : of_alpha) {
+            for (const auto& [row, s] : column) {
+                slot[s].lower = static_cast<int>(row_index.size());
+                row_index.push_back(row);
+            }
+            end_column();
+        }
+    klu.analyse(std::move(column_start), std::move(row_index));
+}
+
+// S = diag(M, J̄)^(-1/2) on the bodies, and on row k what brings (Φ_r, Π̄) S to length one. Then K is about as
+// well conditioned as the mechanism is, whatever its units, and the reciprocal condition means something. The rows of
+// a group with massless unknowns, whose Φ_α is of length one, share one factor, and the unknowns have its reciprocal.
+void Saddle::scale_rows()
+{
+    const Rows& R = solved();
+    for (int b = 0; b < bodies; ++b)
+        for (int c = 0; c < 6; ++c)
+            if (metric == Metric::mass)
+                scale[6 * b + c] =
+                    1 / std::sqrt(c < 3 ? system.mass().m[b] : system.mass().J_bar[b](c - 3, c - 3));
+    for (int k = 0; k < R.rows(); ++k) {
+        double sum = 0;
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n) {
+            const int at = 6 * R.entry[n].body;
+            sum += R.entry[n].r.cwiseProduct(scale.segment<3>(at)).squaredNorm() +
+                   R.entry[n].pi.cwiseProduct(scale.segment<3>(at + 3)).squaredNorm();
+        }
+        scale[6 * bodies + k] = sum > 0 ? 1 / std::sqrt(sum) : std::numeric_limits<double>::infinity();
+    }
+    int alpha = 6 * bodies + R.rows();
+    for (const Rows::Massless& group : R.massless) {
+        auto of_rows = scale.segment(6 * bodies + group.first, group.rows);
+        const double factor = of_rows.minCoeff();
+        of_rows.setConstant(std::isfinite(factor) ? factor : 1);
+        for (int c = 0; c < group.count; ++c) scale[alpha++] = 1 / of_rows[0];
+    }
+    for (int k = 0; k < R.rows(); ++k)
+        if (!std::isfinite(scale[6 * bodies + k])) scale[6 * bodies + k] = 1;
+
+    int s = 0;
+    for (int k = 0; k < R.rows(); ++k)
+        for (int n = R.start[k]; n < R.start[k + 1]; ++n)
+            for (int c = 0; c < 6; ++c)
+                if (R.entry[n].nonzero >> c & 1)
+                    slot[s++].factor = scale[6 * bodies + k] * scale[6 * R.entry[n].body + c];
+    // Φ_α keeps factor 1
+    s = 0;
+    for (int b = 0; b < bodies; ++b)
+        for (int c = 0; c < 6; ++c)
+            for (int d = c < 3 ? c : 3; d <= (c < 3 ? c : 5); ++d) {
+                double entry = c == d;
+                if (metric == Metric::mass)
+                    entry = (c < 3 ? system.mass().m[b] : system.mass().J_bar[b](d - 3, c - 3)) *
+                            scale[6 * b + c] * scale[6 * b + d];
+                klu.value[mass_slot[s++]] = entry;
+            }
+    scaled = true;
+}
+
+void Saddle::fill()
+{
+    const Slot* s = slot.data();
+    for (const Rows::Entry& entry : solved().entry)
+        for (int c = 0; c < 6; ++c)
+            if (entry.nonzero >> c & 1) {
+                klu.value[s->upper] = klu.value[s->lower] =
+                    s->factor * (c < 3 ? entry.r[c] : entry.pi[c - 3]);
+                ++s;
+            }
+    for (const Rows::Massless& group : solved().massless)
+        for (int c = 0; c < group.count; ++c)
+            for (int k = 0; k < group.rows; ++k, ++s)
+                klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
+    const Rows& R = solved();
+    for (size_t n = 0; n < opening_slot.size(); ++n)  // an empty row leaves its multiplier alone
+        klu.value[opening_slot[n]] = C.empty(C.opening[n]) ? -1 : 0;
+    if (R.opening.empty())  // what gives way is left out where it is empty
+        for (const int at : soft_slot) klu.value[at] = 0;
+    for (size_t n = 0; n < soft_slot.size(); ++n) {
+        const Rows::Compliant& c = R.compliant[n / 2];
+        const double of_row = scale[6 * bodies + c.first + static_cast<int>(n % 2)];
+        klu.value[soft_slot[n]] -= of_row * of_row * c.softness;
+    }
+}
+
+void Saddle::assemble(const State& x, double step)
+{
+    h = step;
+    system.variation(x, C);
+    C.soften(h);
+    factor_rows(x);
+}
+
+void Saddle::give_way(const State& x)
+{
+    C.soften(h);
+    factor_rows(x);
+}
+
+void Saddle::factor_rows(const State& x)
+{
+    leave_out_empty();
+    if (elimination) elimination->factor(C);
+    by_condensed = condensed != nullptr && condensed->factor(solved());
+    if (by_condensed) {
+        ++by_blocks;
+        return;
+    }
+    if (!scaled) scale_rows();
+    fill();
+    if (!klu.refactor()) factor(x);
+}
+
+void Saddle::choose_pivots(const State& x)
+{
+    system.variation(x, C);
+    C.soften(h);
+    leave_out_empty();
+    if (elimination) elimination->factor(C);
+    by_condensed = false;
+    factor(x);
+}
+
+void Saddle::factor(const State& x)
+{
+    scale_rows();
+    fill();
+    klu.factor("the saddle matrix");
+    pivot_state = x;
+}
+
+void Saddle::solve_solved(Eigen::VectorXd& b, bool only_constraints)
+{
+    if (by_condensed) {
+        if (only_constraints)
+            condensed->solve_constraints(b);
+        else
+            condensed->solve(b);
+        return;
+    }
+    if (only_constraints) b.head(6 * bodies).setZero();
+    b.array() *= scale.array();
+    klu.solve(b.data());
+    b.array() *= scale.array();
+}
+
+void Saddle::solve(Eigen::VectorXd& b)
+{
+    if (elimination) {
+        elimination->reduce(C, b, false, reduced);
+        solve_solved(reduced, false);
+        elimination->expand(C, reduced, b);
+    } else {
+        solve_solved(b, false);
+    }
+    if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
+}
+
+void Saddle::solve_constraints(Eigen::VectorXd& b)
+{
+    if (elimination) {
+        elimination->reduce(C, b, true, reduced);
+        solve_solved(reduced, true);
+        elimination->expand(C, reduced, b);
+    } else {
+        massless_part(b).setZero();
+        solve_solved(b, true);
+    }
+    if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
+}
+
+void Saddle::solve_refined(Eigen::VectorXd& b)
+{
+    right_side = b;
+    solve(b);
+    multiply(b, residual);
+    work = right_side - residual;
+    solve(work);
+    b += work;
+}
+
+void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& out) const
+{
+    for (int b = 0; b < bodies; ++b) {
+        out.segment<6>(6 * b) = z.segment<6>(6 * b);
+        if (metric == Metric::unit) continue;
+        out.segment<3>(6 * b) *= system.mass().m[b];
+        out.segment<3>(6 * b + 3) = system.mass().J_bar[b] * z.segment<3>(6 * b + 3);
+    }
+    const auto lambda = z.segment(6 * bodies, m);
+    C.add_transpose(1, lambda, out);
+    for (int k = 0; k < m; ++k) out[6 * bodies + k] = C.dot(k, z);
+    for (const Rows::Compliant& c : C.compliant)
+        for (int k = 0; k < 2; ++k) out[6 * bodies + c.first + k] -= c.softness * lambda[c.first + k];
+    if (C.massless.empty()) return;
+    out.tail(unknowns).setZero();
+    C.add_massless_transpose(1, lambda, out.tail(unknowns));
+    int at = 6 * bodies + m;
+    for (const Rows::Massless& group : C.massless)
+        for (int c = 0; c < group.count; ++c, ++at)
+            for (int k = 0; k < group.rows; ++k) out[6 * bodies + group.first + k] += group.D(k, c) * z[at];
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/solvers/index1.hpp"
+
+#include "dae/start.hpp"
+#include "lie/euler_parameters.hpp"
+
+namespace hilda::reference {
+
+namespace {
+
+/// y holds 13 numbers a body: r, p, ṙ, ω̄. The length of p is a constant of the exact solution and has no
+/// meaning.
+constexpr int size = 13;
+
+void write(const lie::State& x, VectorRef y)
+{
+    for (size_t b = 0; b < x.body.size(); ++b) {
+        const lie::Motion& body = x.body[b];
+        y.segment<size>(static_cast<Eigen::Index>(size * b)) << body.r, lie::euler_parameters(body.A),
+            body.rdot, body.omega_bar;
+    }
+}
+
+void read(double t, const ConstVectorRef& y, lie::State& x)
+{
+    x.t = t;
+    for (size_t b = 0; b < x.body.size(); ++b) {
+        const auto q = y.segment<size>(static_cast<Eigen::Index>(size * b));
+        lie::Motion& body = x.body[b];
+        body.r = q.head<3>();
+        body.A = lie::rotation(q.segment<4>(3).normalized());
+        body.rdot = q.segment<3>(7);
+        body.omega_bar = q.tail<3>();
+    }
+}
+
+}  // namespace
+
+lie::Trajectory index1(const dae::Model& model, const lie::State& start, const std::vector<double>& instants,
+                       const OdeTolerance& tolerance)
+{
+    if (6 * model.bodies() == model.rows())
+        lie::reject("reference::index1",
+                    "a mechanism needs a degree of freedom to have equations of motion; where every one is "
+                    "driven, use kinematic analysis (dae::Kinematics)",
+                    0);
+    if (!start.remembered.empty())
+        lie::reject("reference::index1",
+                    "what remembers real numbers from step to step has no equations of motion between the "
+                    "steps; numbers remembered",
+                    start.remembered.size());
+    lie::Saddle K(model);
+    lie::State x = start, stage = start;
+
+    Ode ode(
+        size * model.bodies(),
+        [&](double t, const ConstVectorRef& y, VectorRef ydot) {
+            read(t, y, stage);
+            dae::solve_accelerations(model, K, stage);
+            for (size_t b = 0; b < stage.body.size(); ++b) {
+                const lie::Motion& body = stage.body[b];
+                const auto at = static_cast<Eigen::Index>(size * b);
+                const lie::Vec4 p = y.segment<4>(at + 3);
+                ydot.segment<size>(at) << body.rdot, 0.5 * lie::G(p).transpose() * body.omega_bar, body.rddot,
+                    body.omegadot_bar;
+            }
+        },
+        tolerance);
+
+    const auto accepted = [&](double t, const ConstVectorRef& y) {
+        const lie::State before = x;
+        read(t, y, x);
+        model.accepted(before, x);
+        stage.memory = x.memory;
+    };
+
+    lie::Trajectory run;
+    Eigen::VectorXd y(size * model.bodies());
+    double t = x.t;
+    for (const double instant : instants) {
+        if (!(instant >= t))
+            lie::reject("reference::index1",
+                        "instants must ascend and not be before the start; after " + std::to_string(t),
+                        instant);
+        write(x, y);
+        ode.advance(t, y, instant, accepted);
+        dae::project_positions(model, K, x);
+        dae::project_velocities(model, K, x);
+        dae::solve_accelerations(model, K, x);
+        run.row.push_back(x);
+    }
+    return run;
+}
+
+}  // namespace hilda::reference

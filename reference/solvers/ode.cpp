@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/solvers/ode.hpp"
+
+#include "lie/check.hpp"
+#include "reference/solvers/gsl_errors.hpp"
+
+#include <gsl/gsl_odeiv2.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace hilda::reference {
+
+namespace {
+
+std::string at(double t)
+{
+    std::ostringstream text;
+    text.precision(9);
+    text << "at t = " << t << " s";
+    return text.str();
+}
+
+}  // namespace
+
+struct Ode::Gsl {
+    template <auto free>
+    struct Free {
+        template <class T>
+        void operator()(T* p) const
+        {
+            free(p);
+        }
+    };
+
+    RightSide f;
+    std::exception_ptr failure;  // what f threw: it must not pass through C
+    long evaluations = 0;
+    double h = 0;  // the size the last step asked for
+
+    std::unique_ptr<gsl_odeiv2_step, Free<gsl_odeiv2_step_free>> step;
+    std::unique_ptr<gsl_odeiv2_control, Free<gsl_odeiv2_control_free>> control;
+    std::unique_ptr<gsl_odeiv2_evolve, Free<gsl_odeiv2_evolve_free>> evolve;
+    gsl_odeiv2_system system{};
+
+    Gsl(size_t n, RightSide right_side, const OdeTolerance& tolerance)
+        : f(std::move(right_side)), step(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n)),
+          control(gsl_odeiv2_control_y_new(tolerance.absolute, tolerance.relative)),
+          evolve(gsl_odeiv2_evolve_alloc(n)), system{call, nullptr, n, this}
+    {
+        if (!step || !control || !evolve) throw std::bad_alloc();
+    }
+
+    static int call(double t, const double* y, double* ydot, void* self) noexcept
+    {
+        Gsl& gsl = *static_cast<Gsl*>(self);
+        try {
+            ++gsl.evaluations;
+            const auto n = static_cast<Eigen::Index>(gsl.system.dimension);
+            Eigen::Map<Eigen::VectorXd> out(ydot, n);
+            gsl.f(t, Eigen::Map<const Eigen::VectorXd>(y, n), out);
+            if (!out.allFinite()) throw lie::NonFinite("the right-hand side is not finite " + at(t));
+            return GSL_SUCCESS;
+        } catch (...) {
+            gsl.failure = std::current_exception();
+            return GSL_EBADFUNC;  // the one code on which GSL stops without trying a shorter step
+        }
+    }
+};
+
+Ode::Ode(int n, RightSide f, const OdeTolerance& tolerance)
+{
+    if (n < 1) lie::reject("reference::Ode", "there must be at least one unknown", n);
+    for (const double eps : {tolerance.relative, tolerance.absolute})
+        if (!(eps > 0)) lie::reject("reference::Ode", "tolerances must be positive", eps);
+    silence_gsl();
+    gsl = std::make_unique<Gsl>(static_cast<size_t>(n), std::move(f), tolerance);
+}
+
+Ode::~Ode() = default;
+
+long Ode::evaluations() const { return gsl->evaluations; }
+
+void Ode::advance(double& t, VectorRef y, double t_end, const Accepted& accepted)
+{
+    if (!(t_end >= t)) lie::reject("reference::Ode", "the end must not be before " + at(t), t_end);
+    if (t_end == t) return;
+    if (gsl->h == 0) gsl->h = std::min(1e-3, t_end - t);
+    gsl_odeiv2_evolve_reset(gsl->evolve.get());  // y may have been changed since the last call
+    while (t < t_end) {
+        const int code = gsl_odeiv2_evolve_apply(gsl->evolve.get(), gsl->control.get(), gsl->step.get(),
+                                                 &gsl->system, &t, t_end, &gsl->h, y.data());
+        if (gsl->failure) std::rethrow_exception(std::exchange(gsl->failure, nullptr));
+        if (code != GSL_SUCCESS)
+            throw lie::NumericalFailure("ode_failed", "GSL's rk8pd gave up " + at(t) + " with step " +
+                                                          std::to_string(gsl->h) +
+                                                          " s: " + gsl_strerror(code));
+        if (accepted) accepted(t, y);
+    }
+}
+
+}  // namespace hilda::reference

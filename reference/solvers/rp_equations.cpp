@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/solvers/rp_equations.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace hilda::reference {
+
+namespace {
+
+using lie::Mat3;
+using lie::Mat34;
+using lie::Mat6;
+using lie::Vec3;
+using lie::Vec4;
+using Mat4 = Eigen::Matrix4d;
+using Row4 = Eigen::RowVector4d;
+
+/// Q with G(p)ᵀ R = Q(R) p
+Mat4 Q(const Vec3& R)
+{
+    Mat4 Q;
+    Q << 0, -R.transpose(), R, -lie::tilde(R);
+    return Q;
+}
+
+/// ∂(T(p) a)/∂p for a fixed a; Ta is T a
+Mat34 T_change(const Vec4& p, double p2, const Vec4& a, const Vec3& Ta)
+{
+    return (-2 / p2) * (lie::G(a) + Ta * p.transpose());
+}
+
+/// ∂(T(p)ᵀ R)/∂p for a fixed R
+Mat4 T_transpose_change(const Vec4& p, double p2, const Mat34& T, const Vec3& R)
+{
+    return (2 / p2) * (Q(R) - (T.transpose() * R) * p.transpose());
+}
+
+constexpr unsigned rotation_bits = 0b111000;
+
+}  // namespace
+
+RpEquations::RpEquations(const lie::System& system, const lie::State& start, RpForm form, double alpha)
+    : system(system), form(form), alpha(form == RpForm::baumgarte ? alpha : 0), bodies(system.bodies()),
+      m(system.rows()), first_lambda(14 * bodies), first_mu(first_lambda + m + bodies), body(bodies),
+      C(system.pattern()), load(bodies), by_lambda(6 * bodies), by_mu(6 * bodies), velocity(6 * bodies),
+      acceleration(6 * bodies), Phi(m), nu(m), gamma(m), H(C), nu_change(C), gamma_change(C),
+      load_change(system.load_pattern())
+{
+    x = start;
+    find_pairs();
+    declare();
+}
+
+// --- what stands where ------------------------------------------------------------------------------------
+
+RpEquations::Kind RpEquations::kind(int k) const
+{
+    if (k < first_lambda) return k % 14 < 7 ? Kind::position : Kind::velocity;
+    return k < first_mu ? Kind::lambda : Kind::mu;
+}
+
+std::string RpEquations::name(int k) const
+{
+    if (k < first_lambda) {
+        const int c = k % 14;
+        const char* const what = c < 3    ? "velocity of body '"
+                                 : c < 7  ? "angular velocity of body '"
+                                 : c < 10 ? "translation of body '"
+                                          : "rotation of body '";
+        return what + system.body_name(k / 14) + "'";
+    }
+    const bool position = k >= first_mu;
+    const int row = k - (position ? first_mu : first_lambda);
+    const char* const level = position              ? ""
+                              : form == RpForm::ggl ? ", derivative in time"
+                                                    : ", second derivative in time";
+    return (row < m ? system.row_name(row)
+                    : "unit length of the Euler parameters of body '" + system.body_name(row - m) + "'") +
+           level;
+}
+
+void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
+{
+    x.memory = from.memory;
+    x.remembered = from.remembered;
+    y.setZero();
+    ydot.setZero();
+    for (int b = 0; b < bodies; ++b) {
+        const lie::Motion& motion = from.body[b];
+        const Vec4 p = lie::euler_parameters(motion.A);
+        const Mat34 G = lie::G(p);
+        const Vec4 pdot = 0.5 * G.transpose() * motion.omega_bar;
+        const Vec4 pddot =
+            0.5 * G.transpose() * motion.omegadot_bar - 0.25 * motion.omega_bar.squaredNorm() * p;
+        y.segment<14>(at(b)) << motion.r, p, motion.rdot, pdot;
+        ydot.segment<14>(at(b)) << motion.rdot, pdot, motion.rddot, pddot;
+    }
+    y.segment(first_lambda, m) = from.lambda;
+}
+
+bool RpEquations::remember(const std::vector<int>& memory, double t, const ConstVectorRef& y,
+                           const ConstVectorRef& ydot)
+{
+    if (memory == x.memory) return true;
+    evaluate(t, y, ydot);
+    const lie::Rows C_before = C;
+    const lie::Loads load_before = load;
+    x.memory = memory;
+    evaluate(t, y, ydot);
+    const auto differ = [](const Vec3& a, const Vec3& b) {
+        return !((a - b).norm() <= 1e-12 * std::max({1.0, a.norm(), b.norm()}));
+    };
+    for (size_t n = 0; n < C.entry.size(); ++n)
+        if (differ(C.entry[n].r, C_before.entry[n].r) || differ(C.entry[n].pi, C_before.entry[n].pi))
+            return false;
+    for (int b = 0; b < bodies; ++b)
+        if (differ(load.F[b], load_before.F[b]) || differ(load.n_bar[b], load_before.n_bar[b])) return false;
+    return true;
+}
+
+void RpEquations::read(double t, const ConstVectorRef& y, lie::State& to) const
+{
+    to.t = t;
+    for (int b = 0; b < bodies; ++b) {
+        lie::Motion& motion = to.body[b];
+        const Vec4 p = y.segment<4>(at(b) + 3);
+        motion.r = y.segment<3>(at(b));
+        motion.A = lie::rotation(p.normalized());
+        motion.rdot = y.segment<3>(at(b) + 7);
+        motion.omega_bar = (2 / p.squaredNorm()) * (lie::G(p) * y.segment<4>(at(b) + 10));
+    }
+}
+
+// --- the residual -----------------------------------------------------------------------------------------
+
+/// All that the residual and the Jacobian share
+void RpEquations::evaluate(double t, const ConstVectorRef& y, const ConstVectorRef& ydot)
+{
+    x.t = t;
+    for (int b = 0; b < bodies; ++b) {
+        Body& q = body[b];
+        lie::Motion& motion = x.body[b];
+        motion.r = y.segment<3>(at(b));
+        q.p = y.segment<4>(at(b) + 3);
+        motion.rdot = y.segment<3>(at(b) + 7);
+        q.pdot = y.segment<4>(at(b) + 10);
+        q.rddot = ydot.segment<3>(at(b) + 7);
+        q.pddot = ydot.segment<4>(at(b) + 10);
+        q.p2 = q.p.squaredNorm();
+        q.T = (2 / q.p2) * lie::G(q.p);
+        q.w = q.T * q.pddot;
+        motion.A = lie::rotation(q.p / std::sqrt(q.p2));
+        motion.omega_bar = q.T * q.pdot;
+        velocity.segment<6>(6 * b) << motion.rdot, motion.omega_bar;
+        acceleration.segment<6>(6 * b) << q.rddot, q.w;
+    }
+    system.variation(x, C);
+    by_lambda.setZero();
+    C.add_transpose(1, y.segment(first_lambda, m), by_lambda);
+    if (form == RpForm::ggl) {
+        by_mu.setZero();
+        C.add_transpose(1, y.segment(first_mu, m), by_mu);
+    }
+    system.loads(x, load);
+}
+
+void RpEquations::residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F)
+{
+    evaluate(t, y, ydot);
+    const lie::Mass& mass = system.mass();
+    for (int b = 0; b < bodies; ++b) {
+        const Body& q = body[b];
+        const lie::Motion& motion = x.body[b];
+        const Vec3& omega_bar = motion.omega_bar;
+        F.segment<3>(at(b)) = ydot.segment<3>(at(b)) - motion.rdot;
+        F.segment<4>(at(b) + 3) = ydot.segment<4>(at(b) + 3) - q.pdot;
+        if (form == RpForm::ggl) {
+            F.segment<3>(at(b)) += by_mu.segment<3>(6 * b);
+            F.segment<4>(at(b) + 3) +=
+                q.T.transpose() * by_mu.segment<3>(6 * b + 3) + y[first_mu + m + b] * q.p;
+        }
+        F.segment<3>(at(b) + 7) = mass.m[b] * q.rddot + by_lambda.segment<3>(6 * b) - load.F[b];
+        const Vec3 R = mass.J_bar[b] * q.w + by_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
+                       omega_bar.cross(mass.J_bar[b] * omega_bar);
+        F.segment<4>(at(b) + 10) = q.T.transpose() * R + y[first_lambda + m + b] * q.p;
+
+        const double P = 0.5 * (q.p2 - 1), Pdot = q.p.dot(q.pdot);
+        if (form == RpForm::ggl) {
+            F[first_lambda + m + b] = Pdot;
+            F[first_mu + m + b] = P;
+        } else {
+            F[first_lambda + m + b] =
+                q.p.dot(q.pddot) + q.pdot.squaredNorm() + 2 * alpha * Pdot + alpha * alpha * P;
+        }
+    }
+
+    if (form == RpForm::ggl) {
+        system.phi(x, F.segment(first_mu, m));
+        system.nu(x, nu);
+        for (int k = 0; k < m; ++k) F[first_lambda + k] = C.dot(k, velocity) - nu[k];
+        return;
+    }
+    system.gamma(x, gamma);
+    for (int k = 0; k < m; ++k) F[first_lambda + k] = C.dot(k, acceleration) - gamma[k];
+    if (form == RpForm::index1) return;
+    system.phi(x, Phi);
+    system.nu(x, nu);
+    for (int k = 0; k < m; ++k)
+        F[first_lambda + k] += 2 * alpha * (C.dot(k, velocity) - nu[k]) + alpha * alpha * Phi[k];
+}
+
+// --- the Jacobian: its pattern ----------------------------------------------------------------------------
+
+void RpEquations::declare()
+{
+    const auto diagonal = [&](int row, int column, int n) {
+        const int first = J.declare(row, column, 1, 1);
+        for (int c = 1; c < n; ++c) J.declare(row + c, column + c, 1, 1);
+        return first;
+    };
+    const bool ggl = form == RpForm::ggl;
+    for (int b = 0; b < bodies; ++b) {
+        const int r = at(b), p = r + 3, v = r + 7, u = r + 10;
+        const int lambda_P = first_lambda + m + b, mu_P = first_mu + m + b;
+        body_slots.push_back({.r_r = diagonal(r, r, 3),
+                              .r_v = diagonal(r, v, 3),
+                              .p_p = diagonal(p, p, 4),
+                              .p_u = diagonal(p, u, 4),
+                              .v_v = diagonal(v, v, 3),
+                              .u_p = J.declare(u, p, 4, 4),
+                              .u_u = J.declare(u, u, 4, 4),
+                              .u_lambda = J.declare(u, lambda_P, 4, 1),
+                              .p_mu = ggl ? J.declare(p, mu_P, 4, 1) : -1,
+                              .norm_p = ggl ? J.declare(mu_P, p, 1, 4) : -1,
+                              .norm_q = J.declare(lambda_P, p, 1, 4),
+                              .norm_qdot = J.declare(lambda_P, u, 1, 4)});
+    }
+    for (int k = 0; k < m; ++k)
+        for (int n = C.start[k]; n < C.start[k + 1]; ++n) declare_entry(k, n);
+    declare_pairs();
+    for (const lie::LoadVariation::Block& block : load_change.block) {
+        const int on = at(block.on), by = at(block.by);
+        load_slots.push_back({.q = J.declare(on + 7, by, 7, 7), .qdot = J.declare(on + 7, by + 7, 7, 7)});
+    }
+    J.analyse(size());
+}
+
+void RpEquations::declare_entry(int k, int n)
+{
+    const lie::Rows::Entry& entry = C.entry[n];
+    const bool ggl = form == RpForm::ggl, turns = (entry.nonzero & rotation_bits) != 0;
+    const int r = at(entry.body), p = r + 3, v = r + 7, u = r + 10;
+    const int lambda = first_lambda + k, mu = first_mu + k;
+    Slots s;
+    for (int c = 0; c < 3; ++c) {
+        const bool there = entry.nonzero >> c & 1;
+        s.force[c] = there ? J.declare(v + c, lambda, 1, 1) : -1;
+        s.q_r[c] = there ? J.declare(lambda, r + c, 1, 1) : -1;
+        s.qdot_r[c] = there ? J.declare(lambda, v + c, 1, 1) : -1;
+        s.drift[c] = there && ggl ? J.declare(r + c, mu, 1, 1) : -1;
+        s.r[c] = there && ggl ? J.declare(mu, r + c, 1, 1) : -1;
+    }
+    s.torque = turns ? J.declare(u, lambda, 4, 1) : -1;
+    s.q_p = turns ? J.declare(lambda, p, 1, 4) : -1;
+    s.qdot_p = turns ? J.declare(lambda, u, 1, 4) : -1;
+    s.turn = turns && ggl ? J.declare(p, mu, 4, 1) : -1;
+    s.p = turns && ggl ? J.declare(mu, p, 1, 4) : -1;
+    slots.push_back(s);
+}
+
+void RpEquations::find_pairs()
+{
+    for (int k = 0; k < m; ++k)
+        for (int a = C.start[k]; a < C.start[k + 1]; ++a)
+            for (int b = C.start[k]; b < C.start[k + 1]; ++b) {
+                const int on = C.entry[a].body, by = C.entry[b].body;
+                auto found = std::find_if(pair.begin(), pair.end(),
+                                          [&](const Pair& q) { return q.on == on && q.by == by; });
+                if (found == pair.end()) {
+                    found = pair.emplace(pair.end());
+                    found->on = on;
+                    found->by = by;
+                }
+                pair_of.push_back(static_cast<int>(found - pair.begin()));
+            }
+
+    // What is exactly zero in two arbitrary states is taken for zero in all. Where that is wrong, Newton's
+    // method is slower, no more.
+    std::mt19937 engine(1);
+    std::normal_distribution<> normal;
+    lie::State arbitrary = x;
+    for (int n = 0; n < 2; ++n) {
+        for (lie::Motion& motion : arbitrary.body) {
+            Vec4 p;
+            for (double& e : p) e = normal(engine);
+            for (double& e : motion.r) e += normal(engine);
+            motion.A = lie::rotation(p.normalized());
+        }
+        system.second_variation(arbitrary, H);
+        for (size_t h = 0; h < H.block.size(); ++h)
+            for (const int i : {0, 1})
+                for (const int j : {0, 1})
+                    if (!H.block[h].block<3, 3>(3 * i, 3 * j).isZero(0))
+                        pair[pair_of[h]].nonzero[i][j] = true;
+    }
+}
+
+void RpEquations::declare_pairs()
+{
+    for (Pair& q : pair)
+        for (const int i : {0, 1})
+            for (const int j : {0, 1})
+                q.slot[i][j] =
+                    q.nonzero[i][j] ? J.declare(at(q.on) + 7 + 3 * i, at(q.by) + 3 * j, 3 + i, 3 + j) : -1;
+}
+
+// --- the Jacobian: its values -----------------------------------------------------------------------------
+
+const lie::Klu& RpEquations::jacobian(double t, const ConstVectorRef& y, const ConstVectorRef& ydot,
+                                      double c_j)
+{
+    evaluate(t, y, ydot);
+    system.second_variation(x, H);
+    if (form != RpForm::index1) system.nu_variation(x, nu_change);
+    if (form != RpForm::ggl) system.gamma_variation(x, gamma_change);
+    system.load_variation(x, load_change);
+
+    for (Pair& q : pair) q.value.setZero();
+    for (int k = 0; k < m; ++k)
+        for (int h = H.first[k]; h < H.first[k] + H.entries[k] * H.entries[k]; ++h)
+            pair[pair_of[h]].value += y[first_lambda + k] * H.block[h];
+
+    J.set_zero();
+    add_bodies(y, c_j);
+    add_rows(c_j);
+    add_pairs();
+    add_loads();
+    return J.compressed();
+}
+
+void RpEquations::add_bodies(const ConstVectorRef& y, double c_j)
+{
+    const lie::Mass& mass = system.mass();
+    for (int b = 0; b < bodies; ++b) {
+        const Body& q = body[b];
+        const BodySlots& s = body_slots[b];
+        const Vec3& omega_bar = x.body[b].omega_bar;
+        const Mat3& J_bar = mass.J_bar[b];
+        for (int c = 0; c < 3; ++c) {
+            add(s.r_r + c, c_j);
+            add(s.r_v + c, -1);
+            add(s.v_v + c, c_j * mass.m[b]);
+        }
+        for (int c = 0; c < 4; ++c) {
+            add(s.p_p + c, c_j);
+            add(s.p_u + c, -1);
+        }
+
+        const Mat34 omega_p = T_change(q.p, q.p2, q.pdot, omega_bar), w_p = T_change(q.p, q.p2, q.pddot, q.w);
+        const Mat3 gyroscopic = lie::tilde(omega_bar) * J_bar - lie::tilde(J_bar * omega_bar);
+        const Vec3 R = J_bar * q.w + by_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
+                       omega_bar.cross(J_bar * omega_bar);
+        Mat4 u_p =
+            T_transpose_change(q.p, q.p2, q.T, R) + q.T.transpose() * (J_bar * w_p + gyroscopic * omega_p);
+        u_p.diagonal().array() += y[first_lambda + m + b];
+        add(s.u_p, u_p);
+        add(s.u_u, q.T.transpose() * (c_j * J_bar + gyroscopic) * q.T);
+        add(s.u_lambda, q.p);
+
+        if (form == RpForm::ggl) {
+            add(s.p_mu, q.p);
+            add(s.norm_p, q.p.transpose());
+            add(s.norm_q, q.pdot.transpose());
+            add(s.norm_qdot, q.p.transpose());
+        } else {
+            add(s.norm_q, (q.pddot + 2 * alpha * q.pdot + alpha * alpha * q.p).transpose());
+            add(s.norm_qdot, (2 * q.pdot + (c_j + 2 * alpha) * q.p).transpose());
+        }
+    }
+}
+
+void RpEquations::add_rows(double c_j)
+{
+    const bool ggl = form == RpForm::ggl;
+    // What stands in the row of λ_k is by_velocity (Φ_q q̇ - ν) + by_acceleration (Φ_q q̈ - γ) + α² Φ.
+    const double by_velocity = ggl ? 1 : 2 * alpha, by_acceleration = ggl ? 0 : 1;
+    for (int k = 0; k < m; ++k) {
+        const int first = C.start[k], entries = C.start[k + 1] - first;
+        for (int b = 0; b < entries; ++b) {
+            const lie::Rows::Entry& entry = C.entry[first + b];
+            const Slots& s = slots[first + b];
+            const Body& q = body[entry.body];
+            const Vec3& omega_bar = x.body[entry.body].omega_bar;
+
+            Vec3 d_r = alpha * alpha * entry.r, d_theta = alpha * alpha * entry.pi;
+            Vec3 d_rdot = (by_velocity + by_acceleration * c_j) * entry.r;
+            Vec3 d_omega = by_velocity * entry.pi, d_w = by_acceleration * entry.pi;
+            for (int a = 0; a < entries; ++a) {
+                const Mat6& Hab = H.at(k, a, b);
+                const int on = 6 * C.entry[first + a].body;
+                Eigen::Matrix<double, 6, 1> v = by_velocity * velocity.segment<6>(on);
+                if (!ggl) v += acceleration.segment<6>(on);
+                d_r += Hab.leftCols<3>().transpose() * v;
+                d_theta += Hab.rightCols<3>().transpose() * v;
+            }
+            if (by_velocity != 0) {
+                d_r -= by_velocity * nu_change.entry[first + b].r;
+                d_theta -= by_velocity * nu_change.entry[first + b].pi;
+            }
+            if (!ggl) {
+                const lie::GammaVariation::Entry& change = gamma_change.entry[first + b];
+                d_r -= change.r;
+                d_theta -= change.theta;
+                d_rdot -= change.rdot;
+                d_omega -= change.omega;
+            }
+            for (int c = 0; c < 3; ++c) {
+                if (s.force[c] < 0) continue;
+                add(s.force[c], entry.r[c]);
+                add(s.q_r[c], d_r[c]);
+                add(s.qdot_r[c], d_rdot[c]);
+                if (!ggl) continue;
+                add(s.drift[c], entry.r[c]);
+                add(s.r[c], entry.r[c]);
+            }
+            if (s.torque < 0) continue;
+            const Row4 Phi_p = entry.pi.transpose() * q.T;
+            Row4 d_p =
+                d_theta.transpose() * q.T + d_omega.transpose() * T_change(q.p, q.p2, q.pdot, omega_bar);
+            if (!ggl) d_p += d_w.transpose() * T_change(q.p, q.p2, q.pddot, q.w);
+            add(s.torque, Phi_p.transpose());
+            add(s.q_p, d_p);
+            add(s.qdot_p, (d_omega + c_j * d_w).transpose() * q.T);
+            if (!ggl) continue;
+            add(s.turn, Phi_p.transpose());
+            add(s.p, Phi_p);
+        }
+    }
+}
+
+void RpEquations::add_pairs()
+{
+    for (const Pair& q : pair) {
+        const Mat34 &T_on = body[q.on].T, &T_by = body[q.by].T;
+        if (q.nonzero[0][0]) add(q.slot[0][0], q.value.topLeftCorner<3, 3>());
+        if (q.nonzero[0][1]) add(q.slot[0][1], q.value.topRightCorner<3, 3>() * T_by);
+        if (q.nonzero[1][0]) add(q.slot[1][0], T_on.transpose() * q.value.bottomLeftCorner<3, 3>());
+        if (q.nonzero[1][1]) add(q.slot[1][1], T_on.transpose() * q.value.bottomRightCorner<3, 3>() * T_by);
+    }
+}
+
+void RpEquations::add_loads()
+{
+    using Mat7 = Eigen::Matrix<double, 7, 7>;
+    for (size_t n = 0; n < load_slots.size(); ++n) {
+        const lie::LoadVariation::Block& block = load_change.block[n];
+        const Body &on = body[block.on], &by = body[block.by];
+        Eigen::Matrix<double, 7, 6> rows = Eigen::Matrix<double, 7, 6>::Zero();  // of (F, n̄) in the equations
+        rows.topLeftCorner<3, 3>().setIdentity();
+        rows.bottomRightCorner<4, 3>() = on.T.transpose();
+        const Eigen::Matrix<double, 7, 12> d = rows * block.d;
+        Mat7 q, qdot;
+        q << d.leftCols<3>(),
+            d.middleCols<3>(3) * by.T +
+                d.rightCols<3>() * T_change(by.p, by.p2, by.pdot, x.body[block.by].omega_bar);
+        qdot << d.middleCols<3>(6), d.rightCols<3>() * by.T;
+        add(load_slots[n].q, -q);
+        add(load_slots[n].qdot, -qdot);
+    }
+}
+
+}  // namespace hilda::reference

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Energy of undamped systems over time (Fang 2022, Fig. 3.5).
+///
+/// For each problem, scheme and step: E(t) - E(0) at every node, E the kinetic and potential energy of the node
+/// with all of its velocities at its own time. The table gives the change at the end and the largest on the
+/// way, in J and over the largest kinetic energy of the run; energy.csv has the curves.
+
+#include "studies/csv.hpp"
+#include "studies/framework/pool.hpp"
+#include "studies/framework/selection.hpp"
+#include "studies/framework/study_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const std::string kind = "energy";
+constexpr long most_rows = 1000;  // of one run in energy.csv
+
+/// E and T of every node; the curve of E, thinned
+class EnergyOfNodes final : public lie::Observer {
+public:
+    EnergyOfNodes(const dae::Model& model, const lie::Grid& grid) : model(model), grid(grid) {}
+
+    void accepted(const lie::State& x, long n, int) override
+    {
+        dae::check_dropped_rows(model, x);
+        end = lie::energy(model, x);
+        if (n == 0) start = end;
+        kinetic = std::max(kinetic, end - model.potential_energy(x));
+        largest = std::max(largest, std::abs(end - start));
+        if (grid.is_row(n)) curve.emplace_back(x.t, end);
+    }
+
+    double start = 0, end = 0;  ///< E of the first and of the last node [J]
+    double largest = 0;         ///< |E - E(0)| [J]
+    double kinetic = 0;         ///< largest T [J]
+    std::vector<std::pair<double, double>> curve;
+
+private:
+    const dae::Model& model;
+    const lie::Grid grid;
+};
+
+struct Run : Member {
+    double start = 0, drift = 0, largest = 0, kinetic = 0;  ///< [J]
+    std::vector<std::pair<double, double>> curve;           ///< t, E
+};
+
+void compute(Run& run, const StudyOptions& options)
+{
+    EnergyOfNodes nodes(*run.c->started->model,
+                        lie::Grid::over(run.c->end, run.h, run.c->end / static_cast<double>(most_rows)));
+    lie::Observer* observers[] = {&nodes};
+    march(run, options.settings, observers);
+    run.start = nodes.start;
+    run.drift = run.failed() ? std::nan("") : nodes.end - nodes.start;
+    run.largest = run.failed() ? std::nan("") : nodes.largest;
+    run.kinetic = nodes.kinetic;
+    run.curve = std::move(nodes.curve);
+}
+
+Table as_table(const std::vector<Run>& runs)
+{
+    Table table({{"problem"},
+                 {"integrator"},
+                 {"h"},
+                 {"end"},
+                 {"energy_start"},
+                 {"end_drift"},
+                 {"max_drift"},
+                 {"max_kinetic"},
+                 {"end_drift_relative"},
+                 {"max_drift_relative"},
+                 {"steps"},
+                 {"iterations_per_step"},
+                 {"cpu_seconds"},
+                 {"status"}});
+    for (const Run& run : runs)
+        table.add({run.c->problem.name, run.scheme->name, run.h, run.c->end, run.start, run.drift,
+                   run.largest, run.kinetic, run.drift / run.kinetic, run.largest / run.kinetic,
+                   static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
+                   run.seconds, run.status});
+    return table;
+}
+
+void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+{
+    Table table({{"integrator"},
+                 {"h [s]", "{:.1e}"},
+                 {"E-E0 at end [J]", "{:+.4g}"},
+                 {"max |E-E0| [J]", "{:.4g}"},
+                 {"over max T: end", "{:+.1e}"},
+                 {"max", "{:.1e}"},
+                 {"max T [J]", "{:.5g}"},
+                 {"status"}});
+    for (const Run& run : runs)
+        if (run.c == &c)
+            table.add({run.scheme->name, run.h, run.drift, run.largest, run.drift / run.kinetic,
+                       run.largest / run.kinetic, run.kinetic, run.status});
+    out << fmt::format("\n{}, over {:g} s: change of the energy E = T + V\n", c.problem.name, c.end);
+    table.print(out);
+}
+
+std::string curves(const std::vector<Run>& runs)
+{
+    std::string csv = "problem,integrator,h,t,energy,drift\n";
+    for (const Run& run : runs)
+        for (const auto& [t, E] : run.curve) {
+            csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
+            for (const double value : {run.h, t, E, E - run.start}) {
+                csv += ',';
+                append_number(csv, value);
+            }
+            csv += '\n';
+        }
+    return csv;
+}
+
+ordered_json as_json(const std::vector<Run>& runs)
+{
+    ordered_json rows = ordered_json::array();
+    for (const Run& run : runs) {
+        ordered_json row = as_json(static_cast<const Member&>(run));
+        row.update({{"energy_start", run.start},
+                    {"end_drift", number_or_null(run.drift)},
+                    {"max_drift", number_or_null(run.largest)},
+                    {"max_kinetic", run.kinetic}});
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+int energy(const StudyOptions& options)
+{
+    check_keys(kind, options, std::vector<std::string>{"end_drift", "max_drift", "max_drift_relative"});
+    const std::vector<double> steps = steps_or(options, {1e-3});
+    const Schemes schemes = fixed_step_schemes(kind, options);
+    const std::vector<Case> all = cases(kind, options, {"double_pendulum", "n_pendulum_2_spin"},
+                                        [](const dae::Description&) { return 30.; });
+    std::vector<Run> runs;
+    for (const Case& c : all) {
+        check_steps(kind, c, steps);
+        for (const lie::Scheme* s : schemes)
+            for (const double h : steps) {
+                Run run;
+                run.c = &c, run.scheme = s, run.h = h;
+                runs.push_back(run);
+            }
+    }
+    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
+        compute(runs[k], options);
+    });
+
+    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
+    output.files = {{"energy.csv", curves(runs)}};
+    for (const Case& c : all) {
+        print(runs, c, output.text);
+        output.figures.push_back("energy-" + c.problem.name + ".png");
+    }
+    std::vector<Measured> came;
+    for (const Run& run : runs)
+        came.push_back({.of = run.name(),
+                        .value = {{"end_drift", run.drift},
+                                  {"max_drift", run.largest},
+                                  {"max_drift_relative", run.largest / run.kinetic}}});
+    return finish(options, output, members(runs), came);
+}
+
+const bool enrolled =
+    enrol(Study{.kind = kind, .answers = "energy of undamped systems over time (Fig. 3.5)", .run = energy});
+
+}  // namespace
+
+}  // namespace hilda::studies

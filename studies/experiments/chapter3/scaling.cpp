@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// CPU time of a step of the N-bar pendulum over N (Fang 2022, Figs. 3.14, 3.15).
+///
+/// Bars on ball joints fall from rest under gravity in a slanting direction, each spinning about its own long
+/// axis at a rate from --seed. For each N and scheme: thread CPU time of a step, the median of the repeats, its
+/// ratio to rA-full-1, and the exponent p of time ~ N^p over N >= 64.
+
+#include "studies/exit_codes.hpp"
+#include "studies/framework/pool.hpp"
+#include "studies/framework/selection.hpp"
+#include "studies/framework/stopwatch.hpp"
+#include "studies/framework/study_output.hpp"
+#include "studies/problems/n_pendulum.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace hilda::studies {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const std::string kind = "scaling";
+const std::string compared_with = "rA-full-1";
+constexpr int many = 64;  // bars, from which the exponent is taken: below, what does not grow with N shows
+
+struct Run : TimedRun {
+    int N = 0;
+    double start_seconds = 0;     ///< wall time of reading the model and starting it
+    double ratio = std::nan("");  ///< to rA-full-1
+};
+
+struct Chains {
+    std::vector<int> N;
+    std::vector<Case> all;
+    std::vector<double> start_seconds;
+};
+
+Chains chains(const StudyOptions& options)
+{
+    Chains chains;
+    chains.N =
+        options.bars.empty() ? std::vector<int>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024} : options.bars;
+    chains.all.resize(chains.N.size());
+    chains.start_seconds.resize(chains.N.size());
+    const auto end = [](const dae::Description&) { return 0.1; };
+    Pool(options.jobs, options.quiet ? "" : "starts", static_cast<long>(chains.N.size())).run([&](long k) {
+        const auto begin = std::chrono::steady_clock::now();
+        chains.all[k] = make_case(spinning_n_pendulum(chains.N[k], options.seed), options, end);
+        chains.start_seconds[k] =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    });
+    return chains;
+}
+
+/// Time over N of one scheme, N >= many
+Exponent exponent_of(const std::vector<Run>& runs, const lie::Scheme* scheme)
+{
+    std::vector<double> N, seconds;
+    for (const Run& run : runs)
+        if (run.scheme == scheme && run.N >= many && !run.failed()) {
+            N.push_back(run.N);
+            seconds.push_back(run.microseconds().median);
+        }
+    return exponent(N, seconds);
+}
+
+Table as_table(const std::vector<Run>& runs)
+{
+    Table table({{"problem"},
+                 {"bars"},
+                 {"integrator"},
+                 {"h"},
+                 {"steps"},
+                 {"iterations_per_step"},
+                 {"factorizations"},
+                 {"refactorizations"},
+                 {"us_per_step"},
+                 {"us_per_step_min"},
+                 {"us_per_step_max"},
+                 {"ratio_to_full"},
+                 {"start_seconds"},
+                 {"status"}});
+    for (const Run& run : runs)
+        table.add({run.c->problem.name, static_cast<double>(run.N), run.scheme->name, run.h,
+                   static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
+                   static_cast<double>(run.statistics.factorizations),
+                   static_cast<double>(run.statistics.refactorizations), run.microseconds().median,
+                   run.microseconds().least, run.microseconds().most, run.ratio, run.start_seconds,
+                   run.status});
+    return table;
+}
+
+void print(const std::vector<Run>& runs, const StudyOptions& options, std::ostream& out)
+{
+    Table table({{"N", "{:.0f}"},
+                 {"integrator"},
+                 {"us/step", "{:.2f}"},
+                 {"min", "{:.2f}"},
+                 {"max", "{:.2f}"},
+                 {"us/step/N", "{:.3f}"},
+                 {"iter", "{:.2f}"},
+                 {"over " + compared_with, "{:.3f}"},
+                 {"status"}});
+    for (const Run& run : runs)
+        table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
+                   run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
+                   run.statistics.iterations_per_step(), run.ratio, run.status});
+    const Run& first = runs.front();
+    out << fmt::format("\nN-bar pendulum, h = {:g} s, over {:g} s, seed {}: thread CPU time of a step\n",
+                       first.h, first.c->end, options.seed);
+    table.print(out);
+}
+
+/// The exponents, and the mean ratio over N: the dissertation's 52 %
+void print_fits(const std::vector<Run>& runs, const Schemes& schemes, std::ostream& out)
+{
+    Table table({{"integrator"},
+                 {fmt::format("exponent, N >= {}", many), "{:.3f}"},
+                 {"largest between neighbours", "{:.3f}"},
+                 {"mean over " + compared_with, "{:.3f}"}});
+    for (const lie::Scheme* s : schemes) {
+        double sum = 0;
+        int count = 0;
+        for (const Run& run : runs)
+            if (run.scheme == s && !std::isnan(run.ratio)) sum += run.ratio, ++count;
+        const Exponent p = exponent_of(runs, s);
+        table.add({s->name, p.fitted, p.largest_local, count > 0 ? sum / count : std::nan("")});
+    }
+    out << '\n';
+    table.print(out);
+}
+
+ordered_json as_json(const std::vector<Run>& runs)
+{
+    ordered_json rows = ordered_json::array();
+    for (const Run& run : runs) {
+        ordered_json row = as_json(static_cast<const Member&>(run));
+        row.update({{"bars", run.N},
+                    {"us_per_step", number_or_null(run.microseconds().median)},
+                    {"us_per_step_min", number_or_null(run.microseconds().least)},
+                    {"us_per_step_max", number_or_null(run.microseconds().most)},
+                    {"ratio_to_full", number_or_null(run.ratio)},
+                    {"iterations_per_step", run.statistics.iterations_per_step()},
+                    {"start_seconds", run.start_seconds}});
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+int scaling(const StudyOptions& options)
+{
+    check_keys(kind, options, std::vector<std::string>{"exponent", "largest_exponent", "ratio_to_full"});
+    if (!options.problems.empty())
+        throw UsageError("study scaling: is of the N-bar pendulum; --bars N1,N2,... says of which N");
+    const double h = one_step(kind, options, 1e-3);
+    const Schemes schemes =
+        fixed_step_schemes(kind, options, {"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
+    const Chains of = chains(options);
+    std::vector<Run> runs;
+    for (size_t k = 0; k < of.N.size(); ++k) {
+        check_steps(kind, of.all[k], {h});
+        for (const lie::Scheme* s : schemes) {
+            Run run;
+            run.c = &of.all[k], run.scheme = s, run.h = h, run.N = of.N[k];
+            run.start_seconds = of.start_seconds[k];
+            runs.push_back(run);
+        }
+    }
+    Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
+        .run([&](long k) { march(runs[k], options.settings); });
+    std::vector<TimedRun*> timed;
+    for (Run& run : runs) timed.push_back(&run);
+    time_in_turn(kind, options, timed, [&](long) { return options.settings; });
+    for (Run& run : runs)
+        for (const Run& full : runs)
+            if (full.N == run.N && full.scheme->name == compared_with) run.ratio = studies::ratio(run, full);
+
+    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
+    output.figures = {"scaling.png"};
+    print(runs, options, output.text);
+    print_fits(runs, schemes, output.text);
+    output.text << fmt::format(
+        "\nmedian, min and max of {} repeats, {} side by side; slowest start {:.2f} s\n", options.repeats,
+        options.jobs, *std::max_element(of.start_seconds.begin(), of.start_seconds.end()));
+    std::vector<Measured> came;
+    ordered_json exponents = ordered_json::object();
+    for (const lie::Scheme* s : schemes) {
+        const Exponent p = exponent_of(runs, s);
+        came.push_back(
+            {.of = s->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
+        exponents[s->name] = {{"fitted", number_or_null(p.fitted)},
+                              {"largest_local", number_or_null(p.largest_local)}};
+    }
+    output.json["exponents"] = exponents;
+    for (const Run& run : runs)
+        if (run.scheme->name != compared_with)
+            came.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
+    return finish(options, output, members(runs), came);
+}
+
+const bool enrolled =
+    enrol(Study{.kind = kind,
+                .answers = "CPU time of a step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+                .also = takes::repeats | takes::bars,
+                .run = scaling});
+
+}  // namespace
+
+}  // namespace hilda::studies

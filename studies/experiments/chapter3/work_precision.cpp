@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Error against CPU time: what each integrator asks for an accuracy.
+///
+/// Schemes with a fixed step go through --steps, those that choose their own through --rtols. For each run: the
+/// errors of errors.hpp, and the thread CPU time of the march, the median of the repeats, with nothing observed
+/// or written while the clock runs. For each problem a table says what each needs for an rms error of 1e-3 m in
+/// r, interpolated between its neighbouring runs on logarithmic axes.
+
+#include "studies/framework/evaluated_run.hpp"
+#include "studies/framework/pool.hpp"
+#include "studies/framework/reference_solution.hpp"
+#include "studies/framework/selection.hpp"
+#include "studies/framework/stopwatch.hpp"
+#include "studies/framework/study_output.hpp"
+#include "studies/framework/work_needed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const std::string kind = "work-precision";
+constexpr double asked = 1e-3;  // rms of r [m]
+
+struct Run : TimedRun {
+    Errors errors;
+};
+
+void compute(Run& run, const StudyOptions& options)
+{
+    JudgedRun judged;
+    static_cast<Member&>(judged) = run;
+    judge(judged, options.settings);
+    static_cast<Member&>(run) = judged;
+    run.errors = judged.errors;
+}
+
+/// Chains of many bars are chaotic: after a second or two the errors of all but the smallest steps are as large
+/// as the motion, and their order cannot be seen. 1.2 s, so that steps like 4e-3 s meet all the instants.
+double end_of(const dae::Description& d)
+{
+    return d.name.starts_with("n_pendulum") && d.model->bodies() > 2 ? std::min(d.end, 1.2) : d.end;
+}
+
+/// Of one scheme on one problem, from the largest step or tolerance down
+using Series = std::vector<const Run*>;
+
+std::vector<Series> series_of(const std::vector<Run>& runs)
+{
+    std::vector<Series> all;
+    for (const Run& run : runs) {
+        if (all.empty() || all.back().front()->c != run.c || all.back().front()->scheme != run.scheme)
+            all.emplace_back();
+        all.back().push_back(&run);
+    }
+    return all;
+}
+
+WorkNeeded needed(const Series& series)
+{
+    std::vector<double> e, seconds;
+    for (const Run* run : series)
+        e.push_back(run->errors.value[norm::r]), seconds.push_back(run->seconds_of_repeats().median);
+    return work_needed(e, seconds, asked);
+}
+
+Table as_table(const std::vector<Run>& runs)
+{
+    std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
+                                          {"rtol"},    {"end"},        {"reference"}};
+    for (const char* name : norm::names) columns.push_back({name});
+    for (const char* name : {"steps", "iterations_per_step", "factorizations", "refactorizations",
+                             "cpu_seconds", "cpu_seconds_min", "cpu_seconds_max", "status"})
+        columns.push_back({name});
+    Table table(columns);
+    for (const Run& run : runs) {
+        const bool adaptive = run.rtol > 0;
+        std::vector<Table::Cell> row = {run.c->problem.name,
+                                        run.scheme->name,
+                                        adaptive ? std::nan("") : run.h,
+                                        adaptive ? run.rtol : std::nan(""),
+                                        run.c->end,
+                                        run.c->truth_name};
+        for (const double e : run.errors.value) row.emplace_back(e);
+        row.emplace_back(static_cast<double>(run.statistics.steps));
+        row.emplace_back(run.statistics.iterations_per_step());
+        row.emplace_back(static_cast<double>(run.statistics.factorizations));
+        row.emplace_back(static_cast<double>(run.statistics.refactorizations));
+        row.emplace_back(run.seconds_of_repeats().median);
+        row.emplace_back(run.seconds_of_repeats().least);
+        row.emplace_back(run.seconds_of_repeats().most);
+        row.emplace_back(run.status);
+        table.add(row);
+    }
+    return table;
+}
+
+void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+{
+    Table table({{"integrator"},
+                 {"step or rtol"},
+                 {"r [m]"},
+                 {"v [m/s]"},
+                 {"Q"},
+                 {"CPU [ms]", "{:.3f}"},
+                 {"steps", "{:.0f}"},
+                 {"iter", "{:.2f}"},
+                 {"status"}});
+    for (const Run& run : runs)
+        if (run.c == &c)
+            table.add({run.scheme->name, run.grain(), run.errors.value[norm::r], run.errors.value[norm::v],
+                       run.errors.value[norm::Q], 1e3 * run.seconds_of_repeats().median,
+                       static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
+                       run.status});
+    out << fmt::format("\n{}, over {:g} s; truth: {}\n", c.problem.name, c.end, c.truth_name);
+    table.print(out);
+}
+
+void print_needed(const std::vector<Series>& all, const Case& c, std::ostream& out)
+{
+    const Series* fastest = nullptr;
+    for (const Series& series : all)
+        if (series.front()->c == &c && !std::isnan(needed(series).seconds) &&
+            (fastest == nullptr || needed(series).seconds < needed(*fastest).seconds))
+            fastest = &series;
+    Table table(
+        {{"integrator"}, {fmt::format("CPU [ms] for r = {:.0e} m", asked)}, {"over the fastest", "{:.2f}"}});
+    for (const Series& series : all) {
+        if (series.front()->c != &c) continue;
+        const WorkNeeded w = needed(series);
+        table.add(
+            {series.front()->scheme->name,
+             std::isnan(w.seconds) ? "-" : fmt::format("{}{:.3f}", w.at_most ? "<= " : "", 1e3 * w.seconds),
+             fastest != nullptr ? w.seconds / needed(*fastest).seconds : std::nan("")});
+    }
+    out << '\n';
+    table.print(out);
+    out << (fastest != nullptr
+                ? fmt::format("fastest to an rms of {:.0e} m: {}\n", asked, fastest->front()->scheme->name)
+                : fmt::format("none reaches an rms of {:.0e} m\n", asked));
+}
+
+ordered_json as_json(const std::vector<Series>& all)
+{
+    ordered_json out = ordered_json::array();
+    for (const Series& series : all) {
+        const WorkNeeded w = needed(series);
+        ordered_json rows = ordered_json::array();
+        for (const Run* run : series) {
+            ordered_json row = as_json(static_cast<const Member&>(*run));
+            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
+            row["steps"] = run->statistics.steps;
+            row["iterations_per_step"] = run->statistics.iterations_per_step();
+            row["factorizations"] = run->statistics.factorizations;
+            row["cpu_seconds"] = number_or_null(run->seconds_of_repeats().median);
+            rows.push_back(row);
+        }
+        out.push_back({{"problem", series.front()->c->problem.name},
+                       {"integrator", series.front()->scheme->name},
+                       {"truth", series.front()->c->truth_name},
+                       {"asked_r", asked},
+                       {"cpu_seconds_needed", number_or_null(w.seconds)},
+                       {"at_most", w.at_most},
+                       {"rows", rows}});
+    }
+    return out;
+}
+
+int work_precision(const StudyOptions& options)
+{
+    check_keys(kind, options, std::vector<std::string>{"cpu_seconds_needed"});
+    const Schemes schemes = any_schemes(options);
+    const std::vector<double> steps = steps_or(options, {1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
+    const std::vector<double> rtols =
+        options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
+                              : options.rtols;
+    Judged judged;
+    for (const lie::Scheme* s : schemes)
+        if (s->adaptive)
+            judged.smallest_rtol = rtols.back();
+        else
+            judged.smallest_step = steps.back(),
+            judged.highest_order = std::max(judged.highest_order, s->order);
+    const Reference reference(kind, options, judged);
+    std::vector<Case> all =
+        cases(kind, options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
+    for (const Case& c : all)
+        if (judged.smallest_step > 0) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
+    reference.judge(all);
+
+    std::vector<Run> runs;
+    for (const Case& c : all)
+        for (const lie::Scheme* s : schemes)
+            for (const double grain : s->adaptive ? rtols : steps) {
+                Run run;
+                run.c = &c, run.scheme = s;
+                // No more nodes than the rms norms need: an adaptive scheme may stop at each.
+                run.h = s->adaptive ? c.instants.dt * c.instants.stride : grain;
+                run.rtol = s->adaptive ? grain : 0;
+                runs.push_back(run);
+            }
+    Pool(options.jobs, options.quiet ? "" : kind + ", errors", static_cast<long>(runs.size()))
+        .run([&](long k) { compute(runs[k], options); });
+    std::vector<TimedRun*> timed;
+    for (Run& run : runs) timed.push_back(&run);
+    time_in_turn(kind, options, timed, [&](long) { return options.settings; });
+
+    const std::vector<Series> series = series_of(runs);
+    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(series)}}};
+    for (const Case& c : all) print(runs, c, output.text);
+    for (const Case& c : all) {
+        output.text << '\n' << c.problem.name << ':';
+        print_needed(series, c, output.text);
+        output.figures.push_back("work-precision-" + c.problem.name + ".png");
+    }
+    output.text << fmt::format(
+        "\nCPU time of a run: median of {} repeats, {} side by side. <=: the cheapest run is "
+        "already this accurate\n",
+        options.repeats, options.jobs);
+    std::vector<Measured> came;
+    for (const Series& s : series)
+        came.push_back({.of = s.front()->scheme->name + " on " + s.front()->c->problem.name,
+                        .value = {{"cpu_seconds_needed", needed(s).seconds}}});
+    return finish(options, output, members(runs), came);
+}
+
+const bool enrolled =
+    enrol(Study{.kind = kind,
+                .answers = "error against CPU time, also of integrators that choose their own steps",
+                .also = takes::reference | takes::rtols | takes::repeats,
+                .run = work_precision});
+
+}  // namespace
+
+}  // namespace hilda::studies

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A disk rolling on a plane (Fang 2022, Sec. 4.4.3). Thrown without spin it slips, then rolls, then stops.
+///
+/// Fig. 4.9 is made of two published runs: x, theta and the springs with 1.5 of the critical rolling damping, velocities and
+/// dashpots with springs that begin saturated. Fig. 4.10: other dampings. Fig. 4.11: rolling torques without history.
+/// Closed form, rigid and with kinetic friction alone: slip until t_1, then the deceleration of rolling.
+
+#include "studies/experiments/chapter4/friction/experiment.hpp"
+
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/plane.hpp"
+
+#include <numbers>
+
+namespace hilda::studies::friction {
+
+namespace {
+
+constexpr double m = 5, R = 0.2, I = 0.1, mu_s = 0.25, mu_k = 0.2, g = 9.8, N = m * g, v_0 = 0.5, eta_r = 0.1;
+const double K_R = 4 * eta_r * 1e5 * R * R, D_critical = 2 * std::sqrt(I * K_R);
+
+struct Setting {
+    contact::FrictionParameters p = {};
+    std::string law = "slide-roll-spin";
+    bool saturated = false;
+    double h = 1e-4, end = 1.5;
+};
+
+contact::FrictionParameters usual(const std::string& preset_name, double K_E = 1e5)
+{
+    return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .eta_r = eta_r});
+}
+
+Series roll(const Setting& set, Frames* frames)
+{
+    contact::Scene scene;
+    scene.gravity = {0, 0, -g};
+    contact::Motion start = at({0, 0, R}, {v_0, 0, 0});
+    start.A = lie::exp(lie::Vec3(std::numbers::pi / 2, 0, 0));  // axis along -y
+    const int disk = scene.add({m, I * lie::Mat3::Identity()}, start),
+              plane = scene.add(contact::Inertia{}, {});
+    scene.add("disk", disk, shape<contact::Disk>(R), plane, shape<contact::Plane>(),
+              std::make_shared<contact::GivenForce>(N), law(set.p, set.law));
+    scene.check(set.h);
+    bool begun = false;
+    double theta = 0, v = v_0, omega = 0;  // of the node before
+    return sample(scene, set.h, set.end, frames,
+                  {"t", "x", "theta", "v", "omega", "a", "alpha", "F_E", "F_D", "T_E", "T_D", "S_mm",
+                   "Theta_e-3rad", "slips", "rolls"},
+                  [&](Series& s, const std::vector<contact::Motion>& body) {
+                      contact::Scene::Pair& pair = scene.pair[0];
+                      if (set.saturated &&
+                          !begun) {  // springs a hair beyond their kinetic bounds before the first motion
+                          const lie::Vec3 &n = pair.meeting.slip.n, &u = pair.meeting.slip.u;
+                          contact::History& history = pair.memory.history;
+                          const double S = (1 + 1e-9) * mu_k * N / set.p.K_E;
+                          history.S = contact::components({-S, 0, 0}, n, u);
+                          history.Theta_i = contact::components({S / (2 * R), 0, 0}, n, u);
+                          history.slide = history.roll_i = {.slipping = true, .damped = false};
+                      }
+                      begun = true;
+                      const contact::Motion& b = body[disk];
+                      const lie::Vec3 omega_now = b.A * b.omega_bar;
+                      const contact::Wrench& w = pair.wrench;
+                      const contact::History& history = pair.memory.history;
+                      const contact::Slip& frame = pair.meeting.slip;
+                      const auto along_x = [&](const contact::Vec2& of) {
+                          return contact::tangent(of, frame.n, frame.u).x();
+                      };
+                      const double F_E = -w.F_E.x(), T_E = -w.T_roll_E.y();
+                      theta += set.h * omega_now.y();
+                      s.add({scene.t, b.r.x(), theta, b.rdot.x(), omega_now.y(), (b.rdot.x() - v) / set.h,
+                             (omega_now.y() - omega) / set.h, F_E, -w.F.x() - F_E, T_E, -w.T_i.y() - T_E,
+                             -1e3 * along_x(history.S), 1e3 * along_x(history.Theta_i),
+                             history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 0. : 1.});
+                      v = b.rdot.x(), omega = omega_now.y();
+                  });
+}
+
+Setting stick()
+{
+    Setting set{.p = usual("dissertation")};
+    set.p.D_roll = 1.5 * D_critical;
+    return set;
+}
+
+std::vector<Run> runs()
+{
+    return {
+        {.name = "dissertation", .go = [](Frames* frames) { return roll(stick(), frames); }},
+        {.name = "saturated",
+         .go = [](Frames* frames) { return roll({.p = usual("dissertation"), .saturated = true}, frames); }},
+        {.name = "balanced",
+         .go = [](Frames* frames) { return roll({.p = usual("balanced"), .end = 3}, frames); }},
+        {.name = "stiff",
+         .go =
+             [](Frames* frames) { return roll({.p = usual("balanced", 1e6), .h = 2e-5, .end = 2}, frames); },
+         .for_check = true}};
+}
+
+/// Rigid disk with kinetic friction alone
+struct Rigid {
+    // slip: v = v_0 - mu_k g t, omega = (mu_k N R - M) t / I until v = R omega; then both decelerate by M
+    double M = 2 * eta_r * R * mu_k * N;
+    double alpha = (mu_k * N * R - M) / I;
+    double t_1 = v_0 / (mu_k * g + R * alpha), v_1 = v_0 - mu_k * g * t_1;
+    double a = M * R / (I + m * R * R);
+    double t_2 = t_1 + v_1 / a;
+    double x_1 = v_0 * t_1 - 0.5 * mu_k * g * t_1 * t_1, x_2 = x_1 + 0.5 * v_1 * v_1 / a;
+    double theta_2 = 0.5 * alpha * t_1 * t_1 + 0.5 * v_1 * v_1 / (a * R);
+};
+
+/// When the slipping ends, and when the disk first stands, between samples
+std::pair<double, double> instants(const Series& s)
+{
+    const double slip = s.when([&](size_t k) { return s.at(k, "slips") == 0; }, 0.01);
+    // the kinetic phase of rolling extended to where it would stop: what follows is the spring coming to rest
+    const auto speed = s.all("omega");
+    size_t k = 0;
+    while (k + 1 < speed.size() && (s.at(k, 0) < 0.5 || s.at(k, "rolls") == 0)) ++k;
+    return {slip, s.at(k, 0)};
+}
+
+void checks(const Results& results, std::vector<Check>& out)
+{
+    const Rigid rigid;
+    if (const Series* s = results.find("dissertation")) {
+        out.push_back({"x at 1.5 s, dissertation [m]", s->last("x"), 0.2093106, 5e-8, "published run"});
+        out.push_back(
+            {"theta at 1.5 s, dissertation [rad]", s->last("theta"), 0.9512334, 5e-8, "published run"});
+    }
+    for (const auto& [name, part_1, part] :
+         {std::tuple("balanced", 5e-3, 1.), std::tuple("stiff", 1e-3, 0.)}) {
+        const Series* s = results.find(name);
+        if (s == nullptr) continue;
+        const std::string of = std::string(", ") + name;
+        const auto [slip, stop] = instants(*s);
+        const double rest = part > 0 ? 3e-3 : 1e-3;
+        out.push_back({"slip ends" + of + " [s]", slip, rigid.t_1, part_1 * rigid.t_1, "rigid"});
+        out.push_back({"stops" + of + " [s]", stop, rigid.t_2, 1e-3 * rigid.t_2, "rigid"});
+        out.push_back({"x at rest" + of + " [m]", s->last("x"), rigid.x_2, rest * rigid.x_2, "rigid"});
+        out.push_back({"theta at rest" + of + " [rad]", s->last("theta"), rigid.theta_2, rest * rigid.theta_2,
+                       "rigid"});
+    }
+    if (const Series* s = results.find("balanced")) {
+        double largest = 0;
+        for (size_t k = 0; k < s->rows(); ++k)
+            if (s->at(k, 0) > 2.5) largest = std::max(largest, std::abs(s->at(k, "omega")));
+        out.push_back({"largest |omega| after 2.5 s, balanced [rad/s]", largest, 0, 1e-8, "comes to rest"});
+    }
+}
+
+const bool disk = enrol({.name = "disk",
+                         .figure = "4.9",
+                         .what = "disk thrown without spin: slips, rolls, stops",
+                         .runs = runs,
+                         .checks = checks,
+                         .in_space = true});
+
+std::vector<Run> dampings()
+{
+    std::vector<Run> all;
+    for (const double part : {0.5, 1., 1.5, 2.})
+        for (const std::string& name : presets) {
+            Setting set{.p = usual(name)};
+            set.p.D_roll = part * D_critical;
+            set.p.D_slide = part * 2 * std::sqrt(m * set.p.K_E);
+            all.push_back({.name = name + (part == 0.5   ? "-0.5"
+                                           : part == 1   ? "-1"
+                                           : part == 1.5 ? "-1.5"
+                                                         : "-2"),
+                           .go = [set](Frames* frames) { return roll(set, frames); }});
+        }
+    return all;
+}
+
+void no_checks(const Results&, std::vector<Check>&) {}
+
+const bool disk_damping =
+    enrol({.name = "disk-damping",
+           .figure = "4.10",
+           .what = "how the disk comes to rest with 0.5, 1, 1.5 and 2 of the critical dampings",
+           .runs = dampings,
+           .checks = no_checks});
+
+std::vector<Run> models()
+{
+    std::vector<Run> all;
+    for (const std::string law : {"slide-roll-spin", "constant-torque", "epsd"}) {
+        Setting set{.p = usual("balanced"), .law = law, .end = 2};
+        if (law != "slide-roll-spin") set.p.mu_r = 2 * eta_r * mu_k;  // the same torque while rolling
+        all.push_back({.name = law, .go = [set](Frames* frames) { return roll(set, frames); }});
+    }
+    return all;
+}
+
+/// Largest |column| in the last 0.2 s
+double late(const Series& s, const std::string& column)
+{
+    double largest = 0;
+    for (size_t k = 0; k < s.rows(); ++k)
+        if (s.at(k, 0) > s.at(s.rows() - 1, 0) - 0.2) largest = std::max(largest, std::abs(s.at(k, column)));
+    return largest;
+}
+
+void check_models(const Results& results, std::vector<Check>& out)
+{
+    const double M = 2 * eta_r * R * mu_k * N;
+    if (const Series* s = results.find("slide-roll-spin"))
+        out.push_back(
+            {"rolling torque at rest, slide-roll-spin [N m]", late(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
+    if (const Series* s = results.find("epsd"))
+        out.push_back({"rolling torque at rest, epsd [N m]", late(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
+    if (const Series* s = results.find("constant-torque"))
+        out.push_back({"rolling torque at rest, constant-torque [N m]", late(*s, "T_E"), M, 1e-9 * M,
+                       "trembles with its full torque"});
+}
+
+const bool rolling_models =
+    enrol({.name = "rolling-models",
+           .figure = "4.11",
+           .what = "rolling torque with and without history: only one with it comes to rest",
+           .runs = models,
+           .checks = check_models});
+
+}  // namespace
+
+}  // namespace hilda::studies::friction

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/experiments/chapter4/friction/experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::studies::friction {
+
+namespace {
+
+std::vector<Experiment>& list()
+{
+    static std::vector<Experiment> all;
+    return all;
+}
+
+void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
+{
+    std::vector<Snapshots::Touch> touches;
+    for (size_t k = 0; k < scene.pair.size(); ++k) {
+        const contact::Scene::Pair& p = scene.pair[k];
+        if (p.meeting.N > 0)
+            touches.push_back(
+                Snapshots::touch(static_cast<int>(k), p.i, p.meeting, p.wrench, p.memory.history));
+    }
+    to.add(scene.t, bodies, std::move(touches));
+}
+
+}  // namespace
+
+size_t Series::place(const std::string& column) const
+{
+    return static_cast<size_t>(std::find(columns.begin(), columns.end(), column) - columns.begin());
+}
+
+std::vector<double> Series::all(const std::string& column) const
+{
+    std::vector<double> values;
+    const size_t k = place(column);
+    for (size_t row = 0; row < rows(); ++row) values.push_back(at(row, k));
+    return values;
+}
+
+double Series::when(const std::function<bool(size_t)>& holds, double from) const
+{
+    for (size_t row = 0; row < rows(); ++row)
+        if (at(row, 0) >= from && holds(row)) return at(row, 0);
+    return std::nan("");
+}
+
+Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
+              const std::function<void(Series&, const std::vector<contact::Motion>&)>& row)
+{
+    Series series(std::move(columns));
+    const long steps = std::lround(end / h);
+    EvenChoice choice(frames != nullptr ? frames->count : 0, steps);
+    if (frames != nullptr)
+        for (const contact::Scene::Pair& p : scene.pair) {
+            frames->snapshots.show(p.i, p.contact.i);
+            frames->snapshots.show(p.j, p.contact.j);
+        }
+    series.values.reserve(static_cast<size_t>(steps + 1) * series.columns.size());
+    std::vector<contact::Motion> before;
+    for (long n = 0; n <= steps; ++n) {
+        scene.t = static_cast<double>(n) * h;
+        before = scene.body;
+        const double t = scene.t;
+        scene.step(h);
+        scene.t = t;
+        row(series, before);
+        if (choice.takes(n)) add_frame(frames->snapshots, scene, before);
+    }
+    return series;
+}
+
+const Series* Results::find(const std::string& run) const
+{
+    for (size_t k = 0; k < runs.size(); ++k)
+        if (runs[k].name == run) return series[k].rows() > 0 ? &series[k] : nullptr;
+    return nullptr;
+}
+
+const std::vector<Experiment>& experiments() { return list(); }
+
+bool enrol(Experiment experiment)
+{
+    std::vector<Experiment>& all = list();
+    const auto at =
+        std::lower_bound(all.begin(), all.end(), experiment,
+                         [](const Experiment& a, const Experiment& b) { return a.name < b.name; });
+    all.insert(at, std::move(experiment));
+    return true;
+}
+
+contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p)
+{
+    return name == "dissertation" ? p.as_in_dissertation() : p;
+}
+
+std::shared_ptr<const contact::FrictionModel> law(const contact::FrictionParameters& p,
+                                                  const std::string& name)
+{
+    return contact::friction_law(name).make(p);
+}
+
+contact::Motion at(const lie::Vec3& r, const lie::Vec3& rdot)
+{
+    contact::Motion m;
+    m.r = r;
+    m.rdot = rdot;
+    return m;
+}
+
+contact::Inertia solid_sphere(double m, double R) { return {m, 0.4 * m * R * R * lie::Mat3::Identity()}; }
+
+}  // namespace hilda::studies::friction

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Bodies that spin on a plane about its normal (Fang 2022, Secs. 4.4.5, 4.4.6.2): Fig. 4.15 with the empirical spinning
+/// resistance, Fig. 4.16 with that of a Hertzian patch, Fig. 4.18 an ellipsoid upright and flat, and Table 4.7.
+///
+/// Closed form: with kinetic friction alone a body of moment of inertia I stops at t = omega_0 I / M_k.
+
+#include "studies/experiments/chapter4/friction/experiment.hpp"
+
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace hilda::studies::friction {
+
+namespace {
+
+constexpr double omega_0 = 1, mu_s = 0.25, mu_k = 0.2, g = 9.8, h = 1e-4, pi = std::numbers::pi;
+
+/// A body on the plane with its lowest point at `height` below its centre
+struct Spinner {
+    contact::Inertia inertia = {};
+    contact::Shape shape;
+    double height = 0;
+    lie::Mat3 A = lie::Mat3::Identity();
+    double I = 0;  ///< about the vertical
+};
+
+Series spin(const Spinner& body, const contact::FrictionParameters& p, double end, Frames* frames)
+{
+    contact::Scene scene;
+    scene.gravity = {0, 0, -g};
+    contact::Motion start = at({0, 0, body.height});
+    start.A = body.A;
+    start.omega_bar = body.A.transpose() * lie::Vec3(0, 0, omega_0);
+    const int b = scene.add(body.inertia, start), plane = scene.add(contact::Inertia{}, {});
+    scene.add("spinner", b, body.shape, plane, shape<contact::Plane>(),
+              std::make_shared<contact::GivenForce>(body.inertia.m * g), law(p));
+    // No scene.check(h): at K_E of 1e7 and more the step is beyond the bound of sliding, which nothing sets in motion here.
+    double angle = 0;
+    return sample(scene, h, end, frames, {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
+                  [&](Series& s, const std::vector<contact::Motion>& bodies) {
+                      const contact::Scene::Pair& pair = scene.pair[0];
+                      const double omega = (bodies[b].A * bodies[b].omega_bar).z();
+                      if (s.rows() > 0) angle += h * omega;
+                      s.add({scene.t, omega, pair.memory.history.Psi, pair.wrench.T_spin,
+                             pair.wrench.T_spin_E, angle, pair.memory.history.spin.slipping ? 1. : 0.});
+                  });
+}
+
+/// When it first stands, between samples; then its spring turns it back a little.
+double first_stop(const Series& s)
+{
+    for (size_t k = 1; k < s.rows(); ++k)
+        if (s.at(k, "omega") <= 0) {
+            const double a = s.at(k - 1, "omega"), b = s.at(k, "omega");
+            return s.at(k - 1, 0) + (s.at(k, 0) - s.at(k - 1, 0)) * a / (a - b);
+        }
+    return std::nan("");
+}
+
+/// 5e6 and the like, as the columns of published tables have it
+std::string power(double K_E)
+{
+    const int exponent = static_cast<int>(std::floor(std::log10(K_E) + 1e-9));
+    return fmt::format("{:.0f}e{}", K_E / std::pow(10, exponent), exponent);
+}
+
+// Fig. 4.15
+
+const std::vector<double> etas = {0.012, 0.010, 0.008, 0.006};
+
+Spinner big_sphere()
+{
+    const double m = 5, R = 0.2;
+    return {
+        .inertia = solid_sphere(m, R), .shape = shape<contact::Sphere>(R), .height = R, .I = 0.4 * m * R * R};
+}
+
+std::vector<Run> empirical()
+{
+    std::vector<Run> all;
+    for (const std::string& name : presets)
+        for (const double eta : etas)
+            all.push_back({.name = fmt::format("{}-eta{:.3f}", name, eta), .go = [=](Frames* frames) {
+                               return spin(
+                                   big_sphere(),
+                                   preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8,
+                                   frames);
+                           }});
+    return all;
+}
+
+void check_empirical(const Results& results, std::vector<Check>& out)
+{
+    const Spinner ball = big_sphere();
+    const double published[] = {3.3029, 3.9736, 4.9811, 6.6628};
+    for (size_t k = 0; k < etas.size(); ++k) {
+        const double M = etas[k] * 0.2 * mu_k * ball.inertia.m * g, stop = omega_0 * ball.I / M;
+        if (const Series* s = results.find(fmt::format("balanced-eta{:.3f}", etas[k]))) {
+            out.push_back({fmt::format("stops, eta_psi {:.3f}, balanced [s]", etas[k]), first_stop(*s), stop,
+                           2e-4, "rigid"});
+            out.push_back({fmt::format("angle, eta_psi {:.3f}, balanced [rad]", etas[k]), s->last("angle"),
+                           0.5 * stop, 2e-3 * stop, "rigid"});
+        }
+        if (const Series* s = results.find(fmt::format("dissertation-eta{:.3f}", etas[k])))
+            out.push_back({fmt::format("stops, eta_psi {:.3f}, dissertation [s]", etas[k]), first_stop(*s),
+                           published[k], 1e-4, "independent code"});
+    }
+}
+
+const bool spinning = enrol({.name = "spin",
+                             .figure = "4.15",
+                             .what = "sphere that spins in place, empirical spinning resistance",
+                             .runs = empirical,
+                             .checks = check_empirical,
+                             .in_space = true});
+
+// Fig. 4.16
+
+struct Material {
+    const char* name;
+    double R, rho, E, nu, stop;
+};
+const std::vector<Material> balls = {{"steel-20mm", 0.02, 8e3, 2e11, 0.3, 2.776},
+                                     {"steel-40mm", 0.04, 8e3, 2e11, 0.3, 4.308},
+                                     {"glass-20mm", 0.02, 2.5e3, 5e10, 0.2, 2.582}};
+
+Spinner ball_of(const Material& of)
+{
+    const double m = 4. / 3 * pi * of.R * of.R * of.R * of.rho;
+    return {.inertia = solid_sphere(m, of.R),
+            .shape = shape<contact::Sphere>(of.R),
+            .height = of.R,
+            .I = 0.4 * m * of.R * of.R};
+}
+
+/// On a rigid plane, as published
+contact::FrictionParameters hertzian(const std::string& preset_name, double E, double nu, double K_E)
+{
+    return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .E_star = E / (1 - nu * nu)});
+}
+
+std::vector<Run> hertz()
+{
+    std::vector<Run> all;
+    for (const std::string& name : presets)
+        for (const Material& of : balls)
+            for (const double K_E : {5e5, 1e6, 5e6, 1e7})
+                all.push_back(
+                    {.name = fmt::format("{}-{}-KE{}", name, of.name, power(K_E)), .go = [=](Frames* frames) {
+                         return spin(ball_of(of), hertzian(name, of.E, of.nu, K_E), 6, frames);
+                     }});
+    return all;
+}
+
+void check_hertz(const Results& results, std::vector<Check>& out)
+{
+    const double rigid[] = {2.89531, 4.59602, 2.64027};
+    for (size_t k = 0; k < balls.size(); ++k) {
+        if (const Series* s = results.find(fmt::format("balanced-{}-KE1e7", balls[k].name)))
+            out.push_back({fmt::format("stops, {}, balanced [s]", balls[k].name), first_stop(*s), rigid[k],
+                           1e-3, "rigid"});
+        if (const Series* s = results.find(fmt::format("dissertation-{}-KE1e7", balls[k].name)))
+            out.push_back({fmt::format("stops, {}, dissertation [s]", balls[k].name), first_stop(*s),
+                           balls[k].stop, 1e-3, "independent code"});
+    }
+}
+
+const bool spinning_hertz = enrol({.name = "spin-hertz",
+                                   .figure = "4.16",
+                                   .what = "steel and glass balls that spin in place on a Hertzian patch",
+                                   .runs = hertz,
+                                   .checks = check_hertz});
+
+// Fig. 4.18, Table 4.7
+
+constexpr double a = 0.02, c = 0.05, steel_m = 4. / 3 * pi * a * a * c * 8e3;
+// The published figure rests on a sphere of radius a: 0.4 · 0.268 kg · a², instead of the inertia of the ellipsoid.
+constexpr double published_I = 0.4 * (4. / 3 * pi * a * a * a * 8e3) * a * a;
+
+Spinner ellipsoid(bool upright, bool published)
+{
+    Spinner e{.shape = shape<contact::Ellipsoid>(lie::Vec3(a, a, c)), .height = upright ? c : a, .I = 0};
+    const double I_c = 0.4 * steel_m * a * a, I_a = 0.2 * steel_m * (a * a + c * c);
+    e.inertia = {steel_m, published ? lie::Mat3(published_I * lie::Mat3::Identity())
+                                    : lie::Mat3(lie::Vec3(I_a, I_a, I_c).asDiagonal())};
+    if (!upright) e.A = lie::exp(lie::Vec3(pi / 2, 0, 0));
+    e.I = published ? published_I : upright ? I_c : I_a;
+    return e;
+}
+
+std::vector<Run> ellipsoids()
+{
+    std::vector<Run> all;
+    for (const bool published : {false, true})
+        for (const bool upright : {true, false})
+            for (const double K_E : {5e6, 1e7, 5e7, 1e8}) {
+                const std::string preset_name = published ? "dissertation" : "balanced";
+                all.push_back(
+                    {.name = fmt::format("{}-{}-KE{}", preset_name, upright ? "upright" : "flat", power(K_E)),
+                     .go = [=](Frames* frames) {
+                         return spin(ellipsoid(upright, published), hertzian(preset_name, 2e11, 0.3, K_E),
+                                     published ? 2
+                                     : upright ? 4
+                                               : 8,
+                                     frames);
+                     }});
+            }
+    return all;
+}
+
+void check_ellipsoids(const Results& results, std::vector<Check>& out)
+{
+    for (const auto& [pose, stop] : {std::pair("upright", 2.8953), std::pair("flat", 6.4491)})
+        if (const Series* s = results.find(fmt::format("balanced-{}-KE1e8", pose)))
+            out.push_back({fmt::format("stops, {}, true inertia [s]", pose), first_stop(*s), stop,
+                           0.02 * stop, "rigid"});
+    // Table 4.7 at K_E = 5e6: curvature, stiffness, static micro-deflection, static torque
+    struct Row {
+        const char* of;
+        double K, K_psi, S_s, T_s;
+    };
+    const double K_E = 5e6, N = steel_m * g;
+    const contact::Ellipsoid surface(lie::Vec3(a, a, c));
+    const double sphere_R = std::cbrt(a * a * c);
+    for (const auto& [row, kappa] :
+         {std::pair(Row{"sphere", 36.84, 1.795e-2, 3.876e-3, 6.957e-5}, 1 / sphere_R),
+          std::pair(Row{"flat", 29, 2.10546e-2, 3.5785e-3, 7.53438e-5}, surface.mean_curvature({a, 0, 0})),
+          std::pair(Row{"upright", 125, 7.94947e-3, 5.82379e-3, 4.6296e-5},
+                    surface.mean_curvature({0, 0, c}))}) {
+        contact::Meeting now;
+        now.touch.n = now.slip.n = lie::Vec3::UnitZ();
+        now.slip.u = lie::Vec3::UnitX();
+        now.touch.K_i = lie::Vec3(kappa, kappa, 0).asDiagonal();
+        now.touch.K_j.setZero();
+        now.N = N;
+        now.I_spin = 1;
+        const auto model = law(hertzian("balanced", 2e11, 0.3, K_E));
+        const double K_psi = model->springs(now).K_spin;
+        contact::History history;
+        now.slip.ds = now.slip.q_i = now.slip.q_j = now.slip.p_i = now.slip.p_j = lie::Vec3::Zero();
+        now.slip.psi = 1;  // far beyond
+        model->advance(now, history);
+        const auto check = [&](const char* what, double measured, double demanded) {
+            out.push_back({fmt::format("Table 4.7, {}: {}", row.of, what), measured, demanded,
+                           5e-4 * demanded, "published table"});
+        };
+        check("K [1/m]", kappa, row.K);
+        check("K_psi [N m/rad]", K_psi, row.K_psi);
+        check("S_psi, static [rad]", history.Psi, row.S_s);
+        check("torque, static [N m]", K_psi * history.Psi, row.T_s);
+    }
+}
+
+const bool spinning_ellipsoid = enrol({.name = "spin-ellipsoid",
+                                       .figure = "4.18",
+                                       .what = "steel ellipsoid that spins upright and flat; Table 4.7",
+                                       .runs = ellipsoids,
+                                       .checks = check_ellipsoids,
+                                       .in_space = true});
+
+}  // namespace
+
+}  // namespace hilda::studies::friction

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/experiments/chapter5/evolving_reference.hpp"
+
+#include "contact/evolving/unilateral.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "dae/start.hpp"
+#include "reference/motions/ball_in_bowl.hpp"
+#include "reference/motions/ellipsoid_on_plane.hpp"
+#include "studies/running/contact_rows.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+using contact::EvolvingContact;
+using lie::Mat3;
+using lie::Vec3;
+using reference::ContactInstant;
+
+constexpr double fine = 1e-4;        // [s]
+constexpr double agreement = 1e-12;  // of a start with that of the minimal coordinates [m, m/s, rad/s]
+
+bool lies_as_its_body(const contact::Shape& s) { return s.position.isZero(0) && s.orientation.isIdentity(0); }
+
+template <class Surface>
+const Surface* surface(const contact::Shape& s)
+{
+    return dynamic_cast<const Surface*>(s.surface.get());
+}
+
+double distance(const lie::Motion& a, const lie::Motion& b)
+{
+    return (a.r - b.r).norm() + (a.A - b.A).norm() + (a.rdot - b.rdot).norm() +
+           (a.omega_bar - b.omega_bar).norm();
+}
+
+/// The contact of body 0 with the ground under gravity along -z, if that is all there is of the model
+const EvolvingContact* only_contact(const dae::Model& model)
+{
+    const auto contacts = evolving_contacts(model);
+    if (model.bodies() != 1 || contacts.size() != 1 || model.evolving().size() != 1 || model.rows() > 9 ||
+        !model.forces().empty() || !model.all_rows().empty() || contacts[0]->j != dae::ground)
+        return nullptr;
+    if (model.gravity.x() != 0 || model.gravity.y() != 0 || !(model.gravity.z() < 0)) return nullptr;
+    if (!lies_as_its_body(contacts[0]->shape_i) || !lies_as_its_body(contacts[0]->shape_j)) return nullptr;
+    return contacts[0];
+}
+
+/// Empty where the model is not of this kind
+std::vector<ContactInstant> ball_in_bowl(const dae::Description& d, const EvolvingContact& c,
+                                         const std::vector<double>& instants)
+{
+    const auto* ball = surface<contact::Sphere>(c.shape_i);
+    const auto* bowl = surface<contact::Ellipsoid>(c.shape_j);
+    const Mat3& J_bar = d.model->mass().J_bar[0];
+    if (ball == nullptr || bowl == nullptr || ball->sigma() < 0 || bowl->sigma() > 0 ||
+        !J_bar.isApprox(J_bar(0, 0) * Mat3::Identity(), 1e-14))
+        return {};
+    const lie::Motion& start = d.x.body[0];
+    const reference::BallInBowl problem{.semi_axes = bowl->semi_axes,
+                                        .R = ball->R,
+                                        .m = d.model->mass().m[0],
+                                        .J = J_bar(0, 0),
+                                        .g = -d.model->gravity.z()};
+    const Vec3 p = Vec3::Map(d.x.alpha.data() + 3);
+    const reference::BallInBowl::Start from{
+        .p = p, .rdot = start.rdot, .spin = problem.normal(p).dot(start.A * start.omega_bar), .A = start.A};
+    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
+                                                            : problem.slide(from, instants);
+}
+
+std::vector<ContactInstant> ellipsoid_on_plane(const dae::Description& d, const EvolvingContact& c,
+                                               const std::vector<double>& instants)
+{
+    const auto* ellipsoid = surface<contact::Ellipsoid>(c.shape_i);
+    if (ellipsoid == nullptr || ellipsoid->sigma() < 0 || surface<contact::Plane>(c.shape_j) == nullptr)
+        return {};
+    const lie::Motion& start = d.x.body[0];
+    const reference::EllipsoidOnPlane problem{.semi_axes = ellipsoid->semi_axes,
+                                              .m = d.model->mass().m[0],
+                                              .J_bar = d.model->mass().J_bar[0],
+                                              .g = -d.model->gravity.z()};
+    const reference::EllipsoidOnPlane::Start from{.A = start.A,
+                                                  .omega_bar = start.omega_bar,
+                                                  .x = start.r.x(),
+                                                  .y = start.r.y(),
+                                                  .xdot = start.rdot.x(),
+                                                  .ydot = start.rdot.y()};
+    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
+                                                            : problem.slide(from, instants);
+}
+
+/// Empty where there are none, or where their start is not that of the model
+std::vector<ContactInstant> by_minimal_coordinates(const dae::Description& d, std::vector<double> instants)
+{
+    const EvolvingContact* c = only_contact(*d.model);
+    if (c == nullptr || d.x.t != 0) return {};
+    instants.insert(instants.begin(), 0.0);
+    try {
+        std::vector<ContactInstant> all = ball_in_bowl(d, *c, instants);
+        if (all.empty()) all = ellipsoid_on_plane(d, *c, instants);
+        if (all.empty() || !(distance(all.front().body, d.x.body[0]) <= agreement)) return {};
+        all.erase(all.begin());
+        return all;
+    } catch (const lie::InvalidInput&) {  // a start that they do not cover
+    } catch (const lie::NumericalFailure&) {
+    }
+    return {};
+}
+
+}  // namespace
+
+lie::Trajectory evolving_truth(dae::Description& d, const std::vector<double>& instants)
+{
+    const std::vector<ContactInstant> known = by_minimal_coordinates(d, instants);
+    if (known.empty()) return run_with_small_steps(d, instants, lie::scheme("rA-rkmk-4"), fine);
+    lie::Saddle K(*d.model);
+    lie::Trajectory run;
+    for (const ContactInstant& at : known) {
+        lie::State x = d.x;
+        x.t = at.t;
+        x.body[0] = at.body;
+        x.alpha << at.a_bar, at.p;
+        d.model->remember_start(x);
+        dae::solve_accelerations(*d.model, K, x);  // for the multipliers
+        run.row.push_back(std::move(x));
+    }
+    return run;
+}
+
+lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vector<double>& instants,
+                                     const lie::Scheme& scheme, double h)
+{
+    const auto integrator = contact::make_integrator(*d.model, scheme, {.tolerance = 1e-13});
+    lie::Saddle K(*d.model);
+    lie::Trajectory run;
+    lie::State x = d.x;
+    for (const double instant : instants) {
+        const double steps = std::ceil((instant - x.t) / h - 1e-6);
+        if (steps > 0) {
+            lie::March march(x, *integrator, (instant - x.t) / steps);
+            while (march.number() < static_cast<long>(steps)) march.advance({});
+            x = march.node();
+            x.t = instant;
+        }
+        dae::solve_accelerations(*d.model, K, x);
+        run.row.push_back(x);
+    }
+    return run;
+}
+
+}  // namespace hilda::studies

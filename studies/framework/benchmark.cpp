@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/benchmark.hpp"
+
+#include "studies/exit_codes.hpp"
+#include "studies/message.hpp"
+
+#include <fmt/format.h>
+
+namespace hilda::studies {
+
+dae::Description ready(const Problem& problem, const StudyOptions& options)
+{
+    dae::Description d = dae::read_model(problem.model, problem.name, options.set);
+    dae::start(d, {});
+    return d;
+}
+
+Case make_case(Problem problem, const StudyOptions& options, const DefaultEnd& end)
+{
+    dae::Description d = dae::read_model(problem.model, problem.name, options.set);
+    const dae::StartReport report = dae::start(d, {});
+    if (!options.quiet) {
+        for (const std::string& w : d.warnings) warning(w);
+        for (const std::string& row : report.dropped)
+            warning(problem.name + ": " + row +
+                    ": redundant with the constraints before it, dropped from the equations");
+    }
+    Case c;
+    c.end = options.end ? *options.end : end(d);
+    c.watched = problem.watched;
+    if (c.watched.body.empty()) c.watched.body = d.model->all_bodies().back().name;
+    c.instants.dt = c.end / static_cast<double>(c.instants.count);
+    c.truth_name = problem.truth_name;
+    c.problem = std::move(problem);
+    c.started = std::make_shared<const dae::Description>(std::move(d));
+    return c;
+}
+
+std::vector<Case> cases(const std::string& kind, const StudyOptions& options,
+                        const std::vector<std::string>& otherwise, const DefaultEnd& end)
+{
+    std::vector<Case> all;
+    for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
+        all.push_back(make_case(problem_or_file(name), options, end));
+        for (size_t k = 0; k + 1 < all.size(); ++k)
+            if (all[k].problem.name == all.back().problem.name)
+                throw UsageError("study " + kind + ": two problems are called '" + all[k].problem.name + "'");
+    }
+    return all;
+}
+
+namespace {
+
+bool divides(double h, double end)
+{
+    const double steps = std::round(end / h);
+    return steps >= 1 && std::abs(end / h - steps) <= 1e-6;
+}
+
+/// As `hilda run` does: above the bound of a force a study would measure an explosion.
+void check_stable(const std::string& kind, const Case& c, const std::vector<double>& steps)
+{
+    const dae::Model& model = *c.started->model;
+    const dae::Model::StableStep stable = model.stable_step(c.started->x);
+    for (const double h : steps)
+        if (h > stable.h)
+            throw UsageError(fmt::format(
+                "study {}: {}: the step {} s is above {:.3g} s, the largest at which {} is stable with an "
+                "explicit step; --steps sets others",
+                kind, c.problem.name, h, stable.h,
+                model.forces()[static_cast<size_t>(stable.force)]->in_words()));
+}
+
+}  // namespace
+
+void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps, double most)
+{
+    check_stable(kind, c, steps);
+    for (const double h : steps)
+        if (h > most * (1 + 1e-9) || !divides(h, c.end))
+            throw UsageError(fmt::format(
+                "study {}: --steps must divide the end of {}, {} s, and be at most {:.4g} s, got {}", kind,
+                c.problem.name, c.end, most, h));
+}
+
+void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps)
+{
+    check_stable(kind, c, steps);
+    for (const double h : steps)
+        if (!divides(h, c.end))
+            throw UsageError(fmt::format("study {}: --steps must divide the end of {}, {} s, got {}", kind,
+                                         c.problem.name, c.end, h));
+}
+
+}  // namespace hilda::studies

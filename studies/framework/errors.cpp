@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/errors.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+using lie::State;
+
+int watched_body(const dae::Model& model, const Watched& watched)
+{
+    if (watched.component.size() != 2 || std::string("rvw").find(watched.component[0]) == std::string::npos ||
+        std::string("xyz").find(watched.component[1]) == std::string::npos)
+        lie::reject("studies::errors", "a watched component is one of rx … wz",
+                    "'" + watched.component + "'");
+    return watched.body.empty() ? model.bodies() - 1 : model.find(watched.body);
+}
+
+/// Squared differences of one state, stacked over the bodies from first to last
+struct Squares {
+    double r = 0, A = 0, v = 0, omega = 0;
+    Squares(const State& x, const State* truth, int first, int last)
+    {
+        static const lie::Motion zero = [] {
+            lie::Motion m;
+            m.A.setZero();
+            return m;
+        }();
+        for (int b = first; b <= last; ++b) {
+            const lie::Motion& to = truth != nullptr ? truth->body[b] : zero;
+            r += (x.body[b].r - to.r).squaredNorm();
+            A += (x.body[b].A - to.A).squaredNorm();
+            v += (x.body[b].rdot - to.rdot).squaredNorm();
+            omega += (x.body[b].omega_bar - to.omega_bar).squaredNorm();
+        }
+    }
+};
+
+/// |ΔQ|² / |Q|²; 0 where the truth has no constraint loads
+double load_error(const dae::Model& model, const State& x, const State& truth)
+{
+    const auto a = dae::reactions(model, x), b = dae::reactions(model, truth);
+    double difference = 0, size = 0;
+    for (size_t k = 0; k < a.size(); ++k) {
+        difference += (a[k].F - b[k].F).squaredNorm() + (a[k].T - b[k].T).squaredNorm();
+        size += b[k].F.squaredNorm() + b[k].T.squaredNorm();
+    }
+    return size > 0 ? difference / size : 0;
+}
+
+}  // namespace
+
+double component(const State& x, int body, const std::string& name)
+{
+    const lie::Motion& b = x.body[body];
+    const lie::Vec3& vector = name[0] == 'r' ? b.r : name[0] == 'v' ? b.rdot : b.omega_bar;
+    return vector[name[1] - 'x'];
+}
+
+Difference difference(const State& x, const State& truth)
+{
+    const Squares all(x, &truth, 0, static_cast<int>(x.body.size()) - 1);
+    return {std::sqrt(all.r), std::sqrt(all.A), std::sqrt(all.v), std::sqrt(all.omega)};
+}
+
+Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::vector<long>& at,
+              const lie::Trajectory& truth, const Instants& instants, const Watched& watch)
+{
+    const int body = watched_body(model, watch);
+    Errors out;
+    int with_loads = 0, nodes = 0;
+    for (size_t k = 0; k < at.size(); ++k) {
+        if (at[k] == 0) continue;
+        const State &x = run.row[k], &exact = truth.row[at[k]];
+        const double z = component(x, body, watch.component) - component(exact, body, watch.component);
+        out.value[norm::watched] += z * z;
+        ++nodes;
+        if (at[k] == instants.count) {
+            const Squares end(x, &exact, body, body);
+            out.value[norm::r_end] = std::sqrt(end.r), out.value[norm::A_end] = std::sqrt(end.A);
+            out.value[norm::v_end] = std::sqrt(end.v), out.value[norm::omega_end] = std::sqrt(end.omega);
+        }
+        if (at[k] % instants.stride != 0) continue;
+        const Squares all(x, &exact, 0, model.bodies() - 1);
+        out.value[norm::r] += all.r, out.value[norm::A] += all.A, out.value[norm::v] += all.v,
+            out.value[norm::omega] += all.omega;
+        ++out.instants;
+        if (at[k] == instants.count) continue;
+        out.value[norm::Q] += load_error(model, x, exact);
+        ++with_loads;
+    }
+    for (const int n : {norm::r, norm::A, norm::v, norm::omega})
+        out.value[n] = std::sqrt(out.value[n] / out.instants);
+    out.value[norm::Q] = std::sqrt(out.value[norm::Q] / with_loads);
+    out.value[norm::watched] = std::sqrt(out.value[norm::watched] / nodes);
+    return out;
+}
+
+Errors sizes(const dae::Model& model, const lie::Trajectory& truth, const Instants& instants,
+             const Watched& watch)
+{
+    const int body = watched_body(model, watch);
+    Errors out;
+    int rows = 0;
+    for (long k = 1; k <= instants.count; ++k) {
+        const Squares all(truth.row[k], nullptr, 0, model.bodies() - 1);
+        out.value[norm::r] += all.r, out.value[norm::A] += all.A, out.value[norm::v] += all.v,
+            out.value[norm::omega] += all.omega;
+        const double z = component(truth.row[k], body, watch.component);
+        out.value[norm::watched] += z * z;
+        ++rows;
+    }
+    for (const int n : {norm::r, norm::A, norm::v, norm::omega, norm::watched})
+        out.value[n] = std::sqrt(out.value[n] / rows);
+    for (int n = 0; n < 4; ++n) out.value[norm::r_end + n] = out.value[norm::r + n];
+    out.value[norm::Q] = 1;
+    return out;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/evaluated_run.hpp"
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+void AtInstants::accepted(const lie::State& x, long n, int)
+{
+    dae::check_dropped_rows(model, x);
+    const double k = static_cast<double>(n) * h / instants.dt;
+    const long nearest = std::lround(k);
+    if (nearest > instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;
+    at.push_back(nearest);
+    run.row.push_back(x);
+    constraint_norm = std::max(constraint_norm, model.largest_residual(x).value);
+    for (const lie::Motion& body : x.body)
+        orthogonality = std::max(orthogonality, lie::orthogonality_error(body.A));
+}
+
+void judge(JudgedRun& run, const lie::Settings& of_study)
+{
+    const dae::Model& model = *run.c->started->model;
+    AtInstants nodes(model, run.c->instants, run.h);
+    lie::Observer* observers[] = {&nodes};
+    march(run, of_study, observers);
+    run.constraint_norm = nodes.constraint_norm;
+    run.orthogonality = nodes.orthogonality;
+    if (run.failed())
+        run.errors.value.fill(std::nan(""));
+    else
+        run.errors = errors(model, nodes.run, nodes.at, run.c->truth, run.c->instants, run.c->watched);
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/solvers/reference_solution.hpp"
+#include "studies/framework/problem.hpp"
+#include "studies/output.hpp"
+#include "studies/program/named_model.hpp"
+
+#include <filesystem>
+
+namespace hilda::studies {
+
+Problem problem_or_file(const std::string& name_or_path)
+{
+    if (!is_model_path(name_or_path)) return problem(name_or_path);
+    constexpr size_t most = 64 << 20;
+    if (!std::filesystem::exists(name_or_path))
+        throw lie::InvalidInput(name_or_path + ": there is no such file");
+    return {.name = std::filesystem::path(name_or_path).stem().string(),
+            .what = "model file " + name_or_path,
+            .model = read_file(name_or_path, most),
+            .truth_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13",
+            .truth = [](dae::Description& d,
+                        const std::vector<double>& t) { return reference::trusted(*d.model, d.x, t); },
+            .watched = {}};
+}
+
+}  // namespace hilda::studies

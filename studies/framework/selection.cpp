@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/selection.hpp"
+
+#include "studies/exit_codes.hpp"
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+Schemes any_schemes(const StudyOptions& options, const std::vector<std::string>& otherwise)
+{
+    Schemes chosen;
+    for (const std::string& name : options.integrators) chosen.push_back(&lie::scheme(name));
+    if (!chosen.empty()) return chosen;
+    for (const std::string& name : otherwise)
+        for (const lie::Scheme& s : lie::schemes())
+            if (s.name == name) chosen.push_back(&s);
+    if (otherwise.empty())
+        for (const lie::Scheme& s : lie::schemes()) chosen.push_back(&s);
+    return chosen;
+}
+
+Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
+                           const std::vector<std::string>& otherwise)
+{
+    Schemes fixed;
+    for (const lie::Scheme* s : any_schemes(options, otherwise)) {
+        if (!s->adaptive)
+            fixed.push_back(s);
+        else if (!options.integrators.empty())
+            throw UsageError(
+                "study " + kind + ": " + s->name +
+                " chooses its own steps by --rtol and --atol; hilda study work-precision compares "
+                "it with the others");
+    }
+    return fixed;
+}
+
+std::vector<double> steps_or(const StudyOptions& options, std::vector<double> otherwise)
+{
+    std::vector<double> steps = options.steps.empty() ? std::move(otherwise) : options.steps;
+    std::sort(steps.rbegin(), steps.rend());
+    return steps;
+}
+
+double one_step(const std::string& kind, const StudyOptions& options, double otherwise)
+{
+    if (options.steps.size() > 1) throw UsageError("study " + kind + ": takes one step, --steps H");
+    return options.steps.empty() ? otherwise : options.steps.front();
+}
+
+void refuse_schemes(const std::string& kind, const StudyOptions& options)
+{
+    const auto idle = [&](bool given, const std::string& option) {
+        if (given)
+            throw UsageError("study " + kind + ": " + option +
+                             " is for studies of models; this one has bodies of its own");
+    };
+    idle(!options.integrators.empty(), "--integrator");
+    idle(!options.set.empty(), "--set");
+}
+
+void check_vtk(const std::string& kind, const StudyOptions& options)
+{
+    if (options.vtk > 0 && options.output.empty())
+        throw UsageError("study " + kind + ": --vtk writes files; with --json it needs --output");
+}
+
+void refuse_models(const std::string& kind, const StudyOptions& options)
+{
+    if (!options.problems.empty())
+        throw UsageError("study " + kind +
+                         ": --problem is for studies of models; this one has bodies of its own");
+    refuse_schemes(kind, options);
+}
+
+}  // namespace hilda::studies

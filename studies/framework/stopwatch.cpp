@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/stopwatch.hpp"
+
+#include "contact/evolving/unilateral.hpp"
+
+#include "studies/framework/pool.hpp"
+#include "studies/framework/table.hpp"
+
+#include <algorithm>
+
+namespace hilda::studies {
+
+namespace {
+
+constexpr double long_enough = 0.02;  // of thread CPU time, far above the clock's grain [s]
+
+}  // namespace
+
+Spread spread(std::vector<double> values)
+{
+    if (values.empty()) return {.median = std::nan(""), .least = std::nan(""), .most = std::nan("")};
+    std::sort(values.begin(), values.end());
+    const size_t n = values.size();
+    return {
+        .median = (values[(n - 1) / 2] + values[n / 2]) / 2, .least = values.front(), .most = values.back()};
+}
+
+Spread TimedRun::microseconds() const
+{
+    const Spread s = seconds_of_repeats();
+    const double factor = 1e6 / static_cast<double>(std::max(1L, statistics.steps));
+    return {.median = factor * s.median, .least = factor * s.least, .most = factor * s.most};
+}
+
+double ratio(const TimedRun& a, const TimedRun& b)
+{
+    std::vector<double> of_each;
+    for (size_t k = 0; k < std::min(a.repeat.size(), b.repeat.size()); ++k)
+        of_each.push_back(a.repeat[k] / b.repeat[k]);
+    return spread(of_each).median;
+}
+
+double seconds_of_march(const Member& member, const lie::Settings& of_study)
+{
+    const dae::Description& d = *member.c->started;
+    const lie::Settings settings = settings_of(member, of_study);
+    const lie::Grid grid = lie::Grid::over(member.c->end, member.h);
+    double seconds = 0;
+    long runs = 0;
+    while (seconds < long_enough) {
+        const auto integrator =
+            contact::make_integrator(*d.model, *member.scheme, settings);  // a new one: it may remember a run
+        lie::March march(d.x, *integrator, member.h);
+        const double begin = thread_seconds();
+        while (march.number() < grid.steps) march.advance({});
+        seconds += thread_seconds() - begin;
+        ++runs;
+    }
+    return seconds / static_cast<double>(runs);
+}
+
+void time_in_turn(const std::string& label, const StudyOptions& options, const std::vector<TimedRun*>& runs,
+                  const SettingsOf& settings)
+{
+    const long count = static_cast<long>(runs.size());
+    for (TimedRun* run : runs) run->repeat.assign(run->failed() ? 0 : options.repeats, 0);
+    Pool(options.jobs, options.quiet ? "" : label, count * options.repeats).run([&](long k) {
+        TimedRun& run = *runs[k % count];
+        if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, settings(k % count));
+    });
+}
+
+Exponent exponent(const std::vector<double>& x, const std::vector<double>& y)
+{
+    Exponent e{.fitted = fitted_order(x, y), .largest_local = std::nan("")};
+    for (size_t k = 1; k < x.size(); ++k)
+        e.largest_local = std::fmax(e.largest_local, order(x[k - 1], y[k - 1], x[k], y[k]));
+    return e;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/study_output.hpp"
+
+#include "studies/message.hpp"
+#include "studies/output.hpp"
+#include "studies/program/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+namespace hilda::studies {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json whole(const StudyOptions& options, const StudyOutput& output)
+{
+    const lie::Settings& s = options.settings;
+    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
+    ordered_json json = {{"study", output.kind},
+                         {"tolerance", s.tolerance},
+                         {"settings",
+                          {{"tolerance", s.tolerance},
+                           {"linear_solver", solvers[static_cast<int>(s.linear_solver)]},
+                           {"rho_infinity", s.rho_infinity},
+                           {"reparametrise", s.reparametrise},
+                           {"rtol", s.rtol},
+                           {"atol", s.atol > 0 ? ordered_json(s.atol) : ordered_json("as rtol")}}},
+                         {"seed", options.seed},
+                         {"set", options.set},
+                         {"provenance", provenance(options.command_line, options.jobs)}};
+    if (options.repeats > 0) json["repeats"] = options.repeats;
+    json.update(output.json);
+    return json;
+}
+
+void write(const StudyOptions& options, const StudyOutput& output, const ordered_json& json)
+{
+    const std::string in = options.output + "/";
+    std::vector<std::string> written = {"study.csv", "study.json"};
+    write_file(in + "study.csv", output.table);
+    write_file(in + "study.json", as_text(json));
+    for (const auto& [name, content] : output.files) {
+        write_file(in + name, content);
+        written.push_back(name);
+    }
+    for (const std::string& figure : output.figures) std::remove((in + figure).c_str());  // of an earlier run
+    if (options.plot && plot(output.kind + ".py", options.output))
+        written.insert(written.end(), output.figures.begin(), output.figures.end());
+    if (options.json || options.quiet) return;
+    std::cout << "\nwritten to " << options.output << ":";
+    for (const std::string& file : written) std::cout << ' ' << file;
+    std::cout << '\n';
+}
+
+}  // namespace
+
+int finish(const StudyOptions& options, const StudyOutput& output, const std::vector<const Member*>& members,
+           const std::vector<Measured>& measured)
+{
+    const ordered_json json = whole(options, output);
+    if (options.json)
+        std::cout << as_text(json);
+    else if (!options.quiet)
+        std::cout << output.text.str() << failures(members);
+    if (!options.output.empty()) write(options, output, json);
+    if (!members.empty() &&
+        std::all_of(members.begin(), members.end(), [](const Member* m) { return m->failed(); })) {
+        message(fmt::format("hilda: error[{}]: study {}: all {} runs failed; {}: {}\n",
+                            members.front()->status, output.kind, members.size(), members.front()->name(),
+                            members.front()->message));
+        return exit_code::numerical_failure;
+    }
+    return as_expected(options.expect, measured) ? exit_code::done : exit_code::expectation_failed;
+}
+
+ordered_json number_or_null(double value)
+{
+    return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/arguments.hpp"
+
+#include "dae/nearest.hpp"
+#include "studies/exit_codes.hpp"
+#include "studies/problems/n_pendulum.hpp"
+#include "studies/running/vtk.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace hilda::studies {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& text)
+{
+    throw UsageError(option + ": " + what + ", got '" + text + "'");
+}
+
+/// The number that is all of the text; NaN when there is none
+double parse(std::string_view text)
+{
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end && std::isfinite(value) ? value : std::nan("");
+}
+
+/// The whole number that is all of the text
+template <class Number>
+std::optional<Number> whole(std::string_view text)
+{
+    Number value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
+}
+
+std::vector<double> descending(const std::string& option, const std::string& text,
+                               double (*read)(const std::string&, const std::string&), const char* once)
+{
+    std::vector<double> all;
+    for (const std::string& part : list(option, text)) all.push_back(read(option, part));
+    std::sort(all.rbegin(), all.rend());
+    if (std::adjacent_find(all.begin(), all.end()) != all.end()) refuse(option, once, text);
+    return all;
+}
+
+}  // namespace
+
+double number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (std::isnan(value)) refuse(option, "must be a finite number", text);
+    return value;
+}
+
+double positive_number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value > 0)) refuse(option, "must be a positive, finite number", text);
+    return value;
+}
+
+double nonnegative_number(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 0)) refuse(option, "must be a finite number, not negative", text);
+    return value;
+}
+
+double fraction(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 0 && value <= 1)) refuse(option, "must be a number from 0 to 1", text);
+    return value;
+}
+
+double relative_tolerance(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 1e-14 && value < 1))
+        refuse(option, "must be a number from 1e-14, which double precision can just keep, to below 1", text);
+    return value;
+}
+
+double absolute_tolerance(const std::string& option, const std::string& text)
+{
+    const double value = parse(text);
+    if (!(value >= 1e-14)) refuse(option, "must be a finite number, at least 1e-14", text);
+    return value;
+}
+
+lie::LinearSolver linear_solver(const std::string& option, const std::string& text)
+{
+    if (text == "auto") return lie::LinearSolver::automatic;
+    if (text == "klu") return lie::LinearSolver::klu;
+    if (text == "condensed") return lie::LinearSolver::condensed;
+    refuse(option, "must be auto, klu or condensed", text);
+}
+
+std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words)
+{
+    if (std::find(words.begin(), words.end(), text) != words.end()) return text;
+    std::string all;
+    for (size_t k = 0; k < words.size(); ++k)
+        all += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
+    refuse(option, "must be " + all, text);
+}
+
+std::string preset(const std::string& option, const std::string& text)
+{
+    return one_of(option, text, std::vector<std::string>{"balanced", "dissertation"});
+}
+
+std::string normal_rows(const std::string& option, const std::string& text)
+{
+    return one_of(option, text, std::vector<std::string>{"tangent", "fixed-xy"});
+}
+
+int positive_count(const std::string& option, const std::string& text)
+{
+    const std::optional<int> value = whole<int>(text);
+    if (!value || *value < 1) refuse(option, "must be a whole number, at least 1", text);
+    return *value;
+}
+
+int frames(const std::string& option, const std::string& text)
+{
+    const std::optional<int> value = whole<int>(text);
+    if (!value || *value < 1 || *value > Snapshots::most)
+        refuse(option, "must be a whole number from 1 to " + std::to_string(Snapshots::most), text);
+    return *value;
+}
+
+std::uint64_t seed(const std::string& option, const std::string& text)
+{
+    const std::optional<std::uint64_t> value = whole<std::uint64_t>(text);
+    if (!value) refuse(option, "must be a whole number from 0 to 2^64 - 1", text);
+    return *value;
+}
+
+std::vector<std::string> list(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> parts;
+    for (size_t from = 0; from <= text.size();) {
+        const size_t to = std::min(text.find(',', from), text.size());
+        if (to == from) refuse(option, "must be a list such as A,B with no part empty", text);
+        parts.push_back(text.substr(from, to - from));
+        from = to + 1;
+    }
+    return parts;
+}
+
+std::vector<double> steps(const std::string& option, const std::string& text)
+{
+    return descending(option, text, positive_number, "must name each step once");
+}
+
+std::vector<double> relative_tolerances(const std::string& option, const std::string& text)
+{
+    return descending(option, text, relative_tolerance, "must name each tolerance once");
+}
+
+std::vector<int> bars(const std::string& option, const std::string& text)
+{
+    std::vector<int> N;
+    for (const std::string& part : list(option, text)) {
+        const std::optional<int> n = whole<int>(part);
+        if (!n || *n < 1 || *n > most_bars)
+            refuse(option, "N must be a whole number from 1 to " + std::to_string(most_bars), part);
+        N.push_back(*n);
+    }
+    std::sort(N.begin(), N.end());
+    if (std::adjacent_find(N.begin(), N.end()) != N.end()) refuse(option, "must name each N once", text);
+    return N;
+}
+
+std::string setting(const std::string& option, const std::string& text)
+{
+    if (!text.starts_with('/') || text.find('=') == std::string::npos)
+        refuse(option, "must be /json/pointer=VALUE, such as /bodies/0/mass=2", text);
+    return text;
+}
+
+Expectation expectation(const std::string& option, const std::string& text)
+{
+    const size_t equals = text.find('='), plus_minus = text.find("+-");
+    const std::string form = "must be KEY=VALUE or KEY=VALUE+-TOL, such as order=2+-0.1";
+    if (equals == std::string::npos || equals == 0) refuse(option, form, text);
+    Expectation e{.key = text.substr(0, equals), .text = text};
+    e.value = parse(std::string_view(text).substr(equals + 1, plus_minus - std::min(plus_minus, equals + 1)));
+    if (plus_minus != std::string::npos) e.tolerance = parse(std::string_view(text).substr(plus_minus + 2));
+    if (std::isnan(e.value) || !(e.tolerance >= 0)) refuse(option, form, text);
+    return e;
+}
+
+std::string with_nearest(const std::string& word, std::span<const std::string> known)
+{
+    const std::string near = dae::nearest(word, known);
+    return " '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+std::vector<std::string> integrators(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> known;
+    for (const lie::Scheme& scheme : lie::schemes()) known.push_back(scheme.name);
+    std::vector<std::string> chosen = list(option, text);
+    for (size_t k = 0; k < chosen.size(); ++k) {
+        if (std::find(known.begin(), known.end(), chosen[k]) == known.end())
+            throw UsageError(option + ": unknown integrator" + with_nearest(chosen[k], known) +
+                             " (hilda integrators lists them)");
+        if (std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(k), chosen[k]) !=
+            chosen.begin() + static_cast<std::ptrdiff_t>(k))
+            refuse(option, "must name each integrator once", text);
+    }
+    return chosen;
+}
+
+std::string integrator(const std::string& option, const std::string& text)
+{
+    const std::vector<std::string> named = integrators(option, text);
+    if (named.size() != 1) refuse(option, "must be one integrator", text);
+    return named.front();
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/granular_program.hpp"
+
+#include "studies/exit_codes.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <unistd.h>
+
+namespace hilda::studies {
+
+int start_granular(const std::vector<std::string>& arguments)
+{
+    std::error_code error;
+    const auto here = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string program = (here.parent_path() / "hilda-granular").string();
+    std::vector<char*> words = {const_cast<char*>("hilda granular")};
+    for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
+    words.push_back(nullptr);
+    if (!error) execv(program.c_str(), words.data());
+    throw NotAvailable("granular: " + program + " cannot be started: " + std::strerror(errno));
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/info.hpp"
+
+#include "lie/integrator.hpp"
+#include "studies/framework/problem.hpp"
+#include "studies/framework/study.hpp"
+#include "studies/output.hpp"
+#include "studies/program/plot.hpp"
+
+#include <fmt/format.h>
+#include <hilda/version.hpp>
+#include <nlohmann/json.hpp>
+
+#include <sys/utsname.h>
+
+#include <iostream>
+#include <thread>
+
+namespace hilda::studies {
+
+namespace {
+
+std::string system_name()
+{
+    utsname u{};
+    return uname(&u) == 0 ? fmt::format("{} {} {}", u.sysname, u.release, u.machine) : "unknown";
+}
+
+constexpr const char* devices = "cpu; no GPU is looked for in this build";
+
+}  // namespace
+
+std::string version_line() { return fmt::format("hilda {} ({})", version::number, version::git); }
+
+int info(bool json, const std::string& command_line)
+{
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    nlohmann::ordered_json all = provenance(command_line, cores);
+    all["system"] = system_name();
+    all["devices"] = devices;
+    all["figures"] = python_and_matplotlib();
+    if (json) {
+        std::cout << as_text(all);
+        return exit_code::done;
+    }
+    const auto line = [](const char* what, const std::string& text) {
+        std::cout << fmt::format("{:<14}{}\n", what, text);
+    };
+    line("version", fmt::format("{}, git {}", version::number, version::git));
+    line("build", fmt::format("{}, {}, {}", version::build_type, version::compiler, version::flags));
+    std::string libraries;
+    for (const auto& [name, number] : all["libraries"].items())
+        libraries += (libraries.empty() ? "" : ", ") + name + ' ' + number.get<std::string>();
+    line("libraries", libraries);
+    line("system", system_name());
+    line("processor", fmt::format("{}, {} threads", all["cpu"].get<std::string>(), cores));
+    line("devices", devices);
+    line("figures", all["figures"].get<std::string>());
+    line("here", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),
+                             problems().size(), studies().size()));
+    return exit_code::done;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/lists.hpp"
+
+#include "lie/integrator.hpp"
+#include "studies/framework/problem.hpp"
+#include "studies/framework/study.hpp"
+#include "studies/output.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iostream>
+
+namespace hilda::studies {
+
+namespace {
+
+using Line = std::vector<std::string>;
+
+/// Columns as wide as their widest entry, two blanks between them
+void print_aligned(const std::vector<Line>& lines)
+{
+    std::vector<size_t> width;
+    for (const Line& line : lines) {
+        width.resize(std::max(width.size(), line.size()));
+        for (size_t c = 0; c < line.size(); ++c) width[c] = std::max(width[c], line[c].size());
+    }
+    for (const Line& line : lines) {
+        for (size_t c = 0; c + 1 < line.size(); ++c) std::cout << fmt::format("{:<{}}  ", line[c], width[c]);
+        std::cout << line.back() << '\n';
+    }
+}
+
+/// Objects with these keys, or lines without them
+void show(bool json, const Line& keys, const std::vector<Line>& lines)
+{
+    if (!json) return print_aligned(lines);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const Line& line : lines) {
+        nlohmann::ordered_json one;
+        for (size_t c = 0; c < keys.size(); ++c) one[keys[c]] = line[c];
+        all.push_back(one);
+    }
+    std::cout << as_text(all);
+}
+
+}  // namespace
+
+int list_models(bool json)
+{
+    std::vector<Line> lines;
+    for (const Problem& p : problems()) lines.push_back({p.name, p.what});
+    show(json, {"name", "what"}, lines);
+    return exit_code::done;
+}
+
+int write_model(const std::string& name, const std::string& file)
+{
+    std::string text = problem(name).model;
+    if (!text.ends_with('\n')) text += '\n';
+    if (file.empty())
+        std::cout << text;
+    else
+        write_file(file, text);
+    return exit_code::done;
+}
+
+namespace {
+
+std::string contacts_of(const lie::Scheme& s)
+{
+    if (!s.massless) return "-";
+    return s.velocities ? "evolve, roll" : "evolve";
+}
+
+}  // namespace
+
+int list_integrators(bool json)
+{
+    if (json) {
+        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        for (const lie::Scheme& s : lie::schemes())
+            all.push_back({{"name", s.name},
+                           {"order", s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order)},
+                           {"order_lambda",
+                            s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
+                           {"adaptive", s.adaptive},
+                           {"evolving_contacts", s.massless},
+                           {"rolling_contacts", s.massless && s.velocities},
+                           {"formulation", s.formulation},
+                           {"unknowns", s.unknowns},
+                           {"source", s.source}});
+        std::cout << as_text(all);
+        return exit_code::done;
+    }
+    std::vector<Line> lines = {
+        {"name", "order", "of lambda", "contacts", "formulation", "unknowns", "source"}};
+    for (const lie::Scheme& s : lie::schemes())
+        lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
+                         s.adaptive ? "-" : std::to_string(s.order_lambda), contacts_of(s), s.formulation,
+                         s.unknowns, s.source});
+    print_aligned(lines);
+    std::cout << "\ncontacts: what it takes of contacts that are constraints; evolve: frictionless or with "
+                 "friction "
+                 "as a force,\nroll: ideal rolling too. For these rA-half-1-momentum is recommended; "
+                 "rA-half-1 is the "
+                 "text of the dissertation.\n";
+    return exit_code::done;
+}
+
+int list_studies(bool json)
+{
+    std::vector<Line> lines;
+    for (const Study& s : studies()) lines.push_back({s.kind, s.answers});
+    show(json, {"kind", "answers"}, lines);
+    return exit_code::done;
+}
+
+}  // namespace hilda::studies

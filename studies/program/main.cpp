@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The program hilda.
+
+#include "studies/exit_codes.hpp"
+#include "studies/program/command_line.hpp"
+
+#include <csignal>
+#include <iostream>
+
+namespace {
+
+/// A library built with -ffast-math turns denormal numbers off in the whole process.
+bool keeps_denormals()
+{
+    volatile double tiny = 1e-300;
+    tiny = tiny * 1e-10;
+    return tiny != 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    using namespace hilda::studies;
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write(), which names the file
+    try {
+        if (!keeps_denormals())
+            throw std::runtime_error("a library of this process flushes denormal numbers to zero");
+        const int code = command_line(argc, argv);
+        if (!std::cout.flush()) throw IoError("standard output: cannot be written");
+        return code;
+    } catch (const std::exception& error) {
+        std::cout.flush();
+        return report(error);
+    }
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/named_model.hpp"
+
+#include "studies/exit_codes.hpp"
+#include "studies/framework/problem.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace hilda::studies {
+
+namespace fs = std::filesystem;
+
+bool is_built_in(const std::string& name)
+{
+    try {
+        problem(name);
+        return true;
+    } catch (const lie::InvalidInput&) {
+        return false;
+    }
+}
+
+bool is_model_path(const std::string& name_or_path)
+{
+    std::error_code error;
+    return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json") ||
+           (!is_built_in(name_or_path) && fs::exists(name_or_path, error));
+}
+
+dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set)
+{
+    if (is_model_path(name_or_path)) return dae::load_model(name_or_path, set);
+    const Problem built_in = problem(name_or_path);
+    return dae::read_model(built_in.model, built_in.name, set);
+}
+
+std::vector<std::string> normal_rows(const std::string& name_or_path, const std::vector<std::string>& set,
+                                     const std::string& rows)
+{
+    std::vector<std::string> with = set;
+    if (rows.empty()) return with;
+    const dae::Description d = named_model(name_or_path, set);
+    const nlohmann::json model = nlohmann::json::parse(d.text);
+    const auto contacts = model.find("contacts");
+    for (size_t k = 0; contacts != model.end() && k < contacts->size(); ++k)
+        if ((*contacts)[k]["normal"]["type"] == "constraint")
+            with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
+    if (with.size() == set.size())
+        throw UsageError("--normal-rows is for contacts whose normal is a constraint; " + d.name +
+                         " has none");
+    return with;
+}
+
+std::string short_name(const std::string& name_or_path)
+{
+    const fs::path path(name_or_path);
+    const std::string name = path.extension() == ".json" ? path.stem() : path.filename();
+    return name.empty() || name == "." || name == ".." ? "model" : name;
+}
+
+}  // namespace hilda::studies

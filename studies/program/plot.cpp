@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/plot.hpp"
+
+#include "lie/check.hpp"
+#include "studies/message.hpp"
+#include "studies/output.hpp"
+
+#include <hilda/version.hpp>
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+extern char** environ;
+
+namespace hilda::studies {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string python()
+{
+    const char* chosen = std::getenv("HILDA_PYTHON");
+    return chosen != nullptr && *chosen != '\0' ? chosen : version::python;
+}
+
+/// Beside an installed program, or in the source tree; empty when it is in neither place.
+std::string find_script(const std::string& script)
+{
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    for (const fs::path& place :
+         {program.parent_path().parent_path() / "share/hilda/plots", fs::path(version::plots)})
+        if (fs::is_regular_file(place / script, error)) return place / script;
+    return {};
+}
+
+struct Ended {
+    int code = -1;       ///< -1: could not be started
+    std::string output;  ///< stdout and stderr together
+};
+
+/// Runs a program without a shell.
+Ended run(std::vector<std::string> words)
+{
+    std::array<int, 2> pipe_ends{};
+    if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return {};
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDERR_FILENO);
+    pid_t child = 0;
+    const int error = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(pipe_ends[1]);
+
+    Ended ended;
+    if (error == 0) {
+        std::array<char, 4096> chunk{};
+        for (ssize_t n = 0;
+             (n = read(pipe_ends[0], chunk.data(), chunk.size())) > 0 || (n < 0 && errno == EINTR);)
+            if (n > 0 && ended.output.size() < 1 << 20)
+                ended.output.append(chunk.data(), static_cast<size_t>(n));
+        int status = 0;
+        while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+        }
+        ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    }
+    close(pipe_ends[0]);
+    return ended;
+}
+
+std::string last_line(std::string text)
+{
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    return text.substr(text.rfind('\n') + 1);
+}
+
+/// Why a run of Python did not do what it should, in one line; empty when it did.
+std::string complaint(const Ended& ended)
+{
+    if (ended.code == 0) return {};
+    if (ended.code == -1 || ended.code == 127)
+        return python() + " was not found (Debian: apt-get install python3-matplotlib)";
+    if (ended.output.find("No module named 'matplotlib'") != std::string::npos)
+        return python() + " has no matplotlib (Debian: apt-get install python3-matplotlib)";
+    return last_line(ended.output);
+}
+
+}  // namespace
+
+bool plot(const std::string& script, const std::string& directory)
+{
+    const std::string path = find_script(script);
+    const std::string why = path.empty() ? "the script " + script + " was not found"
+                                         : complaint(run({python(), path, directory}));
+    if (!why.empty()) warning("no figures: " + why);
+    return why.empty();
+}
+
+std::string script_for(const std::string& directory)
+{
+    std::error_code error;
+    if (fs::is_regular_file(fs::path(directory) / "study.csv", error)) {
+        const std::string record = directory + "/study.json";
+        const auto study = nlohmann::json::parse(read_file(record, 64 << 20), nullptr, false);
+        const auto kind = study.is_object() ? study.find("study") : study.end();
+        if (kind == study.end() || !kind->is_string() ||
+            kind->get<std::string>().find('/') != std::string::npos)
+            throw lie::InvalidInput(record + ": does not say which study this is");
+        return kind->get<std::string>() + ".py";
+    }
+    if (fs::is_regular_file(fs::path(directory) / "trajectory.csv", error)) return "trajectory.py";
+    throw lie::InvalidInput(directory + ": there is neither a study.csv nor a trajectory.csv to draw");
+}
+
+std::string python_and_matplotlib()
+{
+    const Ended ended = run({python(), "-c",
+                             "import sys, matplotlib; "
+                             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
+    const std::string why = complaint(ended);
+    return why.empty() ? python() + " " + last_line(ended.output) : why;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/run_model.hpp"
+
+#include "studies/interrupt.hpp"
+#include "studies/message.hpp"
+#include "studies/output.hpp"
+#include "studies/program/named_model.hpp"
+#include "studies/running/single_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace hilda::studies {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+/// One for each integrator; those that may not be written to are refused before the first run begins.
+std::vector<std::string> directories(const RunOptions& options)
+{
+    const std::string output = options.output.empty() ? "out/" + short_name(options.model) : options.output;
+    std::vector<std::string> all;
+    for (const std::string& name : options.integrators) {
+        all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
+        if (!is_vacant(all.back()) && !options.force && !options.resume)
+            throw UsageError(all.back() + ": is not empty; --force overwrites, --resume goes on");
+    }
+    return all;
+}
+
+/// What an integrator that chooses its own steps has no use for
+void refuse_for_adaptive(const RunOptions& options)
+{
+    for (const std::string& name : options.integrators) {
+        if (!lie::scheme(name).adaptive) continue;
+        const auto refuse = [&](const std::string& why) { throw UsageError("run: " + name + " " + why); };
+        if (options.step)
+            refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
+        if (options.resume || options.checkpoint > 0)
+            refuse(
+                "remembers past steps outside the state; --checkpoint and --resume are for fixed-step "
+                "schemes");
+        if (options.every && *options.every == 0)
+            refuse("chooses its own steps; --every must be positive, got 0");
+    }
+}
+
+}  // namespace
+
+int run_model(const RunOptions& options)
+{
+    if (options.vtk && (options.resume || options.checkpoint > 0))
+        throw UsageError(
+            "run: --vtk keeps its frames until the run ends; --checkpoint and --resume exclude it");
+    refuse_for_adaptive(options);
+    const std::vector<std::string> directory = directories(options);
+    const Interrupt interrupt;
+    int code = exit_code::done;
+    ordered_json all = ordered_json::array();
+    for (size_t k = 0; k < directory.size(); ++k) {
+        if (Interrupt::caught() != 0) {
+            code = exit_code::signal + Interrupt::caught();
+            break;
+        }
+        if (options.resume && directory.size() > 1 && SingleRun::has_ended(directory[k])) {
+            if (!options.quiet) warning(directory[k] + ": its run has ended; left as it is");
+            continue;
+        }
+        const Result result = SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).go();
+        if (code == exit_code::done) code = result.exit_code;
+        if (options.json) all.push_back(summary(result));
+        if (options.json || options.quiet) continue;
+        if (k > 0) std::cout << '\n';
+        print(result, std::cout);
+    }
+    if (options.json) std::cout << as_text(directory.size() == 1 ? all[0] : ordered_json{{"runs", all}});
+    return code;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/diagnosis.hpp"
+
+#include "lie/solver/saddle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace hilda::studies {
+
+namespace {
+
+/// The force, the constraint or the body that has no finite value in the state x; empty when all have.
+std::string not_finite(const dae::Model& model, const lie::State& x)
+{
+    for (const auto& force : model.forces()) {
+        lie::Loads loads(model.bodies());
+        try {
+            force->add(x, loads);
+        } catch (const lie::NumericalFailure&) {
+            return force->in_words();
+        }
+        for (int b = 0; b < model.bodies(); ++b)
+            if (!loads.F[b].allFinite() || !loads.n_bar[b].allFinite())
+                return fmt::format("{} on body '{}'", force->in_words(), model.body_name(b));
+    }
+    for (const dae::Model::Row& row : model.all_rows())
+        if (!std::isfinite(model.scaled_residual(row, x))) return model.name_of(row);
+    return {};
+}
+
+/// The reciprocal condition of the saddle matrix at the node; NaN when even that cannot be had
+double reciprocal_condition(const dae::Model& model, const lie::State& x)
+{
+    try {
+        lie::Saddle K(model);
+        K.assemble(x);
+        return K.reciprocal_condition();
+    } catch (const lie::SingularMatrix& singular) {
+        return singular.reciprocal_condition;
+    } catch (const lie::NumericalFailure&) {
+        return std::nan("");
+    }
+}
+
+}  // namespace
+
+std::string step_text(double h)
+{
+    char digits[32];
+    if (h >= 0.01) return {digits, std::to_chars(digits, digits + sizeof digits, h).ptr};
+    std::string text(digits,
+                     std::to_chars(digits, digits + sizeof digits, h, std::chars_format::scientific).ptr);
+    for (size_t e = text.find('e') + 2; text[e] == '0' && e + 1 < text.size();) text.erase(e, 1);
+    return text;
+}
+
+Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
+                   long number, double h, const std::string& scheme)
+{
+    std::string how = failure.what();
+    if (const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure))
+        how = fmt::format("correction {:.1e} after {} iterations", newton->correction, newton->iterations);
+    const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(h))) + 1, 1, 15);
+    Diagnosis d;
+    // an observer objects to the node itself, a step fails on the way to the next one
+    const bool at_node = failure.status == "constraint_drift";
+    d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
+                         number + (at_node ? 0 : 1), scheme, step_text(h), how);
+    if (at_node || failure.status.starts_with("contact_")) return d;  // the message has it all
+
+    lie::State next = node;
+    next.t += h;
+    for (const lie::State* x : {&node, static_cast<const lie::State*>(&next)})
+        if (const std::string culprit = not_finite(model, *x); !culprit.empty()) {
+            d.detail = "not finite: " + culprit;
+            return d;
+        }
+    if (model.rows() == 0 && model.all_rows().empty()) return d;
+    const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
+    const dae::Model::Residual worst = model.largest_residual(node);
+    const double rcond = reciprocal_condition(model, node);
+    d.detail = fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
+                           newton != nullptr ? newton->largest : model.name_of(worst),
+                           newton != nullptr ? newton->residual : worst.value, rcond,
+                           rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+    return d;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/model_frames.hpp"
+
+namespace hilda::studies {
+
+ModelFrames::ModelFrames(const dae::Model& model, const lie::Grid& grid)
+    : ModelFrames(model, [grid](long n) { return grid.is_row(n); })
+{}
+
+ModelFrames::ModelFrames(const dae::Model& model, EvenChoice chosen)
+    : ModelFrames(model, [chosen](long n) mutable { return chosen.takes(n); })
+{}
+
+ModelFrames::ModelFrames(const dae::Model& model, std::function<bool(long)> takes)
+    : model(model), takes(std::move(takes)), evolving(evolving_contacts(model))
+{
+    for (const auto& force : model.forces())
+        if (const auto* c = dynamic_cast<const contact::ContactForce*>(force.get())) {
+            contacts.push_back(c);
+            snapshots.show(c->i, c->contact.i);
+            snapshots.show(c->j, c->contact.j);
+        }
+    for (const contact::EvolvingContact* c : evolving) {
+        snapshots.show(c->i, c->shape_i);
+        snapshots.show(c->j, c->shape_j);
+        beside.push_back(forces_of(model, *c));
+    }
+}
+
+void ModelFrames::accepted(const lie::State& x, long n, int)
+{
+    if (!takes(n)) return;
+    std::vector<Snapshots::Touch> touches;
+    for (size_t k = 0; k < contacts.size(); ++k) {
+        const contact::ContactForce& c = *contacts[k];
+        if (!c.works(x)) continue;
+        const contact::ContactForce::Instant now = c.at(x);
+        if (now.meeting.N > 0)
+            touches.push_back(
+                Snapshots::touch(static_cast<int>(k), c.i, now.meeting, c.friction(x), now.memory.history));
+    }
+    for (size_t k = 0; k < evolving.size(); ++k) {
+        const contact::EvolvingContact& c = *evolving[k];
+        if (dae::Model::idle(c, x)) continue;
+        const dae::Constraint::At at = model.at(c, x);
+        const contact::Touch touch = c.touch(at);
+        const contact::EvolvingContact::Multipliers of = c.multipliers(at, x.lambda);
+        Snapshots::Touch shown{.contact = static_cast<int>(contacts.size() + k),
+                               .i = c.i,
+                               .C = touch.C(),
+                               .N = of.F_N * touch.n,
+                               .F = of.friction,
+                               .slipping = false,
+                               .rolling = c.velocity_rows() > 0};
+        if (const contact::EvolvingFriction* friction = beside[k].friction; friction != nullptr) {
+            const contact::EvolvingFriction::Instant now = friction->at(x);
+            const Snapshots::Touch by_force =
+                Snapshots::touch(shown.contact, c.i, now.meeting, friction->friction(x), now.memory.history);
+            shown.F = by_force.F, shown.slipping = by_force.slipping, shown.rolling = by_force.rolling;
+        }
+        touches.push_back(shown);
+    }
+    snapshots.add(x.t, x.body, std::move(touches));
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/single_run.hpp"
+
+#include "contact/evolving/unilateral.hpp"
+#include "studies/interrupt.hpp"
+#include "studies/message.hpp"
+#include "studies/output.hpp"
+#include "studies/program/named_model.hpp"
+#include "studies/program/plot.hpp"
+#include "studies/running/contact_rows.hpp"
+#include "studies/running/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::studies {
+
+namespace {
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+constexpr double usual_step = 1e-3;  // [s]
+
+/// Of a scheme that chooses its own steps the nodes are the rows.
+lie::Grid grid_of(const RunOptions& options, double end, bool adaptive)
+{
+    const double every = options.every.value_or(end / 1000);
+    try {
+        if (adaptive) return lie::Grid::over(end, every > 0 ? every : usual_step);
+        return lie::Grid::over(end, options.step.value_or(usual_step), every);
+    } catch (const lie::InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+}
+
+std::string in_words(contact::ContactEvent::Kind kind)
+{
+    using Kind = contact::ContactEvent::Kind;
+    return kind == Kind::lift_off  ? "lift-off"
+           : kind == Kind::impact  ? "impact"
+           : kind == Kind::closing ? "closing"
+                                   : "handed over";
+}
+
+/// Not above the number itself, so that a step of what is printed is taken
+std::string in_four_digits(double positive)
+{
+    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 3);
+    return fmt::format("{:.4g}", std::floor(positive / unit) * unit);
+}
+
+}  // namespace
+
+SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory)
+    : options(options), scheme(scheme), directory(std::move(directory))
+{}
+
+bool SingleRun::has_ended(const std::string& directory)
+{
+    std::error_code error;
+    const std::filesystem::path in(directory);
+    return std::filesystem::exists(in / "summary.json", error) &&
+           !std::filesystem::exists(in / "checkpoint", error) &&
+           !std::filesystem::exists(in / "checkpoint.1", error);
+}
+
+Result SingleRun::go()
+{
+    begin = Clock::now();
+    read();
+    lie::Settings told = options.settings;
+    told.stop = [] { return Interrupt::caught() != 0; };
+    const std::unique_ptr<lie::Integrator> integrator =
+        contact::make_integrator(*description.model, scheme, told);
+    const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
+    judge_step(from.has_value());
+    if (!from) clear_directory();
+    result.setup_seconds = seconds(Clock::now() - begin);
+    march(*integrator, from);
+    if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
+        for (const contact::ContactEvent& e : events->events())
+            if (e.t <= last_node)  // not of the step beyond the end, which completes the last node
+                result.events.push_back({e.t,
+                                         description.model->evolving()[static_cast<size_t>(e.contact)]->name,
+                                         in_words(e.kind), e.speed});
+    finish();
+    return std::move(result);
+}
+
+void SingleRun::read()
+{
+    const std::vector<std::string> set = normal_rows(options.model, options.set, options.normal_rows);
+    description = named_model(options.model, set);
+    result.start = dae::start(description, {.fix_initial = options.fix_initial});
+    result.end = options.end.value_or(description.end);
+    grid = grid_of(options, result.end, scheme.adaptive);
+    const double reached = static_cast<double>(grid.steps) * grid.h,
+                 between = static_cast<double>(grid.every) * grid.h;
+    if (reached > result.end * (1 + 1e-9))
+        warn(fmt::format("the end {} s is no multiple of {}: the run ends at {:.12g} s", result.end,
+                         scheme.adaptive ? "--every" : "the step", reached));
+    if (options.every && *options.every > 0 && between > *options.every * (1 + 1e-9))
+        warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.every,
+                         between));
+    for (const std::string& w : description.warnings) warn(w);
+    for (const std::string& row : result.start.dropped)
+        warn(row + ": redundant with the constraints before it, dropped from the equations");
+    say(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
+                    result.start.position_residual, result.start.velocity_residual,
+                    result.start.projected ? ", projected" : ""));
+
+    result.model = description.name;
+    result.integrator = scheme.name;
+    result.step = grid.h;
+    result.every = static_cast<double>(grid.every) * grid.h;
+    result.tolerance = options.settings.tolerance;
+    if (scheme.adaptive) {
+        result.rtol = options.settings.rtol;
+        result.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
+    }
+    result.bodies = description.model->bodies();
+    result.constraints = description.model->constraints();
+    for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
+        result.contacts.push_back(c->name);
+    result.warnings = description.warnings;
+    result.set = set;
+    result.command_line = options.command_line;
+    result.threads = 1;  // what was used, for any --threads
+    result.directory = directory;
+    result.files = {"model.json", "trajectory.csv"};
+    if (options.log_steps) result.files.emplace_back("steps.csv");
+    if (options.vtk) prepare_frames();
+    settings = fmt::format(
+        "model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}, linear solver {}, rho "
+        "{}{}{}{}{}",
+        hash(description.text), scheme.name, grid.h, result.end, result.every, options.settings.tolerance,
+        static_cast<int>(options.settings.linear_solver), options.settings.rho_infinity,
+        options.settings.reparametrise ? ", --reparametrise" : "",
+        options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
+        options.log_steps ? ", --log-steps" : "");
+}
+
+void SingleRun::prepare_frames()
+{
+    const lie::Grid at = lie::Grid::over(result.end, grid.h, *options.vtk);
+    if (at.steps / at.every + 2 > Snapshots::most)
+        throw UsageError(fmt::format("run: --vtk {} makes {} frames, more than {}", *options.vtk,
+                                     at.steps / at.every + 1, Snapshots::most));
+    const double between = static_cast<double>(at.every) * at.h;
+    if (between > *options.vtk * (1 + 1e-9))
+        warn(fmt::format("--vtk {} is no multiple of the step: frames are {:.12g} s apart", *options.vtk,
+                         between));
+    frames.emplace(*description.model, at);
+    if (!frames->has_contacts())
+        throw UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
+}
+
+// A run that is gone on with has been judged when it began.
+void SingleRun::judge_step(bool resumed) const
+{
+    const dae::Model& model = *description.model;
+    if (scheme.adaptive) {
+        for (const auto& force : model.forces())
+            if (force->remembered() > 0)
+                throw UsageError(fmt::format(
+                    "run: {} chooses its own steps; {} remembers numbers from step to step and needs a "
+                    "fixed-step scheme",
+                    scheme.name, force->in_words()));
+        return;
+    }
+    const dae::Model::StableStep stable = model.stable_step(description.x);
+    if (!(grid.h > stable.h)) return;
+    const std::string what = fmt::format(
+        "the step {} s is above {} s, the largest at which {} is stable with an explicit step", grid.h,
+        in_four_digits(stable.h), model.forces()[static_cast<size_t>(stable.force)]->in_words());
+    if (!options.force && !resumed) throw UsageError("run: " + what + "; --force overrides");
+    warn(what);
+}
+
+std::optional<Checkpoint> SingleRun::load_checkpoint() const
+{
+    if (has_ended(directory))
+        throw UsageError(directory + ": has no checkpoint, and its run has ended; --force starts it again");
+    std::optional<Checkpoint> found = load(directory);
+    if (!found) warn(directory + ": has no checkpoint; starting at the beginning");
+    if (found && found->settings != settings)
+        throw UsageError(fmt::format("{}: the checkpoint belongs to another run: ({}), not ({})", directory,
+                                     found->settings, settings));
+    return found;
+}
+
+// What an earlier run left must not be taken for ours.
+void SingleRun::clear_directory() const
+{
+    make_directory(directory);
+    remove_checkpoints(directory);
+    Snapshots::remove(directory, "run");
+    for (const char* file : {"summary.json", "trajectory.csv", "steps.csv", "trajectory.png"})
+        std::remove(path(file).c_str());
+    write_file(path("model.json"),
+               description.text.ends_with('\n') ? description.text : description.text + '\n');
+}
+
+void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoint>& from)
+{
+    Recorder recorder(*description.model, integrator, grid, directory,
+                      {.reactions = options.reactions, .log_steps = options.log_steps}, from);
+    lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
+                            : lie::March(description.x, integrator, grid.h);
+    if (from) {
+        seconds_before = from->wall_seconds;
+        result.resumed_at = from->number;
+    }
+    begin = Clock::now();
+    // From the first moment on there is something to go on from.
+    if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
+    advance(march, integrator, recorder);
+    last_node = march.node().t;
+    result.invariants = recorder.invariants();
+    recorder.flush();
+    judge_contacts();
+}
+
+// Where λ_N is not zero, the normals that a surface gives are not those of its points; where a contact pulls, the bodies
+// would have parted.
+void SingleRun::judge_contacts()
+{
+    const auto tell = [&](const std::string& what) {
+        warn(what);
+        result.warnings.push_back(what);
+    };
+    const auto contacts = evolving_contacts(*description.model);
+    for (size_t k = 0; k < result.contacts.size(); ++k) {
+        const ContactExtremes& c = result.invariants.contact[k];
+        if (c.normals_differ() && c.lambda_N > ContactExtremes::rounding(*description.model))
+            tell(fmt::format(
+                "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
+                "its surfaces are not those of their points",
+                result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
+        if (!contacts[k]->unilateral.opens && c.F_N_least < -ContactExtremes::rounding(*description.model) &&
+            c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+            tell(fmt::format(
+                "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
+                result.contacts[k], -c.F_N_least));
+    }
+}
+
+void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
+{
+    std::vector<lie::Observer*> observers = recorder.observers();
+    if (frames) observers.push_back(&*frames);
+    Progress line(options.quiet, result.end, grid.steps, march.number());
+    const bool watch_clock = line.shown() || options.checkpoint > 0;
+    Clock::time_point saved = Clock::now();
+    const auto advance_once = [&] {
+        try {
+            march.advance(observers);
+            return true;
+        } catch (const lie::Interrupted&) {  // in the middle of a step; the march stands where it was
+            return false;
+        }
+    };
+    try {
+        while (march.number() < grid.steps && Interrupt::caught() == 0 && advance_once()) {
+            if (!watch_clock) continue;
+            const Clock::time_point now = Clock::now();
+            line.update(now, march.node().t, march.number(), integrator.statistics());
+            if (options.checkpoint > 0 && seconds(now - saved) >= options.checkpoint) {
+                save_checkpoint(march, recorder);
+                saved = Clock::now();
+            }
+        }
+        count(march, recorder);  // the look ahead of finish() is no step of the run
+        line.clear();
+        if (march.number() == grid.steps) return march.finish(observers);
+        result.status = "interrupted";
+        result.exit_code = exit_code::signal + Interrupt::caught();
+        if (!scheme.adaptive) save_checkpoint(march, recorder);
+        if (!options.quiet)
+            message(scheme.adaptive
+                        ? "hilda: interrupted\n"
+                        : "hilda: interrupted; --resume goes on from the checkpoint in " + directory + '\n');
+    } catch (const lie::NumericalFailure& failure) {
+        count(march, recorder);
+        line.clear();
+        failed(failure, march);
+        // The node that the failed step should have left is the last good one, and may be a row.
+        if (failure.status != "constraint_drift") march.finish(observers);
+    }
+}
+
+void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+{
+    Checkpoint c = recorder.checkpoint(march);
+    c.settings = settings;
+    c.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+    save(c, directory);
+    say(fmt::format("checkpoint at step {}", march.number()));
+}
+
+void SingleRun::count(const lie::March& march, const Recorder& recorder)
+{
+    result.statistics = recorder.statistics();
+    result.t = march.node().t;
+    result.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+}
+
+void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
+{
+    const Diagnosis d =
+        diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme.name);
+    result.status = failure.status;
+    result.exit_code = exit_code::numerical_failure;
+    result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
+    message("hilda: error[" + failure.status + "]: " + d.what + '\n');
+    if (!d.detail.empty()) message("  " + d.detail + '\n');
+}
+
+void SingleRun::finish()
+{
+    result.files.emplace_back("summary.json");
+    if (result.status == "ok") remove_checkpoints(directory);
+    if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
+    if (frames) {
+        frames->snapshots.write(directory, "run");
+        result.files.emplace_back("run.pvd");
+    }
+    if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
+    write_file(path("summary.json"), as_text(summary(result)));
+}
+
+void SingleRun::say(const std::string& what) const
+{
+    if (options.verbose && !options.quiet) message("hilda: " + what + '\n');
+}
+
+void SingleRun::warn(const std::string& what) const
+{
+    if (!options.quiet) warning(what);
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/summary.hpp"
+
+#include "studies/output.hpp"
+#include "studies/running/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ostream>
+
+namespace hilda::studies {
+
+namespace {
+
+double per_step(const lie::Statistics& s)
+{
+    return static_cast<double>(s.iterations) / static_cast<double>(std::max(1L, s.steps));
+}
+
+std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+nlohmann::ordered_json summary(const Result& r)
+{
+    nlohmann::ordered_json out = {{"status", r.status}, {"exit_code", r.exit_code}};
+    if (!r.message.empty()) out["message"] = r.message;
+    out["model"] = {{"name", r.model},
+                    {"bodies", r.bodies},
+                    {"constraints", r.constraints},
+                    {"rows", r.start.rows},
+                    {"rank", r.start.rank},
+                    {"degrees_of_freedom", r.start.degrees_of_freedom},
+                    {"dropped_rows", r.start.dropped},
+                    {"initial_position_residual", r.start.position_residual},
+                    {"initial_velocity_residual", r.start.velocity_residual},
+                    {"initial_projected", r.start.projected},
+                    {"set", r.set},
+                    {"warnings", r.warnings}};
+    out["integrator"] = {{"name", r.integrator}};
+    if (r.rtol > 0)
+        out["integrator"].update({{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"every", r.every}});
+    else
+        out["integrator"].update(
+            {{"step", r.step}, {"end", r.end}, {"every", r.every}, {"tolerance", r.tolerance}});
+    out["counters"] = {{"steps", r.statistics.steps},
+                       {"newton_iterations", r.statistics.iterations},
+                       {"factorizations", r.statistics.factorizations},
+                       {"refactorizations", r.statistics.refactorizations},
+                       {"rows", r.invariants.rows},
+                       {"t", r.t}};
+    out["invariants"] = {{"constraint_norm", r.invariants.constraint_norm},
+                         {"orthogonality", r.invariants.orthogonality},
+                         {"energy_start", r.invariants.energy_start},
+                         {"energy_end", r.invariants.energy_end},
+                         {"energy_drift", r.invariants.energy_drift},
+                         {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
+    if (!r.contacts.empty()) {
+        out["contacts"] = nlohmann::ordered_json::array();
+        for (size_t k = 0; k < r.invariants.contact.size(); ++k) {
+            const ContactExtremes& c = r.invariants.contact[k];
+            out["contacts"].push_back({{"name", r.contacts[k]},
+                                       {"normal_force_least", c.F_N_least},
+                                       {"normal_force_most", c.F_N_most},
+                                       {"lambda_N", c.lambda_N}});
+        }
+    }
+    if (!r.events.empty()) {
+        constexpr size_t most = 1000;  // of a ball that comes to rest by bouncing there are many
+        out["contact_events"] = {{"count", r.events.size()}, {"first", nlohmann::ordered_json::array()}};
+        for (size_t k = 0; k < std::min(most, r.events.size()); ++k) {
+            const Result::Event& e = r.events[k];
+            out["contact_events"]["first"].push_back(
+                {{"t", e.t}, {"contact", e.contact}, {"what", e.what}, {"speed", e.speed}});
+        }
+    }
+    out["files"] = r.files;
+    out["timing"] = {{"setup_seconds", r.setup_seconds},
+                     {"wall_seconds", r.wall_seconds},
+                     {"steps_per_second",
+                      r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0}};
+    out["provenance"] = provenance(r.command_line, r.threads);
+    if (r.resumed_at >= 0) out["provenance"]["resumed_at_step"] = r.resumed_at;
+    return out;
+}
+
+void print(const Result& r, std::ostream& out)
+{
+    const auto line = [&](const char* what, const std::string& text) {
+        out << fmt::format("{:<14}{}\n", what, text);
+    };
+    line("model",
+         fmt::format("{}: {}, {}, {}{} of freedom", r.model,
+                     r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
+                     count(r.start.rows, "constraint row"),
+                     r.contacts.empty() ? "" : count(static_cast<long>(r.contacts.size()), "contact") + ", ",
+                     count(r.start.degrees_of_freedom, "degree")));
+    const std::string grain = r.rtol > 0
+                                  ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
+                                  : fmt::format("step {} s", step_text(r.step));
+    line("integrator", fmt::format("{}, {}, end {:g} s", r.integrator, grain, r.end));
+    if (r.status != "ok") line("status", fmt::format("{} at t = {:g} s", r.status, r.t));
+    line("steps", fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps,
+                              per_step(r.statistics), count(r.statistics.factorizations, "factorization"),
+                              count(r.statistics.refactorizations, "refactorization")));
+    line("energy",
+         fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest change {:.1e} J",
+                     r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
+    line("constraints", fmt::format("{:.1e} m or rad, largest residual", r.invariants.constraint_norm));
+    for (size_t k = 0; k < r.invariants.contact.size(); ++k)
+        line(k == 0 ? "contacts" : "",
+             fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k], r.invariants.contact[k].F_N_least,
+                         r.invariants.contact[k].F_N_most));
+    line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));
+    line("wall time",
+         fmt::format("{:.3f} s, {:.0f} steps/s", r.wall_seconds,
+                     r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0));
+    std::string files;
+    for (const std::string& file : r.files) files += (files.empty() ? "" : ", ") + file;
+    line("written", fmt::format("{} in {}: {}", count(r.invariants.rows, "row"), r.directory, files));
+}
+
+}  // namespace hilda::studies

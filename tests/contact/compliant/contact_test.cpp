@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One contact: what it refuses, how large a step its springs allow, how its deflections give way.
+#include "contact/compliant/contact.hpp"
+
+#include "contact/friction/laws/spring.hpp"
+#include "contact/scenes/scene.hpp"
+#include "contact/surfaces/cylinder.hpp"
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "lie/check.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace hilda;
+using contact::FrictionParameters;
+using contact::Inertia;
+using contact::Shape;
+using lie::Mat3;
+using lie::Motion;
+using lie::Vec3;
+
+namespace {
+
+std::string refusal(const std::function<void()>& make)
+{
+    try {
+        make();
+    } catch (const lie::InvalidInput& e) {
+        return e.what();
+    }
+    return "";
+}
+
+std::shared_ptr<const contact::FrictionModel> friction(const FrictionParameters& p)
+{
+    return contact::friction_law("slide-roll-spin").make(p);
+}
+
+Shape sphere(double R, bool concave = false) { return {std::make_shared<contact::Sphere>(R, concave)}; }
+const Shape plane{std::make_shared<contact::Plane>()};
+
+Inertia ball(double m, double R) { return {m, 0.4 * m * R * R * Mat3::Identity()}; }
+
+Motion at(const Vec3& r)
+{
+    Motion m;
+    m.r = r;
+    return m;
+}
+
+contact::Contact rolling_ball(const FrictionParameters& p, double N = 5 * 9.8)
+{
+    return {"ball",     sphere(0.2), plane, ball(5, 0.2), {}, std::make_shared<contact::GivenForce>(N),
+            friction(p)};
+}
+
+double bound(const contact::Contact& c)
+{
+    const Motion up = at({0, 0, 0.2}), ground;
+    return c.stable_step(c.meet(up, ground, {}), up, ground);
+}
+
+/// Largest speed of the material at the contact over the last tenth of two thousand steps of h, when the ball is
+/// pushed at 1e-7 m/s: a linear system that is stable or is not.
+double late_speed(double eta_r, double h)
+{
+    contact::Scene scene;
+    Motion m = at({0, 0, 0.2});
+    m.rdot = {1e-7, 0, 0};
+    scene.add(ball(5, 0.2), m);
+    scene.add(Inertia{}, {});
+    scene.add("ball", 0, sphere(0.2), 1, plane, std::make_shared<contact::GivenForce>(5 * 9.81),
+              friction({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5, .eta_r = eta_r}));
+    double late = 0;
+    for (int k = 0; k < 2000; ++k) {
+        scene.step(h);
+        if (k > 1800) late = std::max(late, (scene.body[0].A * scene.body[0].omega_bar).norm());
+    }
+    return late;
+}
+
+}  // namespace
+
+TEST_CASE("the stability bound of a sphere is that of its damped tangential oscillation",
+          "[contact][stability]")
+{
+    // ω² = 3.5 K_E / m, damping ratio √3.5: h < 2 (√4.5 - √3.5) / ω
+    const double m = 5, K_E = 1e5;
+    const double omega = std::sqrt(3.5 * K_E / m);
+    CHECK(bound(rolling_ball({.mu_s = 1, .mu_k = 1, .K_E = K_E})) ==
+          Approx(2 * (std::sqrt(4.5) - std::sqrt(3.5)) / omega).epsilon(1e-9));
+    // Without dashpot: 2/ω
+    CHECK(bound(rolling_ball({.mu_s = 1, .mu_k = 1, .K_E = K_E, .zeta = 0})) ==
+          Approx(2 / omega).epsilon(1e-9));
+    // Nothing that could become unstable
+    CHECK(std::isinf(bound(rolling_ball({.mu_s = 0, .mu_k = 0, .K_E = 1e-300}))));
+}
+
+TEST_CASE("a step below the stability bound comes to rest and one above it does not", "[contact][stability]")
+{
+    const double eta_r = GENERATE(0., 0.3);
+    const double h = bound(rolling_ball({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5, .eta_r = eta_r}));
+    INFO("eta_r " << eta_r << ", bound " << h);
+    if (eta_r > 0) {
+        CHECK(h > 1.3e-3);
+        CHECK(h < 1.6e-3);
+        CHECK(late_speed(eta_r, 0.98 * h) < 1e-10);
+        CHECK(late_speed(eta_r, 1.02 * h) > 1e-6);
+    } else {  // rolls on
+        CHECK(late_speed(eta_r, 0.98 * h) < 1e-6);
+        CHECK(late_speed(eta_r, 1.02 * h) > 1e-4);
+    }
+}
+
+TEST_CASE("a scene refuses a step above the bound and says it", "[contact][stability]")
+{
+    contact::Scene scene;
+    scene.add(ball(5, 0.2), at({0, 0, 0.2}));
+    scene.add(Inertia{}, {});
+    scene.add("ball-floor", 0, sphere(0.2), 1, plane, std::make_shared<contact::GivenForce>(49),
+              friction({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5}));
+    scene.check(1.8e-3);
+    CHECK(refusal([&] { scene.check(2e-3); }) ==
+          "contact 'ball-floor': the step must not exceed its stability bound of 0.00189354 s, got 0.002");
+}
+
+TEST_CASE("a light ball under a heavy one needs the step of both its contacts", "[contact][stability]")
+{
+    const auto energy_after = [](double part) {
+        contact::Scene scene;
+        const double R = 0.05;
+        const int light = scene.add(ball(0.01, R), at({0, 0, R})),
+                  heavy = scene.add(ball(1000, 2 * R), at({0, 0, 4 * R}));
+        const int floor = scene.add(Inertia{}, {});
+        const auto law = std::make_shared<contact::Hertz>(1e8);
+        scene.add("floor", light, sphere(R), floor, plane, law, contact::frictionless());
+        scene.add("ball", light, sphere(R), heavy, sphere(2 * R), law, contact::frictionless());
+        double h = 1;  // the bound, by bisection of what is refused
+        for (double lower = 1e-9; h > lower * 1.001;) {
+            const double middle = std::sqrt(lower * h);
+            (refusal([&] { scene.check(middle); }).empty() ? lower : h) = middle;
+        }
+        h *= part;
+        for (double t = 0; t < 0.02; t += h) scene.step(h);
+        return scene.kinetic_energy();
+    };
+    CHECK(energy_after(0.99) < 1000 * 9.81 * 0.01);  // what a fall of a centimetre gives
+    CHECK(energy_after(3) > 1e3);
+}
+
+TEST_CASE("the bound of bodies that do not touch yet is that of the impact to come", "[contact][stability]")
+{
+    const auto bound_at = [](double gap) {
+        const contact::Contact c("ball", sphere(0.2), plane, ball(5, 0.2), {},
+                                 std::make_shared<contact::Hertz>(1e8), contact::frictionless());
+        const Motion up = at({0, 0, 0.2 + gap}), ground;
+        return c.stable_step(c.hardest(up, ground, {}, 5 * 9.81), up, ground);
+    };
+    CHECK(bound_at(1e-6) == Approx(bound_at(-1e-9)).epsilon(1e-2));
+    CHECK(bound_at(1) < bound_at(1e-6));
+}
+
+TEST_CASE("a start that no contact can have is refused", "[contact]")
+{
+    const auto objection = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {
+        const contact::Contact c("c", i, j, ball(1, 0.1), {}, std::make_shared<contact::Hooke>(1e5, 0),
+                                 friction(p));
+        return c.objection(at(r), Motion());
+    };
+    const FrictionParameters slides{.K_E = 1}, rolls{.K_E = 1, .eta_r = 0.1};
+    CHECK(objection(sphere(0.2), plane, {0, 0, 0.2}, rolls).empty());
+    CHECK(objection(sphere(0.2), plane, {0, 0, 0.1801}, slides).empty());
+    CHECK(objection(sphere(0.2), plane, {0, 0, 0.17}, slides) ==
+          "the surfaces must not overlap by more than a tenth of a radius of curvature, 0.2 m, got 0.03 m");
+    CHECK(objection(sphere(0.2), sphere(0.5, true), {0, 0, -0.3}, rolls).empty());
+    const Shape flat{
+        std::make_shared<contact::Ellipsoid>(Vec3(0.4, 0.4, 0.2))};  // of curvature 1.25 at its pole
+    CHECK(objection(flat, sphere(0.5, true), {0, 0, -0.3}, slides)
+              .starts_with("no touch of two surfaces: the surfaces do not curve away from each "
+                           "other, least "
+                           "sum of their curvatures -0.75 1/m; "));
+    const Shape foot{std::make_shared<contact::Foot>()};
+    CHECK(objection(foot, plane, {0, 0, 0}, slides).empty());
+    CHECK(objection(foot, plane, {0, 0, 0}, rolls) ==
+          "rolling and spinning friction need curvature: the sum of the curvatures must be positive, got 0 "
+          "1/m");
+}
+
+TEST_CASE("the overlap of a start is measured by the sharpest curvature and the size", "[contact]")
+{
+    const auto objection = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
+        const contact::Contact c("c", i, j, ball(1, 0.1), {}, std::make_shared<contact::Hooke>(1e5, 0),
+                                 friction({.K_E = 1, .eta_r = eta_r}));
+        return c.objection(bi, Motion());
+    };
+    const std::string deep = "the surfaces must not overlap by more than a tenth of ";
+    const Shape shaft{std::make_shared<contact::Cylinder>(0.3)};
+    CHECK(objection(sphere(0.9), shaft, at({1.171, 0, 0})).empty());
+    CHECK(objection(sphere(0.9), shaft, at({1.16, 0, 0})) ==
+          deep + "a radius of curvature, 0.3 m, got 0.04 m");
+    const Shape box{std::make_shared<contact::Superquadric>(Vec3(0.1, 0.1, 0.1), 8)};
+    CHECK(objection(box, plane, at({0, 0, 0.091})).empty());
+    CHECK(objection(box, plane, at({0, 0, -0.05})) == deep + "the size of one, 0.1 m, got 0.15 m");
+    const Shape coin{std::make_shared<contact::Disk>(0.1)};
+    Motion leaning = at({0, 0, -0.01});
+    leaning.A = lie::exp({0.05, 0, 0});
+    CHECK(objection(coin, plane, leaning) == deep + "the size of one, 0.1 m, got 0.0149979 m");
+    // flat in the air, where it has no curvature
+    CHECK(objection(coin, plane, at({0, 0, 1}), 0.1).empty());
+    CHECK(objection(coin, plane, at({0, 0, 0})) ==
+          "a disk lies flat on a plane: it touches with all of its rim");
+}
+
+TEST_CASE("a search that fails at the start is a failure of the numerics", "[contact]")
+{
+    class Lost final : public contact::Surface {  // G has no root
+    public:
+        double value(const Vec3& a) const override { return a.squaredNorm() + 1; }
+        Vec3 gradient(const Vec3& a) const override { return 2 * a; }
+        Mat3 hessian(const Vec3&) const override { return 2 * Mat3::Identity(); }
+        double size() const override { return 1; }
+    };
+    const contact::Contact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
+                             std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
+    try {
+        c.objection(at({1, 0.2, 0}), Motion());
+        FAIL("accepted");
+    } catch (const lie::NumericalFailure& e) {
+        CHECK(e.status == "contact_not_converged");
+        CHECK_THAT(e.what(), Catch::StartsWith("contact 'c': no touch of two surfaces: "));
+    }
+}
+
+TEST_CASE("a friction law refuses parameters that are none", "[contact][friction]")
+{
+    const auto why = [](const FrictionParameters& p) { return refusal([&] { friction(p); }); };
+    CHECK(why({.mu_s = 0.2, .mu_k = 0.3, .K_E = 1}) ==
+          "friction: mu_s must not be below mu_k, got 0.20000000000000001");
+    CHECK(why({.mu_s = 0.2, .mu_k = -0.5, .K_E = 1}) == "friction: mu_k must not be negative, got -0.5");
+    CHECK(why({.K_E = 0}) == "friction: K_E must be positive, got 0");
+    CHECK(why({.K_E = 1, .eta_r = -1}) == "friction: eta_r must not be negative, got -1");
+    CHECK(why({.K_E = 1, .eta_psi = -1}) == "friction: eta_psi must not be negative, got -1");
+    CHECK(why({.K_E = 1, .eta_psi = 0.1, .E_star = 1e9}) ==
+          "friction: eta_psi and E_star exclude each other; E_star, got 1000000000");
+    CHECK(refusal([] { contact::friction_law("coulomb"); }) ==
+          "contact::friction_law: there are constant-torque, epsd, slide-roll-spin, got 'coulomb'");
+}
+
+TEST_CASE("a micro-deflection sticks to its static bound and slips at its kinetic one", "[contact][friction]")
+{
+    double H = 0;
+    contact::Regime regime;
+    const auto grow = [&](double by) {
+        H += by;
+        contact::give_way(H, regime, 1.25, 1.0);
+    };
+    grow(-1.2);  // sticks beyond the kinetic bound
+    CHECK((H == -1.2 && !regime.slipping && regime.damped));
+    grow(-0.2);  // gives way, at the static bound for one step, its sign kept
+    CHECK((H == -1.25 && regime.slipping && !regime.damped));
+    grow(-0.2);
+    CHECK((H == -1.0 && regime.slipping && !regime.damped));
+    grow(0.5);  // back below the kinetic bound: sticks again
+    CHECK((H == -0.5 && !regime.slipping && regime.damped));
+}

@@ -1,0 +1,582 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Contact points against closed forms, brute force, and what cannot matter: the order of the bodies, and where
+/// they are in space.
+
+#include "contact/detection/detector.hpp"
+#include "contact/detection/common_normal.hpp"
+#include "contact/implicit_surface.hpp"
+#include "contact/surfaces/cylinder.hpp"
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "contact/surfaces/torus.hpp"
+#include "contact/tangent_basis.hpp"
+#include "lie/check.hpp"
+#include "tests/support/no_allocation.hpp"
+#include "tests/support/random_motion.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::contact;
+using tests::Random;
+
+namespace {
+
+template <class S, class... Args>
+Shape shape(Args&&... args)
+{
+    return {.surface = std::make_shared<S>(std::forward<Args>(args)...)};
+}
+
+Shape placed(Shape s, Random& random)
+{
+    s.position = random.vector(0.3), s.orientation = random.rotation() * s.orientation;
+    return s;
+}
+
+Shape lying(Shape s)
+{
+    s.orientation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return s;
+}
+
+Shape egg()
+{
+    const auto G = [](auto x, auto y, auto z) {
+        return 0.5 * ((x * x + y * y) / 0.2 + z * z * (1.0 + z) / 0.3 - 0.3);
+    };
+    return {.surface = std::make_shared<ImplicitSurface<decltype(G)>>(G, 0.3)};
+}
+
+struct Pair {
+    std::string name;
+    Shape i, j;
+    double distance;  ///< between the origins, at which they are near to touch
+};
+
+/// Every kind of pair; add the next one here.
+std::vector<Pair> pairs()
+{
+    return {
+        {"sphere plane", shape<Sphere>(0.3), shape<Plane>(), 0.3},
+        {"sphere sphere", shape<Sphere>(0.3), shape<Sphere>(0.2), 0.5},
+        {"sphere in a bowl", shape<Sphere>(0.3), shape<Sphere>(1.0, true), 0.7},
+        {"foot plane", shape<Foot>(), shape<Plane>(), 0.1},
+        {"disk plane", shape<Disk>(0.4), shape<Plane>(), 0.3},
+        {"ellipsoid plane", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Plane>(), 0.3},
+        {"superquadric plane", shape<Superquadric>(Vec3(0.3, 0.2, 0.4), 3, 4), shape<Plane>(), 0.4},
+        {"torus plane", shape<Torus>(0.4, 0.1), shape<Plane>(), 0.4},
+        {"egg plane", egg(), shape<Plane>(), 0.3},
+        {"ellipsoid sphere", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Sphere>(0.3), 0.6},
+        {"ellipsoid ellipsoid", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.4)), shape<Ellipsoid>(Vec3(0.5, 0.4, 0.3)),
+         0.7},
+        {"ellipsoid in a bowl", shape<Ellipsoid>(Vec3(0.3, 0.2, 0.25)), shape<Sphere>(1.0, true), 0.7},
+        {"sphere in a deep bowl", shape<Sphere>(0.2), shape<Ellipsoid>(Vec3(1.0, 0.9, 0.8), true), 0.6},
+        {"superquadrics", shape<Superquadric>(Vec3(0.3, 0.2, 0.4), 3, 2),
+         shape<Superquadric>(Vec3(0.5, 0.4, 0.3), 2.5), 0.7},
+        {"egg sphere", egg(), shape<Sphere>(0.3), 0.6},
+        {"sphere cylinder", shape<Sphere>(0.3), lying(shape<Cylinder>(0.4)), 0.7},
+        {"sphere in a pipe", shape<Sphere>(0.3), lying(shape<Cylinder>(1.0, true)), 0.7},
+        {"cylinders", shape<Cylinder>(0.3), lying(shape<Cylinder>(0.5)), 0.8},
+        {"sphere torus", shape<Sphere>(0.3), lying(shape<Torus>(0.5, 0.2)), 1.0},
+    };
+}
+
+/// The shapes of a pair placed at random on two bodies, so that i lies in the direction +z or so of j, at its
+/// distance and up to a fifth of it more or less
+struct Scene {
+    Shape i, j;
+    Motion bi, bj;
+
+    Scene(const Pair& pair, Random& random) : i(placed(pair.i, random)), j(placed(pair.j, random))
+    {
+        bi.A = random.rotation(), bj.A = random.rotation();
+        bj.r = random.vector();
+        const Vec3 d = j.orientation * pair.j.orientation.transpose() *
+                       (Vec3::UnitZ() + random.vector(0.3)).normalized();
+        bi.r = bj.r + bj.A * (j.position + pair.distance * random.number(0.8, 1.2) * d) - bi.A * i.position;
+    }
+    Touch touch() const { return make_detector(i, j)->detect(bi, bj, nullptr); }
+};
+
+Motion moved(const Motion& m, const Vec3& r, const Mat3& A)
+{
+    Motion at;
+    at.r = r + A * m.r, at.A = A * m.A;
+    return at;
+}
+
+constexpr double eps = 2.3e-16;
+
+}  // namespace
+
+TEST_CASE("the contact points lie on their surfaces along opposite normals", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 20u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch();
+        const Vec3 a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r));
+        const Vec3 a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r));
+        CHECK(std::abs(s.j.surface->value(a_j)) < 40 * eps);
+        CHECK((s.bj.A * s.j.orientation * s.j.surface->normal(a_j) - t.n).norm() < 40 * eps);
+        CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 20 * eps);
+        CHECK(t.n.norm() == Approx(1).epsilon(10 * eps));
+        CHECK((t.C() - 0.5 * (t.C_i + t.C_j)).norm() == 0);
+        for (const Mat3& K : {t.K_i, t.K_j}) {
+            CHECK((K - K.transpose()).norm() < 100 * eps);
+            CHECK((K * t.n).norm() < 100 * eps);
+        }
+        if (pair.name.starts_with("foot")) {
+            CHECK(a_i.norm() < 20 * eps);
+        } else {
+            CHECK(std::abs(s.i.surface->value(a_i)) < 40 * eps);
+        }
+        if (pair.name.starts_with("foot") || pair.name.starts_with("disk")) continue;
+        CHECK((s.bi.A * s.i.orientation * s.i.surface->normal(a_i) + t.n).norm() < 100 * eps);
+        const Mat3 axes_i = s.bi.A * s.i.orientation, axes_j = s.bj.A * s.j.orientation;
+        CHECK((t.K_i - axes_i * s.i.surface->shape_operator(a_i) * axes_i.transpose()).norm() < 1e-13);
+        CHECK((t.K_j - axes_j * s.j.surface->shape_operator(a_j) * axes_j.transpose()).norm() < 1e-13);
+    }
+}
+
+TEST_CASE("exchanging the bodies exchanges the points and turns the normal", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch(), e = make_detector(s.j, s.i)->detect(s.bj, s.bi, nullptr);
+        CHECK(e.gap == t.gap);
+        CHECK(e.n == -t.n);
+        CHECK(e.C_i == t.C_j);
+        CHECK(e.C_j == t.C_i);
+        CHECK(e.K_i == t.K_j);
+        CHECK(e.K_j == t.K_i);
+    }
+}
+
+TEST_CASE("a touch moves with its bodies", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Vec3 r = random.vector();
+        const Mat3 A = random.rotation();
+        const Touch t = s.touch();
+        const Touch m = make_detector(s.i, s.j)->detect(moved(s.bi, r, A), moved(s.bj, r, A), nullptr);
+        CHECK(std::abs(m.gap - t.gap) < 1e-13);
+        CHECK((m.n - A * t.n).norm() < 1e-13);
+        CHECK((m.C_i - r - A * t.C_i).norm() < 1e-13);
+        CHECK((m.C_j - r - A * t.C_j).norm() < 1e-13);
+        CHECK((m.K_i - A * t.K_i * A.transpose()).norm() < 1e-12);
+        CHECK((m.K_j - A * t.K_j * A.transpose()).norm() < 1e-12);
+    }
+}
+
+TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocation]")
+{
+    Random random(3);
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const auto detector = make_detector(s.i, s.j);
+        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        double gap = 0;
+        const long taken = tests::allocations_during([&] {
+            gap = detector->detect(s.bi, s.bj, nullptr).gap + detector->detect(s.bi, s.bj, &from).gap;
+        });
+        CHECK(taken == 0);
+        CHECK(gap == Approx(2 * t.gap).margin(1e-14));
+    }
+}
+
+TEST_CASE("a ball above a plane and sunk into it", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Plane>());
+    Motion ball, ground;
+    for (double z : {0.75, 0.5, 0.25}) {
+        ball.r = {1, 2, z};
+        const Touch t = detector->detect(ball, ground, nullptr);
+        CHECK(t.gap == z - 0.5);
+        CHECK(t.n == Vec3::UnitZ());
+        CHECK(t.C_i == Vec3(1, 2, z - 0.5));
+        CHECK(t.C_j == Vec3(1, 2, 0));
+        CHECK(t.K_i == Mat3(Vec3(2, 2, 0).asDiagonal()));
+    }
+}
+
+TEST_CASE("a ball in a bowl touches the nearest wall", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
+    Motion ball, ground;
+    ball.r = {0, 0, -1.25};
+    const Touch t = detector->detect(ball, ground, nullptr);
+    CHECK(t.gap == 0.25);
+    CHECK(t.n == Vec3::UnitZ());
+    CHECK(t.C_i == Vec3(0, 0, -1.75));
+    CHECK(t.C_j == Vec3(0, 0, -2));
+    CHECK(t.K_i == Mat3(Vec3(2, 2, 0).asDiagonal()));
+    CHECK(t.K_j == Mat3(Vec3(-0.5, -0.5, 0).asDiagonal()));
+}
+
+TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    const Vec3 D(0.3, 0.2, 0.5);
+    const auto detector = make_detector(shape<Ellipsoid>(D), shape<Plane>());
+    Motion body = random.motion(), ground;
+    const Touch t = detector->detect(body, ground, nullptr);
+    CHECK(t.gap == Approx(body.r.z() - D.cwiseProduct(body.A.row(2).transpose()).norm()).margin(1e-15));
+}
+
+TEST_CASE("the gap of two ellipsoids is the largest of all distances between parallel tangent planes",
+          "[contact][detection]")
+{
+    // n·(o_i - o_j) - |D_i A_iᵀ n| - |D_j A_jᵀ n| of two ellipsoids, apart (> 0) or not, climbed without derivatives
+    Random random(GENERATE(range(0u, 20u)));
+    const Vec3 D_i(0.3, 0.2, 0.4), D_j(0.5, 0.45, 0.15);
+    Motion bi = random.motion(), bj = random.motion();
+    bi.r = bj.r + random.number(0.5, 1.2) * random.unit();
+    const auto distance = [&](const Vec3& n) {
+        return n.dot(bi.r - bj.r) - D_i.cwiseProduct(bi.A.transpose() * n).norm() -
+               D_j.cwiseProduct(bj.A.transpose() * n).norm();
+    };
+    Vec3 n = (bi.r - bj.r).normalized();
+    for (double step = 0.5; step > 1e-9;) {
+        const auto T = tangent_basis(n);
+        Vec3 best = n;
+        for (const Vec3& d : {Vec3(T.col(0)), Vec3(-T.col(0)), Vec3(T.col(1)), Vec3(-T.col(1))})
+            if (const Vec3 to = (n + step * d).normalized(); distance(to) > distance(best)) best = to;
+        if (best == n) step *= 0.5;
+        n = best;
+    }
+    const Touch t = make_detector(shape<Ellipsoid>(D_i), shape<Ellipsoid>(D_j))->detect(bi, bj, nullptr);
+    CHECK(std::abs(t.gap - distance(n)) < 1e-12);
+    CHECK((t.n - n).norm() < 1e-6);
+}
+
+TEST_CASE("Newton's method on the common normal converges quadratically", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    for (const Pair& pair : pairs()) {
+        if (pair.i.surface->size() == 0 || pair.j.surface->size() == 0) continue;
+        INFO(pair.name);
+        const Scene s(pair, random);
+        const Touch t = s.touch();
+        const CommonNormal newton(s.i, s.j);
+        CommonNormal::Pair p = newton.placed(s.bi, s.bj);
+        p.a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r)) + random.vector(0.003);
+        p.a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r)) + random.vector(0.003);
+        double before = newton.improve(p);
+        for (int k = 0; k < 4; ++k) {
+            const double correction = newton.improve(p);
+            CHECK(correction < 100 * before * before + 1e-13);
+            before = correction;
+        }
+        CHECK(before < 1e-13);
+    }
+}
+
+TEST_CASE("from a near touch and from nothing the same touch is found", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 20u)));
+    for (const Pair& pair : pairs()) {
+        INFO(pair.name);
+        Scene s(pair, random);
+        const auto detector = make_detector(s.i, s.j);
+        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        s.bi.r += random.vector(1e-3), s.bi.A *= lie::exp(random.vector(1e-2));
+        const Touch cold = detector->detect(s.bi, s.bj, nullptr), warm = detector->detect(s.bi, s.bj, &from);
+        CHECK(warm.gap == Approx(cold.gap).margin(1e-14));
+        CHECK((warm.C_i - cold.C_i).norm() < 1e-12);
+        CHECK((warm.C_j - cold.C_j).norm() < 1e-12);
+    }
+}
+
+TEST_CASE("long and flat ellipsoids find each other from nothing", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 200u)));
+    const auto axes = [&] {
+        return Vec3(random.number(0.1, 2), random.number(0.1, 2), random.number(0.1, 2));
+    };
+    const Shape i = shape<Ellipsoid>(axes()), j = shape<Ellipsoid>(axes());
+    Motion bi = random.motion(), bj = random.motion();
+    bi.r *= 3;
+    const Touch t = make_detector(i, j)->detect(bi, bj, nullptr);
+    CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-14);
+}
+
+TEST_CASE("a ball rolls through a bowl and keeps its touch", "[contact][detection]")
+{
+    const Vec3 D(1.0, 0.8, 1.2);
+    const auto detector = make_detector(shape<Sphere>(0.2), shape<Ellipsoid>(D, true));
+    const Ellipsoid bowl(D);
+    Motion ball, ground;
+    Points from{{0, 0, -0.2}, {0, 0, -1.2}};
+    for (double angle = 0; angle < 6.3; angle += 0.1) {
+        const Vec3 u(std::sin(angle) * 0.6, std::sin(angle) * 0.8, -std::cos(angle));
+        const Vec3 C_j = *bowl.support(u);
+        ball.r = C_j - (0.2 + 0.01) * u;
+        const Touch t = detector->detect(ball, ground, &from);
+        CHECK(t.gap == Approx(0.01).margin(1e-14));
+        CHECK((t.n + u).norm() < 1e-13);
+        CHECK((t.C_j - C_j).norm() < 1e-13);
+        from = {t.C_i - ball.r, t.C_j};
+    }
+}
+
+TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest", "[contact][detection]")
+{
+    Motion ring, ball, ground;
+    ball.r = {1.5, 0, 0.5};
+    const Touch t = make_detector(shape<Torus>(1.0, 0.1), shape<Sphere>(0.2))->detect(ring, ball, nullptr);
+    CHECK(t.gap == Approx(std::sqrt(0.5) - 0.3));
+    ring.A = lie::exp({0.3, 0, 0}), ring.r.z() = 1;
+    const Touch low = make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect(ring, ground, nullptr);
+    CHECK(low.gap == Approx(1 - std::sin(0.3) - 0.1));
+}
+
+TEST_CASE("a touch is found from nothing when the centre of a ball is inside the other body",
+          "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 50u)));
+    const double depth = random.number(0, 0.18);
+    const Vec3 u = random.unit();
+    const Torus torus(0.5, 0.2);
+    const Vec3 C = *torus.support(u);
+    Motion ball;
+    ball.r = C - depth * u;
+    const Touch t =
+        make_detector(shape<Sphere>(0.1), shape<Torus>(0.5, 0.2))->detect(ball, Motion(), nullptr);
+    CHECK(t.gap == Approx(-depth - 0.1));
+    CHECK((t.n - u).norm() < 1e-13);
+    CHECK((t.C_j - C).norm() < 1e-13);
+}
+
+TEST_CASE("where the surfaces do not curve away from each other there is no touch", "[contact][detection]")
+{
+    const auto trouble = [](const Shape& i, const Shape& j, const Motion& bi, const Points* from) {
+        try {
+            make_detector(i, j)->detect(bi, {}, from);
+        } catch (const lie::NumericalFailure& e) {
+            CHECK(e.status == "contact_not_converged");
+            return std::string(e.what());
+        }
+        return std::string("none");
+    };
+    const std::string start = "no touch of two surfaces: the surfaces do not curve away from each other, ";
+    // flatter than the bowl where they would touch
+    Motion m;
+    m.r = {0, 0, -0.65};
+    const Points low{{0, 0, -0.3}, {0, 0, -1}};
+    CHECK(
+        trouble(shape<Ellipsoid>(Vec3(0.9, 0.8, 0.3)), shape<Sphere>(1.0, true), m, &low).starts_with(start));
+    // parallel axes
+    m.r = {0.5, 0, 0};
+    CHECK(trouble(shape<Cylinder>(0.3), shape<Cylinder>(0.2), m, nullptr) ==
+          "two cylinders are parallel: they touch along a line");
+}
+
+TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Disk>(0.5), shape<Plane>());
+    Motion disk, ground;
+    for (double lean : {0.0, 0.3, 1.2, -0.7}) {
+        disk.A = lie::exp(Vec3(lean + std::acos(0.0), 0, 0));
+        disk.r = {0, 0, 1};
+        const Touch t = detector->detect(disk, ground, nullptr);
+        CHECK(t.gap == Approx(1 - 0.5 * std::cos(lean)));
+        CHECK((t.K_i - Vec3(std::cos(lean) / 0.5, std::cos(lean) / 0.5, 0).asDiagonal().toDenseMatrix())
+                  .norm() < 1e-15);
+    }
+}
+
+TEST_CASE("from points that lead to no touch the search begins anew", "[contact][detection]")
+{
+    Motion m, ground;
+    m.r = {0, 0, 1};
+    const auto detector =
+        make_detector(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)));
+    const Points far{{0, 0, 0.5}, {0, 0, -0.5}};  // the far sides
+    const Touch t = detector->detect(m, ground, &far);
+    CHECK(t.gap == Approx(0).margin(1e-15));
+    CHECK((t.C_j - Vec3(0, 0, 0.5)).norm() < 1e-13);
+}
+
+TEST_CASE("a ball that flies across a bowl meets the wall that it comes to", "[contact][detection]")
+{
+    Motion ball, ground;
+    const Points first{{-0.05, 0, 0}, {-1, 0, 0}};
+    for (const Vec3& axes : {Vec3(1, 2, 2), Vec3(1, 1.2, 0.9)}) {
+        const Ellipsoid bowl(axes);
+        const auto detector = make_detector(shape<Sphere>(0.05), shape<Ellipsoid>(axes, true));
+        Points from = first;
+        double last = 0;
+        for (int k = -90; k <= 96; ++k) {
+            ball.r = {0.01 * k, 0.003, 0};
+            const Touch t = detector->detect(ball, ground, &from);
+            INFO(axes.transpose() << ", x = " << ball.r.x());
+            CHECK(t.gap == Approx((ball.r - bowl.project(ball.r)).norm() - 0.05).margin(1e-12));
+            if (k > -90) CHECK(std::abs(t.gap - last) < 0.0101);  // no faster than the ball
+            last = t.gap;
+            from = {t.C_i - ball.r, t.C_j};
+        }
+        CHECK(last < 0);
+        CHECK(from.c_j.x() > 0.99);
+    }
+}
+
+TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection]")
+{
+    const double upright = GENERATE(0., 1e-14, 1e-11, 1e-6);
+    const Shape ring = shape<Torus>(0.5, 0.1), plane = shape<Plane>();
+    Motion ground, m;
+    m.A = lie::exp({upright, 0, 0});
+    const auto gap = [&](const Shape& i, const Shape& j, const Vec3& r) {
+        m.r = r;
+        const Touch t = make_detector(i, j)->detect(m, ground, nullptr);
+        CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-8);
+        CHECK(t.K_i.allFinite());
+        CHECK(t.K_j.allFinite());
+        const Points from{m.A.transpose() * (t.C_i - m.r), t.C_j};
+        CHECK(make_detector(i, j)->detect(m, ground, &from).gap == Approx(t.gap).margin(1e-6));
+        return t.gap;
+    };
+    const auto about = [](double g) { return Approx(g).margin(2e-6); };
+    CHECK(gap(shape<Disk>(0.3), plane, {0, 0, 1}) == about(1));
+    CHECK(gap(ring, plane, {0, 0, 1}) == about(0.9));
+    const double ahead = 1.3 - 0.5;  // of infinite cylinders that are not quite parallel it is not the least
+    if (upright < 1e-9) CHECK(gap(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {1.3, 0, 2}) == about(ahead));
+    // on the axis: above a ring, within its hole, in a pipe, in the tube of another ring
+    CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 1.2}) == about(1.3 - 0.3));
+    CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 0}) == about(0.2));
+    CHECK(gap(shape<Sphere>(0.2), shape<Cylinder>(0.5, true), {0, 0, 1}) == about(0.3));
+    CHECK(gap(shape<Sphere>(0.02), shape<Torus>(0.5, 0.1, true), {0.5, 0, 0}) == about(0.08));
+    CHECK(gap(ring, ring, {0, 0, 0.7}) == about(0.5));
+    CHECK(gap(ring, ring, {0, 0, 0.25}) == about(0.05));
+    CHECK(gap(shape<Sphere>(0.2), shape<Ellipsoid>(Vec3(0.5, 0.5, 1), true), {0, 0, 0}) == about(0.3));
+}
+
+TEST_CASE("bodies that touch in many points are refused", "[contact][detection]")
+{
+    const auto refusal = [](const Shape& i, const Shape& j, const Vec3& r) {
+        Motion m;
+        m.r = r;
+        try {
+            make_detector(i, j)->detect(m, {}, nullptr);
+        } catch (const NoSingleTouch& e) {
+            CHECK(e.status == "contact_not_converged");
+            return std::string(e.what());
+        }
+        return std::string("none");
+    };
+    for (double sunk : {0., 1e-3}) {
+        CHECK(refusal(shape<Disk>(0.3), shape<Plane>(), {0, 0, -sunk}) ==
+              "a disk lies flat on a plane: it touches with all of its rim");
+        CHECK(refusal(shape<Torus>(0.5, 0.1), shape<Plane>(), {0, 0, 0.1 - sunk}) ==
+              "a torus lies flat: it touches along a circle");
+        CHECK(refusal(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {0.5 - sunk, 0, 0}) ==
+              "two cylinders are parallel: they touch along a line");
+    }
+}
+
+TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 10u)));
+    const Torus ring(0.3, 0.05);
+    const auto detector = make_detector(shape<Torus>(0.3, 0.05), shape<Torus>(0.3, 0.05));
+    Motion m, ground;
+    m.A = random.rotation();
+    const Vec3 u = random.unit();
+    std::optional<Points> from;
+    for (double distance = 1.2; distance > 0.3; distance -= 0.01) {
+        m.r = distance * u;
+        // from circle to circle, over the whole of one
+        double least = INFINITY;
+        for (int k = 0; k < 2000; ++k) {
+            const double angle = 2 * 3.14159265358979 / 2000 * k;
+            const Vec3 c = m.r + m.A * Vec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
+            least = std::min(least, std::hypot(std::hypot(c.x(), c.y()) - 0.3, c.z()) - 0.1);
+        }
+        if (least < 0.002) break;
+        INFO("distance " << distance);
+        const Touch cold = detector->detect(m, ground, nullptr);
+        const Touch t = detector->detect(m, ground, from ? &*from : nullptr);
+        CHECK(cold.gap > 0);
+        CHECK(t.gap == Approx(least).margin(1e-4));
+        from = {m.A.transpose() * (t.C_i - m.r), t.C_j};
+    }
+}
+
+TEST_CASE("the principal curvatures of a touch", "[contact][detection]")
+{
+    Random random(GENERATE(range(0u, 5u)));
+    const Mat3 A = random.rotation();
+    const auto [least, most] =
+        principal_curvatures(A * Vec3(3, -2, 0).asDiagonal() * A.transpose(), A.col(2));
+    CHECK(least == Approx(-2));
+    CHECK(most == Approx(3));
+    Touch t;
+    t.n = A.col(2);
+    t.K_i = A * Vec3(3, 5, 0).asDiagonal() * A.transpose();
+    t.K_j = A * Vec3(-1, -4, 0).asDiagonal() * A.transpose();
+    CHECK(least_curvature(t) == Approx(1));
+}
+
+TEST_CASE("pairs without a single touch are refused", "[contact][detection]")
+{
+    const Shape plane = shape<Plane>(), foot = shape<Foot>(), disk = shape<Disk>(1.0),
+                ball = shape<Sphere>(1.0), bowl = shape<Sphere>(1.0, true);
+    const auto refusal = [](const Shape& i, const Shape& j) {
+        try {
+            make_detector(i, j);
+        } catch (const lie::InvalidInput& e) {
+            return std::string(e.what());
+        }
+        return std::string("accepted");
+    };
+    const std::string where = "contact::make_detector: ";
+    CHECK(refusal(plane, plane) ==
+          where + "a pair of surfaces must touch in a single point, got plane and plane");
+    CHECK(refusal(foot, foot) == where + "a foot touches planes only, got foot and foot");
+    CHECK(refusal(ball, foot) == where + "a foot touches planes only, got sphere and foot");
+    CHECK(refusal(disk, ball) == where + "a disk touches planes only, got disk and sphere");
+    CHECK(refusal(plane, bowl) ==
+          where + "a concave surface can be touched from inside only, got plane and concave sphere");
+    CHECK(refusal(bowl, bowl) ==
+          where + "a concave surface can be touched from inside only, got concave sphere and concave sphere");
+    CHECK(refusal(ball, bowl) ==
+          where +
+              "a ball must be smaller than the bowl it touches, got a ball of radius 1 in a bowl of "
+              "radius 1");
+    CHECK(refusal(shape<Cylinder>(1.0), plane) ==
+          where + "a pair of surfaces must touch in a single point, got cylinder and plane");
+    CHECK(refusal(shape<Cylinder>(0.5), shape<Cylinder>(1.0, true)) ==
+          where + "a pair of surfaces must touch in a single point, got a cylinder in a pipe");
+    CHECK(refusal(ball, {}) == where + "a shape must have a surface, got none");
+
+    Shape turned = ball;
+    turned.orientation *= 2;
+    CHECK(refusal(turned, plane).starts_with(where + "the orientation of a surface must be a rotation"));
+    turned.orientation = -Mat3::Identity();
+    CHECK(refusal(plane, turned) ==
+          where + "the orientation of a surface must be a rotation, got a reflection");
+    Shape lost = ball;
+    lost.position.x() = std::nan("");
+    CHECK(refusal(lost, plane) == where + "the position of a surface must be finite, got nan   0   0");
+}
+
+TEST_CASE("concentric spheres have no contact normal", "[contact][detection]")
+{
+    const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
+    CHECK_THROWS_AS(detector->detect({}, {}, nullptr), lie::NumericalFailure);
+}

@@ -1,0 +1,457 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/evolving/unilateral.hpp"
+#include "contact/compliant/contact_force.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "dae/start.hpp"
+#include "lie/trajectory.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using contact::ContactEvent;
+using contact::EvolvingContact;
+using contact::Shape;
+using contact::Unilateral;
+using lie::Mat3;
+using lie::State;
+using lie::Vec3;
+
+namespace {
+
+constexpr double g = 9.81;
+
+const Shape plane{std::make_shared<contact::Plane>()};
+Shape ball(double R) { return {std::make_shared<contact::Sphere>(R)}; }
+
+/// A ball of mass m over the ground
+struct Ball {
+    dae::Model model;
+    State x;
+
+    Ball(double R, double m, const Shape& ground, const Vec3& r, const Vec3& v, const Unilateral& unilateral,
+         EvolvingContact::Friction friction = EvolvingContact::Friction::none,
+         const Vec3& omega = Vec3::Zero())
+    {
+        model.add({"ball", m, 0.4 * m * R * R * Mat3::Identity()});
+        model.constrain("contact",
+                        std::make_unique<EvolvingContact>(0, ball(R), dae::ground, ground, friction,
+                                                          EvolvingContact::NormalRows::tangent, unilateral));
+        x.body.resize(1);
+        x.body[0].r = r, x.body[0].rdot = v, x.body[0].omega_bar = omega;
+        dae::start(model, x);
+    }
+};
+
+struct Run {
+    std::vector<State> node;
+    std::vector<ContactEvent> events;
+};
+
+Run run(const Ball& ball, const std::string& scheme, double end, double h)
+{
+    contact::UnilateralStep step(ball.model, lie::scheme(scheme), {.tolerance = 1e-13});
+    Run out;
+    out.node = lie::march(ball.x, step, lie::Grid::over(end, h)).row;
+    out.events = step.events();
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a ball bounces far from the origin as it does there", "[contact][unilateral]")
+{
+    const double R = 0.1, height = 0.5;
+    const Run here = run({R, 2, plane, Vec3(0, 0, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
+                         "rA-half-1-momentum", 2, 0.013),
+              far = run({R, 2, plane, Vec3(1e4, -3e4, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
+                        "rA-half-1-momentum", 2, 0.013);
+    REQUIRE(here.events.size() == far.events.size());
+    for (size_t k = 0; k < here.events.size(); ++k)
+        CHECK(far.events[k].t == Approx(here.events[k].t).epsilon(1e-9));
+}
+
+TEST_CASE("a ball bounces at the instants of the closed form", "[contact][unilateral]")
+{
+    const double R = 0.1, height = 0.5, e = 0.8;
+    using Impact = Unilateral::Impact;
+    for (const Impact impact : {Impact::newton, Impact::poisson})
+        for (const char* scheme : {"rA-half-1-momentum", "rA-half-1-kick", "rA-rattle", "rA-rkmk-4"}) {
+            INFO(scheme);
+            const Ball b(R, 2, plane, Vec3(0.3, 0, R + height), Vec3(0.7, 0.1, 0), {true, e, impact});
+            const Run r = run(b, scheme, 1.6, 0.013);
+            double t = std::sqrt(2 * height / g), v = g * t;
+            REQUIRE(r.events.size() >= 3);
+            for (int k = 0; k < 3; ++k) {
+                CHECK(r.events[k].kind == ContactEvent::Kind::impact);
+                CHECK(r.events[k].t == Approx(t).epsilon(1e-11));
+                CHECK(r.events[k].speed == Approx(v).epsilon(1e-11));
+                v *= e;
+                t += 2 * v / g;
+            }
+            for (const State& x : r.node) CHECK(x.body[0].r.z() >= R - 1e-12);
+            CHECK(r.node.back().body[0].r.x() == Approx(0.3 + 0.7 * r.node.back().t).epsilon(1e-13));
+        }
+}
+
+TEST_CASE("a ball leaves the top of a sphere at the angle of the closed form, of second order (long)",
+          "[contact][unilateral]")
+{
+    // Sliding: m v²/(R + r) = m g cos θ and v² = v0² + 2 g (R + r)(1 - cos θ); rolling: 0.7 v² = ... instead of ½.
+    const double R = 1, r = 0.3, v0 = 0.2, d = R + r;
+    for (const bool rolling : {false, true}) {
+        const double cosine = rolling ? (1 + 0.7 * v0 * v0 / (g * d)) / 1.7 : 2. / 3 + v0 * v0 / (3 * g * d);
+        CHECK(cosine == Approx(rolling ? 0.5895268 : 0.66771217).epsilon(1e-7));
+        std::vector<double> error, of_flight;
+        for (const double h : {4e-3, 2e-3, 1e-3}) {
+            const Ball b(r, 1, ball(R), Vec3(0, 0, d), Vec3(v0, 0, 0), {.opens = true},
+                         rolling ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none,
+                         rolling ? Vec3(0, v0 / r, 0) : Vec3::Zero());
+            const Run out = run(b, "rA-half-1-momentum", 2.4, h);
+            REQUIRE(out.events.size() == 1);
+            REQUIRE(out.node.back().body[0].r.z() < 0);
+            CHECK(out.events[0].kind == ContactEvent::Kind::lift_off);
+            const double t = out.events[0].t;
+            const State& x = out.node[static_cast<size_t>(t / h)];
+            const double dt = t - x.t;
+            const double z = x.body[0].r.z() + dt * x.body[0].rdot.z() + 0.5 * dt * dt * x.body[0].rddot.z();
+            error.push_back(std::abs(z / d - cosine));
+
+            // ballistic from the exact lift-off, at the height where the ball passes the middle of the sphere
+            const double v = std::sqrt(g * d * cosine), sine = std::sqrt(1 - cosine * cosine);
+            const double fall = (-v * sine + std::sqrt(v * v * sine * sine + 2 * g * d * cosine)) / g;
+            const double x_exact = d * sine + v * cosine * fall;
+            for (size_t n = 1; n < out.node.size(); ++n) {
+                const Vec3 a = out.node[n - 1].body[0].r, c = out.node[n].body[0].r;
+                if (a.z() > 0 && c.z() <= 0) {
+                    const Vec3 w = out.node[n - 1].body[0].rdot;
+                    const double s = (w.z() + std::sqrt(w.z() * w.z() + 2 * g * a.z())) / g;
+                    of_flight.push_back(std::abs(a.x() + s * w.x() - x_exact));
+                }
+            }
+            for (const State& s : out.node) CHECK(s.body[0].r.norm() > d - 1e-13);
+        }
+        INFO("rolling " << rolling << ", errors of the cosine " << error[0] << ' ' << error[1] << ' '
+                        << error[2] << ", of the flight " << of_flight[0] << ' ' << of_flight[1] << ' '
+                        << of_flight[2]);
+        CHECK(error[0] < (rolling ? 1.2e-5 : 1.5e-5));
+        CHECK(std::log2(error[0] / error[2]) / 2 > 1.7);
+        if (!rolling) CHECK(std::log2(of_flight[0] / of_flight[2]) / 2 > 1.7);
+    }
+}
+
+TEST_CASE("an elastic ball keeps its energy from bounce to bounce in a bowl", "[contact][unilateral]")
+{
+    const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
+    const Ball b(0.5, 1, bowl, Vec3(0.4, 0.9, 0.3), Vec3(0.2, -0.1, 0), {true, 1});
+    const double before = lie::energy(b.model, b.x);
+    const Run r = run(b, "rA-half-1-momentum", 5, 5e-3);
+    CHECK(r.events.size() > 3);
+    for (const ContactEvent& e : r.events) CHECK(e.kind == ContactEvent::Kind::impact);
+    CHECK(lie::energy(b.model, r.node.back()) == Approx(before).margin(1e-10));
+}
+
+TEST_CASE("a ball that lands without restitution stays, and loses what it had along the normal",
+          "[contact][unilateral]")
+{
+    const double R = 0.1;
+    for (const double e : {0., 0.5}) {
+        const Ball b(R, 1, plane, Vec3(0, 0, R + 0.2), Vec3(0.3, 0, 0), {true, e});
+        const Run r = run(b, "rA-half-1-momentum", 2, 4e-3);
+        CHECK(r.events.back().kind == ContactEvent::Kind::closing);
+        CHECK((e > 0) == (r.events.size() > 1));
+        const State& x = r.node.back();
+        CHECK(x.memory[0] == 0);
+        CHECK(x.body[0].r.z() == Approx(R).epsilon(1e-14));
+        CHECK(x.body[0].rdot.z() == Approx(0).margin(1e-12));
+        CHECK(x.body[0].r.x() == Approx(0.6).epsilon(1e-13));
+        const auto& c = static_cast<const EvolvingContact&>(*b.model.evolving()[0]);
+        CHECK(c.multipliers(b.model.at(c, x), x.lambda).F_N == Approx(g).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a ball falls into a groove and rests on both walls", "[contact][unilateral]")
+{
+    const double lean = 50 * M_PI / 180, R = 0.2;
+    dae::Model model;
+    model.add({"ball", 1, 0.4 * R * R * Mat3::Identity()});
+    for (const double side : {-1., 1.}) {
+        // normals that lean by this from the vertical, towards the middle
+        const Mat3 A = lie::exp(Vec3(0, -side * lean, 0));
+        model.constrain(side < 0 ? "left" : "right",
+                        std::make_unique<EvolvingContact>(
+                            0, ball(R), dae::ground, Shape{plane.surface, Vec3::Zero(), A},
+                            EvolvingContact::Friction::none, EvolvingContact::NormalRows::tangent,
+                            Unilateral{.opens = true, .restitution = 0.3}));
+    }
+    State x;
+    x.body.resize(1);
+    x.body[0].r = Vec3(0.05, 0, R / std::cos(lean) + 0.3);
+    dae::start(model, x);
+    CHECK(x.memory == std::vector<int>{1, 1});
+    contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-13});
+    const State end = lie::march(x, step, lie::Grid::over(4, 5e-3)).row.back();
+    CHECK(end.memory == std::vector<int>{0, 0});
+    CHECK(end.body[0].r.z() == Approx(R / std::cos(lean)).epsilon(1e-12));
+    CHECK(end.body[0].r.x() == Approx(0).margin(1e-12));
+    for (const auto& constraint : model.evolving()) {
+        const auto& c = static_cast<const EvolvingContact&>(*constraint);
+        CHECK(c.multipliers(model.at(c, end), end.lambda).F_N == Approx(7.630825370750323).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("what falls on a ball that lies on the ground is pushed back through it", "[contact][unilateral]")
+{
+    dae::Model model;
+    const double R = 0.1, e = 0.5, drop = 0.4;
+    model.add({"lower", 1, 0.4 * R * R * Mat3::Identity()});
+    model.add({"upper", 2, 0.8 * R * R * Mat3::Identity()});
+    const auto add = [&](const char* name, int i, int j, const Shape& shape_j) {
+        model.constrain(
+            name, std::make_unique<EvolvingContact>(i, ball(R), j, shape_j, EvolvingContact::Friction::none,
+                                                    EvolvingContact::NormalRows::tangent,
+                                                    Unilateral{.opens = true, .restitution = e}));
+    };
+    add("on the ground", 0, dae::ground, plane);
+    add("on the ball", 1, 0, ball(R));
+    State x;
+    x.body.resize(2);
+    x.body[0].r = Vec3(0, 0, R);
+    x.body[1].r = Vec3(0, 0, 3 * R + drop);
+    dae::start(model, x);
+    CHECK(x.memory == std::vector<int>{0, 1});
+    contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-13});
+    std::vector<State> node = lie::march(x, step, lie::Grid::over(0.5, 3e-3)).row;
+    // the lower ball cannot give way, so the upper one rebounds as from the ground
+    REQUIRE(!step.events().empty());
+    CHECK(step.events()[0].t == Approx(std::sqrt(2 * drop / g)).epsilon(1e-11));
+    double highest = 0;
+    for (const State& s : node)
+        if (s.t > step.events()[0].t) highest = std::max(highest, s.body[1].r.z());
+    CHECK(highest == Approx(3 * R + e * e * drop).epsilon(1e-4));
+    CHECK(node.back().body[0].r.z() == Approx(R).epsilon(1e-13));
+}
+
+TEST_CASE("a free pair that collides keeps its momentum", "[contact][unilateral]")
+{
+    dae::Model model;
+    model.gravity.setZero();
+    model.add({"i", 1, Vec3(0.010, 0.012, 0.015).asDiagonal()});
+    model.add({"j", 3, Vec3(0.05, 0.06, 0.04).asDiagonal()});
+    const Shape egg{std::make_shared<contact::Ellipsoid>(Vec3(0.3, 0.2, 0.15))},
+        other{std::make_shared<contact::Ellipsoid>(Vec3(0.2, 0.25, 0.3))};
+    model.constrain("contact",
+                    std::make_unique<EvolvingContact>(0, egg, 1, other, EvolvingContact::Friction::none,
+                                                      EvolvingContact::NormalRows::tangent,
+                                                      Unilateral{.opens = true, .restitution = 0.7}));
+    State x;
+    x.body.resize(2);
+    x.body[0].r = Vec3(-0.5, 0.05, 0.02), x.body[0].rdot = Vec3(1, 0, 0);
+    x.body[0].omega_bar = Vec3(0.4, 1.1, -0.6);
+    x.body[1].r = Vec3(0.4, 0, 0), x.body[1].omega_bar = Vec3(-0.3, 0.2, 0.5);
+    dae::start(model, x);
+    const auto momenta = [&](const State& s) {
+        Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+        for (int b = 0; b < 2; ++b) {
+            const lie::Motion& body = s.body[b];
+            const Vec3 p = model.mass().m[b] * body.rdot;
+            sum.head<3>() += p;
+            sum.tail<3>() += body.r.cross(p) + body.A * (model.mass().J_bar[b] * body.omega_bar);
+        }
+        return sum;
+    };
+    contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-14});
+    const std::vector<State> node = lie::march(x, step, lie::Grid::over(1, 2e-3)).row;
+    REQUIRE(step.events().size() >= 1);
+    CHECK((momenta(node.back()).head<3>() - momenta(x).head<3>()).norm() < 1e-13);
+    CHECK((momenta(node.back()).tail<3>() - momenta(x).tail<3>()).norm() < 1e-4);
+    CHECK(lie::energy(model, node.back()) < lie::energy(model, x));
+}
+
+TEST_CASE("a run through impacts goes on from any node as if it had not stopped", "[contact][unilateral]")
+{
+    for (const char* scheme : {"rA-half-1-momentum", "rA-half-1", "rA-rattle", "rA-genalpha"}) {
+        INFO(scheme);
+        const Ball b(0.1, 1, plane, Vec3(0, 0, 0.3), Vec3(0.1, 0, 0), {true, 0.6});
+        const lie::Settings settings{.tolerance = 1e-13};
+        contact::UnilateralStep whole(b.model, lie::scheme(scheme), settings);
+        State x = b.x, resumed;
+        for (int n = 0; n < 150; ++n) {
+            contact::UnilateralStep fresh(b.model, lie::scheme(scheme), settings);
+            fresh.go_on_from(whole.past());
+            resumed = x;
+            const State before = x;
+            whole.step(x, 5e-3);
+            b.model.accepted(before, x);
+            fresh.step(resumed, 5e-3);
+            b.model.accepted(before, resumed);
+            REQUIRE(x.body[0].r == resumed.body[0].r);
+            REQUIRE(x.body[0].rdot == resumed.body[0].rdot);
+            REQUIRE(x.memory == resumed.memory);
+            REQUIRE(whole.events() == fresh.events());
+        }
+        CHECK(whole.events().size() > 2);
+        CHECK_THROWS_WITH(whole.go_on_from({}), Catch::Contains("as many contacts that open, got 0"));
+    }
+}
+
+TEST_CASE("contacts whose forces are not determined are named, or handed over to a compliant force",
+          "[contact][unilateral]")
+{
+    // four walls of a pyramid hold a ball that three of them hold already
+    const double R = 0.2, lean = 0.6;
+    for (const bool fallback : {false, true}) {
+        dae::Model model;
+        model.add({"ball", 1, 0.4 * R * R * Mat3::Identity()});
+        for (int k = 0; k < 4; ++k) {
+            const Mat3 A = lie::exp(Vec3(0, 0, k * M_PI / 2)) * lie::exp(Vec3(0, lean, 0));
+            const std::string name = "wall " + std::to_string(k);
+            auto c = std::make_unique<EvolvingContact>(0, ball(R), dae::ground,
+                                                       Shape{plane.surface, Vec3::Zero(), A});
+            if (fallback) {
+                auto force = std::make_unique<contact::ContactForce>(
+                    name, model, 0, ball(R), dae::ground, c->shape_j,
+                    std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                    contact::frictionless());
+                c->fallback = true;
+                force->stand_by(*c);
+                model.load(std::move(force));
+            }
+            model.constrain(name, std::move(c));
+        }
+        State x;
+        x.body.resize(1);
+        x.body[0].r = Vec3(0, 0, R / std::cos(lean));
+        if (!fallback) {
+            CHECK_THROWS_WITH(dae::start(model, x), Catch::Contains("not determined: 'wall 3'"));
+            continue;
+        }
+        CHECK(dae::start(model, x).rank == 3);
+        CHECK(x.memory[model.evolving()[3]->first_memory] == dae::Constraint::handed_over);
+        const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
+        const State end = lie::march(x, *step, lie::Grid::over(1, 1e-3)).row.back();
+        CHECK((end.body[0].r - x.body[0].r).norm() < 1e-9);
+    }
+}
+
+TEST_CASE("a contact that becomes too flat for one point is handed over on the way", "[contact][unilateral]")
+{
+    // the fourth-power superquadric is flat on top of its axes: it rolls there from the side
+    const Shape block{std::make_shared<contact::Superquadric>(Vec3(0.3, 0.3, 0.2), 4)};
+    for (const bool fallback : {false, true}) {
+        dae::Model model;
+        model.add({"block", 1, Vec3(0.02, 0.02, 0.03).asDiagonal()});
+        auto c = std::make_unique<EvolvingContact>(0, block, dae::ground, plane);
+        if (fallback) {
+            auto force = std::make_unique<contact::ContactForce>(
+                "floor", model, 0, block, dae::ground, plane,
+                std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                contact::frictionless());
+            c->fallback = true;
+            force->stand_by(*c);
+            model.load(std::move(force));
+        }
+        model.constrain("floor", std::move(c));
+        State x;
+        x.body.resize(1);
+        x.body[0].A = lie::exp(Vec3(0.4, 0.3, 0));
+        x.body[0].r = Vec3(0, 0, 0.3);
+        dae::start(model, x, {.fix_initial = true});
+        const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
+        const lie::Grid grid = lie::Grid::over(1, 1e-3);
+        if (!fallback) {
+            CHECK_THROWS_AS(lie::march(x, *step, grid), lie::NumericalFailure);
+            continue;
+        }
+        const State end = lie::march(x, *step, grid).row.back();
+        CHECK(end.memory[model.evolving()[0]->first_memory] == dae::Constraint::handed_over);
+        CHECK(end.body[0].r.z() > 0.19);
+    }
+}
+
+TEST_CASE("an impact that falls on a node is an impact like any other", "[contact][unilateral]")
+{
+    // 0.5 g t² = 0.2 m at t = 0.2 s, the 20th node
+    const double R = 0.1, up = 9.8;
+    for (const char* scheme : {"rA-half-1-momentum", "rA-rattle"}) {
+        INFO(scheme);
+        dae::Model model;
+        model.gravity = Vec3(0, 0, -up);
+        model.add({"ball", 1, 0.004 * Mat3::Identity()});
+        model.constrain(
+            "floor", std::make_unique<EvolvingContact>(
+                         0, ball(R), dae::ground, plane, EvolvingContact::Friction::none,
+                         EvolvingContact::NormalRows::tangent, Unilateral{.opens = true, .restitution = 1}));
+        State x;
+        x.body.resize(1);
+        x.body[0].r = Vec3(0, 0, R + 0.5 * up * 0.2 * 0.2);
+        dae::start(model, x);
+        const double before = lie::energy(model, x);
+        contact::UnilateralStep step(model, lie::scheme(scheme), {.tolerance = 1e-13});
+        const State end = lie::march(x, step, lie::Grid::over(4, 1e-2)).row.back();
+        CHECK(step.events().size() == 10);
+        for (const ContactEvent& e : step.events()) CHECK(e.kind == ContactEvent::Kind::impact);
+        CHECK(lie::energy(model, end) == Approx(before).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("a contact that may open has the forces, node by node, of one that may not",
+          "[contact][unilateral]")
+{
+    const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
+    const Vec3 from(0, 1.3203946979732251, -1.2654225449401855);
+    for (const lie::Scheme& s : lie::schemes()) {
+        if (!s.massless) continue;
+        INFO(s.name);
+        std::vector<State> of[2];
+        for (const bool opens : {false, true}) {
+            const Ball b(0.5, 1, bowl, from, Vec3::Zero(), {.opens = opens});
+            const auto step = contact::make_integrator(b.model, s, {.tolerance = 1e-13});
+            of[opens] = lie::march(b.x, *step, lie::Grid::over(0.1, 5e-3)).row;
+        }
+        for (size_t n = 0; n < of[0].size(); ++n) {
+            CHECK((of[0][n].lambda - of[1][n].lambda).norm() < 1e-9 * of[0][n].lambda.norm());
+            CHECK((of[0][n].body[0].rddot - of[1][n].body[0].rddot).norm() < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("what leaves or meets at the start is not held", "[contact][unilateral]")
+{
+    const double R = 0.1;
+    for (const double v : {2., -2.}) {
+        const Ball b(R, 1, plane, Vec3(0, 0, R), Vec3(0, 0, v), {true, 1});
+        CHECK(b.x.memory[0] == dae::Constraint::is_open);
+        const Run r = run(b, "rA-half-1-momentum", 0.1, 1e-3);
+        CHECK(r.node.back().body[0].r.z() == Approx(R + 0.2 - 0.5 * g * 0.01).epsilon(1e-10));
+        CHECK(r.events.size() == (v < 0 ? 1 : 0));
+    }
+}
+
+TEST_CASE("a step that fails among contacts that open leaves the state as it was", "[contact][unilateral]")
+{
+    // a step so long that the ball turns out of the bowl's reach
+    const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
+    dae::Model model;
+    model.add({"ball", 1, 0.1 * Mat3::Identity()});
+    auto c =
+        std::make_unique<EvolvingContact>(0, ball(0.5), dae::ground, bowl, EvolvingContact::Friction::none,
+                                          EvolvingContact::NormalRows::tangent, Unilateral{.opens = true});
+    model.constrain("contact", std::move(c));
+    State x;
+    x.body.resize(1);
+    x.body[0].r = Vec3(0, 1.3203946979732251, -1.2654225449401855);
+    dae::start(model, x);
+    contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"),
+                                 {.tolerance = 1e-300, .max_iterations = 2});
+    const State before = x;
+    CHECK_THROWS_AS(step.step(x, 1e-2), lie::NumericalFailure);
+    CHECK(x.body[0].r == before.body[0].r);
+    CHECK(x.lambda == before.lambda);
+    CHECK(x.alpha == before.alpha);
+    CHECK(x.memory == before.memory);
+    CHECK(x.remembered == before.remembered);
+    CHECK(step.events().empty());
+}

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Meshes: what they are refused for, which triangle is nearest, and that the surface made of one converges with its
+/// normal and its curvature to the surface that was meshed.
+
+#include "contact/mesh/mesh_surface.hpp"
+#include "contact/detection/detector.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "lie/check.hpp"
+#include "tests/support/finite_difference.hpp"
+#include "tests/support/icosphere.hpp"
+#include "tests/support/no_allocation.hpp"
+#include "tests/support/random_motion.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <sstream>
+
+using namespace hilda;
+using namespace hilda::contact;
+using tests::derivative;
+using tests::icosphere;
+using tests::image;
+using tests::Random;
+using tests::Triangles;
+
+namespace {
+
+TriangleMesh ellipsoid_mesh(const Vec3& D, int levels)
+{
+    return image(icosphere(levels), [&](const Vec3& v) { return Vec3(D.cwiseProduct(v)); });
+}
+
+/// How a mesh differs from the ellipsoid on which its vertices lie, each moved along it by up to `jitter` of an edge:
+/// the root mean squares of the errors of position, normal and shape operator
+Vec3 errors(const Vec3& D, int levels, double jitter)
+{
+    Random random(1);
+    const double edge = 1.2 * std::pow(0.5, levels);
+    const MeshSurface mesh(image(icosphere(levels), [&](const Vec3& v) {
+        return Vec3(D.cwiseProduct((v + random.vector(jitter * edge)).normalized()));
+    }));
+    const Ellipsoid exact(D);
+    Vec3 squares = Vec3::Zero();
+    constexpr int points = 300;
+    for (int k = 0; k < points; ++k) {
+        const Vec3 a = *exact.support(random.unit()), x = mesh.project(a), there = exact.project(x);
+        squares += Vec3((x - a).squaredNorm(), (mesh.normal(x) - exact.normal(there)).squaredNorm(),
+                        (mesh.shape_operator(x) - exact.shape_operator(there)).squaredNorm());
+    }
+    return (squares / points).cwiseSqrt();
+}
+
+std::string refusal(const Triangles& mesh)
+{
+    try {
+        MeshSurface(TriangleMesh(mesh.vertices, mesh.triangles));
+    } catch (const lie::InvalidInput& e) {
+        return e.what();
+    }
+    return "accepted";
+}
+
+Triangles tetrahedron()
+{
+    return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)},
+            {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+}  // namespace
+
+TEST_CASE("a mesh surface converges in position and normal and curvature", "[contact][mesh]")
+{
+    const Vec3 coarse = errors({1, 0.9, 1.1}, 2, 0.1), fine = errors({1, 0.9, 1.1}, 3, 0.1);
+    const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
+    INFO("errors " << coarse.transpose() << " and " << fine.transpose() << ", orders " << order.transpose());
+    CHECK(order[0] == Approx(4).margin(0.2));
+    CHECK(order[1] == Approx(3).margin(0.2));
+    CHECK(order[2] == Approx(2).margin(0.2));
+    CHECK(fine[0] < 2e-4);
+    CHECK(fine[1] < 1e-3);
+    CHECK(fine[2] < 2e-2);
+}
+
+TEST_CASE("the derivatives of a mesh surface are those of its G", "[contact][mesh]")
+{
+    static const MeshSurface s(ellipsoid_mesh({0.9, 0.7, 1.2}, 3));
+    Random random(GENERATE(range(0u, 20u)));
+    const Vec3 u = random.unit(), a = Vec3(0.9, 0.7, 1.2).cwiseProduct(u) + random.vector(0.02);
+    const auto [G, gradient, hessian] = s.derivatives(a);
+    CHECK(G == s.value(a));
+    CHECK(hessian == hessian.transpose());
+    // steps so short that third derivatives, which jump where a patch ends, do no harm
+    constexpr double step = 2e-5;
+    for (int k = 0; k < 3; ++k) {
+        const auto moved = [&](double tau) { return Vec3(a + tau * Vec3::Unit(k)); };
+        CHECK(gradient[k] ==
+              Approx(derivative([&](double tau) { return s.value(moved(tau)); }, step)).margin(1e-9));
+        CHECK((hessian.col(k) - derivative([&](double tau) { return s.gradient(moved(tau)); }, step)).norm() <
+              1e-7);
+    }
+}
+
+TEST_CASE("normal and curvature of a mesh surface do not jump from triangle to triangle", "[contact][mesh]")
+{
+    const TriangleMesh mesh = ellipsoid_mesh({0.9, 0.7, 1.2}, 3);
+    const MeshSurface s(mesh);
+    constexpr double step = 1e-9;
+    double most = 0;
+    for (size_t k = 0; k < mesh.triangles.size(); k += 23) {
+        const auto& [a, b, c] = mesh.triangles[k];
+        const Vec3 edge = mesh.vertices[b] - mesh.vertices[a], middle = mesh.vertices[a] + 0.4 * edge;
+        const Vec3 across = mesh.face_normal[k].cross(edge).normalized();
+        const Vec3 one = middle + step * across, other = middle - step * across;
+        CHECK(mesh.nearest(one).triangle != mesh.nearest(other).triangle);
+        most = std::max(most, (s.hessian(one) - s.hessian(other)).norm() / s.hessian(middle).norm());
+        CHECK((s.normal(one) - s.normal(other)).norm() < 10 * step);
+    }
+    CHECK(most < 100 * step);
+}
+
+TEST_CASE("the triangle found is the nearest of all and its side is the side of the mesh", "[contact][mesh]")
+{
+    const Vec3 D(0.9, 0.7, 1.2);
+    static const TriangleMesh mesh = ellipsoid_mesh(D, 3);
+    const Ellipsoid exact(D);
+    Random random(GENERATE(range(0u, 20u)));
+    const Vec3 a = 1.5 * random.vector();
+    const TriangleMesh::Nearest near = mesh.nearest(a);
+    double least = INFINITY;
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+        least = std::min(least, mesh.distance(t, a));
+    CHECK(near.distance == least);
+    CHECK(near.distance == (a - near.point).norm());
+    const double depth = exact.value(a);
+    if (std::abs(depth) > 0.02)
+        CHECK((a - near.point).dot(mesh.normal(near.triangle, near.feature)) * depth > 0);
+}
+
+TEST_CASE("far from a mesh the surface is as far as its triangles", "[contact][mesh]")
+{
+    static const MeshSurface s(ellipsoid_mesh({0.9, 0.7, 1.2}, 3));
+    CHECK(s.size() == Approx(std::cbrt(0.9 * 0.7 * 1.2)).epsilon(0.02));
+    Random random(GENERATE(range(0u, 20u)));
+    for (const double scale : {0.4, 2.0}) {
+        const Vec3 a = scale * Vec3(0.9, 0.7, 1.2).cwiseProduct(random.unit());
+        const auto [G, gradient, hessian] = s.derivatives(a);
+        CHECK(G * (scale - 1) > 0);
+        CHECK(std::abs(G) == Approx(s.mesh.nearest(a).distance).epsilon(1e-14));
+        CHECK(gradient.norm() == Approx(1).epsilon(1e-14));
+        if (scale < 1) continue;  // within, the nearest triangle may change in the step
+        for (int k = 0; k < 3; ++k)
+            CHECK((hessian.col(k) -
+                   derivative([&](double tau) { return s.gradient(a + tau * Vec3::Unit(k)); }, 1e-6))
+                      .norm() < 1e-7);
+        const Vec3 x = s.project(a);
+        CHECK(std::abs(s.value(x)) < 1e-14);
+        CHECK((a - x).cross(s.normal(x)).norm() < 3e-14);
+    }
+}
+
+TEST_CASE("a mesh surface turns and grows with its mesh", "[contact][mesh]")
+{
+    Random random(GENERATE(range(0u, 5u)));
+    const Mat3 A = random.rotation();
+    const Vec3 D(1, 0.85, 1.15), o = random.vector(3);
+    const double grown = std::exp(random.number(-5, 5));
+    const MeshSurface s(ellipsoid_mesh(D, 2));
+    const MeshSurface moved(
+        image(icosphere(2), [&](const Vec3& v) { return Vec3(o + grown * A * D.cwiseProduct(v)); }));
+    for (int k = 0; k < 10; ++k) {
+        const Vec3 a = D.cwiseProduct(random.unit()) + random.vector(0.05), there = o + grown * A * a;
+        CHECK(moved.value(there) == Approx(grown * s.value(a)).margin(1e-13 * (grown + o.norm())));
+        CHECK((moved.normal(there) - A * s.normal(a)).norm() < 1e-12 * (1 + o.norm() / grown));
+        CHECK((grown * moved.shape_operator(there) - A * s.shape_operator(a) * A.transpose()).norm() <
+              1e-11 * (1 + o.norm() / grown));
+    }
+}
+
+TEST_CASE("sheets that are nearer than an edge do not feel each other", "[contact][mesh]")
+{
+    const Triangles one = icosphere(2);
+    const Vec3 apart(2.05, 0, 0);
+    Triangles two = one;
+    const int n = static_cast<int>(one.vertices.size());
+    for (const Vec3& v : one.vertices) two.vertices.push_back(v + apart);
+    for (const auto& [a, b, c] : one.triangles) two.triangles.push_back({a + n, b + n, c + n});
+    const MeshSurface alone(TriangleMesh(one.vertices, one.triangles));
+    const MeshSurface both(TriangleMesh(two.vertices, two.triangles));
+    for (const Vec3& a : {Vec3(1, 0, 0), Vec3(1.02, 0, 0), Vec3(0.98, 0.05, 0.03), Vec3(0.99, 0, 0.1)}) {
+        const auto [G, gradient, hessian] = both.derivatives(a);
+        CHECK(G == alone.value(a));
+        CHECK(gradient == alone.gradient(a));
+        CHECK(hessian == alone.hessian(a));
+        CHECK(both.value(apart - a) == Approx(G).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a ball touches a mesh where it touches what was meshed", "[contact][mesh]")
+{
+    const Vec3 D(0.9, 0.7, 1.2);
+    const double R = 0.2;
+    const Shape ball{std::make_shared<Sphere>(R)}, egg{std::make_shared<Ellipsoid>(D)};
+    static const auto meshed = std::make_shared<MeshSurface>(ellipsoid_mesh(D, 3));
+    Random random(GENERATE(range(0u, 10u)));
+    lie::Motion b_i = random.motion(), b_j = random.motion();
+    const Vec3 a = *Ellipsoid(D).support(random.unit());
+    b_i.r = b_j.r + b_j.A * (a + (R - 1e-3) * Ellipsoid(D).normal(a));
+    const Touch exact = make_detector(ball, egg)->detect(b_i, b_j, nullptr);
+    const Touch touch = make_detector(ball, {meshed})->detect(b_i, b_j, nullptr);
+    CHECK(touch.gap == Approx(exact.gap).margin(1e-3));
+    CHECK((touch.n - exact.n).norm() < 5e-3);
+    CHECK((touch.K_j - exact.K_j).norm() < 0.2);
+}
+
+TEST_CASE("a hollow mesh looks inward", "[contact][mesh]")
+{
+    const MeshSurface body(ellipsoid_mesh({1, 1, 1}, 2)), hollow(ellipsoid_mesh({1, 1, 1}, 2), true);
+    const Vec3 a(0.6, 0, 0.8);
+    CHECK(body.normal(a) == -hollow.normal(a));
+    CHECK(body.normal(a).dot(a) > 0.99);
+    CHECK(body.mean_curvature(a) == Approx(1).epsilon(0.1));
+    CHECK(hollow.mean_curvature(a) == -body.mean_curvature(a));
+    CHECK(std::isnan(body.value({0, std::nan(""), 0})));
+    CHECK_THROWS_AS(body.normal({0, 0, INFINITY}), lie::NumericalFailure);
+}
+
+TEST_CASE("evaluating a mesh surface takes nothing from the heap", "[contact][mesh][allocation]")
+{
+    const MeshSurface s(ellipsoid_mesh({1, 1, 1}, 2));
+    Vec3 sum = Vec3::Zero();
+    CHECK(tests::allocations_during([&] {
+              sum += s.derivatives({0.6, 0, 0.8}).gradient + s.normal({0, 0.6, 0.8}) + s.gradient({2, 2, 2});
+              sum += s.project({1, 1, 1}) + s.shape_operator({0.8, 0.6, 0}).col(0);
+          }) == 0);
+    CHECK(sum.allFinite());
+}
+
+TEST_CASE("what is no closed mesh is refused by name", "[contact][mesh]")
+{
+    const auto says = [](const Triangles& mesh, const std::string& what) {
+        CHECK(refusal(mesh) == "contact::TriangleMesh: " + what);
+    };
+    Triangles open = tetrahedron();
+    open.triangles.pop_back();
+    says(open, "the edge of the vertices 1 and 2 is open: it has triangle 0 only");
+    Triangles turned = tetrahedron();
+    std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+    says(
+        turned,
+        "the edge of the vertices 1 and 2 is run along in one direction by triangles 0 and 3: one of them is "
+        "inside out");
+    Triangles inside_out = tetrahedron();
+    for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
+    says(inside_out,
+         "the triangles must be counterclockwise as seen from outside: they enclose -0.166667 m^3");
+    Triangles flat = tetrahedron();
+    flat.vertices[3] = {0.5, 0, 0};
+    says(flat, "triangle 1 has no area");
+    Triangles beyond = tetrahedron();
+    beyond.triangles[2][1] = 4;
+    says(beyond, "triangle 2 has the vertex 4, of 4 numbered from 0");
+    Triangles nowhere = tetrahedron();
+    nowhere.vertices[2].y() = INFINITY;
+    says(nowhere, "vertex 2 is not finite");
+    says({{Vec3(0, 0, 0)}, {}}, "a mesh must have triangles");
+
+    Triangles twice = tetrahedron();
+    for (const Triangle& t : tetrahedron().triangles) twice.triangles.push_back(t);
+    says(twice, "the edge of the vertices 0 and 1 has 4 triangles; it must have two");
+    // two that touch with their tips
+    Triangles tips = tetrahedron();
+    for (int v = 1; v < 4; ++v) tips.vertices.push_back(-tips.vertices[v]);
+    for (const auto& [a, b, c] : tetrahedron().triangles) {
+        const auto other = [](int v) { return v == 0 ? 0 : v + 3; };
+        tips.triangles.push_back({other(a), other(c), other(b)});
+    }
+    says(tips, "two sheets of the mesh meet in vertex 0 only");
+}
+
+TEST_CASE("a mesh that is too coarse to be smooth is refused with the vertex", "[contact][mesh]")
+{
+    CHECK(refusal(tetrahedron()) ==
+          "contact::MeshSurface: the mesh is too coarse to be smooth: the 4 vertices near vertex 0 do not "
+          "determine a "
+          "cubic");
+    CHECK_THAT(refusal(icosphere(1)),
+               Catch::StartsWith("contact::MeshSurface: the mesh is too coarse to be smooth: "
+                                 "from vertex 12 to vertex 6, near to it, its normal turns by"));
+    CHECK(refusal(icosphere(2)) == "accepted");
+    Triangles with_more = icosphere(2);
+    with_more.vertices.emplace_back(7, 7, 7);
+    CHECK(refusal(with_more) == "accepted");
+    CHECK(MeshSurface(TriangleMesh(with_more.vertices, with_more.triangles)).size() < 1.01);
+}
+
+TEST_CASE("an OBJ text is read and its faults are told by line", "[contact][mesh]")
+{
+    const auto read = [](const std::string& text) {
+        std::istringstream in(text);
+        return read_obj(in, "box.obj");
+    };
+    const std::string corners = "# a tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\n\nv 0 0 1 1.0\nvn 0 0 1\n";
+    const TriangleMesh mesh = read(corners + "f 1 3 2\nf 1/1 2/2/2 4//3\nf -4 -1 -2\nf 2 3 4\n");
+    CHECK(mesh.vertices[3] == Vec3(0, 0, 1));
+    CHECK(mesh.triangles == tetrahedron().triangles);
+    const TriangleMesh pyramid =
+        read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+    CHECK(pyramid.triangles.size() == 6);
+
+    CHECK_THROWS_WITH(read("v 0 0 0\nv 1 x 0\n"),
+                      "contact::read_obj: box.obj:2: a vertex must have three numbers, got v 1 x 0");
+    CHECK_THROWS_WITH(read(corners + "f 1 2\n"),
+                      "contact::read_obj: box.obj:8: a face must have three corners or more, got f 1 2");
+    CHECK_THROWS_WITH(read(corners + "f 1 2 5\n"),
+                      "contact::read_obj: box.obj:8: there is no vertex 5 yet, of 4");
+    CHECK_THROWS_WITH(
+        read(corners + "f 1 2 x\n"),
+        "contact::read_obj: box.obj:8: a corner of a face must be the number of a vertex, got x");
+    CHECK_THROWS_WITH(
+        read(corners + "f 1 3 2\n"),
+        "contact::read_obj: box.obj: the edge of the vertices 0 and 1 is open: it has triangle 0 only");
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One world on several engines: packs of the CPU, particles and pairs one by one as a GPU takes them, and a GPU where
+// there is one. All have the same bits.
+#include "granular/backend/engine_impl.hpp"
+#include "granular/core/loops.hpp"
+#include "granular/core/neighbours_impl.hpp"
+#include "tests/support/grains.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+
+using namespace hilda;
+using namespace hilda::tests;
+using granular::Boundary;
+using granular::Engine;
+using granular::Scheme;
+
+namespace {
+
+constexpr double R = 1e-3;
+
+/// What a GPU does, on this CPU
+struct OneByOne : granular::par::Cpu {};
+
+Material steel() { return {"steel", 7800, 2e8, 0.3}; }
+
+/// Two materials with laws of every kind between them, in a box that is periodic along x, with a plate that falls on them
+/// and a drum that turns
+std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
+{
+    WorldOptions o;
+    o.low = {0, -8 * R, -8 * R}, o.high = {12 * R, 8 * R, 20 * R};
+    o.periodic = {true, false, false};
+    o.h = 5e-6, o.scheme = scheme, o.orientation = scheme != Scheme::chung;
+    World world(o, {glass(), steel()}, std::move(engine));
+    PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
+    world.set_law(0, 0, law);
+    law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
+    law.cohesion = granular::ConstantCohesion{.F_c = 1e-5f};
+    world.set_law(0, 1, law);
+    law = hertz_mindlin(steel(), 0.8, 0.2);
+    law.tangential = granular::MindlinIncremental{.spring = {.k_t = 5e7f, .c = 0.2f}, .cap = {0.3f, 0.2f}};
+    law.rolling = granular::PseudoForce{.mu_r = 0.05f, .k_r = 1, .eta_r = 0.1f};
+    world.set_law(1, 1, law);
+    Boundary drum;
+    drum.shape = Boundary::Shape::cylinder, drum.axis = {1, 0, 0}, drum.inside = 1, drum.radius = 6.5 * R;
+    drum.omega = {5, 0, 0};
+    world.add(drum);
+    Boundary plate;
+    plate.axis = {0, 0, -1}, plate.r = {0, 0, 8 * R}, plate.mass = 1e-3, plate.material = 1;
+    world.add(plate);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> in(-1, 1);
+    for (int k = 0; k < 75; ++k) {
+        Particle p;
+        p.radius = R * (0.8 + 0.15 * in(random)), p.material = k % 2;
+        p.r = 2.1 * R * Vec3{k % 5 + 0.5, k / 5 % 3 - 1., 0.9 * (k / 15) - 1.4};
+        p.v = {0.3 * in(random), 0.3 * in(random), 0.3 * in(random)};
+        p.omega = {40 * in(random), 40 * in(random), 40 * in(random)};
+        world.add(p);
+    }
+    world.before_each_step([](World& w) { w.set_force(7, {1e-5 * std::sin(1e3 * w.t()), 0, 0}); });
+    world.step(10000);
+    CHECK(world.rebuilds() > 5);
+    CHECK(world.contacts().size() > 15);
+    return world.to_bytes("");
+}
+
+/// n³ grains that fall into each other while neighbours are looked for often
+std::string crowd(std::unique_ptr<Engine> engine, int n)
+{
+    WorldOptions o;
+    const double width = 2.05 * R * n;
+    o.low = {0, 0, -R}, o.high = {width, width, width + 20 * R};
+    o.periodic = {true, true, false};
+    o.h = 2e-5, o.skin = 0.02;
+    World world(o, {glass()}, std::move(engine));
+    world.set_law(0, 0, hertz_mindlin(glass(), 0.5, 0.4));
+    world.add(Boundary{});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> in(-1, 1);
+    for (int k = 0; k < n * n * n; ++k)
+        world.add(Particle{.r = 2.05 * R * Vec3{k % n + 0.5, k / n % n + 0.5, k / (n * n) % n + 0.5},
+                           .radius = R,
+                           .v = {0.3 * in(random), 0.3 * in(random), 0.3 * in(random)}});
+    world.step(300);
+    CHECK(world.rebuilds() > 30);
+    return world.to_bytes("");
+}
+
+}  // namespace
+
+TEST_CASE("packs have the bits of particles that are taken one by one", "[granular][engine]")
+{
+    const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung);
+    const std::string packs = run(granular::make_engine({}), scheme);
+    CHECK(packs == run(std::make_unique<granular::EngineOn<OneByOne>>(), scheme));
+    if (scheme == Scheme::symplectic_euler)
+        CHECK(crowd(granular::make_engine({}), 9) ==
+              crowd(std::make_unique<granular::EngineOn<OneByOne>>(), 9));
+}
+
+TEST_CASE("a GPU has the bits of the CPU where there is one, and says why not where there is none",
+          "[granular][engine]")
+{
+    std::string why;
+    const auto names = granular::gpus(why);
+    if (names.empty()) {
+        CHECK(!why.empty());
+        CHECK_THROWS_AS(granular::make_engine({granular::Device::cuda, 0}), granular::DeviceError);
+        return;
+    }
+    for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung})
+        CHECK(run(granular::make_engine({}), scheme) ==
+              run(granular::make_engine({granular::Device::cuda, 0}), scheme));
+    CHECK(crowd(granular::make_engine({}), 70) ==
+          crowd(granular::make_engine({granular::Device::cuda, 0}), 70));
+    CHECK_THROWS_AS(granular::make_engine({granular::Device::cuda, static_cast<int>(names.size())}),
+                    granular::DeviceError);
+}

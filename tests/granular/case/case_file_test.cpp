@@ -1,0 +1,546 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a case file says is what is run; what makes no sense is refused with its place.
+#include "granular/case/case_file.hpp"
+#include "granular/case/fill.hpp"
+#include "granular/files.hpp"
+#include "granular/keys.hpp"
+#include "granular/text_place.hpp"
+#include "granular/world/output.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+
+using namespace hilda;
+using granular::read_case;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json good()
+{
+    return ordered_json::parse(R"({"hilda_case": 1,
+ "domain": {"low": [0, 0, 0], "high": [1, 1, 1]}, "step": 1e-5, "end": 0.1,
+ "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}, {"name": "steel", "density": 7800, "E": 2e11, "nu": 0.3}],
+ "laws": [{"between": ["glass", "glass"], "restitution": 0.9, "mu": 0.3, "tangential": {"law": "mindlin"}},
+          {"between": ["glass", "steel"], "restitution": 0.5, "normal": {"law": "hooke", "k_n": 1e4}}],
+ "boundaries": [{"type": "plane", "normal": [0, 0, 2], "material": "steel"}],
+ "particles": [{"r": [0.5, 0.5, 0.5], "radius": 0.1, "material": "glass"}]})");
+}
+
+/// The case with one entry changed
+std::string with(const std::string& pointer, const ordered_json& value)
+{
+    ordered_json c = good();
+    c[ordered_json::json_pointer(pointer)] = value;
+    return c.dump();
+}
+
+/// What read_case says of a case, without line and column
+std::string refusal(const std::string& text, const granular::Surroundings& surroundings = {})
+{
+    try {
+        read_case(text, "file", surroundings);
+        return "nothing";
+    } catch (const granular::InvalidCase& e) {
+        static const std::regex place(R"(^file:\d+:\d+ \((/[^)]*)\))");
+        return std::regex_replace(e.what(), place, "file: $1");
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a case is what its file says", "[granular][case]")
+{
+    const granular::Case c = read_case(good().dump(), "file");
+    CHECK(c.h == 1e-5);
+    const auto p = c.world->particles();
+    REQUIRE(p.size() == 1);
+    CHECK(p[0].r.z == 0.5);
+    CHECK(c.boundaries == std::vector<std::string>{"boundary 0"});
+}
+
+TEST_CASE("the example is a case", "[granular][case]")
+{
+    const std::string file = std::string(HILDA_SOURCE_DIR) + "/granular/cases/bed.json";
+    const granular::Case c = read_case(granular::read_file(file, 10000), file);
+    CHECK(c.world->count() > 5000);
+    CHECK(c.boundaries == std::vector<std::string>{"box-x", "box+x", "box-y", "box+y", "box-z"});
+}
+
+TEST_CASE("a box is planes around its inside, less those that are open", "[granular][case]")
+{
+    ordered_json c = good();
+    c["boundaries"][0] = {{"name", "bin"},           {"type", "box"},      {"low", {0.1, 0.2, 0.3}},
+                          {"high", {0.9, 0.8, 0.7}}, {"r", {0, 0, 0.05}},  {"v", {0, 0, 2}},
+                          {"open", {"+z", "-x"}},    {"material", "steel"}};
+    granular::Case box = read_case(c.dump(), "file");
+    CHECK(box.boundaries == std::vector<std::string>{"bin+x", "bin-y", "bin+y", "bin-z"});
+    const double away[] = {0.4, 0.3, 0.3, 0.15};  // of the middle
+    for (int k = 0; k < 4; ++k) {
+        const granular::Boundary& b = box.world->boundary(k);
+        CHECK(granular::nearest(b, {0.5, 0.5, 0.5}).distance == Approx(away[k]));
+        CHECK(b.v.z == 2);
+        CHECK(b.material == 1);
+    }
+}
+
+TEST_CASE("boundaries move as formulas say", "[granular][case]")
+{
+    const auto compile = [](const std::string& text) -> granular::Formula {
+        if (text == "sin(9*t)") return [](double t) { return std::sin(9 * t); };
+        if (text == "9*cos(9*t)") return [](double t) { return 9 * std::cos(9 * t); };
+        if (text == "sqrt(min(0,0.05-t))") return [](double t) { return t < 0.05 ? 0 : std::sqrt(0.05 - t); };
+        if (text == "1/t") return [](double t) { return 1 / t; };
+        throw granular::InvalidCase("is none");
+    };
+    ordered_json c = good();
+    const ordered_json plane = {{"type", "plane"}, {"normal", {0, 0, 1}}, {"material", "steel"}};
+    c["step"] = 1e-3, c["materials"][0]["E"] = 7e3, c["gravity"] = {0, 0, 0};
+    auto at = plane, by = plane, turning = plane, box = plane;
+    at["r"] = {0, 0.5, "sin(9*t)"}, by["v"] = {0, 0, "9*cos(9*t)"}, turning["omega"] = {0, 0, "9*cos(9*t)"};
+    at["normal"] = by["normal"] = turning["normal"] = {-1, 0, 0};
+    at["r"][0] = 2, by["r"] = turning["r"] = {2, 0, 0};
+    box = {{"type", "box"},
+           {"low", {-3, -3, -3}},
+           {"high", {3, 3, 3}},
+           {"material", "steel"},
+           {"r", {0, 0, "sin(9*t)"}}};
+    c["boundaries"] = {at, by, turning, box};
+    auto moving = read_case(c.dump(), "file", {.compile = compile});
+    granular::World& w = *moving.world;
+    CHECK(w.boundary(0).v.z == Approx(9).epsilon(1e-4));
+    CHECK(w.boundary(1).v.z == Approx(9).epsilon(1e-4));
+    for (int k = 0; k < 50; ++k) w.step(2);
+    const double z = std::sin(0.9);
+    CHECK(w.boundary(0).r.y == 0.5);
+    CHECK(w.boundary(0).r.z == Approx(z).epsilon(1e-14));
+    CHECK(w.boundary(1).r.z == Approx(z).epsilon(1e-5));  // h² 9²/24 = 3.4e-6
+    // the angle is sin(9 t) too
+    CHECK(std::atan2(w.boundary(2).axis.y, w.boundary(2).axis.x) == Approx(z - M_PI).epsilon(1e-5));
+    CHECK(w.boundary(3).r.z == Approx(z - 3).epsilon(1e-14));
+    CHECK(w.boundary(8).r.z == Approx(z + 3).epsilon(1e-14));
+
+    c["boundaries"] = {plane};
+    const auto refused = [&](const char* key, const ordered_json& value, const std::string& message) {
+        ordered_json wrong = c;
+        wrong["boundaries"][0][key] = value;
+        CHECK(refusal(wrong.dump(), {.compile = compile}) == "file: /boundaries/0/" + message);
+    };
+    refused("v", {0, 0, "cos"}, "v/2: is none");
+    refused("v", {0, "sin(9*t)"}, "v: must be three numbers or formulas, got [0,\"sin(9*t)\"]");
+    refused("v", {0, "sin(9*t)", nullptr}, "v/2: must be a finite number or a formula, got null");
+    c["boundaries"][0]["r"] = {0, 0, "sin(9*t)"};
+    refused("v", {0, 0, 1}, "v: must not stand where r is a formula, got [0,0,1]");
+    CHECK(refusal(c.dump()) ==
+          "file: /boundaries/0/r/2: must be a number where nobody reads formulas, got \"sin(9*t)\"");
+    refused("r", {0, 0, "1/t"}, "r: must be finite at t = 0, got [0,0,\"1/t\"]");
+    c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "1/t"};
+    CHECK_NOTHROW(
+        read_case(c.dump(), "file", {.compile = compile}));  // which is asked for in the middle of steps
+    c["boundaries"][0]["mass"] = 1;
+    CHECK_THAT(refusal(c.dump(), {.compile = compile}),
+               Catch::StartsWith("file: /boundaries/0/v: must be finite at t = 0 where a tool is free"));
+    c["boundaries"][0].erase("mass");
+    c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "sqrt(min(0,0.05-t))"};
+    auto bursting = read_case(c.dump(), "file", {.compile = compile});
+    CHECK_THROWS_WITH(bursting.world->step(100), "boundary 'boundary 0': v is not finite at t = 0.0505 s");
+}
+
+TEST_CASE("a tool with a mass falls where it is free and is told where it is not", "[granular][case]")
+{
+    const auto compile = [](const std::string&) -> granular::Formula {
+        return [](double t) { return 30 * t; };
+    };
+    ordered_json c = good();
+    c["step"] = 1e-3, c["materials"][0]["E"] = 7e3;
+    c["boundaries"] = {{{"type", "plane"},
+                        {"normal", {0, 0, -1}},
+                        {"r", {0, 0, 20}},
+                        {"material", "steel"},
+                        {"mass", 3},
+                        {"free", {false, false, true}},
+                        {"v", {0.25, "30*t", "30*t"}},
+                        {"F", {1, 2, "30*t"}}}};
+    auto falling = read_case(c.dump(), "file", {.compile = compile});
+    falling.world->step(10);
+    const granular::Boundary& b = falling.world->boundary(0);
+    CHECK(b.v.x == 0.25);
+    CHECK(b.v.y == Approx(30 * 9.5e-3));
+    CHECK(b.v.z == Approx(-9.81 * 0.01 + 30. / 3 * 1e-6 * 45));  // F of the beginnings of ten steps
+    c["boundaries"][0].erase("mass");
+    CHECK_THAT(refusal(c.dump(), {.compile = compile}),
+               Catch::StartsWith("file: /boundaries/0/free: unknown key"));
+}
+
+TEST_CASE("particles have replicas, and forces from outside", "[granular][case]")
+{
+    ordered_json c = good();
+    c["gravity"] = {0, 0, 0};
+    c["particles"].push_back(c["particles"][0]);
+    c["particles"][1]["replica"] = 2, c["particles"][1]["force"] = {0, 0, 1e-3};
+    c["fill"] = {{{"type", "lattice"},
+                  {"low", {0, 0, 0}},
+                  {"high", {0.2, 0.2, 0.3}},
+                  {"radius", 0.1},
+                  {"material", "glass"},
+                  {"replica", 1}}};
+    auto all = read_case(c.dump(), "file");
+    all.world->step(100);  // though two of them are in one place
+    const auto p = all.world->particles();
+    REQUIRE(p.size() == 3);
+    CHECK(p[1].replica == 2);
+    CHECK(p[2].replica == 1);
+    CHECK(p[1].v.z == Approx(100 * 1e-5 * 1e-3 / p[1].mass));
+    CHECK(p[0].v.z == 0);
+    c["particles"][1]["replica"] = 65536;
+    CHECK(refusal(c.dump()) == "file: /particles/1/replica: must be below 65536, got 65536");
+}
+
+TEST_CASE("what is wrong in a case is named with its place and value", "[granular][case]")
+{
+    const std::tuple<std::string, ordered_json, std::string> wrong[] = {
+        {"/hilda_case", 2, "/hilda_case: must be 1"},
+        {"/step", 0, "/step: must be positive, got 0"},
+        {"/step", "1e-5", "/step: must be a finite number, got \"1e-5\""},
+        {"/steps", 5, "/steps: unknown key"},
+        {"/domain/high", {1, 1}, "/domain/high: must be three numbers, got [1,1]"},
+        {"/domain/high/2", -1, "/domain/high/2: must be above the low end, got -1.0"},
+        {"/domain/periodic", {true, 1, false}, "/domain/periodic/1: must be true or false, got 1"},
+        {"/every", -1, "/every: must be positive, got -1"},
+        {"/laws/0/mu_s", 0.2, "/laws/0/mu_s: must not be below mu, got 0.2"},
+        {"/laws/1/rolling",
+         {{"law", "epsd"}, {"mu_r", 0.1}, {"eta_r", 0}},
+         "/laws/1/tangential: must not be none where a spring resists rolling or spin"},
+        {"/boundaries/0/name", "a,b", "/boundaries/0/name: must be without commas, quotes and line ends"},
+        {"/integrator", "euler", "/integrator: must be one of symplectic-euler, velocity-verlet"},
+        {"/materials/0/E", -7e7, "/materials/0/E: must be positive, got -70000000"},
+        {"/materials/0/nu", 0.5, "/materials/0/nu: must be between -1 and 0.5, got 0.5"},
+        {"/materials/1/density", 0, "/materials/1/density: must be positive, got 0"},
+        {"/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"},
+        {"/laws/0/between/1", "brass", "/laws/0/between/1: no material has this name, got \"brass\""},
+        {"/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of none, coulomb, mindlin"},
+        {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key"},
+        {"/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: must be positive, got -1"},
+        {"/boundaries/0/type", "wall",
+         "/boundaries/0/type: must be one of plane, box, cylinder, cone, sphere"},
+        {"/boundaries/0/normal", {0, 0, 0}, "/boundaries/0/normal: must not be zero"},
+        {"/particles/0/radius", -0.1, "/particles/0/radius: must be positive, got -0.1"},
+        {"/particles/0/material", "wood", "/particles/0/material: no material has this name, got \"wood\""},
+        {"/particles/0/r", {0.5, nullptr, 0.5}, "/particles/0/r/1: must be a finite number, got null"},
+    };
+    for (const auto& [pointer, value, message] : wrong) {
+        INFO(pointer);
+        CHECK_THAT(refusal(with(pointer, value)), Catch::StartsWith("file: " + message));
+    }
+    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": }", "file"), "file:2:6: is no JSON");
+    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": ", "file"), "file:2:6: is no JSON");
+    CHECK_THROWS_WITH(read_case(R"({"hilda_case": 1, "step": 1, "step": 2})", "file"),
+                      "file:1:30: the key \"step\" stands twice in one object");
+    CHECK_THROWS_WITH(
+        read_case("{\"a\": {\"b\": [{\"c\": 1},\n  {\"c\": 1, \"d\": 2,\n   \"c\": 3}]}}", "file"),
+        "file:3:4: the key \"c\" stands twice in one object");
+    CHECK_THROWS_WITH(read_case("{\"a\\\\\\\"b\": 1, \"a\\\\\\\"b\": 2}", "file"),
+                      Catch::StartsWith("file:1:15: the key"));
+    CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
+    CHECK_THROWS_AS(read_case(R"({"hilda_case": 1e400})", "file"), granular::InvalidCase);
+}
+
+TEST_CASE("a value of a text is found by its pointer", "[granular][case]")
+{
+    const std::string text =
+        "{\"a\": {\"b]\\\"}\": [1, {\"x\": []}],\n   \"c\" : [[], \"]\", -1e5 ,[2,\n 33]]}, \"d\":{ }}\n";
+    const std::pair<std::string, std::string> places[] = {{"", "1:1"},
+                                                          {"/a", "1:7"},
+                                                          {"/a/b]\"}/0", "1:18"},
+                                                          {"/a/b]\"}/1", "1:21"},
+                                                          {"/a/b]\"}/1/x", "1:27"},
+                                                          {"/a/c/0", "2:11"},
+                                                          {"/a/c/1", "2:15"},
+                                                          {"/a/c/2", "2:20"},
+                                                          {"/a/c/3/1", "3:2"},
+                                                          {"/d", "3:13"},
+                                                          {"/d/e", "3:13"},
+                                                          {"/a/c/3/2/f", "2:26"},
+                                                          {"/z", "1:1"}};
+    for (const auto& [pointer, place] : places) {
+        INFO(pointer);
+        CHECK(granular::text_place(text, pointer) == place);
+    }
+    CHECK_THROWS_WITH(read_case("{\"hilda_case\": 1,\n \"domain\": {\"low\": [0, 0]}}", "file"),
+                      "file:2:20 (/domain/low): must be three numbers, got [0,0]");
+    CHECK_THROWS_WITH(read_case("{\"hilda_case\": 1,\n \"domain\": {}}", "file"),
+                      "file:2:12 (/domain/low): is missing");
+}
+
+TEST_CASE("whatever happens to the bytes of a case, it is read or refused", "[granular][case]")
+{
+    ordered_json c = good();
+    c["fill"] = {{{"type", "poisson"},
+                  {"low", {0, 0, 0.7}},
+                  {"high", {1, 1, 1}},
+                  {"radius", 0.1},
+                  {"material", "glass"}}};
+    c["boundaries"].push_back(
+        {{"type", "box"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"open", {"+z"}}, {"material", "steel"}});
+    const std::string text = c.dump(1);
+    const auto seed = GENERATE(1u, 2u);
+    unsigned state = seed;
+    const auto random = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
+    int refused = 0;
+    for (int k = 0; k < 1000; ++k) {
+        std::string wrong = text;
+        for (unsigned n = 1 + random() % 3; n > 0; --n) {
+            const std::size_t at = random() % wrong.size();
+            switch (random() % 4) {
+                case 0:
+                    wrong[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    wrong.erase(at, 1 + random() % 8);
+                    break;
+                case 2:
+                    wrong.insert(at, 1, "0123456789-eE.,:[]{}\"\\ "[random() % 23]);
+                    break;
+                default:
+                    wrong[at] = "0123456789-eE.,:[]{}\"\\ "[random() % 23];
+            }
+        }
+        try {
+            read_case(wrong, "file", {.memory = 20'000'000});
+        } catch (const granular::InvalidCase&) {
+            ++refused;
+        }
+    }
+    CHECK(refused > 500);
+}
+
+TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")
+{
+    const auto begin = [](const std::string& text) { granular::settle(read_case(text, "file")); };
+    CHECK_NOTHROW(begin(good().dump()));
+    const std::string other = with("/particles/0/material", "steel");
+    CHECK_THROWS_WITH(begin(other), "file:" + granular::text_place(other, std::string("/laws")) +
+                                        " (/laws): laws: there is none between two materials that may meet, "
+                                        "got 'steel' and 'steel'");
+    ordered_json two = good();
+    two["particles"].push_back({{"r", {0.5, 0.5, 0.685}}, {"radius", 0.1}, {"material", "glass"}});
+    CHECK_THROWS_WITH(begin(two.dump()),
+                      Catch::Contains(" (/particles/0): particle 0 and particle 1: must not overlap by more "
+                                      "than 5 % of a radius at the start, got 0.015"));
+    CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 0.09})),
+                      Catch::Contains(" (/particles/0): particle 0 and boundary 0: must not"));
+    CHECK_THROWS_WITH(begin(with("/particles/0/r", {0.5, 0.5, 1.5})),
+                      Catch::Contains(" (/particles/0): particle 0: is outside the domain along z, got 1.5"));
+    two["particles"][1]["r"] = {0.5, 0.5, 0.75};
+    ordered_json filling = {{"type", "lattice"},
+                            {"low", {0, 0, 0.8}},
+                            {"high", {0.4, 0.4, 1.5}},
+                            {"radius", 0.05},
+                            {"material", "glass"}};
+    two["fill"] = {filling, filling};
+    two["fill"][0]["high"][2] = 1, two["fill"][1]["low"][0] = 0.5, two["fill"][1]["high"][0] = 1;
+    CHECK_THROWS_WITH(begin(two.dump()), Catch::Contains(" (/fill/1): particle ") &&
+                                             Catch::Contains("is outside the domain along z"));
+}
+
+TEST_CASE("entries of a case are set, and what is wrong with them says so", "[granular][case]")
+{
+    ordered_json c = good();
+    const ordered_json filling = {{"type", "lattice"}, {"low", {0, 0, 0.7}}, {"high", {1, 1, 1}},
+                                  {"radius", 0.1},     {"jitter", 1},        {"material", "glass"}};
+    c["fill"] = {filling, filling};
+    const auto set = [&](const std::string& pointer, const std::string& value) {
+        return granular::Surroundings{.settings = {{pointer, value, "--set " + pointer}}};
+    };
+    const granular::Case plain = read_case(c.dump(), "file");
+    CHECK(plain.source.text() == c.dump());  // as it stands there
+    CHECK(read_case(c.dump(), "file", set("/end", "0.25")).end == 0.25);
+    CHECK(read_case(c.dump(), "file", set("/name", "a heap")).name == "a heap");
+    CHECK(read_case(c.dump(), "file", set("/gravity", "[0, 0, 1]")).source.json()["gravity"][2] == 1);
+    const granular::Case moved = read_case(c.dump(), "file", set("/particles/0/r/2", "0.25"));
+    CHECK(moved.world->particles()[0].r.z == 0.25);
+    CHECK(read_case(moved.source.text(), "again").world->particles()[0].r.z == 0.25);
+
+    const auto place = [&](const std::string& p) { return "file:" + granular::text_place(c.dump(), p); };
+    const std::tuple<std::string, std::string, std::string> wrong[] = {
+        {"/materials/1/E", "-1",
+         place("/materials/1/E") + " (/materials/1/E): must be positive, got -1.0 (from "
+                                   "--set /materials/1/E)"},
+        {"/boundaries/0", "{\"type\": \"plane\"}",
+         place("/boundaries/0/material") +
+             " (/boundaries/0/material): no material has this name, got \"\" (from --set "
+             "/boundaries/0)"},
+        {"/materials/2/E", "1",
+         place("/materials") + " (/materials): --set /materials/2/E: there is no \"2\""},
+        {"/materials/-1/E", "1",
+         place("/materials") + " (/materials): --set /materials/-1/E: there is no \"-1\""},
+        {"/step/h", "1", place("/step") + " (/step): --set /step/h: there is no \"h\""},
+        {"/a~b", "1", "file:1:1 (/): --set /a~b: '~' is written ~0 in a pointer, and '/' in a key is ~1"},
+        {"/end", "{\"a\": 1, \"a\": 2}",
+         place("/end") + " (/end): --set /end: the key \"a\" stands twice in one object"},
+        {"/name", "\xff", place("/name") + " (/): --set /name: the value is not UTF-8"},
+        {"step", "1", "file:1:1 (/): --set step: must be /json/pointer=VALUE"},
+    };
+    for (const auto& [pointer, value, message] : wrong) {
+        INFO(pointer);
+        if (pointer == "/name")
+            CHECK_THROWS_WITH(read_case(c.dump(), "file", set(pointer, value)),
+                              Catch::EndsWith("is not UTF-8"));
+        else
+            CHECK_THROWS_WITH(read_case(c.dump(), "file", set(pointer, value)), message);
+    }
+    CHECK_THROWS_WITH(read_case(c.dump(), "file", set("/end", "1e400")), Catch::Contains("--set /end: "));
+
+    // of fills that are alike each is another
+    granular::Surroundings seeded{.seed = 7};
+    const granular::Case sown = read_case(c.dump(), "file", seeded);
+    CHECK(sown.source.json()["fill"][0]["seed"] == 7);
+    CHECK(sown.source.json()["fill"][1]["seed"] == 8);
+    const auto p = sown.world->particles();
+    CHECK_FALSE(p[1].r == p[1 + (p.size() - 1) / 2].r);
+    CHECK_FALSE(p[1].r == plain.world->particles()[1].r);
+    CHECK(read_case(good().dump(), "file", seeded).notices.size() == 1);  // there is nothing to sow
+}
+
+TEST_CASE("a step is measured by the Rayleigh time and by a collision", "[granular][case]")
+{
+    const granular::Case c = read_case(good().dump(), "file");
+    const double G = 7e7 / (2 * 1.24);
+    CHECK(c.world->step_limits().rayleigh ==
+          Approx(M_PI * 0.1 * std::sqrt(2500 / G) / (0.1631 * 0.24 + 0.8766)));
+    // of glass on glass at 0.1 m/s, which is shorter than on the spring of steel (Johnson 1985, Sec. 11.4)
+    const double m_eff = 2500 * 4. / 3 * M_PI * 1e-3 / 2, R_eff = 0.05, E_eff = 7e7 / (2 * (1 - 0.24 * 0.24));
+    const double collision = 2.87 * std::pow(m_eff * m_eff / (R_eff * E_eff * E_eff * 0.1), 0.2);
+    CHECK(c.world->step_limits().collision == Approx(collision).epsilon(1e-6));
+    CHECK(collision < M_PI * std::sqrt(m_eff / 1e4));
+}
+
+TEST_CASE("a restitution of zero is floored with a notice", "[granular][case]")
+{
+    const granular::Case c = read_case(with("/laws/0/restitution", 0), "file");
+    REQUIRE(c.notices.size() == 1);
+    CHECK(c.notices[0] == "/laws/0/restitution: 0 is taken as 1e-7, whose damping is finite");
+}
+
+TEST_CASE("a case that needs more memory than there is is refused before it takes any", "[granular][case]")
+{
+    ordered_json c = good();
+    c["fill"] = {{{"type", "lattice"},
+                  {"low", {0, 0, 0}},
+                  {"high", {1, 1, 1}},
+                  {"radius", 5e-6},
+                  {"material", "glass"},
+                  {"spacing", 1}}};
+    CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
+               Catch::StartsWith("file: /fill: 1e+15 particles need about ") &&
+                   Catch::EndsWith(" GB of memory, and there are 64 GB"));
+    CHECK_THAT(refusal(c.dump(), {.device_memory = 64'000'000'000}),
+               Catch::EndsWith(" GB of memory of the GPU, and there are 64 GB"));
+    c["fill"][0]["count"] = 100;
+    CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
+    CHECK_THAT(refusal(c.dump(), {.memory = 100'000}),
+               Catch::StartsWith("file: /fill: 101 particles need about ") &&
+                   Catch::EndsWith(" GB of memory, and there are 0.0001 GB"));
+    c["domain"]["high"] = {1, 1, 1e4};
+    c["fill"][0]["low"] = {0, 0, 0.7};
+    c["particles"] = ordered_json::array();
+    CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
+               Catch::StartsWith("file: /domain: ") && Catch::Contains("cells need about"));
+}
+
+TEST_CASE("a run goes on from the table that another left", "[granular][fill]")
+{
+    ordered_json c = good();
+    c["orientation"] = true;
+    c["particles"].push_back({{"r", {0.3, 0.2, 1. / 3}},
+                              {"radius", 0.05},
+                              {"material", "steel"},
+                              {"v", {0.1, 1. / 7, 1}},
+                              {"omega", {1e-3, 1, 1. / 3}},
+                              {"orientation", {0.6, 0, 0.8, 0}}});
+    c["laws"].push_back({{"between", {"steel", "steel"}}, {"restitution", 0.5}});
+    granular::Case first = read_case(c.dump(), "file");
+    first.world->step(500);
+    const std::string table = particles_csv(*first.world);
+    const auto listed = granular::particles_of_csv(table, "table");
+    const auto there = first.world->particles();
+    REQUIRE(listed.size() == there.size());
+    for (std::size_t k = 0; k < there.size(); ++k) {
+        CHECK(listed[k].r == there[k].r);
+        CHECK(listed[k].v == there[k].v);
+        CHECK(listed[k].omega == there[k].omega);
+        CHECK(listed[k].e == there[k].e);
+        CHECK(listed[k].radius == there[k].radius);
+        CHECK(listed[k].material == there[k].material);
+    }
+
+    const std::string file =
+        std::filesystem::temp_directory_path() / ("hilda-table-" + std::to_string(getpid()) + ".csv");
+    granular::write_file(file, table);
+    c.erase("particles");
+    c["fill"] = {{{"type", "csv"}, {"file", file}}};
+    granular::Case next = read_case(c.dump(), "file");
+    next.world->step(0);
+    const auto begun = next.world->particles();
+    REQUIRE(begun.size() == there.size());
+    for (std::size_t k = 0; k < there.size(); ++k) {
+        CHECK((begun[k].r - there[k].r).norm() < 1e-12);
+        CHECK((begun[k].v - there[k].v).norm() <= 1e-9 * there[k].v.norm());
+    }
+    granular::write_file(file, table + "1,2\n");
+    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ':') &&
+                                      Catch::Contains("must have as many cells as there are names"));
+    std::remove(file.c_str());
+    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ": is not there"));
+}
+
+TEST_CASE("a table that does not tell of particles is refused with its line", "[granular][fill]")
+{
+    const std::tuple<const char*, const char*> wrong[] = {
+        {"", "t: has no particles"},
+        {"x,y,z,radius\n", "t: has no particles"},
+        {"x,y,radius\n1,2,3\n", "t:2: there is no column z"},
+        {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
+        {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
+        {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1.000000"},
+        {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: there is no column vy"},
+        {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be a number of a material, got '0.5'"},
+        {"x,y,z,radius\n1,2,3\n", "t:2: must have as many cells as there are names, 4, got 3"}};
+    for (const auto& [table, message] : wrong)
+        CHECK_THROWS_WITH(granular::particles_of_csv(table, "t"), message);
+    const auto all = granular::particles_of_csv("\r\n radius , z,y,x,colour\r\n1, 4,3 ,2,red\r\n", "t");
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].r == granular::Vec3{2, 3, 4});
+}
+
+TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")
+{
+    const auto kind = GENERATE(granular::Filling::Kind::lattice, granular::Filling::Kind::hcp,
+                               granular::Filling::Kind::poisson);
+    granular::Filling f;
+    f.kind = kind;
+    f.low = {0, 0, 0}, f.high = {0.02, 0.02, 0.02};
+    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (kind == granular::Filling::Kind::hcp ? 1 : 1.05),
+    f.jitter = 1;
+    const auto all = granular::fill(f);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (const double c : {all[i].r.x, all[i].r.y, all[i].r.z}) REQUIRE((c >= 1e-3 && c <= 0.019));
+        for (std::size_t j = i + 1; j < all.size(); ++j)
+            REQUIRE((all[i].r - all[j].r).norm() > 2e-3 * (1 - 1e-12));
+    }
+    const double packing = static_cast<double>(all.size()) * 4 / 3 * M_PI * 1e-9 / 8e-6;
+    CHECK(packing > (kind == granular::Filling::Kind::hcp       ? 0.55
+                     : kind == granular::Filling::Kind::lattice ? 0.37
+                                                                : 0.2));
+    CHECK(granular::fill(f)[5].r == all[5].r);
+    // every other row and layer of a crystal may be one shorter
+    CHECK(granular::estimate(f) == Approx(double(all.size())).epsilon(0.12));
+    f.most = 7;
+    const auto some = granular::fill(f);
+    REQUIRE(some.size() == 7);
+    CHECK(some[6].r.z == all[6].r.z);
+}

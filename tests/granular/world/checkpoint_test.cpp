@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A world that goes on from a checkpoint has the bits of one that was never stopped; what is damaged is refused.
+#include "tests/support/grains.hpp"
+
+#include "granular/case/case_file.hpp"
+#include "granular/files.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+
+namespace {
+
+const char* const bed = R"({"hilda_case": 1,
+ "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.06]},
+ "step": 5e-6, "end": 1,
+ "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}],
+ "laws": [{"restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"},
+           "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}, "spin": {"law": "torsional-spring"}}],
+ "boundaries": [
+  {"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+  {"name": "wall", "type": "cylinder", "r": [0.01, 0.01, 0], "axis": [0, 0, 1], "radius": 0.01, "inside": true}],
+ "fill": [{"type": "lattice", "low": [0.003, 0.003, 0], "high": [0.017, 0.017, 0.03], "radius": 1e-3,
+           "least_radius": 6e-4, "spacing": 1.02, "jitter": 1, "random_v": 0.2}]})";
+
+bool same(const granular::World& a, const granular::World& b)
+{
+    const auto x = a.particles(), y = b.particles();
+    bool all = x.size() == y.size();
+    for (std::size_t k = 0; all && k < x.size(); ++k)
+        all = x[k].r == y[k].r && x[k].v == y[k].v && x[k].omega == y[k].omega;
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a world loaded from a checkpoint goes on with the same bits (long)", "[granular][checkpoint]")
+{
+    const auto integrator =
+        GENERATE(as<std::string>(), "", R"("integrator": "velocity-verlet",)", R"("integrator": "chung",)");
+    std::string text = bed;
+    text.insert(text.find("\"step\""), integrator);
+    auto whole = granular::read_case(text, "bed");
+    whole.world->step(10000);
+    REQUIRE(whole.world->contacts().size() > 50);
+    const std::string bytes = whole.world->to_bytes("run");
+    auto resumed = granular::read_case(text, "bed");
+    resumed.world->from_bytes(bytes, "run", "checkpoint");
+    CHECK(resumed.world->t() == whole.world->t());
+    for (int k = 0; k < 5; ++k) {
+        whole.world->step(200), resumed.world->step(200);
+        CHECK(same(*whole.world, *resumed.world));
+    }
+    CHECK(resumed.world->kinetic_energy() == whole.world->kinetic_energy());
+    CHECK_THROWS_WITH(resumed.world->from_bytes(bytes, "another", "checkpoint"),
+                      "checkpoint: the checkpoint belongs to another run");
+}
+
+TEST_CASE("a damaged checkpoint is refused, wherever it is damaged", "[granular][checkpoint]")
+{
+    auto c = granular::read_case(bed, "bed");
+    c.world->step(200);
+    const std::string bytes = c.world->to_bytes("run");
+    unsigned seed = 1;
+    const auto random = [&] { return seed = seed * 1664525u + 1013904223u; };
+    for (std::size_t k = 0; k < 200; ++k) {
+        std::string wrong = bytes;
+        const std::size_t at = k < 40 ? k : random() % bytes.size();
+        wrong[at] = static_cast<char>(wrong[at] ^ (1 << (random() >> 20) % 8));
+        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), granular::FileError);
+        wrong.resize(random() % bytes.size());
+        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), granular::FileError);
+    }
+    CHECK_NOTHROW(c.world->from_bytes(bytes, "run", "checkpoint"));
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/trajectory.hpp"
+#include "studies/framework/problem.hpp"
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Σ ½ m v² + ½ ω̄ᵀ J̄ ω̄ - m g·r, with masses, inertias and gravity as Table 3.2 of the dissertation has them
+double double_pendulum_energy(const lie::State& x)
+{
+    const double m[] = {312, 156};
+    const Eigen::Vector3d J[] = {{0.52, 416.26, 416.26}, {0.26, 52.13, 52.13}};
+    double e = 0;
+    for (int b = 0; b < 2; ++b)
+        e += 0.5 * m[b] * x.body[b].rdot.squaredNorm() + 0.5 * x.body[b].omega_bar.cwiseAbs2().dot(J[b]) +
+             m[b] * 9.81 * x.body[b].r.z();
+    return e;
+}
+
+}  // namespace
+
+TEST_CASE("the energy study has the change of the energy that the states have", "[studies][energy]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator",
+                                  "rA-half-1", "--end", "0.2", "--steps", "1e-3", "--no-plot"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("E-E0 at end [J]"));
+
+    dae::Description d = dae::read_model(studies::problem("double_pendulum").model, "double_pendulum");
+    dae::start(d);
+    const auto integrator = lie::scheme("rA-half-1").make(*d.model, {});
+    const lie::Trajectory run = lie::march(d.x, *integrator, lie::Grid::over(0.2, 1e-3));
+    double largest = 0;
+    const double start = double_pendulum_energy(run.row.front());
+    for (const lie::State& x : run.row)
+        largest = std::max(largest, std::abs(double_pendulum_energy(x) - start));
+
+    const auto rows = csv(in / "out/energy/study.csv");
+    REQUIRE(rows.size() == 1);
+    const double rounding = 1e-10 * std::abs(start);
+    CHECK(number(rows[0], "end_drift") ==
+          Approx(double_pendulum_energy(run.row.back()) - start).margin(rounding));
+    CHECK(number(rows[0], "max_drift") == Approx(largest).margin(rounding));
+    CHECK(number(rows[0], "max_drift_relative") ==
+          Approx(number(rows[0], "max_drift") / number(rows[0], "max_kinetic")));
+    CHECK(rows[0].at("status") == "ok");
+
+    const auto curve = csv(in / "out/energy/energy.csv");
+    REQUIRE(curve.size() == 201);
+    for (size_t k = 0; k < curve.size(); ++k) {
+        CHECK(number(curve[k], "t") == Approx(run.row[k].t).margin(1e-15));
+        CHECK(number(curve[k], "energy") == Approx(double_pendulum_energy(run.row[k])).margin(rounding));
+        CHECK(number(curve[k], "drift") ==
+              Approx(double_pendulum_energy(run.row[k]) - start).margin(rounding));
+    }
+}
+
+#ifdef NDEBUG
+TEST_CASE("on the spinning two-bar rA-half-1 gains 236 J and rA-full-1 loses 1875 J", "[studies][energy]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "energy", "--problem", "n_pendulum_2_spin", "--integrator",
+                                  "rA-half-1,rA-full-1", "--no-plot", "--quiet"});
+    REQUIRE(ended.code == 0);
+    const auto rows = csv(in / "out/energy/study.csv");
+    REQUIRE(rows.size() == 2);
+    CHECK(number(rows[0], "end_drift") == Approx(236).margin(1));
+    CHECK(number(rows[1], "end_drift") == Approx(-1875).margin(5));
+    CHECK(csv(in / "out/energy/energy.csv").size() <= 2 * 1001);
+}
+#endif
+
+TEST_CASE("an expectation of the energy study is held against every run", "[studies][energy]")
+{
+    const Scratch in;
+    const std::vector<std::string> study = {"study", "energy",  "--problem", "double_pendulum", "--end",
+                                            "0.01",  "--quiet", "--no-plot", "--integrator",    "rA-half-2"};
+    const auto with = [&](const std::string& expectation) {
+        auto arguments = study;
+        arguments.insert(arguments.end(), {"--force", "--expect", expectation});
+        return call(in, arguments);
+    };
+    CHECK(with("max_drift=0+-1").code == 0);
+    CHECK(with("max_drift=1000").code == 6);
+    const Ended unknown = with("max_drif=0");
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Contains("'max_drif'; did you mean 'max_drift'?"));
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The experiments on friction come out as closed forms and published numbers demand, and the study says so.
+#include "studies/experiments/chapter4/friction/experiment.hpp"
+
+#include "tests/studies/csv.hpp"
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hilda;
+using namespace hilda::tests;
+namespace friction = hilda::studies::friction;
+using Catch::Matchers::Contains;
+
+TEST_CASE("every experiment on friction gives what it must", "[studies][friction]")
+{
+    for (const friction::Experiment& experiment : friction::experiments()) {
+        std::vector<friction::Run> runs = experiment.runs();
+        std::erase_if(runs, [](const friction::Run& run) { return run.for_check; });
+        std::vector<friction::Series> series;
+        for (const friction::Run& run : runs) series.push_back(run.go(nullptr));
+        std::vector<friction::Check> checks;
+        experiment.checks(friction::Results(runs, series), checks);
+        for (const friction::Check& check : checks) {
+            INFO(experiment.name << ": " << check.what << ": " << check.measured << " for " << check.demanded
+                                 << " +- " << check.tolerance);
+            CHECK(check.met());
+        }
+        CHECK((experiment.name == "disk-damping" || !checks.empty()));
+    }
+}
+
+TEST_CASE("the friction study compares every step with a table", "[studies][friction]")
+{
+    const Scratch in;
+    const Ended first = call(in, {"study", "friction", "--problem", "brick", "--no-plot"});
+    CAPTURE(first.err);
+    REQUIRE(first.code == 0);
+    CHECK_THAT(first.out, Contains("brick (Fig. 4.6)") && Contains("m g sin(alpha) / K_E"));
+    // its own curve, moved at one instant, with the start left unset as published files have it
+    std::string table = "# comment\nt,x_damped,nothing\n0,1,\n";
+    for (const CsvRow& row : csv(in / "out/friction/brick.csv"))
+        if (row.at("run") == "damped" && number(row, "t") > 0)
+            table += row.at("t") + "," + (row.at("t") == "0.05" ? "1" : row.at("x")) + ",\n";
+    write(in / "table.csv", table);
+    const Ended ended = call(
+        in, {"study", "friction", "--problem", "brick", "--no-plot", "--force", "--against", "table.csv"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const auto rows = csv(in / "out/friction/against.csv");
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].at("column") == "x_damped");
+    CHECK(rows[0].at("run") == "damped");
+    CHECK(number(rows[0], "largest difference") == Approx(1).epsilon(1e-4));
+    CHECK(number(rows[0], "at t [s]") == 0.05);
+
+    CHECK(rows[0].at("nearest") == "*");
+    CHECK_THAT(ended.out, Contains("over the size of its column: 1.00e+00"));
+
+    // a column that every run has: the one it came from is the nearest
+    std::string whole = "t,x\n";
+    for (const CsvRow& row : csv(in / "out/friction/brick.csv"))
+        if (row.at("run") == "damped") whole += row.at("t") + "," + row.at("x") + "\n";
+    write(in / "whole.csv", whole);
+    const auto against = [&](const std::string& expected) {
+        return call(in, {"study", "friction", "--problem", "brick", "--no-plot", "--quiet", "--force",
+                         "--against", "whole.csv", "--expect", expected});
+    };
+    CHECK(against("difference=0+-1e-12").code == 0);
+    for (const CsvRow& row : csv(in / "out/friction/against.csv"))
+        CHECK((row.at("nearest") == "*") == (row.at("run") == "damped"));
+    const Ended missed = against("difference=1+-0.5");
+    CHECK(missed.code == 6);
+    CHECK_THAT(missed.err, Contains("expected difference=1+-0.5, got 0 for whole.csv"));
+    const Ended unknown = against("differenz=0");
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Contains("'differenz'; did you mean 'difference'?; there are difference"));
+
+    write(in / "other.csv", "t,pressure\n0,1\n");
+    const Ended other = call(
+        in, {"study", "friction", "--problem", "brick", "--no-plot", "--force", "--against", "other.csv"});
+    CHECK(other.code == 3);
+    CHECK_THAT(other.err, Contains("other.csv: no column of it is a column of the chosen experiments"));
+}
+
+TEST_CASE("the friction study names the experiments that it has", "[studies][friction]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "friction", "--problem", "brik"});
+    CHECK(ended.code == 2);
+    CHECK(ended.err == "hilda: error: study friction: unknown experiment 'brik'; did you mean 'brick'?\n");
+    const Ended idle = call(in, {"study", "energy", "--check"});
+    CHECK(idle.code == 2);
+    CHECK_THAT(idle.err,
+               Contains("--check is for ") && Contains(" friction, ") && Contains("incline-sweep, stacking"));
+}

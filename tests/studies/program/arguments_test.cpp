@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/arguments.hpp"
+#include "studies/csv.hpp"
+#include "studies/exit_codes.hpp"
+#include "studies/running/diagnosis.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda::studies;
+
+TEST_CASE("numbers are read whole or not at all", "[studies][arguments]")
+{
+    CHECK(positive_number("--step", "1e-3") == 1e-3);
+    CHECK(nonnegative_number("--every", "0") == 0);
+    CHECK(number("--x", "-2.5") == -2.5);
+    for (const char* text : {"", " 1", "1 ", "1,5", "0x10", "nan", "inf", "1e999", "one"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(number("--x", text), UsageError);
+    }
+    CHECK_THROWS_AS(positive_number("--step", "0"), UsageError);
+    CHECK_THROWS_AS(positive_count("--jobs", "1.5"), UsageError);
+    CHECK(steps("--steps", "1e-4,1e-3") == std::vector<double>{1e-3, 1e-4});
+    CHECK(list("--problem", "a,b") == std::vector<std::string>{"a", "b"});
+    for (const char* text : {"", ",", "a,", ",a", "a,,b"})
+        CHECK_THROWS_AS(list("--problem", text), UsageError);
+}
+
+TEST_CASE("a word that is not one of those allowed is refused with them", "[studies][arguments]")
+{
+    CHECK(preset("--preset", "balanced") == "balanced");
+    CHECK_THROWS_AS(preset("--preset", "Balanced"), UsageError);
+    CHECK_THROWS_WITH(preset("--preset", "thesis"),
+                      "--preset: must be balanced or dissertation, got 'thesis'");
+    CHECK_THROWS_WITH(one_of("--grid", "", std::vector<std::string>{"a", "b", "c"}),
+                      "--grid: must be a, b or c, got ''");
+}
+
+TEST_CASE("an expectation has a key, a value and a tolerance", "[studies][arguments]")
+{
+    const Expectation e = expectation("--expect", "order=2+-0.1");
+    CHECK(e.key == "order");
+    CHECK(e.value == 2);
+    CHECK(e.tolerance == 0.1);
+    CHECK(e.text == "order=2+-0.1");
+    CHECK(expectation("--expect", "r_end=-1e-3").value == -1e-3);
+    CHECK(expectation("--expect", "r_end=1").tolerance == 0);
+    for (const char* text : {"", "order", "=2", "order=", "order=2+-", "order=2+--1", "a+-1=2"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(expectation("--expect", text), UsageError);
+    }
+}
+
+TEST_CASE("a step is written as people write it", "[studies][arguments]")
+{
+    CHECK(step_text(1e-3) == "1e-3");
+    CHECK(step_text(2.5e-5) == "2.5e-5");
+    CHECK(step_text(1e-10) == "1e-10");
+    CHECK(step_text(0.02) == "0.02");
+    CHECK(step_text(1) == "1");
+}
+
+TEST_CASE("a name with a comma or a quote is one field", "[studies][arguments]")
+{
+    CHECK(csv_field("crank.rx") == "crank.rx");
+    CHECK(csv_field("a,b") == "\"a,b\"");
+    CHECK(csv_field("a\"b") == "\"a\"\"b\"");
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/integrator.hpp"
+#include "studies/framework/problem.hpp"
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+TEST_CASE("what is wrong on the command line is said in one line and exits with 2", "[studies][command line]")
+{
+    struct Wrong {
+        std::vector<std::string> arguments;
+        std::string says;
+    };
+    const std::vector<Wrong> all = {
+        {{}, "no command given"},
+        {{"runn", "double_pendulum"}, "unknown command 'runn'; did you mean 'run'?"},
+        {{"help", "chek"}, "unknown command 'chek'; did you mean 'check'?"},
+        {{"run"}, "MODEL is required"},
+        {{"run", "double_pendulum", "more"}, "one argument too many: 'more'"},
+        {{"run", "double_pendulum", "--stepp", "1e-3"}, "unknown option '--stepp'; did you mean '--step'?"},
+        {{"run", "double_pendulum", "--step"}, "--step"},
+        {{"run", "double_pendulum", "--step", "0"}, "--step: must be a positive, finite number, got '0'"},
+        {{"run", "double_pendulum", "--step", "-1e-3"}, "got '-1e-3'"},
+        {{"run", "double_pendulum", "--step", "inf"}, "got 'inf'"},
+        {{"run", "double_pendulum", "--step", "1e-3s"}, "got '1e-3s'"},
+        {{"run", "double_pendulum", "--step", "1e-3", "--step", "1e-4"}, "--step"},
+        {{"run", "double_pendulum", "--step", "1e-30"}, "1e15 steps"},
+        {{"run", "double_pendulum", "--end", "-1"}, "--end"},
+        {{"run", "double_pendulum", "--every", "-1"}, "--every"},
+        {{"run", "double_pendulum", "--tolerance", "0"}, "--tolerance"},
+        {{"run", "double_pendulum", "--threads", "0"}, "--threads"},
+        {{"run", "double_pendulum", "--set", "gravity"}, "--set: must be /json/pointer=VALUE"},
+        {{"run", "double_pendulum", "--force", "--resume"}, "exclude each other"},
+        {{"run", "double_pendulum", "--integrator", "rA-half1"},
+         "unknown integrator 'rA-half1'; did you mean 'rA-half-1'?"},
+        {{"run", "double_pendulum", "--integrator", "rA-half-1,"}, "--integrator"},
+        {{"run", "double_pendulum", "--integrator", "rA-half-1,rA-half-1"}, "each integrator once"},
+        {{"study", "convergense"}, "unknown study 'convergense'; did you mean 'convergence'?"},
+        {{"study", "convergence", "--steps", "1e-3,,1e-4"}, "--steps"},
+        {{"study", "convergence", "--steps", "1e-3,1e-3"}, "--steps"},
+        {{"study", "convergence", "--expect", "order"}, "--expect: must be KEY=VALUE"},
+        {{"study", "convergence", "--expect", "order=2+-x"}, "--expect: must be KEY=VALUE"},
+        {{"study", "convergence", "--jobs", "many"}, "--jobs"},
+    };
+    const Scratch in;
+    for (const Wrong& wrong : all) {
+        const Ended ended = call(in, wrong.arguments);
+        CAPTURE(wrong.arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(wrong.says));
+        CHECK(ended.err.find('\n') == ended.err.size() - 1);
+        CHECK(ended.out.empty());
+    }
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("the program tells what it has", "[studies][command line]")
+{
+    const Scratch in;
+    const auto lists = [&](const std::vector<std::string>& arguments, const std::string& expected) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 0);
+        CHECK_THAT(ended.out, Contains(expected));
+        CHECK(ended.err.empty());
+    };
+    lists({"--version"}, "hilda 0.");
+    lists({"--help"}, "integrators");
+    lists({"help"}, "integrators");
+    for (const char* command : {"run", "check", "models", "integrators", "study", "plot", "info"}) {
+        lists({"help", command}, std::string("hilda ") + command);
+        lists({command, "--help"}, std::string("hilda ") + command);
+    }
+    for (const lie::Scheme& scheme : lie::schemes()) {
+        lists({"integrators"}, scheme.name);
+        lists({"integrators", "--json"}, '"' + scheme.name + '"');
+    }
+    for (const studies::Problem& problem : studies::problems()) lists({"models"}, problem.name);
+    lists({"study"}, "convergence");
+    lists({"info"}, "libraries");
+    lists({"info", "--json"}, "\"version\"");
+}
+
+TEST_CASE("a built-in model written to a file is the model again", "[studies][command line]")
+{
+    const Scratch in;
+    const Ended shown = call(in, {"models", "double_pendulum"});
+    CHECK(shown.code == 0);
+    CHECK(call(in, {"models", "double_pendulum", "--write", "mine.json"}).code == 0);
+    CHECK(read(in / "mine.json") == shown.out);
+
+    CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--quiet"}).code == 0);
+    CHECK(call(in, {"run", "mine.json", "--end", "0.1", "--output", "b", "--quiet"}).code == 0);
+    CHECK(read(in / "a/trajectory.csv") == read(in / "b/trajectory.csv"));
+}
+
+TEST_CASE("what is not there exits with 3, 5 or 7", "[studies][command line]")
+{
+    const Scratch in;
+    CHECK(call(in, {"run", "none.json"}).code == 3);
+    CHECK(call(in, {"models", "none"}).code == 3);
+    CHECK(call(in, {"plot", "none"}).code == 3);
+    CHECK(call(in, {"granular", "heap"}).code == 3);
+    CHECK_THAT(call(in, {"granular", "heap"}).err, Contains("heap: is not there"));
+    CHECK(call(in, {"granular", "heap", "--device", "cuda:99"}).code == 7);
+    CHECK_THAT(call(in, {"granular", "--help"}).out, Contains("--checkpoint"));
+    CHECK_THAT(call(in, {"run", "double_pendulun"}).err, Contains("double_pendulum"));
+    CHECK(call(in, {"models", "double_pendulum", "--write", "none/mine.json"}).code == 5);
+    CHECK(call(in, {"integrators"}, {.stdout_to = "/dev/full"}).code == 5);
+}
+
+TEST_CASE("figures need Python, and their lack is said in one line", "[studies][command line]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--plot"},
+                             {.python = "/none/python3"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.err, StartsWith("hilda: warning: no figures: /none/python3 was not found"));
+    CHECK(call(in, {"plot", "a"}, {.python = "/none/python3"}).code == 7);
+
+    if (call(in, {"plot", "a"}).code != 0) {
+        WARN("no matplotlib here: no figure was drawn");
+        return;
+    }
+    CHECK(fs::file_size(in / "a/trajectory.png") > 10000);
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/single_run.hpp"
+#include "tests/studies/adaptive_scheme.hpp"
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a scheme that chooses its own steps runs from row to row", "[studies][run]")
+{
+    const Scratch in;
+    studies::RunOptions options;
+    options.model = "double_pendulum";
+    options.end = 0.1;
+    options.every = 0.02;
+    options.quiet = true;
+    options.settings.rtol = 1e-6;
+    studies::SingleRun run(options, inner_steps, in / "out");
+    const studies::Result result = run.go();
+    CHECK(result.status == "ok");
+    CHECK(result.statistics.steps == 5 * 20);  // its own
+    const auto rows = csv(in / "out/trajectory.csv");
+    REQUIRE(rows.size() == 6);
+    CHECK(number(rows[3], "t") == Approx(0.06));
+
+    const auto summary = nlohmann::json::parse(read(in / "out/summary.json"));
+    CHECK(summary["integrator"]["rtol"] == 1e-6);
+    CHECK(summary["integrator"]["atol"] == 1e-6);
+    CHECK_FALSE(summary["integrator"].contains("step"));
+    CHECK(summary["counters"]["steps"] == 100);
+    std::ostringstream text;
+    print(result, text);
+    CHECK_THAT(text.str(), Contains("inner-steps, rtol 1e-6, atol 1e-6, end 0.1 s"));
+}
+
+TEST_CASE("an adaptive integrator takes no step and no checkpoint", "[studies][run]")
+{
+    const Scratch in;
+    for (const std::string& name : adaptive_schemes()) {
+        const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
+            std::vector<std::string> arguments = {"run", "double_pendulum", "--end",
+                                                  "0.1", "--integrator",    name};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const Ended ended = call(in, arguments);
+            CAPTURE(more, ended.err);
+            CHECK(ended.code == 2);
+            CHECK_THAT(ended.err, Contains("run: " + name + ' ' + says));
+            CHECK(ended.err.find('\n') == ended.err.size() - 1);
+        };
+        refused({"--step", "1e-3"},
+                "chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
+        refused({"--checkpoint", "1"}, "remembers past steps");
+        refused({"--resume"}, "remembers past steps");
+        refused({"--every", "0"}, "chooses its own steps; --every");
+        CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--integrator", name, "--output", name})
+                  .code == 0);
+        CHECK_THAT(call(in, {"integrators"}).out, Contains("adaptive"));
+    }
+}

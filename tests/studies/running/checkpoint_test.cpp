@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/checkpoint.hpp"
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+
+using namespace hilda;
+using namespace hilda::studies;
+
+namespace {
+
+Checkpoint some_checkpoint()
+{
+    Checkpoint c;
+    c.settings = "model 0123, integrator rA-half-1";
+    c.node.t = 0.1;
+    c.node.body.resize(2);
+    c.node.body[1].r = {1, 2, 3};
+    c.node.alpha = Eigen::VectorXd::LinSpaced(6, -1, 2);
+    c.node.lambda = Eigen::VectorXd::LinSpaced(5, 0, 1);
+    c.node.memory = {1, -2};
+    c.node.remembered = {0.1, -1e-300, 7};
+    c.number = 100;
+    c.iterations = 3;
+    c.pivots = c.node;
+    c.statistics = {100, 250, 3, 97, 0};
+    c.invariants = {100, 11, 1.5, 1.25, 0.25, 1e-12, 1e-15, {{1, 2, 3e-15}, {-4, 5, 6}}};
+    c.last_step = {1, 2000, 3e-11};
+    c.trajectory_bytes = 12345;
+    c.steps_bytes = 678;
+    c.wall_seconds = 0.5;
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
+{
+    const Checkpoint c = some_checkpoint(), back = from_bytes(to_bytes(c), "file");
+    CHECK(to_bytes(back) == to_bytes(c));
+    CHECK(back.settings == c.settings);
+    CHECK(back.node.t == c.node.t);
+    CHECK(back.node.body[1].r == c.node.body[1].r);
+    CHECK(back.node.alpha == c.node.alpha);
+    CHECK(back.node.lambda == c.node.lambda);
+    CHECK(back.node.memory == c.node.memory);
+    CHECK(back.node.remembered == c.node.remembered);
+    CHECK(back.number == c.number);
+    CHECK(back.statistics.refactorizations == c.statistics.refactorizations);
+    CHECK(back.invariants.energy_drift == c.invariants.energy_drift);
+    CHECK(back.invariants.nodes == c.invariants.nodes);
+    REQUIRE(back.invariants.contact.size() == 2);
+    CHECK(back.invariants.contact[1].F_N_least == -4);
+    CHECK(back.last_step.correction == c.last_step.correction);
+    CHECK(back.trajectory_bytes == c.trajectory_bytes);
+    CHECK(back.wall_seconds == c.wall_seconds);
+}
+
+TEST_CASE("every flipped bit and every truncation of a checkpoint is found", "[studies][checkpoint]")
+{
+    const std::string good = to_bytes(some_checkpoint());
+    for (size_t k = 0; k < 8 * good.size(); ++k) {
+        std::string bad = good;
+        bad[k / 8] = static_cast<char>(bad[k / 8] ^ (1 << k % 8));
+        REQUIRE_THROWS_AS(from_bytes(bad, "file"), IoError);
+    }
+    for (size_t length = 0; length < good.size(); ++length)
+        REQUIRE_THROWS_AS(from_bytes(good.substr(0, length), "file"), IoError);
+    REQUIRE_THROWS_AS(from_bytes(good + "x", "file"), IoError);
+
+    std::mt19937 random(1);
+    for (int k = 0; k < 1000; ++k) {
+        std::string noise(random() % 500, '\0');
+        for (char& c : noise) c = static_cast<char>(random());
+        REQUIRE_THROWS_AS(from_bytes(noise, "file"), IoError);
+    }
+}
+
+TEST_CASE("the last two checkpoints are kept", "[studies][checkpoint]")
+{
+    const tests::Scratch in;
+    const std::string directory = in.path.string();
+    CHECK_FALSE(load(directory));
+    Checkpoint c = some_checkpoint();
+    for (const long number : {1, 2, 3}) {
+        c.number = number;
+        save(c, directory);
+        CHECK(load(directory)->number == number);
+    }
+    CHECK(from_bytes(tests::read(in / "checkpoint.1"), "file").number == 2);
+
+    tests::fs::remove(in / "checkpoint");  // killed between the two renamings
+    CHECK(load(directory)->number == 2);
+    remove_checkpoints(directory);
+    CHECK(tests::fs::is_empty(in.path));
+}

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/vtk.hpp"
+
+#include "contact/implicit_surface.hpp"
+#include "contact/mesh/height_map.hpp"
+#include "contact/mesh/mesh_surface.hpp"
+#include "contact/surfaces/cylinder.hpp"
+#include "contact/surfaces/disk.hpp"
+#include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/foot.hpp"
+#include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/superquadric.hpp"
+#include "contact/surfaces/torus.hpp"
+#include "tests/studies/program.hpp"
+#include "tests/support/icosphere.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+using namespace hilda;
+using Catch::Matchers::Contains;
+using lie::Vec3;
+using studies::Mesh;
+using studies::Snapshots;
+using tests::call;
+using tests::Ended;
+using tests::Scratch;
+
+namespace {
+
+/// An XML file: elements that are closed in order, attributes that are quoted
+struct Xml {
+    struct Element {
+        std::string name;
+        std::map<std::string, std::string> attribute;
+        std::string text;
+    };
+    std::vector<Element> element;
+
+    explicit Xml(const std::string& file)
+    {
+        std::vector<size_t> open;
+        size_t at = 0;
+        while ((at = file.find('<', at)) != std::string::npos) {
+            const size_t end = file.find('>', at);
+            if (end == std::string::npos) throw std::runtime_error("a tag has no end");
+            std::string tag = file.substr(at + 1, end - at - 1);
+            at = end + 1;
+            if (tag.starts_with('?')) continue;
+            if (tag.starts_with('/')) {
+                if (open.empty() || element[open.back()].name != tag.substr(1))
+                    throw std::runtime_error("</" + tag.substr(1) + "> closes nothing");
+                open.pop_back();
+                continue;
+            }
+            const bool empty = tag.ends_with('/');
+            if (empty) tag.pop_back();
+            read(tag);
+            element.back().text = file.substr(at, file.find('<', at) - at);
+            if (!empty) open.push_back(element.size() - 1);
+        }
+        if (!open.empty()) throw std::runtime_error("<" + element[open.back()].name + "> is not closed");
+    }
+
+    /// The first element of that name, or the <DataArray> of that Name
+    const Element& named(const std::string& name) const
+    {
+        return find(name, [&](const Element& e) { return e.name == name; });
+    }
+    const Element& array(const std::string& name) const
+    {
+        return find(
+            name, [&](const Element& e) { return e.name == "DataArray" && e.attribute.at("Name") == name; });
+    }
+
+private:
+    const Element& find(const std::string& name, const std::function<bool(const Element&)>& is) const
+    {
+        const auto at = std::find_if(element.begin(), element.end(), is);
+        if (at == element.end()) throw std::runtime_error("nothing is called " + name);
+        return *at;
+    }
+    void read(const std::string& tag)
+    {
+        size_t at = tag.find(' ');
+        Element e{.name = tag.substr(0, at), .attribute = {}, .text = {}};
+        while (at < tag.size()) {
+            const size_t is = tag.find("=\"", at);
+            if (is == std::string::npos) throw std::runtime_error("an attribute has no value: " + tag);
+            const size_t end = tag.find('"', is + 2);
+            if (end == std::string::npos) throw std::runtime_error("a value has no end: " + tag);
+            e.attribute[tag.substr(at + 1, is - at - 1)] = tag.substr(is + 2, end - is - 2);
+            at = end + 1;
+        }
+        element.push_back(std::move(e));
+    }
+};
+
+std::vector<double> numbers(const std::string& text)
+{
+    std::istringstream in(text);
+    std::vector<double> all;
+    for (std::string word; in >> word;) all.push_back(std::stod(word));
+    return all;
+}
+
+/// A frame, with what is said of its numbers found to be so
+struct Frame {
+    std::vector<Vec3> point, velocity, N, F;
+    std::vector<double> slipping, rolling, body, contact;
+    std::vector<std::vector<size_t>> vertex, polygon;
+
+    explicit Frame(const tests::fs::path& file)
+    {
+        const Xml xml(tests::read(file));
+        CHECK(xml.named("VTKFile").attribute.at("type") == "PolyData");
+        const auto count = [&](const std::string& of) -> size_t {
+            return std::stoul(xml.named("Piece").attribute.at("NumberOf" + of));
+        };
+        const auto array = [&](const std::string& name, size_t size) {
+            std::vector<double> all = numbers(xml.array(name).text);
+            INFO(name);
+            REQUIRE(all.size() == size);
+            return all;
+        };
+        const auto vectors = [&](const std::string& name) {
+            const std::vector<double> all = array(name, 3 * count("Points"));
+            std::vector<Vec3> v;
+            for (size_t k = 0; k < all.size(); k += 3) v.emplace_back(all[k], all[k + 1], all[k + 2]);
+            return v;
+        };
+        point = vectors("Points"), velocity = vectors("velocity");
+        N = vectors("normal_force"), F = vectors("friction");
+        slipping = array("slipping", count("Points")), rolling = array("rolling", count("Points"));
+        body = array("body", count("Verts") + count("Polys"));
+        contact = array("contact", count("Verts") + count("Polys"));
+        std::vector<std::vector<std::vector<size_t>>> cells;
+        for (size_t k = 0; k < xml.element.size(); ++k) {
+            if (xml.element[k].name != "Verts" && xml.element[k].name != "Polys") continue;
+            const auto connectivity = numbers(xml.element[k + 1].text),
+                       offsets = numbers(xml.element[k + 2].text);
+            REQUIRE(offsets.size() == count(xml.element[k].name));
+            cells.emplace_back();
+            size_t from = 0;
+            for (const double offset : offsets) {
+                const size_t end = static_cast<size_t>(offset);
+                REQUIRE(from < end);
+                cells.back().emplace_back();
+                for (; from < end; ++from) {
+                    const size_t point_number = static_cast<size_t>(connectivity.at(from));
+                    REQUIRE(point_number < count("Points"));
+                    cells.back().back().push_back(point_number);
+                }
+            }
+            REQUIRE(from == connectivity.size());
+        }
+        REQUIRE(cells.size() == 2);
+        vertex = cells[0], polygon = cells[1];
+    }
+};
+
+template <class Surface, class... Of>
+contact::Shape shape(Of... of)
+{
+    return {.surface = std::make_shared<Surface>(of...)};
+}
+
+lie::Motion at(const Vec3& r, const Vec3& rdot = Vec3::Zero())
+{
+    lie::Motion m;
+    m.r = r, m.rdot = rdot;
+    return m;
+}
+
+struct Data {
+    std::string time, file;
+};
+std::vector<Data> collection(const tests::fs::path& file)
+{
+    std::vector<Data> all;
+    for (const auto& e : Xml(tests::read(file)).element)
+        if (e.name == "DataSet") all.push_back({e.attribute.at("timestep"), e.attribute.at("file")});
+    return all;
+}
+
+size_t files(const tests::fs::path& directory)
+{
+    return static_cast<size_t>(
+        std::distance(tests::fs::directory_iterator(directory), tests::fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("the polygons of a surface lie on it and look out of the body", "[studies][vtk]")
+{
+    using namespace contact;
+    const auto egg = [](auto x, auto y, auto z) { return x * x + y * y + z * z * (1.0 + 0.3 * z) - 1.0; };
+    const auto waves = [](auto x, auto, auto z) { return z - 0.1 * x * x; };
+    const auto waves_of = [](double x, double y) { return 0.1 * std::sin(x) * std::cos(y); };
+    const auto as_it_is = [](const Vec3& a) { return a; };
+    struct Case {
+        std::string name;
+        std::shared_ptr<const Surface> surface;
+        bool closed;
+    };
+    const std::vector<Case> cases = {
+        {"sphere", std::make_shared<Sphere>(0.2), true},
+        {"bowl", std::make_shared<Sphere>(0.2, true), true},
+        {"ellipsoid", std::make_shared<Ellipsoid>(Vec3(0.2, 0.3, 0.5)), true},
+        {"box", std::make_shared<Superquadric>(Vec3(1, 2, 3), 8), true},
+        {"torus", std::make_shared<Torus>(1, 0.2), true},
+        {"egg", std::make_shared<ImplicitSurface<decltype(egg)>>(egg, 1.0), true},
+        {"waves", std::make_shared<ImplicitSurface<decltype(waves)>>(waves, 1.0), false},
+        {"terrain", std::make_shared<HeightMap>(HeightMap::sampled(waves_of, {-3, -3}, {3, 3}, 9, 9)), false},
+        {"mesh", std::make_shared<MeshSurface>(tests::image(tests::icosphere(2), as_it_is)), true},
+        {"cylinder", std::make_shared<Cylinder>(0.3), false},
+        {"pipe", std::make_shared<Cylinder>(0.3, true), false},
+        {"plane", std::make_shared<Plane>(), false},
+        {"foot", std::make_shared<Foot>(), false},
+        {"disk", std::make_shared<Disk>(0.1), false}};
+    const studies::Reach reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .motion = 4};
+    for (const Case& c : cases) {
+        CAPTURE(c.name);
+        const Mesh mesh = studies::tessellated(*c.surface, reach);
+        CHECK(mesh.point.size() > 10);
+        CHECK(mesh.point.size() <= 500);
+        if (c.name != "disk" && c.name != "mesh")
+            for (const Vec3& a : mesh.point) CHECK(std::abs(c.surface->value(a)) < 1e-12);
+        std::map<std::pair<int, int>, int> edges;
+        for (const std::vector<int>& polygon : mesh.polygon) {
+            Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
+            for (size_t k = 0; k < polygon.size(); ++k) {
+                const int from = polygon[k], to = polygon[(k + 1) % polygon.size()];
+                centre += mesh.point[from] / static_cast<double>(polygon.size());
+                area += 0.5 * mesh.point[from].cross(mesh.point[to]);
+                ++edges[{from, to}];
+            }
+            if (c.name != "disk") CHECK(area.dot(c.surface->normal(centre)) > 0.9 * area.norm());
+        }
+        bool once = true, paired = true;
+        for (const auto& [edge, count] : edges) {
+            once = once && count == 1;
+            paired = paired && edges.contains({edge.second, edge.first});
+        }
+        CHECK(once);
+        CHECK(paired == c.closed);
+    }
+    CHECK(studies::endless(Plane()));
+    CHECK_FALSE(studies::endless(Sphere(1)));
+}
+
+TEST_CASE("a plane is drawn as far as something comes", "[studies][vtk]")
+{
+    const Scratch in;
+    Snapshots snapshots;
+    snapshots.show(0, shape<contact::Sphere>(0.2));
+    const contact::Shape floor = shape<contact::Plane>();
+    snapshots.show(-1, floor);
+    snapshots.show(-1, floor);
+    snapshots.show(-1, shape<contact::Plane>());  // another object, the same to look at
+    lie::Motion later = at({3, 1, 0.2}, {1, 2, 3});
+    later.omega_bar = {0, 0, 5};
+    snapshots.add(0, {at({0, 1, 0.2})}, {});
+    snapshots.add(0.1, {later}, {{2, 0, Vec3(3, 1, 0), Vec3(0, 0, 9), Vec3(-1, 0, 0), true, false}});
+    snapshots.write(in.path.string(), "a<b>&\"c\"");
+
+    const std::vector<Data> listed = collection(in / "a<b>&\"c\".pvd");
+    REQUIRE(listed.size() == 2);
+    CHECK(listed[0].time == "0");
+    CHECK(listed[1].time == "0.1");
+    CHECK(listed[1].file == "vtk/a&lt;b&gt;&amp;&quot;c&quot;-000001.vtp");
+    const Frame start(in / "vtk/a<b>&\"c\"-000000.vtp"), end(in / "vtk/a<b>&\"c\"-000001.vtp");
+    CHECK(start.vertex.empty());
+    REQUIRE(end.vertex.size() == 1);
+    CHECK(end.polygon == [&] {
+        auto shifted = start.polygon;  // by the contact, which is the first point
+        for (auto& polygon : shifted)
+            for (size_t& k : polygon) ++k;
+        return shifted;
+    }());
+    CHECK(end.contact[0] == 2);
+    CHECK(end.point[0] == Vec3(3, 1, 0));
+    CHECK(end.N[0] == Vec3(0, 0, 9));
+    CHECK(end.F[0] == Vec3(-1, 0, 0));
+    CHECK(end.slipping[0] == 1);
+    CHECK(end.rolling[0] == 0);
+
+    Eigen::AlignedBox3d patch;
+    size_t of_ball = 0;
+    for (size_t cell = 1; cell < end.body.size(); ++cell)
+        for (const size_t k : end.polygon[cell - 1]) {
+            const Vec3& p = end.point[k];
+            if (end.body[cell] == -1) {
+                patch.extend(p);
+                CHECK(end.velocity[k] == Vec3::Zero());
+                continue;
+            }
+            ++of_ball;
+            CHECK((p - later.r).norm() == Approx(0.2).epsilon(1e-5));
+            CHECK((end.velocity[k] - later.rdot - Vec3(0, 0, 5).cross(p - later.r)).norm() < 1e-5);
+        }
+    CHECK(of_ball > 500);
+    CHECK(patch.contains(Vec3(-0.2, 0.8, 0)));
+    CHECK(patch.contains(Vec3(3.2, 1.2, 0)));
+    CHECK(patch.sizes().x() < 1.2 * 3.4);
+    CHECK(patch.sizes().y() == Approx(patch.sizes().x()));
+    CHECK(end.point.size() == 1 + 266 + 81);  // the floor once
+
+    Snapshots::remove(in.path.string(), "a<b>&\"c\"");
+    CHECK(files(in.path) == 1);
+    CHECK(files(in / "vtk") == 0);
+}
+
+TEST_CASE("frames of the experiments on friction", "[studies][vtk][friction]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"study", "friction", "--problem", "incline,brick", "--vtk", "4", "--no-plot"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("out/friction/incline-*.pvd"));
+    CHECK(files(in / "out/friction/vtk") == 2 * 4);
+    for (const std::string run : {"dissertation", "balanced"}) {
+        const std::vector<Data> listed = collection(in / ("out/friction/incline-" + run + ".pvd"));
+        REQUIRE(listed.size() == 4);
+        CHECK(listed[0].time == "0");
+        CHECK(std::stod(listed[1].time) == Approx(0.1));
+        CHECK(std::stod(listed[3].time) == Approx(0.3));
+        for (const Data& d : listed) {
+            const Frame frame(in / ("out/friction/" + d.file));
+            REQUIRE(frame.vertex.size() == 1);
+            CHECK(frame.N[0].z() == Approx(5 * 9.8 * std::cos(35 * 3.14159265358979 / 180)));
+            CHECK(std::abs(frame.point[0].z()) < 1e-6);
+        }
+    }
+    // again, with fewer frames: none of the old ones stays
+    CHECK(
+        call(in, {"study", "friction", "--problem", "incline", "--vtk", "1", "--force", "--no-plot"}).code ==
+        0);
+    CHECK(files(in / "out/friction/vtk") == 2);
+}
+
+TEST_CASE("snapshots are refused where nothing would come of them", "[studies][vtk]")
+{
+    const Scratch in;
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, Contains(says));
+        CHECK_FALSE(tests::fs::exists(in / "out"));
+    };
+    for (const std::string text : {"0", "-1", "1.5", "1000001", "many"})
+        refused({"study", "friction", "--vtk", text},
+                "--vtk: must be a whole number from 1 to 1000000, got '" + text + "'");
+    refused({"study", "energy", "--vtk", "3"},
+            "study energy: --vtk is for evolving-contact, evolving-friction, friction");
+    refused({"study", "friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
+            "study friction: --vtk is for disk, ellipsoid, incline, spin, spin-ellipsoid, turntable");
+    CHECK_FALSE(tests::fs::exists(in / "new"));
+    refused({"study", "friction", "--json", "--vtk", "3"}, "--vtk writes files");
+}
+
+TEST_CASE("frames of a model with contacts", "[studies][vtk]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"run", "rolling_ball", "--end", "0.1", "--vtk", "0.02", "--output", "out"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const std::vector<Data> listed = collection(in / "out/run.pvd");
+    REQUIRE(listed.size() == 6);
+    CHECK(files(in / "out/vtk") == 6);
+    for (size_t k = 0; k < listed.size(); ++k) {
+        CHECK(std::stod(listed[k].time) == Approx(0.02 * static_cast<double>(k)));
+        const Frame frame(in / ("out/" + listed[k].file));
+        REQUIRE(frame.vertex.size() == 1);  // the ball lies on the floor
+        CHECK(frame.body[0] == 0);
+        CHECK(frame.body.back() == -1);
+        CHECK(frame.N[0].z() == Approx(5 * 9.81).epsilon(1e-3));
+        CHECK(frame.slipping[0] == (k > 0));
+        if (k > 0) CHECK(frame.F[0].x() == Approx(-0.2 * frame.N[0].z()).epsilon(1e-2));
+    }
+    CHECK_THAT(tests::read(in / "out/summary.json"), Contains("run.pvd"));
+    // again without: no snapshots of another run stay
+    CHECK(call(in, {"run", "rolling_ball", "--end", "0.1", "--output", "out", "--force"}).code == 0);
+    CHECK_FALSE(tests::fs::exists(in / "out/run.pvd"));
+    CHECK(files(in / "out/vtk") == 0);
+}
+
+TEST_CASE("frames of a contact that is a constraint", "[studies][vtk][evolving]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"run", "rolling_ball_in_bowl", "--end", "0.1", "--vtk", "0.05", "--output", "out"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const std::vector<Data> listed = collection(in / "out/run.pvd");
+    REQUIRE(listed.size() == 3);
+    const Frame frame(in / ("out/" + listed[0].file));
+    REQUIRE(frame.vertex.size() == 1);
+    CHECK((frame.point[frame.vertex[0][0]] - Vec3(0, 1.5, -1.7320508)).norm() < 1e-6);
+    CHECK(frame.N[0].normalized().z() == Approx(0.9332565).epsilon(1e-6));
+    CHECK(frame.F[0].norm() == Approx(1.0068160).epsilon(1e-3));
+    CHECK(frame.slipping[0] == 0);
+    CHECK(frame.rolling[0] == 1);
+}
+
+TEST_CASE("frames of a run are refused where nothing would come of them", "[studies][vtk][run]")
+{
+    const Scratch in;
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, Contains(says));
+        CHECK_FALSE(tests::fs::exists(in / "out"));
+    };
+    for (const std::string text : {"0", "-1", "nan", "often"})
+        refused({"run", "rolling_ball", "--vtk", text}, "--vtk: must be a positive, finite number");
+    refused({"run", "double_pendulum", "--vtk", "0.1"}, "double_pendulum has no contacts");
+    refused({"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, "more than 1000000");
+    refused({"run", "rolling_ball", "--vtk", "0.1", "--checkpoint", "1"},
+            "--checkpoint and --resume exclude");
+}

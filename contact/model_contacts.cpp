@@ -130,18 +130,18 @@ HeldNormal read_held_normal(ObjectReader& o)
 {
     HeldNormal held;
     Unilateral& how = held.unilateral;
-    how.opens = o.flag("unilateral", false);
+    how.enabled = o.flag("unilateral", false);
     const auto of_one_that_opens = [&](const char* key) {
         const bool given = o.look(key) != nullptr;
-        return how.opens || given;
+        return how.enabled || given;
     };
     if (of_one_that_opens("restitution")) how.restitution = from_zero_to_one(o, "restitution", 0);
-    if (!how.opens && o.has("restitution"))
+    if (!how.enabled && o.has("restitution"))
         o.fail("restitution", "restitution is of a contact that may open, \"unilateral\": true; got " +
                                   dae::shortest(how.restitution) + " of one that never does");
     if (of_one_that_opens("impact") && o.one_of("impact", {"newton", "poisson"}, "newton") == "poisson")
         how.impact = Unilateral::Impact::poisson;
-    if (!how.opens && o.has("impact"))
+    if (!how.enabled && o.has("impact"))
         o.fail("impact",
                "impact is of a contact that may open, \"unilateral\": true; got one that never does");
     if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
@@ -246,7 +246,7 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
                                                    read_friction(o, *law)));
 }
 
-const bool enrolled = dae::enrol_contacts(read_contact);
+const bool registered = dae::register_contact_reader(read_contact);
 
 }  // namespace
 

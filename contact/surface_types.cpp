@@ -39,7 +39,7 @@ Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
 
 const std::vector<SurfaceType>& surface_types() { return list(); }
 
-bool enrol(SurfaceType type)
+bool register_surface(SurfaceType type)
 {
     std::vector<SurfaceType>& all = list();
     const auto at =

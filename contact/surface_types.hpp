@@ -23,7 +23,7 @@ struct SurfaceType {
 const std::vector<SurfaceType>& surface_types();
 
 /// Puts a kind of surface into the list: the last line of its file.
-bool enrol(SurfaceType type);
+bool register_surface(SurfaceType type);
 
 /// The shape under a key, such as
 ///

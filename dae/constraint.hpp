@@ -19,29 +19,29 @@ public:
     virtual int rows() const = 0;        ///< of positions
     virtual int velocity_rows() const { return 0; }
     /// Whether those give way in pairs, as lie::Rows::Compliant says; compliance() has K, D, S, μ, n of each pair.
-    virtual bool gives_way() const { return false; }
-    int pairs() const { return gives_way() ? velocity_rows() / 2 : 0; }
-    virtual bool is_early(int /*pair*/) const { return false; }
+    virtual bool is_regularised() const { return false; }
+    int pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
+    virtual bool solved_first(int /*pair*/) const { return false; }
     virtual int unknowns() const = 0;
     /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
-    virtual int remembered() const { return 0; }
+    virtual int internal_states() const { return 0; }
     /// What it does, as State::memory has it
     enum Mode {
-        holds = 0,
-        is_open = 1,     ///< holds nothing for a while
-        handed_over = 2  ///< holds nothing: a force does what it cannot do any more
+        active = 0,
+        inactive = 1,        ///< holds nothing for a while
+        fallback_active = 2  ///< holds nothing: a force does what it cannot do any more
     };
     /// Whether it is ever in another mode than the first
-    virtual bool opens() const { return false; }
+    virtual bool may_be_inactive() const { return false; }
     /// Whether a force stands by for it, so that it hands over instead of failing
-    virtual bool hands_over() const { return false; }
+    virtual bool has_fallback() const { return false; }
 
     /// Where it is evaluated: its bodies, its own unknowns, what it remembers
     struct At {
         const Motion &bi, &bj;
         double t;
-        const double *alpha, *remembered;
-        bool idle;                                ///< not in the mode `holds`
+        const double *alpha, *internal_state;
+        bool inactive;                            ///< not in the mode `holds`
         const Eigen::VectorXd* lambda = nullptr;  ///< of the whole system
     };
     virtual void phi(const At& x, double* out) const = 0;
@@ -55,22 +55,22 @@ public:
     /// γ of all rows, with Φ_α α̈ on the left for rows of positions
     virtual void gamma(const At& x, double* out) const = 0;
     /// Into the pairs that give way, in the order of their rows
-    virtual void compliance(const At& /*x*/, lie::Rows::Compliant* /*out*/) const {}
+    virtual void compliance(const At& /*x*/, lie::Rows::Regularised* /*out*/) const {}
     /// Bit c of the first twelve is clear where derivative c of this row, (r, pi) of body i and then of j, is always zero.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
 
     /// α that belongs to the poses of the bodies, from what is there; `afresh`: from nothing
-    virtual void track(const At& x, bool afresh, double* alpha) const = 0;
+    virtual void update_alpha(const At& x, bool afresh, double* alpha) const = 0;
     /// What is remembered, at a start and once per accepted step. Where the constraint cannot go on from here it throws
     /// lie::NumericalFailure, or returns false if it hands over.
-    virtual bool remember(const At& x, bool start, double* remembered) const = 0;
+    virtual bool update_internal_state(const At& x, bool start, double* internal_state) const = 0;
 
     /// Distance of the two bodies where the rows are not quite satisfied, negative for overlap, α being that of track()
     /// [m]
     virtual double gap(const At& x) const = 0;
     /// Rate of the gap [m/s]; and whether it may open by itself, so that at a start it need not be zero
     virtual double separation_speed(const At& x) const = 0;
-    virtual bool one_sided() const { return false; }
+    virtual bool is_unilateral() const { return false; }
     virtual double velocity_error(const At& x) const = 0;
     /// What a position may be off at a start [m]
     virtual double allowance() const = 0;
@@ -81,7 +81,7 @@ public:
     int i, j;  ///< body numbers, or ground
     std::string name;
     int first_row = 0, first_velocity_row = 0;  ///< in the equations; these are set by the model
-    int first_alpha = 0, first_memory = 0, first_remembered = 0;  ///< in the state
+    int first_alpha = 0, first_discrete_state = 0, first_internal_state = 0;  ///< in the state
 };
 
 }  // namespace hilda::dae

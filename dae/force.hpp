@@ -28,14 +28,14 @@ public:
 
     /// How many whole numbers this force keeps in State::memory from step to step (turns of a torsion spring),
     /// and how many real ones in State::remembered (a contact point, the stretch of a bristle).
-    virtual int memory() const { return 0; }
-    virtual int remembered() const { return 0; }
+    virtual int discrete_states() const { return 0; }
+    virtual int internal_states() const { return 0; }
     /// Brings both up to date: at a start, where all are zero, and once per accepted step, for the state after
     /// it, which comes with what was remembered in the state before. Allocates nothing.
-    virtual void remember(State& /*x*/) const {}
+    virtual void update_internal_state(State& /*x*/) const {}
     /// Whether remember() reads the multipliers of x. A start then repeats itself until they and the loads agree.
-    virtual bool remembers_multipliers() const { return false; }
-    int first_memory = 0, first_remembered = 0;  ///< where they begin; set by the model
+    virtual bool internal_state_uses_multipliers() const { return false; }
+    int first_discrete_state = 0, first_internal_state = 0;  ///< where they begin; set by the model
 
     /// The largest step [s] with which a scheme that takes this force as it is at the beginning of the step is
     /// stable

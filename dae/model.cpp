@@ -109,7 +109,7 @@ void Model::prepare(State& x)
     for (size_t k = 0; k < force.size(); ++k)
         if (const std::string why = force[k]->objection(x); !why.empty())
             throw ForceError(force[k]->in_words() + ": " + why, static_cast<int>(k));
-    memory = remembered = 0;
+    discrete_state = internal_state = 0;
     for (Row& r : row) {
         const Motion &bi = motion(x, r.block->i), &bj = motion(x, r.block->j);
         if (const std::string why = r.block->objection(bi, bj, x.t); !why.empty())
@@ -118,7 +118,7 @@ void Model::prepare(State& x)
         r.branch = -1;
         if (const auto* dp1 = dynamic_cast<const DP1*>(r.block.get()); dp1 != nullptr)
             r.complement = dp1->complement(bi, bj, x.t);
-        if (r.complement) r.branch = memory++;
+        if (r.complement) r.branch = discrete_state++;
     }
     dropped.clear();
     active.resize(row.size());
@@ -128,14 +128,14 @@ void Model::prepare(State& x)
     for (const auto& c : with_unknowns) {
         c->first_alpha = alphas;
         alphas += c->unknowns();
-        c->first_memory = memory;
-        memory += c->opens();
-        c->first_remembered = remembered;
-        remembered += c->remembered();
+        c->first_discrete_state = discrete_state;
+        discrete_state += c->may_be_inactive();
+        c->first_internal_state = internal_state;
+        internal_state += c->internal_states();
     }
-    x.memory.assign(memory, 0);
+    x.discrete_state.assign(discrete_state, 0);
     x.alpha = Eigen::VectorXd::Zero(alphas);
-    x.remembered.assign(remembered, 0);
+    x.internal_state.assign(internal_state, 0);
     for (size_t k = 0; k < with_unknowns.size(); ++k) {
         const Constraint& c = *with_unknowns[k];
         const auto refuse = [&](const std::string& why) {
@@ -143,15 +143,15 @@ void Model::prepare(State& x)
         };
         try {
             if (const std::string why = c.objection(at(c, x)); !why.empty()) {
-                if (!c.hands_over()) refuse(why);
-                x.memory[c.first_memory] = Constraint::handed_over;
+                if (!c.has_fallback()) refuse(why);
+                x.discrete_state[c.first_discrete_state] = Constraint::fallback_active;
                 try {
-                    c.track(at(c, x), true, x.alpha.data() + c.first_alpha);  // for who looks at it
+                    c.update_alpha(at(c, x), true, x.alpha.data() + c.first_alpha);  // for who looks at it
                 } catch (const lie::NumericalFailure&) {
                 }
                 continue;
             }
-            c.track(at(c, x), true, x.alpha.data() + c.first_alpha);
+            c.update_alpha(at(c, x), true, x.alpha.data() + c.first_alpha);
         } catch (const lie::NumericalFailure& e) {  // of a start, that it is a wrong one
             refuse(e.what());
         }
@@ -159,28 +159,29 @@ void Model::prepare(State& x)
         constexpr double still = 1e-9;  // [m/s]
         const Constraint::At there = at(c, x);
         const double gap = c.gap(there);
-        if (c.one_sided() &&
+        if (c.is_unilateral() &&
             (gap > c.allowance() || (gap > -c.allowance() && std::abs(c.separation_speed(there)) > still)))
-            x.memory[c.first_memory] = Constraint::is_open;
+            x.discrete_state[c.first_discrete_state] = Constraint::inactive;
     }
     for (const auto& f : force) {
-        f->first_memory = memory;
-        memory += f->memory();
-        f->first_remembered = remembered;
-        remembered += f->remembered();
+        f->first_discrete_state = discrete_state;
+        discrete_state += f->discrete_states();
+        f->first_internal_state = internal_state;
+        internal_state += f->internal_states();
     }
-    x.memory.resize(memory, 0);
+    x.discrete_state.resize(discrete_state, 0);
     x.lambda = Eigen::VectorXd::Zero(rows());
     swap_drivers(x);  // one may start near its singular point
-    remember_start(x);
+    set_internal_state_at_start(x);
 }
 
-void Model::remember_start(State& x) const
+void Model::set_internal_state_at_start(State& x) const
 {
-    for (const auto& f : force) std::fill_n(x.memory.begin() + f->first_memory, f->memory(), 0);
-    x.remembered.assign(remembered, 0);
-    remember_contacts(x, true);
-    for (const auto& f : force) f->remember(x);
+    for (const auto& f : force)
+        std::fill_n(x.discrete_state.begin() + f->first_discrete_state, f->discrete_states(), 0);
+    x.internal_state.assign(internal_state, 0);
+    update_contact_states(x, true);
+    for (const auto& f : force) f->update_internal_state(x);
 }
 
 Model::StableStep Model::stable_step(const State& x) const
@@ -240,9 +241,9 @@ void Model::set_pattern()
     for (const auto& c : with_unknowns) {
         c->first_row = rows_pattern.rows();
         add_to_pattern(*c, 0, c->rows());
-        rows_pattern.massless.push_back({c->first_row, c->rows(), alphas, c->unknowns(), {}});
-        rows_pattern.massless.back().D.setZero(c->rows(), c->unknowns());
-        if (c->opens()) rows_pattern.opening.push_back(c->first_row + c->rows() - 1);
+        rows_pattern.algebraic.push_back({c->first_row, c->rows(), alphas, c->unknowns(), {}});
+        rows_pattern.algebraic.back().D.setZero(c->rows(), c->unknowns());
+        if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->first_row + c->rows() - 1);
         alphas += c->unknowns();
     }
     for (const auto& c : with_unknowns) {
@@ -250,14 +251,14 @@ void Model::set_pattern()
         add_to_pattern(*c, c->rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
         for (int n = 0; n < c->pairs(); ++n) {
-            lie::Rows::Compliant pair;
+            lie::Rows::Regularised pair;
             pair.first = c->first_velocity_row + 2 * n;
-            pair.pressing = c->first_row;
-            pair.early = c->is_early(n);
-            rows_pattern.compliant.push_back(pair);
+            pair.normal_row = c->first_row;
+            pair.solved_first = c->solved_first(n);
+            rows_pattern.regularised.push_back(pair);
         }
-        for (int k = 0; (c->opens() || c->gives_way()) && k < c->velocity_rows(); ++k)
-            rows_pattern.opening.push_back(c->first_velocity_row + k);
+        for (int k = 0; (c->may_be_inactive() || c->is_regularised()) && k < c->velocity_rows(); ++k)
+            rows_pattern.unilateral.push_back(c->first_velocity_row + k);
     }
 }
 
@@ -311,7 +312,7 @@ Model::Residual Model::largest_residual(const State& x, Over over) const
     if (over == Over::blocks) return largest;
     double Phi[Constraint::most_rows];
     for (const auto& c : with_unknowns) {
-        if (idle(*c, x)) continue;
+        if (inactive(*c, x)) continue;
         c->phi(at(*c, x), Phi);
         for (int k = 0; k < c->rows(); ++k) largest.consider(Phi[k], k, c.get());
     }

@@ -71,15 +71,15 @@ public:
                 motion(x, c.j),
                 x.t,
                 x.alpha.data() + c.first_alpha,
-                x.remembered.data() + c.first_remembered,
-                idle(c, x),
+                x.internal_state.data() + c.first_internal_state,
+                inactive(c, x),
                 &x.lambda};
     }
     /// Whether it holds nothing at present, being open or handed over. Its rows are then empty.
-    static bool idle(const Constraint& c, const State& x) { return mode(c, x) != Constraint::holds; }
+    static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
     static int mode(const Constraint& c, const State& x)
     {
-        return c.opens() ? x.memory[c.first_memory] : Constraint::holds;
+        return c.may_be_inactive() ? x.discrete_state[c.first_discrete_state] : Constraint::active;
     }
     /// Takes its multipliers out of the state, too.
     static void set_mode(const Constraint& c, State& x, Constraint::Mode mode);
@@ -98,7 +98,7 @@ public:
     void prepare(State& x);
     /// Lets the forces remember a start in x, whatever they remembered before. Called by prepare(), and by
     /// start() once x is on the constraints.
-    void remember_start(State& x) const;
+    void set_internal_state_at_start(State& x) const;
 
     /// Smallest stable_step() of the forces, and the force that has it; -1 where any step is stable.
     struct StableStep {
@@ -117,7 +117,7 @@ public:
 
         const Block& in_force(const State& x) const
         {
-            return complement && x.memory[branch] == 1 ? *complement : *block;
+            return complement && x.discrete_state[branch] == 1 ? *complement : *block;
         }
     };
     const std::vector<Row>& all_rows() const { return row; }
@@ -156,7 +156,7 @@ public:
     void variation(const State& x, lie::Rows& out) const override;
     void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
     void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
-    void track(State& x) const override;
+    void update_alpha(State& x) const override;
     void second_variation(const State& x, lie::SecondVariation& out) const override;
     void nu_variation(const State& x, lie::Rows& out) const override;
     void gamma_variation(const State& x, lie::GammaVariation& out) const override;
@@ -172,7 +172,7 @@ public:
 
 private:
     void swap_drivers(State& x) const;
-    void remember_contacts(State& x, bool start) const;
+    void update_contact_states(State& x, bool start) const;
     void set_pattern();
     void add_to_pattern(const Row& row);
     void add_to_pattern(const Constraint& c, int first, int rows);
@@ -187,7 +187,7 @@ private:
     std::vector<int> active, dropped;  ///< ascending
     std::vector<std::unique_ptr<Constraint>> with_unknowns;
     std::vector<std::unique_ptr<Force>> force;
-    int memory = 0, remembered = 0;  ///< numbers in the state
+    int discrete_state = 0, internal_state = 0;  ///< numbers in the state
 
     lie::Mass inertia;
     lie::Rows rows_pattern;

@@ -32,7 +32,7 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
         out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
     }
     for (const auto& c : with_unknowns)
-        if (idle(*c, x))
+        if (inactive(*c, x))
             out.segment(c->first_row, c->rows()).setZero();
         else
             c->phi(at(*c, x), out.data() + c->first_row);
@@ -57,22 +57,22 @@ void Model::variation(const State& x, lie::Rows& out) const
                 out.entry[e].pi = of_body.row(of_c + k).tail<3>();
             }
     };
-    lie::Rows::Compliant* pair = out.compliant.data();
+    lie::Rows::Regularised* pair = out.regularised.data();
     for (size_t n = 0; n < with_unknowns.size(); ++n) {
         const Constraint& c = *with_unknowns[n];
         for (int p = 0; p < c.pairs(); ++p) pair[p].K = 0;
-        if (!idle(c, x)) c.compliance(at(c, x), pair);
+        if (!inactive(c, x)) c.compliance(at(c, x), pair);
         pair += c.pairs();
         d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
         d.of_alpha.setZero(c.rows(), c.unknowns());
-        if (idle(c, x))
+        if (inactive(c, x))
             d.of_alpha.setIdentity();  // its unknowns stay as they are
         else
             c.variation(at(c, x), d);
         fill(c, 0, c.first_row, c.rows());
         fill(c, c.rows(), c.first_velocity_row, c.velocity_rows());
-        out.massless[n].D = d.of_alpha;
+        out.algebraic[n].D = d.of_alpha;
     }
 }
 
@@ -96,16 +96,16 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     double of_c[12];
     for (const auto& c : with_unknowns) {
         std::fill(of_c, of_c + 12, 0.0);
-        if (!idle(*c, x)) c->gamma(at(*c, x), of_c);
+        if (!inactive(*c, x)) c->gamma(at(*c, x), of_c);
         std::copy_n(of_c, c->rows(), out.data() + c->first_row);
         std::copy_n(of_c + c->rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
     }
 }
 
-void Model::track(State& x) const
+void Model::update_alpha(State& x) const
 {
     for (const auto& c : with_unknowns)
-        if (!idle(*c, x)) c->track(at(*c, x), false, x.alpha.data() + c->first_alpha);
+        if (!inactive(*c, x)) c->update_alpha(at(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
 void Model::second_variation(const State& x, lie::SecondVariation& out) const
@@ -202,21 +202,21 @@ double Model::potential_energy(const State& x) const
 void Model::accepted(const State&, State& after) const
 {
     swap_drivers(after);
-    remember_contacts(after, false);
-    for (const auto& f : force) f->remember(after);
+    update_contact_states(after, false);
+    for (const auto& f : force) f->update_internal_state(after);
 }
 
-void Model::remember_contacts(State& x, bool start) const
+void Model::update_contact_states(State& x, bool start) const
 {
     for (const auto& c : with_unknowns)
-        if (mode(*c, x) != Constraint::handed_over &&
-            !c->remember(at(*c, x), start, x.remembered.data() + c->first_remembered))
-            set_mode(*c, x, Constraint::handed_over);
+        if (mode(*c, x) != Constraint::fallback_active &&
+            !c->update_internal_state(at(*c, x), start, x.internal_state.data() + c->first_internal_state))
+            set_mode(*c, x, Constraint::fallback_active);
 }
 
 void Model::set_mode(const Constraint& c, State& x, Constraint::Mode mode)
 {
-    x.memory[c.first_memory] = mode;
+    x.discrete_state[c.first_discrete_state] = mode;
     x.lambda.segment(c.first_row, c.rows()).setZero();
     x.lambda.segment(c.first_velocity_row, c.velocity_rows()).setZero();
 }
@@ -232,7 +232,7 @@ void Model::swap_drivers(State& x) const
         const Block& other = &in_force == r.block.get() ? *r.complement : *r.block;
         if (std::abs(other.phi(bi, bj, x.t)) > swap_mismatch) continue;
         const Variation from = in_force.variation(bi, bj, x.t);
-        x.memory[r.branch] ^= 1;
+        x.discrete_state[r.branch] ^= 1;
         const Variation to = r.in_force(x).variation(bi, bj, x.t);
         x.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
                                                   (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());

@@ -205,7 +205,7 @@ std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o,
 namespace {
 
 // in a function, so that it is there for whoever enrols before main()
-ReadContact& enrolled()
+ReadContact& registered()
 {
     static ReadContact read = nullptr;
     return read;
@@ -213,12 +213,12 @@ ReadContact& enrolled()
 
 }  // namespace
 
-bool enrol_contacts(ReadContact read)
+bool register_contact_reader(ReadContact read)
 {
-    enrolled() = read;
+    registered() = read;
     return true;
 }
 
-ReadContact contact_reader() { return enrolled(); }
+ReadContact contact_reader() { return registered(); }
 
 }  // namespace hilda::dae

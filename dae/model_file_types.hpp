@@ -38,7 +38,7 @@ using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
 
 /// Makes this the reader of contacts; there is one at most, the last, and none after a nullptr. Called while
 /// the program starts: const bool enrolled = enrol_contacts(...);
-bool enrol_contacts(ReadContact read);
+bool register_contact_reader(ReadContact read);
 ReadContact contact_reader();
 
 }  // namespace hilda::dae

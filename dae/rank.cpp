@@ -17,8 +17,8 @@ const Constraint& contact_of(const Model& model, const State& x, int k)
     int row = static_cast<int>(model.active_rows().size());
     for (const bool of_velocities : {false, true})
         for (const auto& c : model.evolving()) {
-            if (Model::idle(*c, x)) continue;
-            const int held = c->gives_way() ? 0 : c->velocity_rows();
+            if (Model::inactive(*c, x)) continue;
+            const int held = c->is_regularised() ? 0 : c->velocity_rows();
             row += of_velocities ? held : c->rows() - c->unknowns();
             if (k < row) return *c;
         }
@@ -31,10 +31,10 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
     lie::Rows whole = model.pattern();
     model.variation(x, whole);
-    whole.soften(0);  // what gives way leaves nothing undetermined
-    std::vector<char> empty(whole.rows(), 0);
-    for (const int k : whole.opening) empty[k] = whole.empty(k);
-    lie::Elimination contacts(whole, empty);  // a contact is the one row that is left of it
+    whole.regularise(0);  // what gives way leaves nothing undetermined
+    std::vector<char> inactive(whole.rows(), 0);
+    for (const int k : whole.unilateral) inactive[k] = whole.is_inactive(k);
+    lie::Elimination contacts(whole, inactive);  // a contact is the one row that is left of it
     contacts.factor(whole);
     const lie::Rows& C = contacts.reduced();
     const int m = C.rows(), n = 6 * model.bodies();
@@ -100,8 +100,8 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     }
     std::string names;
     for (const Constraint* c : contacts_too_many)
-        if (c->hands_over())
-            Model::set_mode(*c, x, Constraint::handed_over);
+        if (c->has_fallback())
+            Model::set_mode(*c, x, Constraint::fallback_active);
         else
             names += (names.empty() ? "'" : ", '") + c->name + "'";
     if (!names.empty())

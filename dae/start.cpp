@@ -81,7 +81,8 @@ int project_positions(const Model& model, lie::Saddle& K, State& x, double toler
             x.body[b].r += part * step.segment<3>(6 * b);
             x.body[b].A = lie::orthonormalised(x.body[b].A * lie::exp(part * step.segment<3>(6 * b + 3)));
         }
-        if (x.alpha.size() > 0) x.alpha += part * K.massless_part(step);  // those of a model are in its order
+        if (x.alpha.size() > 0)
+            x.alpha += part * K.algebraic_part(step);  // those of a model are in its order
         // Goes on below the tolerance for as long as it still gains: the last step is free and gives the last
         // digits.
         const double after = residual();
@@ -106,7 +107,7 @@ void project_velocities(const lie::System& system, lie::Saddle& K, State& x)
         v.segment<3>(6 * b) = system.mass().m[b] * x.body[b].rdot;
         v.segment<3>(6 * b + 3) = system.mass().J_bar[b] * x.body[b].omega_bar;
     }
-    K.massless_part(v).setZero();
+    K.algebraic_part(v).setZero();
     system.nu(x, K.constraint_part(v));
     K.solve_refined(v);
     for (int b = 0; b < system.bodies(); ++b) {
@@ -125,7 +126,7 @@ constexpr double as_stiff_as_in = 1, an_instant = 1e-6;
 /// something does
 void stop_within(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd& a)
 {
-    for (const lie::Rows::Compliant& c : C.compliant)
+    for (const lie::Rows::Regularised& c : C.regularised)
         for (int k = c.first; k < c.first + 2; ++k) {
             double slip = 0;
             for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
@@ -140,7 +141,7 @@ void stop_within(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd
 
 void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
 {
-    lie::GiveWay within_bounds(system.pattern());
+    lie::BoundedRows within_bounds(system.pattern());
     within_bounds.all_stick(K);
     K.assemble(x, as_stiff_as_in);
     lie::Loads loads(system.bodies());
@@ -151,7 +152,7 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
         a.segment<3>(6 * b) = loads.F[b];
         a.segment<3>(6 * b + 3) = loads.n_bar[b] - omega_bar.cross(system.mass().J_bar[b] * omega_bar);
     }
-    K.massless_part(a).setZero();
+    K.algebraic_part(a).setZero();
     system.gamma(x, K.constraint_part(a));
     stop_within(an_instant, K.rows(), x, a);
     if (!a.allFinite()) throw lie::NonFinite("a load or a constraint is not finite");
@@ -179,12 +180,13 @@ namespace {
 void settle(const Model& model, lie::Saddle& K, State& x)
 {
     const auto once = [&] {
-        model.remember_start(x);
+        model.set_internal_state_at_start(x);
         solve_accelerations(model, K, x);
     };
     once();
     const auto& forces = model.forces();
-    if (std::none_of(forces.begin(), forces.end(), [](const auto& f) { return f->remembers_multipliers(); }))
+    if (std::none_of(forces.begin(), forces.end(),
+                     [](const auto& f) { return f->internal_state_uses_multipliers(); }))
         return;
     // λ goes by w times what a pass makes of it, with the w of Aitken's extrapolation: passes alone diverge where much
     // friction has a long lever against the normal force.
@@ -259,7 +261,7 @@ void check_contact_positions(const Model& model, const State& x, const StartOpti
 {
     for (size_t k = 0; k < model.evolving().size(); ++k) {
         const auto& c = model.evolving()[k];
-        if (Model::idle(*c, x)) continue;
+        if (Model::inactive(*c, x)) continue;
         const double error = std::abs(c->gap(model.at(*c, x)));
         if (!options.fix_initial && !(error <= c->allowance()))
             throw ContactError(model.name_of(*c) + ": not in contact at the start, a gap or overlap of " +
@@ -278,7 +280,7 @@ void check_contact_velocities(const Model& model, const State& x, const StartOpt
 {
     for (size_t k = 0; k < model.evolving().size(); ++k) {
         const auto& c = model.evolving()[k];
-        if (Model::idle(*c, x)) continue;
+        if (Model::inactive(*c, x)) continue;
         const double error = c->velocity_error(model.at(*c, x));
         if (!options.fix_initial && !(error <= options.tolerance))
             throw ContactError(model.name_of(*c) + ": the initial velocities violate the contact by " +
@@ -319,9 +321,9 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().unknowns();
     for (const auto& c : model.evolving())
-        if (Model::idle(*c, x))
+        if (Model::inactive(*c, x))
             report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
-        else if (c->gives_way())
+        else if (c->is_regularised())
             report.rank -= c->velocity_rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 

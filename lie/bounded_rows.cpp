@@ -13,37 +13,37 @@ constexpr double as_good_as_none = 1e-9;  // part of the multipliers that would 
 
 }  // namespace
 
-void GiveWay::all_stick(Saddle& K)
+void BoundedRows::all_stick(Saddle& K)
 {
     for (size_t n = 0; n < search.size(); ++n) {
         search[n] = {};
-        K.set_softer(static_cast<int>(n), 1);
+        K.set_compliance_scale(static_cast<int>(n), 1);
     }
 }
 
-bool GiveWay::operator()(Saddle& K, const Rows& C, Eigen::VectorXd& z, const State& x)
+bool BoundedRows::operator()(Saddle& K, const Rows& C, Eigen::VectorXd& z, const State& x)
 {
     const auto lambda = K.constraint_part(z);
-    for (const bool early : {true, false}) {
+    for (const bool solved_first : {true, false}) {
         bool within = true;
         for (size_t n = 0; n < search.size(); ++n) {
-            const Rows::Compliant& c = C.compliant[n];
-            if (c.early != early || C.empty(c.first)) continue;
-            const double N = c.n.dot(lambda.segment<3>(c.pressing)), p = K.rows().compliant[n].p;
+            const Rows::Regularised& c = C.regularised[n];
+            if (c.solved_first != solved_first || C.is_inactive(c.first)) continue;
+            const double N = c.n.dot(lambda.segment<3>(c.normal_row)), p = K.rows().regularised[n].p;
             const double other =
-                softer(search[n], p, c.mu * std::max(N, 0.), lambda.segment<2>(c.first).norm());
+                next_scale(search[n], p, c.mu * std::max(N, 0.), lambda.segment<2>(c.first).norm());
             if (other == p) continue;
-            K.set_softer(static_cast<int>(n), other);
+            K.set_compliance_scale(static_cast<int>(n), other);
             within = false;
         }
         if (within) continue;
-        K.give_way(x);
+        K.refactor_regularised(x);
         return false;
     }
     return true;
 }
 
-double GiveWay::softer(Search& s, double p, double bound, double length)
+double BoundedRows::next_scale(Search& s, double p, double bound, double length)
 {
     if (bound >= length && p == 1) return 1;
     if (s.solutions == 0) s.sticking = length;

@@ -17,9 +17,9 @@
 
 namespace hilda::lie {
 
-class GiveWay {
+class BoundedRows {
 public:
-    explicit GiveWay(const Rows& pattern) : search(pattern.compliant.size()) {}
+    explicit BoundedRows(const Rows& pattern) : search(pattern.regularised.size()) {}
 
     /// To begin with; K is assembled after it.
     void all_stick(Saddle& K);
@@ -33,7 +33,7 @@ private:
         double p = 1, f = 1;  ///< of the last but one
         double sticking = 0;  ///< |λ|(1)
     };
-    static double softer(Search& s, double p, double bound, double length);
+    static double next_scale(Search& s, double p, double bound, double length);
 
     std::vector<Search> search;
 };

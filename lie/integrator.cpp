@@ -38,13 +38,14 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
         reject("integrator " + name, "takes no " + what + "; those that do are " + names, name);
     };
     const Rows& rows = system.pattern();
-    if (!rows.massless.empty()) refuse_unless(&Scheme::massless, "contacts that evolve");
-    if (!rows.compliant.empty()) refuse_unless(&Scheme::compliant, "friction in the equations of its step");
-    if (rows.velocity_rows > 0) refuse_unless(&Scheme::velocities, "rolling without slip");
+    if (!rows.algebraic.empty()) refuse_unless(&Scheme::algebraic, "contacts that evolve");
+    if (!rows.regularised.empty())
+        refuse_unless(&Scheme::regularised, "friction in the equations of its step");
+    if (rows.velocity_rows > 0) refuse_unless(&Scheme::nonholonomic, "rolling without slip");
     return construct(system, settings);
 }
 
-bool enrol(Scheme scheme)
+bool register_scheme(Scheme scheme)
 {
     std::vector<Scheme>& all = list();
     const auto at = std::lower_bound(all.begin(), all.end(), scheme,

@@ -51,8 +51,8 @@ public:
     /// Half-implicit schemes find λ_n, r̈_n, ω̄̇_n in the step that leaves t_n, so a node is known in full one
     /// step late. Where this is true, step() leaves them in its result, and complete() hands them to the node
     /// they belong to.
-    virtual bool lags() const { return false; }
-    virtual void complete(State& /*node*/, const State& /*after*/) const {}
+    virtual bool is_staggered() const { return false; }
+    virtual void fill_node(State& /*node*/, const State& /*after*/) const {}
     /// Whether it keeps something in x.history. An empty one then means a start, at which λ, r̈, ω̄̇ of x are those of x.
     virtual bool keeps_history() const { return false; }
 
@@ -77,9 +77,9 @@ struct Scheme {
     /// Chooses its own steps inside the step it is asked for, by rtol and atol. It remembers past steps
     /// outside the state, so its runs do not resume.
     bool adaptive = false;
-    bool massless = false;    ///< takes systems with massless unknowns: contacts that evolve
-    bool velocities = false;  ///< takes rows that hold velocities alone: rolling
-    bool compliant = false;   ///< takes rows that give way: friction in the equations of the step
+    bool algebraic = false;     ///< takes systems with massless unknowns: contacts that evolve
+    bool nonholonomic = false;  ///< takes rows that hold velocities alone: rolling
+    bool regularised = false;   ///< takes rows that give way: friction in the equations of the step
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
 
     /// InvalidInput for a system with unknowns or rows that the scheme does not take
@@ -93,15 +93,15 @@ const std::vector<Scheme>& schemes();
 const Scheme& scheme(const std::string& name);
 
 /// Puts a scheme into the list: the last line of its file.
-bool enrol(Scheme scheme);
+bool register_scheme(Scheme scheme);
 
 template <class Method>
-bool enrol(Scheme scheme)
+bool register_scheme(Scheme scheme)
 {
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<Method>(system, settings);
     };
-    return enrol(std::move(scheme));
+    return register_scheme(std::move(scheme));
 }
 
 }  // namespace hilda::lie

@@ -24,10 +24,10 @@ struct State {
     Eigen::VectorXd alpha;   ///< unknowns without mass: the contact points of contacts that evolve
     Eigen::VectorXd lambda;  ///< multiplier of each constraint row
     /// Whole numbers that a system remembers from step to step: the branch of a driver, turns
-    std::vector<int> memory;
+    std::vector<int> discrete_state;
     /// Real numbers that it remembers: contact points, what friction has stored. Loads may depend on them; constraints
     /// may in how they are written, such as along which tangents, never in what they say.
-    std::vector<double> remembered;
+    std::vector<double> internal_state;
     /// What a scheme carries from step to step: half-step velocities, earlier increments. Empty at a start.
     Eigen::VectorXd history;
 };

@@ -45,7 +45,7 @@ struct Rows {
 
     /// Unknowns α_first_alpha … without mass, in which rows first … first + rows - 1 are written and no others; fewer
     /// than these rows.
-    struct Massless {
+    struct AlgebraicGroup {
         int first = 0, rows = 0, first_alpha = 0, count = 0;
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> D;  ///< ∂Φ/∂α, rows × count
     };
@@ -58,52 +58,52 @@ struct Rows {
     ///
     /// Where they would be beyond their bound they are p times softer, p λ = K (S + h C v) + D C v: then λ is as long as the
     /// bound, and against what is left of the motion. See GiveWay for p.
-    struct Compliant {
-        int first = 0, pressing = 0;  ///< both rows belong to those that open
-        bool early = false;           ///< within its bound before those that are not are looked at
-        double K = 0, D = 0, mu = 0;  ///< K is 0 where the rows are empty
+    struct Regularised {
+        int first = 0, normal_row = 0;  ///< both rows belong to those that open
+        bool solved_first = false;      ///< within its bound before those that are not are looked at
+        double K = 0, D = 0, mu = 0;    ///< K is 0 where the rows are empty
         Eigen::Vector2d S = Eigen::Vector2d::Zero();
         Vec3 n = Vec3::Zero();
-        double p = 1, softness = 0;  ///< not of the system; with a minus on the diagonal of K
+        double p = 1, compliance = 0;  ///< not of the system; with a minus on the diagonal of K
 
         double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }  ///< C v/λ where S = 0
     };
 
     std::vector<int> start{0};
     std::vector<Entry> entry;
-    std::vector<Massless> massless;
-    std::vector<Compliant> compliant;
+    std::vector<AlgebraicGroup> algebraic;
+    std::vector<Regularised> regularised;
     int velocity_rows = 0;  ///< how many of the last rows hold velocities alone
     /// Rows that hold nothing in some states, where all their derivatives are zero and so is Φ. Their corrections are then
     /// zero: whoever empties a row sets its multiplier to zero. Ascending.
-    std::vector<int> opening;
+    std::vector<int> unilateral;
 
     /// Makes C (h v) - softness (h² λ) = -h K S/(D + h K) of the rows that give way; empties them for h = 0, as there is no time
     /// in which they could resist.
-    void soften(double h)
+    void regularise(double h)
     {
-        for (Compliant& c : compliant) {
-            c.softness = h > 0 ? c.p * c.mobility(h) / h : 0;
+        for (Regularised& c : regularised) {
+            c.compliance = h > 0 ? c.p * c.mobility(h) / h : 0;
             for (int n = start[c.first]; h == 0 && n < start[c.first + 2]; ++n)
                 entry[n].r.setZero(), entry[n].pi.setZero();
         }
     }
-    bool gives_way(int k) const
+    bool is_regularised(int k) const
     {
-        for (const Compliant& c : compliant)
+        for (const Regularised& c : regularised)
             if (k == c.first || k == c.first + 1) return true;
         return false;
     }
 
     /// Whether row k holds nothing in this state; of a group with massless unknowns the last row is asked.
-    bool empty(int k) const
+    bool is_inactive(int k) const
     {
         for (int n = start[k]; n < start[k + 1]; ++n)
             if (entry[n].r != Vec3::Zero() || entry[n].pi != Vec3::Zero()) return false;
         const auto group =
-            std::lower_bound(massless.begin(), massless.end(), k,
-                             [](const Massless& m, int row) { return m.first + m.rows - 1 < row; });
-        return group == massless.end() || group->first + group->rows - 1 != k ||
+            std::lower_bound(algebraic.begin(), algebraic.end(), k,
+                             [](const AlgebraicGroup& m, int row) { return m.first + m.rows - 1 < row; });
+        return group == algebraic.end() || group->first + group->rows - 1 != k ||
                group->D.bottomRows<1>().isZero(0);
     }
 
@@ -112,7 +112,7 @@ struct Rows {
     int unknowns() const  ///< without mass
     {
         int sum = 0;
-        for (const Massless& group : massless) sum += group.count;
+        for (const AlgebraicGroup& group : algebraic) sum += group.count;
         return sum;
     }
 
@@ -131,10 +131,10 @@ struct Rows {
 
     /// Φ_αᵀ λ, times a factor, added to q: the massless unknowns one group after the other
     template <class Lambda, class Q>
-    void add_massless_transpose(double factor, const Lambda& lambda, Q&& q) const
+    void add_algebraic_transpose(double factor, const Lambda& lambda, Q&& q) const
     {
         int at = 0;
-        for (const Massless& group : massless) {
+        for (const AlgebraicGroup& group : algebraic) {
             for (int c = 0; c < group.count; ++c)
                 for (int k = 0; k < group.rows; ++k)
                     q[at + c] += factor * group.D(k, c) * lambda[group.first + k];
@@ -226,7 +226,7 @@ public:
     virtual void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
     /// Sets x.alpha to what belongs to the poses of the bodies, from what it is: for poses that are not quite on the
     /// constraints, such as a stage of a Runge-Kutta step.
-    virtual void track(State& /*x*/) const {}
+    virtual void update_alpha(State& /*x*/) const {}
 
     /// What the exact Newton matrices are made of; schemes with a frozen matrix do without. As they stand here
     /// they are found by differences, good to about 1e-9 of the size of what is differentiated and not fast.

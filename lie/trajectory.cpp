@@ -3,7 +3,7 @@
 
 namespace hilda::lie {
 
-Grid Grid::over(double t_end, double h, double dt)
+TimeGrid TimeGrid::over(double t_end, double h, double dt)
 {
     if (!(h > 0) || !std::isfinite(h)) reject("lie::Grid", "the step must be positive and finite", h);
     if (!(t_end >= 0) || !std::isfinite(t_end))
@@ -12,10 +12,10 @@ Grid Grid::over(double t_end, double h, double dt)
         reject("lie::Grid", "the output interval must be finite and not negative", dt);
     if (t_end / h > 1e15) reject("lie::Grid", "more than 1e15 steps are asked for, step", h);
     constexpr double slack = 1e-9;  // of a step: t_end / h and dt / h are rarely whole in binary
-    Grid grid;
+    TimeGrid grid;
     grid.h = h;
     grid.steps = static_cast<long>(std::ceil(t_end / h - slack));
-    grid.every = std::max(1L, static_cast<long>(std::ceil(dt / h - slack)));
+    grid.interval = std::max(1L, static_cast<long>(std::ceil(dt / h - slack)));
     return grid;
 }
 
@@ -47,7 +47,7 @@ int March::try_step(State& to)
 void March::advance(std::span<Observer* const> observers)
 {
     const int k = try_step(after);
-    if (n > 0) integrator.complete(x, after);  // the start keeps the accelerations it was solved for
+    if (n > 0) integrator.fill_node(x, after);  // the start keeps the accelerations it was solved for
     integrator.system().accepted(x, after);  // first: where it fails, the node is told of when the march ends
     for (Observer* o : observers) o->accepted(x, n, iterations);
     std::swap(x, after);
@@ -58,24 +58,24 @@ void March::advance(std::span<Observer* const> observers)
 void March::finish(std::span<Observer* const> observers)
 {
     State node = x;
-    if (integrator.lags() && n > 0) {
+    if (integrator.is_staggered() && n > 0) {
         // A node is known in full one step late, also the last one. Where that step fails, its multipliers
         // and accelerations are those of the node before.
         try {
             try_step(after);
-            integrator.complete(node, after);
+            integrator.fill_node(node, after);
         } catch (const NumericalFailure&) {
         }
     }
     for (Observer* o : observers) o->accepted(node, n, iterations);
 }
 
-Trajectory march(State x, Integrator& integrator, const Grid& grid, std::span<Observer* const> observers)
+Trajectory march(State x, Integrator& integrator, const TimeGrid& grid, std::span<Observer* const> observers)
 {
     struct Recorder final : Observer {
-        const Grid& grid;
+        const TimeGrid& grid;
         Trajectory trajectory;
-        explicit Recorder(const Grid& grid) : grid(grid) {}
+        explicit Recorder(const TimeGrid& grid) : grid(grid) {}
         void accepted(const State& node, long n, int) override
         {
             if (grid.is_row(n)) trajectory.row.push_back(node);

@@ -10,16 +10,16 @@
 namespace hilda::lie {
 
 /// Nodes t_n = t_0 + n h, n = 0 … steps; every so-many-th of them is a row of the trajectory.
-struct Grid {
+struct TimeGrid {
     double h = 1e-3;  ///< [s]
     long steps = 0;
-    long every = 1;
+    long interval = 1;
 
     /// Nodes up to the first at or after t_end; of them every ceil(dt/h)-th is a row, each when dt is 0. Both
     /// are exact when they are multiples of h. InvalidInput when a number makes no sense.
-    static Grid over(double t_end, double h, double dt = 0);
+    static TimeGrid over(double t_end, double h, double dt = 0);
 
-    bool is_row(long n) const { return n % every == 0 || n == steps; }
+    bool is_row(long n) const { return n % interval == 0 || n == steps; }
 };
 
 /// Watches nodes as they are accepted. A node comes with its velocities, accelerations and multipliers all at
@@ -65,7 +65,7 @@ private:
 };
 
 /// Runs over the whole grid and keeps its rows.
-Trajectory march(State x, Integrator& integrator, const Grid& grid,
+Trajectory march(State x, Integrator& integrator, const TimeGrid& grid,
                  std::span<Observer* const> observers = {});
 
 }  // namespace hilda::lie

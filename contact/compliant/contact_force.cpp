@@ -10,9 +10,9 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
                                                std::move(law), std::move(friction))
 {}
 
-Meeting ContactForce::meet(const lie::State& x, const Memory& memory) const
+ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& history) const
 {
-    return contact.meet(motion(x, i), motion(x, j), memory);
+    return contact.evaluate(motion(x, i), motion(x, j), history);
 }
 
 bool ContactForce::close(const lie::State& x) const
@@ -23,7 +23,7 @@ bool ContactForce::close(const lie::State& x) const
 double ContactForce::potential_energy(const lie::State& x) const
 {
     if (!works(x)) return 0;
-    return contact.energy(at(x).meeting, motion(x, i), motion(x, j));
+    return contact.energy(at(x).contact_state, motion(x, i), motion(x, j));
 }
 
 std::string ContactForce::objection(const lie::State& x) const

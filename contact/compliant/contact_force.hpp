@@ -27,15 +27,15 @@ public:
     void stand_by(const dae::Constraint& c) { replaced = &c; }
     bool works(const lie::State& x) const override
     {
-        return replaced == nullptr || dae::Model::mode(*replaced, x) == dae::Constraint::handed_over;
+        return replaced == nullptr || dae::Model::mode(*replaced, x) == dae::Constraint::fallback_active;
     }
     const dae::Constraint* held_by() const override { return replaced; }
 
-    const Contact contact;
+    const CompliantContact contact;
 
 private:
     const FrictionPair& pair() const override { return contact; }
-    Meeting meet(const lie::State& x, const Memory& memory) const override;
+    ContactState evaluate(const lie::State& x, const ContactHistory& history) const override;
     bool presses() const override { return true; }
     bool close(const lie::State& x) const override;
 

@@ -63,11 +63,11 @@ bool positive_definite(const Mat2& S, double margin = 1e-13)
 }
 
 /// K_i + K_j + g K_i K_j in the tangent plane
-Mat2 relative_curvature(const Touch& touch)
+Mat2 relative_curvature(const ContactPoint& contact_point)
 {
-    const Mat32 T = tangent_basis(touch.n);
-    const Mat2 K_i = T.transpose() * touch.K_i * T, K_j = T.transpose() * touch.K_j * T;
-    return K_i + K_j + touch.gap * K_i * K_j;
+    const Mat32 T = tangent_basis(contact_point.n);
+    const Mat2 K_i = T.transpose() * contact_point.K_i * T, K_j = T.transpose() * contact_point.K_j * T;
+    return K_i + K_j + contact_point.gap * K_i * K_j;
 }
 
 bool fills(const Surface& s) { return s.convex() && s.sigma() > 0; }
@@ -117,7 +117,7 @@ class EitherOrder final : public Detector {
 public:
     EitherOrder(const Shape& i, const Shape& j) : i(i), j(j), ij(i, j), ji(j, i) {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points* from) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points* from) const override
     {
         const Vec3 o_i = bi.r + bi.A * i.position, o_j = bj.r + bj.A * j.position;
         const bool i_first =
@@ -133,7 +133,7 @@ private:
 }  // namespace
 
 struct CommonNormal::Outcome {
-    Touch touch;
+    ContactPoint contact_point;
     const char* trouble;  // nullptr if there is none
     bool no_fit;          // the pose is to blame, not the search
     double correction;
@@ -146,23 +146,25 @@ CommonNormal::CommonNormal(const Shape& i, const Shape& j)
       single(fills(*i.surface) && fills(*j.surface))
 {}
 
-Touch CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* from) const
+ContactPoint CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* from) const
 {
     Pair p = placed(bi, bj);
     const Vec3 origin = bj.r + bj.A * j.position;
     Outcome best{};
     best.trouble = "there is no point to begin from";
-    best.touch.n.setConstant(NAN);
+    best.contact_point.n.setConstant(NAN);
     const auto search = [&] {
         Outcome end = solve(p, origin);
-        if (end.trouble == nullptr && !single && crossed(p, end.touch.gap))
+        if (end.trouble == nullptr && !single && crossed(p, end.contact_point.gap))
             end.trouble = "the bodies do not overlap where their normals are opposite";
-        if (best.trouble != nullptr || (end.trouble == nullptr && end.touch.gap < best.touch.gap)) best = end;
+        if (best.trouble != nullptr ||
+            (end.trouble == nullptr && end.contact_point.gap < best.contact_point.gap))
+            best = end;
     };
     if (from != nullptr) {
         p.a_i = i.to_surface(from->c_i), p.a_j = j.to_surface(from->c_j);
         search();
-        if (best.trouble == nullptr && (single || best.touch.gap <= 0)) return best.touch;
+        if (best.trouble == nullptr && (single || best.contact_point.gap <= 0)) return best.contact_point;
     }
     // Of two convex bodies the first touch is the only one. In a bowl, or around a ring, there may be several,
     // and another may be nearer than the one that is followed.
@@ -178,22 +180,22 @@ Touch CommonNormal::detect(const Motion& bi, const Motion& bj, const Points* fro
             const auto sign = [&](int bit) { return (corner & bit) != 0 ? -1 : 1; };
             if (begin(p, 10, Vec3(sign(1) * 0.48, sign(2) * 0.6, sign(4) * 0.64))) search();
         }
-    if (best.trouble == nullptr) return best.touch;
-    if (const auto touch = apart(bi, bj, origin)) return *touch;
+    if (best.trouble == nullptr) return best.contact_point;
+    if (const auto contact_point = apart(bi, bj, origin)) return *contact_point;
 
     std::ostringstream what;
-    if (const std::string why = misfit(bi, bj); !why.empty()) throw NoSingleTouch(why);
+    if (const std::string why = misfit(bi, bj); !why.empty()) throw NoUniqueContactPoint(why);
     what << "no touch of two surfaces: " << best.trouble;
-    if (best.touch.n.allFinite())
-        what << ", least sum of their curvatures " << least_curvature(best.touch) << " 1/m";
+    if (best.contact_point.n.allFinite())
+        what << ", least sum of their curvatures " << least_curvature(best.contact_point) << " 1/m";
     if (best.iterations == 0)
         what << why_no_beginning(bi, bj);
-    else if (std::isfinite(best.correction) && std::isfinite(best.touch.gap))
-        what << "; correction " << best.correction << " m, gap " << best.touch.gap << " m, after "
+    else if (std::isfinite(best.correction) && std::isfinite(best.contact_point.gap))
+        what << "; correction " << best.correction << " m, gap " << best.contact_point.gap << " m, after "
              << best.iterations << " iterations";
     else
         what << "; the search for the points leads nowhere";
-    if (best.no_fit) throw NoSingleTouch(what.str());
+    if (best.no_fit) throw NoUniqueContactPoint(what.str());
     throw lie::NumericalFailure("contact_not_converged", what.str());
 }
 
@@ -253,7 +255,7 @@ bool CommonNormal::crossed(const Pair& p, double gap) const
 /// - the middle of one body is further from the other surface than any of its own points; or
 /// - they are the nearest points of each other, as Newton's method finds them, but not the only ones; or
 /// - no body is hollow, and the distance is more than the size of the smaller.
-std::optional<Touch> CommonNormal::apart(const Motion& bi, const Motion& bj, const Vec3& origin) const
+std::optional<ContactPoint> CommonNormal::apart(const Motion& bi, const Motion& bj, const Vec3& origin) const
 {
     Pair p = placed(bi, bj), before = p;
     const auto beyond = [&](const Surface& s, const Placed& at, const Vec3& x, double reach) {
@@ -265,24 +267,27 @@ std::optional<Touch> CommonNormal::apart(const Motion& bi, const Motion& bj, con
         alternate(p, 30, Vec3::Zero());
         const Local at_i(*i.surface, p.i, p.a_i), at_j(*j.surface, p.j, p.a_j);
         const Vec3 x = at_i.x - at_j.x;
-        Touch touch;
-        touch.gap = x.norm();
-        touch.n = x / touch.gap;
-        touch.C_i = origin + at_i.x, touch.C_j = origin + at_j.x;
-        const Mat3 P = Mat3::Identity() - touch.n * touch.n.transpose();
-        touch.K_i = P * at_i.B * P, touch.K_j = P * at_j.B * P;
-        if (!(touch.gap > converged * small && touch.K_i.allFinite() && touch.K_j.allFinite())) return {};
+        ContactPoint contact_point;
+        contact_point.gap = x.norm();
+        contact_point.n = x / contact_point.gap;
+        contact_point.C_i = origin + at_i.x, contact_point.C_j = origin + at_j.x;
+        const Mat3 P = Mat3::Identity() - contact_point.n * contact_point.n.transpose();
+        contact_point.K_i = P * at_i.B * P, contact_point.K_j = P * at_j.B * P;
+        if (!(contact_point.gap > converged * small && contact_point.K_i.allFinite() &&
+              contact_point.K_j.allFinite()))
+            return {};
 
         if (beyond(*j.surface, p.j, p.i.origin, reach_i) || beyond(*i.surface, p.i, p.j.origin, reach_j))
-            return touch;
+            return contact_point;
         if (!outside(*j.surface, p.j.axes.transpose() * (at_i.x - p.j.origin)) ||
             !outside(*i.surface, p.i.axes.transpose() * (at_j.x - p.i.origin)))
             return {};
         const bool hollow = i.surface->sigma() < 0 || j.surface->sigma() < 0;
-        if (!hollow && touch.gap > small) return touch;
+        if (!hollow && contact_point.gap > small) return contact_point;
         const double moved = std::max((p.a_i - before.a_i).norm(), (p.a_j - before.a_j).norm());
         constexpr double rounding = 1e-6;
-        if (moved < rounding * small && positive_definite(relative_curvature(touch), -rounding)) return touch;
+        if (moved < rounding * small && positive_definite(relative_curvature(contact_point), -rounding))
+            return contact_point;
     } catch (const lie::NumericalFailure&) {
         // a point without a nearest one or without a normal shows nothing
     }
@@ -307,11 +312,11 @@ CommonNormal::Outcome CommonNormal::solve(Pair& p, const Vec3& origin) const
     }
     const Local at_i(*i.surface, p.i, p.a_i), at_j(*j.surface, p.j, p.a_j);
     const Vec3& n = at_j.n;
-    Touch& touch = end.touch;
-    touch.C_i = origin + at_i.x, touch.C_j = origin + at_j.x;
-    touch.n = n;
-    touch.gap = n.dot(at_i.x - at_j.x);
-    touch.K_i = at_i.shape_operator(), touch.K_j = at_j.shape_operator();
+    ContactPoint& contact_point = end.contact_point;
+    contact_point.C_i = origin + at_i.x, contact_point.C_j = origin + at_j.x;
+    contact_point.n = n;
+    contact_point.gap = n.dot(at_i.x - at_j.x);
+    contact_point.K_i = at_i.shape_operator(), contact_point.K_j = at_j.shape_operator();
 
     constexpr const char* no_fit = "the surfaces do not curve away from each other";
     if (!std::isfinite(correction))
@@ -320,7 +325,7 @@ CommonNormal::Outcome CommonNormal::solve(Pair& p, const Vec3& origin) const
         end.trouble = "Newton's method did not converge";
     else if (!(at_i.n.dot(n) < -0.5))
         end.trouble = "the normals are not opposite";
-    else if (!positive_definite(relative_curvature(touch)))
+    else if (!positive_definite(relative_curvature(contact_point)))
         end.trouble = no_fit;
     end.no_fit = end.trouble == no_fit;
     return end;

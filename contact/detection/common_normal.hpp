@@ -24,7 +24,7 @@ class CommonNormal final : public Detector {
 public:
     CommonNormal(const Shape& i, const Shape& j);
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points* from) const override;
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points* from) const override;
 
     /// Shapes i and j, in global axes but from the origin of shape j, so that what is near is computed near; and
     /// the points reached on them
@@ -53,7 +53,7 @@ private:
     bool supported() const;
     std::string why_no_beginning(const Motion& bi, const Motion& bj) const;
     bool crossed(const Pair& p, double gap) const;
-    std::optional<Touch> apart(const Motion& bi, const Motion& bj, const Vec3& origin) const;
+    std::optional<ContactPoint> apart(const Motion& bi, const Motion& bj, const Vec3& origin) const;
 
     const Shape i, j;
     const double small, large;      // sizes of the two surfaces; both that of the other where one is a plane

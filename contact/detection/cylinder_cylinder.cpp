@@ -18,7 +18,7 @@ public:
     CylinderCylinder(const Shape& i, double R_i, const Shape& j, double R_j) : i(i), j(j), R_i(R_i), R_j(R_j)
     {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Vec3 o_i = bi.r + bi.A * i.position, o_j = bj.r + bj.A * j.position, d = o_i - o_j;
         const Vec3 z_i = bi.A * i.orientation.col(2), z_j = bj.A * j.orientation.col(2), m = z_i.cross(z_j);
@@ -27,7 +27,7 @@ public:
             const Vec3 f_j = o_j + z_j.dot(d) * z_j, across = o_i - f_j;
             const double distance = across.norm();
             if (!(distance > R_i + R_j))
-                throw NoSingleTouch("two cylinders are parallel: they touch along a line");
+                throw NoUniqueContactPoint("two cylinders are parallel: they touch along a line");
             return between(o_i, z_i, f_j, z_j, across / distance, distance);
         }
         const double distance = d.dot(m) / sine;
@@ -38,8 +38,8 @@ public:
     }
 
 private:
-    Touch between(const Vec3& f_i, const Vec3& z_i, const Vec3& f_j, const Vec3& z_j, const Vec3& n,
-                  double distance) const
+    ContactPoint between(const Vec3& f_i, const Vec3& z_i, const Vec3& f_j, const Vec3& z_j, const Vec3& n,
+                         double distance) const
     {
         const Vec3 t_i = n.cross(z_i), t_j = n.cross(z_j);
         return {.C_i = f_i - R_i * n,

@@ -20,7 +20,7 @@ class Exchanged final : public Detector {
 public:
     explicit Exchanged(std::unique_ptr<Detector> ji) : ji(std::move(ji)) {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points* from) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points* from) const override
     {
         return detect_exchanged(*ji, bi, bj, from);
     }
@@ -80,20 +80,20 @@ Curvatures principal_curvatures(const Mat3& K, const Vec3& n)
     return {mean - off, mean + off};
 }
 
-double least_curvature(const Touch& touch)
+double least_curvature(const ContactPoint& contact_point)
 {
-    return principal_curvatures(touch.K_i + touch.K_j, touch.n).least;
+    return principal_curvatures(contact_point.K_i + contact_point.K_j, contact_point.n).least;
 }
 
-Touch detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from)
+ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from)
 {
     const Points exchanged = from != nullptr ? Points{from->c_j, from->c_i} : Points{};
-    Touch touch = ji.detect(bj, bi, from != nullptr ? &exchanged : nullptr);
-    std::swap(touch.C_i, touch.C_j);
-    std::swap(touch.K_i, touch.K_j);
-    std::swap(touch.edge_i, touch.edge_j);
-    touch.n = -touch.n;
-    return touch;
+    ContactPoint contact_point = ji.detect(bj, bi, from != nullptr ? &exchanged : nullptr);
+    std::swap(contact_point.C_i, contact_point.C_j);
+    std::swap(contact_point.K_i, contact_point.K_j);
+    std::swap(contact_point.edge_i, contact_point.edge_j);
+    contact_point.n = -contact_point.n;
+    return contact_point;
 }
 
 std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j)

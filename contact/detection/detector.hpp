@@ -15,7 +15,7 @@ using lie::Motion;
 
 /// The points C_i and C_j in which the surfaces of bodies i and j have opposite normals and lie nearest to
 /// each other; beyond touch, those between which they overlap most. All in the global frame.
-struct Touch {
+struct ContactPoint {
     Vec3 C_i, C_j;  ///< one on each surface [m]
     Vec3 n;         ///< unit normal, INTO body i: C_i - C_j = gap n
     double gap;     ///< [m], negative where they overlap
@@ -34,13 +34,14 @@ struct Curvatures {
 Curvatures principal_curvatures(const Mat3& K, const Vec3& n);
 
 /// The smaller principal curvature of K_i + K_j [1/m]: negative where a surface does not fit into the other
-double least_curvature(const Touch& touch);
+double least_curvature(const ContactPoint& contact_point);
 
 /// Two surfaces that touch, in a pose in which they have no single touch: along a line, or where one does not fit into
 /// the other. Of a start it says that the input is wrong, and not that a search has failed.
-class NoSingleTouch : public lie::NumericalFailure {
+class NoUniqueContactPoint : public lie::NumericalFailure {
 public:
-    explicit NoSingleTouch(const std::string& what) : NumericalFailure("contact_not_converged", what) {}
+    explicit NoUniqueContactPoint(const std::string& what) : NumericalFailure("contact_not_converged", what)
+    {}
 };
 
 /// Contact points of an earlier instant, each in the frame of its body: where to begin.
@@ -57,7 +58,7 @@ public:
     /// surfaces overlap there; without, or where it finds none, it begins from nothing. Where the bodies are apart
     /// and their nearest points are many, it is any one of those. lie::NumericalFailure "contact_not_converged" with
     /// pair-independent words (residual, iterations) where they may touch and no touch is found.
-    virtual Touch detect(const Motion& bi, const Motion& bj, const Points* from) const = 0;
+    virtual ContactPoint detect(const Motion& bi, const Motion& bj, const Points* from) const = 0;
 };
 
 /// The detector for a pair: in closed form where there is one, else by Newton's method on the common normal.

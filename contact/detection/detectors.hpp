@@ -16,7 +16,7 @@ struct Placed {
 };
 
 /// What a detector of j and i says of i and j: the same numbers, with the sign of n changed.
-Touch detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from);
+ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from);
 
 // Each makes a detector for the surfaces in its name, i before j, and none for others.
 

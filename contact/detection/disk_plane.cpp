@@ -20,7 +20,7 @@ public:
           n_bar_j(j.orientation.col(2))
     {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Vec3 c = bi.r + bi.A * c_bar_i, z = bi.A * z_bar_i, n = bj.A * n_bar_j;
         const Vec3 t_cosine = n.cross(z);  // as long as cos θ, and free of cancellation when the disk is flat
@@ -30,7 +30,7 @@ public:
         const Vec3 C_i = c + R * t.cross(z);
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);
         if (!leans && !(gap > 0))
-            throw NoSingleTouch("a disk lies flat on a plane: it touches with all of its rim");
+            throw NoUniqueContactPoint("a disk lies flat on a plane: it touches with all of its rim");
         return {.C_i = C_i,
                 .C_j = C_i - gap * n,
                 .n = n,

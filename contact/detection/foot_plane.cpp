@@ -14,7 +14,7 @@ public:
         : o_bar_i(i.position), o_bar_j(j.position), n_bar_j(j.orientation.col(2))
     {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Vec3 C_i = bi.r + bi.A * o_bar_i, n = bj.A * n_bar_j;
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);

@@ -13,7 +13,7 @@
 namespace hilda::contact {
 
 /// Bodies that are alike
-struct Kind {
+struct BodyType {
     Inertia inertia;
     Shape shape;
     /// Radius of a ball about the centre of mass that holds the body [m]; infinite for what is big, such as a bowl or a
@@ -25,7 +25,7 @@ struct Kind {
 /// State is what a pair keeps from step to step, as long as it is a candidate, and begins as State(). Pairs are looked
 /// for anew only when some body has moved by half the skin, and their order is that of the body numbers.
 template <class Law, class State>
-class Crowd {
+class NeighborList {
 public:
     struct Pair {
         const Law* law;
@@ -37,7 +37,7 @@ public:
     double skin =
         0.1;  ///< ... and those that are no further off than this beyond it, over the smallest reach
 
-    int add(const Kind& kind)
+    int add(const BodyType& kind)
     {
         if (!(kind.reach > 0))
             lie::reject("contact::Crowd", "the reach of a kind must be positive", kind.reach);
@@ -47,7 +47,7 @@ public:
         return static_cast<int>(kinds.size()) - 1;
     }
 
-    const Kind& kind(int k) const
+    const BodyType& kind(int k) const
     {
         if (k < 0 || k >= static_cast<int>(kinds.size()))
             lie::reject("contact::Crowd", "no kind has this number", k);
@@ -110,7 +110,7 @@ private:
     double skin_length() const
     {
         double smallest = std::numeric_limits<double>::infinity();
-        for (const Kind& k : kinds) smallest = std::min(smallest, k.reach);
+        for (const BodyType& k : kinds) smallest = std::min(smallest, k.reach);
         return std::isfinite(smallest) ? skin * smallest : 0;
     }
 
@@ -147,7 +147,7 @@ private:
         }
     }
 
-    std::vector<Kind> kinds;
+    std::vector<BodyType> kinds;
     std::vector<std::vector<std::unique_ptr<const Law>>> laws;
     std::vector<int> kind_of;   // of each body
     std::vector<double> reach;  // of each body, negative for those of no kind

@@ -13,7 +13,7 @@ public:
         : c_bar_i(i.position), R(R), o_bar_j(j.position), n_bar_j(j.orientation.col(2))
     {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Vec3 c = bi.r + bi.A * c_bar_i, n = bj.A * n_bar_j;
         const double height = n.dot(c - bj.r - bj.A * o_bar_j);

@@ -15,12 +15,12 @@ public:
         : c_bar_i(i.position), R_i(R_i), c_bar_j(j.position), R_j(R_j), sign(R_i > 0 && R_j > 0 ? 1 : -1)
     {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Vec3 c_i = bi.r + bi.A * c_bar_i, c_j = bj.r + bj.A * c_bar_j;
         const double distance = (c_i - c_j).norm();
         if (!(distance > 0))
-            throw NoSingleTouch("the centres of two spheres coincide: there is no contact normal");
+            throw NoUniqueContactPoint("the centres of two spheres coincide: there is no contact normal");
         const Vec3 n = (c_i - c_j) / (sign * distance);
         const Mat3 P = Mat3::Identity() - n * n.transpose();
         return {.C_i = c_i - R_i * n,

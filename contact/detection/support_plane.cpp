@@ -13,23 +13,23 @@ class SupportPlane final : public Detector {
 public:
     SupportPlane(const Shape& i, const Shape& j) : i(i), o_bar_j(j.position), n_bar_j(j.orientation.col(2)) {}
 
-    Touch detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
     {
         const Placed at(i, bi);
         const Vec3 n = bj.A * n_bar_j;
         const Vec3 down = -(at.axes.transpose() * n).normalized();
         try {
-            return touch(at, bj, n, *i.surface->support(down));
+            return contact_point(at, bj, n, *i.surface->support(down));
         } catch (const lie::NumericalFailure& many) {
             const Vec3 leaning = (down + lean * down.unitOrthogonal()).normalized();
-            const Touch one = touch(at, bj, n, *i.surface->support(leaning));
+            const ContactPoint one = contact_point(at, bj, n, *i.surface->support(leaning));
             if (one.gap > 0) return one;
-            throw NoSingleTouch(many.what());
+            throw NoUniqueContactPoint(many.what());
         }
     }
 
 private:
-    Touch touch(const Placed& at, const Motion& bj, const Vec3& n, const Vec3& a) const
+    ContactPoint contact_point(const Placed& at, const Motion& bj, const Vec3& n, const Vec3& a) const
     {
         const Vec3 C_i = at.origin + at.axes * a;
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);

@@ -110,7 +110,7 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
       friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
       common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j))
 {
-    if (gives_way()) law.validate();
+    if (is_regularised()) law.validate();
     if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
         lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",
                     unilateral.restitution);
@@ -119,12 +119,12 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
 EvolvingContact::Mat32 EvolvingContact::tangents(const At& x) const
 {
     if (normal_rows == NormalRows::fixed_xy) return Mat3::Identity().leftCols<2>();
-    return Mat32::Map(x.remembered);
+    return Mat32::Map(x.internal_state);
 }
 
 EvolvingContact::Mat32 EvolvingContact::tangents_across(const At& x, const Vec3& n) const
 {
-    const Mat32 T = Mat32::Map(x.remembered);
+    const Mat32 T = Mat32::Map(x.internal_state);
     return T - n * (n.transpose() * T);
 }
 
@@ -217,41 +217,41 @@ Mat3 EvolvingContact::levers(const Mat3& K_sum, const Vec3& n) const
     return along * kappa.eigenvalues().cwiseInverse().cwiseMin(longest).asDiagonal() * along.transpose();
 }
 
-void EvolvingContact::compliance(const At& x, lie::Rows::Compliant* out) const
+void EvolvingContact::compliance(const At& x, lie::Rows::Regularised* out) const
 {
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
-    const auto set = [&](lie::Rows::Compliant& pair, const double* by, double K, double D, double factor) {
+    const auto set = [&](lie::Rows::Regularised& pair, const double* by, double K, double D, double factor) {
         pair.K = K, pair.D = D, pair.n = n;
         pair.S = Eigen::Vector2d::Map(by);
         pair.mu = factor * (by[2] != 0 ? law.mu_k : law.mu_s);
     };
-    if (!gives_way()) return;
-    set(out[slips], x.remembered + slides_by, law.K_E, law.K_D, 1);
+    if (!is_regularised()) return;
+    set(out[slips], x.internal_state + slides_by, law.K_E, law.K_D, 1);
     if (!law.resists_rolling()) return;
-    const Touch at = touch(x);
+    const ContactPoint at = contact_point(x);
     const double kappa = 2 / levers(at.K_i + at.K_j, n).trace();
-    set(out[rolls], x.remembered + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
+    set(out[rolls], x.internal_state + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
         2 * law.eta_r);
 }
 
 /// S, Z and what slips, out of the multipliers of the step that led here
-void EvolvingContact::give_way(const At& x, bool start, double* remembered) const
+void EvolvingContact::update_friction(const At& x, bool start, double* internal_state) const
 {
     constexpr double at_bound = 1e-4;  // of |λ|, see lie::GiveWay
-    const double h = start ? 0 : x.t - remembered[instant];
-    remembered[instant] = x.t;
-    if (start || x.idle) {
-        std::fill(remembered + slides_by, remembered + 14, 0.);
+    const double h = start ? 0 : x.t - internal_state[instant];
+    internal_state[instant] = x.t;
+    if (start || x.inactive) {
+        std::fill(internal_state + slides_by, internal_state + 14, 0.);
         return;
     }
-    lie::Rows::Compliant pair[2];
+    lie::Rows::Regularised pair[2];
     compliance(x, pair);
     const Vec3 Psi = x.lambda->segment<3>(first_row);
     const double N = Psi.dot(pair[slips].n) > 0 ? Psi.norm() : 0;
     for (const Pair p : {slips, rolls}) {
         if (p == rolls && !law.resists_rolling()) continue;
-        double* by = remembered + (p == slips ? slides_by : rolls_by);
-        const lie::Rows::Compliant& c = pair[p];
+        double* by = internal_state + (p == slips ? slides_by : rolls_by);
+        const lie::Rows::Regularised& c = pair[p];
         const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
         Eigen::Vector2d::Map(by) += h * c.mobility(h) * (lambda - c.K * c.S);
         by[2] = lambda.norm() > (1 - at_bound) * c.mu * N;
@@ -271,18 +271,18 @@ unsigned EvolvingContact::nonzero(int row) const
     return 0b111111111111;
 }
 
-Touch EvolvingContact::touch(const At& x) const
+ContactPoint EvolvingContact::contact_point(const At& x) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
-    Touch touch;
-    touch.C_i = x.bi.r + side_i.arm, touch.C_j = x.bj.r + side_j.arm;
-    touch.n = side_j.n;
-    touch.gap = touch.n.dot((x.bi.r - x.bj.r) + (side_i.arm - side_j.arm));
-    touch.K_i = side_i.shape_operator(), touch.K_j = side_j.shape_operator();
-    return touch;
+    ContactPoint contact_point;
+    contact_point.C_i = x.bi.r + side_i.arm, contact_point.C_j = x.bj.r + side_j.arm;
+    contact_point.n = side_j.n;
+    contact_point.gap = contact_point.n.dot((x.bi.r - x.bj.r) + (side_i.arm - side_j.arm));
+    contact_point.K_i = side_i.shape_operator(), contact_point.K_j = side_j.shape_operator();
+    return contact_point;
 }
 
-void EvolvingContact::track(const At& x, bool afresh, double* alpha) const
+void EvolvingContact::update_alpha(const At& x, bool afresh, double* alpha) const
 {
     Vec3 a_i = Vec3::Zero(), a_j = Vec3::Zero();
     bool found = false;
@@ -297,7 +297,7 @@ void EvolvingContact::track(const At& x, bool afresh, double* alpha) const
         a_i = shape_i.to_body(p.a_i), a_j = shape_j.to_body(p.a_j);
     }
     if (!found) {
-        const Touch at = detector->detect(x.bi, x.bj, nullptr);
+        const ContactPoint at = detector->detect(x.bi, x.bj, nullptr);
         a_i = x.bi.A.transpose() * (at.C_i - x.bi.r);
         a_j = x.bj.A.transpose() * (at.C_j - x.bj.r);
     }
@@ -305,9 +305,9 @@ void EvolvingContact::track(const At& x, bool afresh, double* alpha) const
     Vec3::Map(alpha + 3) = a_j;
 }
 
-bool EvolvingContact::remember(const At& x, bool start, double* remembered) const
+bool EvolvingContact::update_internal_state(const At& x, bool start, double* internal_state) const
 {
-    const Touch at = touch(x);
+    const ContactPoint at = contact_point(x);
     const auto fail = [&](const std::string& status, const std::string& what, double value) {
         if (fallback) return false;
         std::ostringstream text;
@@ -316,7 +316,7 @@ bool EvolvingContact::remember(const At& x, bool start, double* remembered) cons
         throw lie::NumericalFailure(status, text.str());
     };
     const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
-    if (!x.idle) {
+    if (!x.inactive) {
         if (const double facing = n_i.dot(at.n); !(facing < -0.5))
             return fail("contact_lost", "the normals are no longer opposite, their product is", facing);
         if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
@@ -328,27 +328,27 @@ bool EvolvingContact::remember(const At& x, bool start, double* remembered) cons
     Mat32 T;
     if (start) {
         T = tangent_basis(n_i);
-        remembered[rebounded] = -std::numeric_limits<double>::infinity();
+        internal_state[rebounded] = -std::numeric_limits<double>::infinity();
     } else {
-        const Mat32 before = Mat32::Map(remembered);
+        const Mat32 before = Mat32::Map(internal_state);
         const Vec3 along = before.col(0) - n_i * n_i.dot(before.col(0));
         T.col(0) = along.norm() > 0.1 ? Vec3(along.normalized()) : Vec3(tangent_basis(n_i).col(0));
         T.col(1) = n_i.cross(T.col(0));
     }
-    Mat32::Map(remembered) = T;
-    if (gives_way()) give_way(x, start, remembered);
+    Mat32::Map(internal_state) = T;
+    if (is_regularised()) update_friction(x, start, internal_state);
     return true;
 }
 
 double EvolvingContact::separation_speed(const At& x) const
 {
-    const Touch at = touch(x);
+    const ContactPoint at = contact_point(x);
     return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
 }
 
 double EvolvingContact::velocity_error(const At& x) const
 {
-    const Touch at = touch(x);
+    const ContactPoint at = contact_point(x);
     const Vec3 slip = velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r);
     return friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip));
 }
@@ -356,10 +356,10 @@ double EvolvingContact::velocity_error(const At& x) const
 std::string EvolvingContact::objection(const At& x) const
 {
     if (const std::string why = common_normal.misfit(x.bi, x.bj); !why.empty()) return why;
-    Touch at;
+    ContactPoint at;
     try {
         at = detector->detect(x.bi, x.bj, nullptr);
-    } catch (const NoSingleTouch& e) {
+    } catch (const NoUniqueContactPoint& e) {
         return e.what();
     }
     // where there is none, this throws
@@ -384,7 +384,7 @@ std::string EvolvingContact::row_name(int row) const
                                      "N 2",       "G of i",       "G of j",      "rolling 1",
                                      "rolling 2", "resistance 1", "resistance 2"};
     constexpr const char* sliding[] = {"sliding 1", "sliding 2"};
-    return gives_way() && (row == 7 || row == 8) ? sliding[row - 7] : names[row];
+    return is_regularised() && (row == 7 || row == 8) ? sliding[row - 7] : names[row];
 }
 
 EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eigen::VectorXd& lambda) const

@@ -14,7 +14,7 @@ namespace hilda::contact {
 
 /// What happens where the bodies would be pulled together, and where they meet
 struct Unilateral {
-    bool opens = false;      ///< else the contact holds both ways and never ends
+    bool enabled = false;    ///< else the contact holds both ways and never ends
     double restitution = 0;  ///< e, 0 … 1
     enum class Impact {
         newton,  ///< the velocity of separation is e times that of approach
@@ -62,33 +62,33 @@ public:
     {
         return friction == Friction::none ? 0 : law.resists_rolling() ? 4 : 2;
     }
-    bool gives_way() const override { return friction == Friction::implicit; }
-    bool is_early(int pair) const override { return pair == rolls; }
+    bool is_regularised() const override { return friction == Friction::implicit; }
+    bool solved_first(int pair) const override { return pair == rolls; }
     int unknowns() const override { return 6; }
     /// T by columns, and when it last rebounded [s]; of implicit friction the instant of this [s], and of sliding and rolling
     /// S or Z along T [m] and whether it slips
-    int remembered() const override { return gives_way() ? 14 : 7; }
+    int internal_states() const override { return is_regularised() ? 14 : 7; }
     static constexpr int rebounded = 6, instant = 7, slides_by = 8, rolls_by = 11;
-    bool opens() const override { return unilateral.opens || fallback; }
-    bool hands_over() const override { return fallback; }
+    bool may_be_inactive() const override { return unilateral.enabled || fallback; }
+    bool has_fallback() const override { return fallback; }
 
     void phi(const At& x, double* out) const override;
     void variation(const At& x, Derivatives& out) const override;
     void gamma(const At& x, double* out) const override;
     unsigned nonzero(int row) const override;
-    void compliance(const At& x, lie::Rows::Compliant* out) const override;
-    void track(const At& x, bool afresh, double* alpha) const override;
-    bool remember(const At& x, bool start, double* remembered) const override;
-    double gap(const At& x) const override { return touch(x).gap; }
+    void compliance(const At& x, lie::Rows::Regularised* out) const override;
+    void update_alpha(const At& x, bool afresh, double* alpha) const override;
+    bool update_internal_state(const At& x, bool start, double* internal_state) const override;
+    double gap(const At& x) const override { return contact_point(x).gap; }
     double separation_speed(const At& x) const override;
-    bool one_sided() const override { return unilateral.opens; }
+    bool is_unilateral() const override { return unilateral.enabled; }
     double velocity_error(const At& x) const override;
     double allowance() const override { return 1e-6 * L; }
     std::string objection(const At& x) const override;
     std::string row_name(int row) const override;
 
     /// The touch that α says: its points, the normal into body i, gap along it, shape operators
-    Touch touch(const At& x) const;
+    ContactPoint contact_point(const At& x) const;
     /// Multipliers of this contact out of those of a model: λ_Ψ [N, global], λ_N, λ_G, those of rolling [N]
     struct Multipliers {
         using Vec2 = Eigen::Vector2d;
@@ -125,7 +125,7 @@ private:
     enum Pair { slips = 0, rolls = 1 };
     /// (K_i + K_j)⁻¹ in the tangent plane of global axes, 1/κ no longer than ten times L
     Mat3 levers(const Mat3& K_sum, const Vec3& n) const;
-    void give_way(const At& x, bool start, double* remembered) const;
+    void update_friction(const At& x, bool start, double* internal_state) const;
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;

@@ -27,51 +27,52 @@ EvolvingFriction::EvolvingFriction(const dae::Model& model, const EvolvingContac
         lie::reject(in_words(), "a contact has friction either in its equations or as a force", "both");
 }
 
-Touch EvolvingFriction::touch(const lie::State& x) const
+ContactPoint EvolvingFriction::contact_point(const lie::State& x) const
 {
-    Touch now = contact.touch(model.at(contact, x));
+    ContactPoint now = contact.contact_point(model.at(contact, x));
     now.gap = 0;  // but for rounding, or while a step is tried
     return now;
 }
 
 double EvolvingFriction::normal_force(const lie::State& x) const { return works(x) ? last_step(x).N : 0; }
 
-Meeting EvolvingFriction::meet(const lie::State& x, const Memory& memory) const
+ContactState EvolvingFriction::evaluate(const lie::State& x, const ContactHistory& history) const
 {
-    return rubbing.meeting(touch(x), normal_force(x), motion(x, i), motion(x, j), memory);
+    return rubbing.contact_state(contact_point(x), normal_force(x), motion(x, i), motion(x, j), history);
 }
 
-int EvolvingFriction::remembered() const { return TrackedForce::remembered() + numbers_of_step; }
+int EvolvingFriction::internal_states() const { return TrackedForce::internal_states() + numbers_of_step; }
 
 EvolvingFriction::Step EvolvingFriction::last_step(const lie::State& x) const
 {
     static_assert(sizeof(Step) == numbers_of_step * sizeof(double));
     Step last;
     std::memcpy(static_cast<void*>(&last),
-                x.remembered.data() + first_remembered + TrackedForce::remembered(), sizeof last);
+                x.internal_state.data() + first_internal_state + TrackedForce::internal_states(),
+                sizeof last);
     return last;
 }
 
 void EvolvingFriction::keep_step(const Step& last, lie::State& x) const
 {
-    std::memcpy(x.remembered.data() + first_remembered + TrackedForce::remembered(),
+    std::memcpy(x.internal_state.data() + first_internal_state + TrackedForce::internal_states(),
                 static_cast<const void*>(&last), sizeof last);
 }
 
-void EvolvingFriction::remember(lie::State& x) const
+void EvolvingFriction::update_internal_state(lie::State& x) const
 {
     if (!works(x)) {
-        x.memory[first_memory] = 0;
-        std::fill_n(x.remembered.begin() + first_remembered, remembered(), 0.);
+        x.discrete_state[first_discrete_state] = 0;
+        std::fill_n(x.internal_state.begin() + first_internal_state, internal_states(), 0.);
         return;
     }
     Step last{.N = contact.multipliers(model.at(contact, x), x.lambda).F_N};
     const bool goes_on = recall(x).touching;
-    const double h = x.t - instant_of_memory(x);
+    const double h = x.t - time_of_history(x);
     keep_step(last, x);
     const Instant now = at(x);
-    if (now.meeting.N > 0) {
-        const Slip& slip = now.meeting.slip;
+    if (now.contact_state.N > 0) {
+        const SlidingDisplacement& slip = now.contact_state.slip;
         const Rates mean = goes_on && h > an_instant ? mean_rates(slip, h) : TrackedForce::speeds(now, x);
         last.psi = mean.psi;
         last.s = components(mean.s, slip.n, slip.u);
@@ -83,9 +84,9 @@ void EvolvingFriction::remember(lie::State& x) const
 
 Rates EvolvingFriction::speeds(const Instant& now, const lie::State& x) const
 {
-    if (!now.remembered) return TrackedForce::speeds(now, x);
+    if (!now.is_saved) return TrackedForce::speeds(now, x);
     const Step last = last_step(x);
-    const Vec3 &n = now.meeting.slip.n, &u = now.meeting.slip.u;
+    const Vec3 &n = now.contact_state.slip.n, &u = now.contact_state.slip.u;
     return {.s = tangent(last.s, n, u),
             .p_i = tangent(last.p_i, n, u),
             .p_j = tangent(last.p_j, n, u),
@@ -94,13 +95,13 @@ Rates EvolvingFriction::speeds(const Instant& now, const lie::State& x) const
 
 double EvolvingFriction::stable_step(const lie::State& x) const
 {
-    if (dae::Model::mode(contact, x) == dae::Constraint::handed_over)
+    if (dae::Model::mode(contact, x) == dae::Constraint::fallback_active)
         return std::numeric_limits<double>::infinity();
     double weight = 0;  // that may rest on the contact: the springs of a Hertzian patch grow with its force
     for (const double m : model.mass().m) weight += m * model.gravity.norm();
     const double N = std::max(normal_force(x), weight);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const Meeting now = rubbing.meeting(touch(x), N, bi, bj, {});
+    const ContactState now = rubbing.contact_state(contact_point(x), N, bi, bj, {});
     return rubbing.stable_step(now, {.rigid = true}, bi, bj, contacts_of(i, x), contacts_of(j, x));
 }
 

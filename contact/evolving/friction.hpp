@@ -31,26 +31,26 @@ public:
     EvolvingFriction(const dae::Model& model, const EvolvingContact& contact,
                      std::shared_ptr<const FrictionModel> friction);
 
-    int remembered() const override;
-    void remember(lie::State& x) const override;
-    bool remembers_multipliers() const override { return true; }
+    int internal_states() const override;
+    void update_internal_state(lie::State& x) const override;
+    bool internal_state_uses_multipliers() const override { return true; }
 
     /// Of the springs across the normal, along which the constraint holds
     double stable_step(const lie::State& x) const override;
 
     double normal_force(const lie::State& x) const;  ///< that friction goes by [N]
-    bool works(const lie::State& x) const override { return !dae::Model::idle(contact, x); }
+    bool works(const lie::State& x) const override { return !dae::Model::inactive(contact, x); }
     const dae::Constraint* held_by() const override { return &contact; }
 
     const EvolvingContact& contact;
 
 private:
     const FrictionPair& pair() const override { return rubbing; }
-    Meeting meet(const lie::State& x, const Memory& memory) const override;
+    ContactState evaluate(const lie::State& x, const ContactHistory& history) const override;
     bool presses() const override { return false; }
     bool close(const lie::State& x) const override { return works(x); }
     Rates speeds(const Instant& now, const lie::State& x) const override;
-    Touch touch(const lie::State& x) const;
+    ContactPoint contact_point(const lie::State& x) const;
 
     /// What it remembers besides the track and the histories: vectors by their components in (u, w)
     struct Step {

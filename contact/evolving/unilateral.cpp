@@ -26,11 +26,11 @@ UnilateralStep::UnilateralStep(const dae::Model& model, const lie::Scheme& schem
 {
     for (size_t n = 0; n < model.evolving().size(); ++n) {
         const auto* c = dynamic_cast<const EvolvingContact*>(model.evolving()[n].get());
-        if (c != nullptr && c->opens()) contact.push_back({c, static_cast<int>(n)});
+        if (c != nullptr && c->may_be_inactive()) contact.push_back({c, static_cast<int>(n)});
     }
 }
 
-void UnilateralStep::Contact::note(double t, double F_N)
+void UnilateralStep::TrackedContact::note(double t, double F_N)
 {
     if (t == last.t) return;
     before = last;
@@ -38,7 +38,7 @@ void UnilateralStep::Contact::note(double t, double F_N)
 }
 
 /// When F_N was zero on its way to this value at t
-double UnilateralStep::Contact::lift_off(double t, double F_N) const
+double UnilateralStep::TrackedContact::lift_off(double t, double F_N) const
 {
     if (!(last.t < t) || !(last.F_N > 0)) return t;
     const double slope = (F_N - last.F_N) / (t - last.t);
@@ -52,32 +52,32 @@ double UnilateralStep::Contact::lift_off(double t, double F_N) const
 }
 
 /// F_N in the pose of x by these multipliers
-double UnilateralStep::force(const Contact& c, const State& x, const Eigen::VectorXd& lambda) const
+double UnilateralStep::force(const TrackedContact& c, const State& x, const Eigen::VectorXd& lambda) const
 {
     return c.contact->multipliers(model.at(*c.contact, x), lambda).F_N;
 }
 
-double UnilateralStep::gap(const Contact& c, const State& x) const
+double UnilateralStep::gap(const TrackedContact& c, const State& x) const
 {
     return c.contact->gap(model.at(*c.contact, x));
 }
 
-double UnilateralStep::separation_speed(const Contact& c, const State& x) const
+double UnilateralStep::separation_speed(const TrackedContact& c, const State& x) const
 {
     return c.contact->separation_speed(model.at(*c.contact, x));
 }
 
-bool UnilateralStep::overlaps(const Contact& c, const State& x) const
+bool UnilateralStep::overlaps(const TrackedContact& c, const State& x) const
 {
     return open(c, x) && gap(c, x) < -touching * c.contact->L;
 }
 
 /// The nearest points of the open contacts
-void UnilateralStep::track(State& x) const
+void UnilateralStep::update_alpha(State& x) const
 {
-    for (const Contact& c : contact)
+    for (const TrackedContact& c : contact)
         if (open(c, x))
-            c.contact->track(model.at(*c.contact, x), false, x.alpha.data() + c.contact->first_alpha);
+            c.contact->update_alpha(model.at(*c.contact, x), false, x.alpha.data() + c.contact->first_alpha);
 }
 
 int UnilateralStep::step(State& x, double h)
@@ -111,7 +111,7 @@ int UnilateralStep::step(State& x, double h)
         }
 }
 
-void UnilateralStep::complete(State& node, const State&) const
+void UnilateralStep::fill_node(State& node, const State&) const
 {
     for (size_t b = 0; b < node.body.size(); ++b) {
         const lie::Motion& from = known.body[b];
@@ -125,7 +125,7 @@ void UnilateralStep::complete(State& node, const State&) const
 UnilateralStep::Past UnilateralStep::past() const
 {
     Past all{.events = happened, .closed = {}};
-    for (const Contact& c : contact) {
+    for (const TrackedContact& c : contact) {
         all.closed.push_back(c.before);
         all.closed.push_back(c.last);
     }
@@ -149,13 +149,13 @@ int UnilateralStep::advance(State& x, double h)
 {
     int iterations = 0;
     const int most = most_events * static_cast<int>(contact.size() + 1);
-    for (Contact& c : contact) c.held = false, c.meetings = 0;
+    for (TrackedContact& c : contact) c.held = false, c.closings = 0;
     double left = h;
     for (int part = 0; part < most; ++part) {
         node = x;
         // a scheme that lags and has a history finds the forces of this node with the step
         const bool anew_here = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
-        const bool forces_known = !scheme->lags() || anew_here;
+        const bool forces_known = !scheme->is_staggered() || anew_here;
         if (forces_known && release_pulling(node)) restart(node);
         int k = try_step(node, trial, left);
         while (!forces_known) {
@@ -166,21 +166,21 @@ int UnilateralStep::advance(State& x, double h)
         iterations = std::max(iterations, k);
 
         anew = node;
-        if (!forces_known) scheme->complete(anew, trial);
+        if (!forces_known) scheme->fill_node(anew, trial);
         anew.history.resize(0);
         if (part == 0) known = anew;
-        for (Contact& c : contact)
+        for (TrackedContact& c : contact)
             if (closed(c, node)) c.note(node.t, force(c, node, anew.lambda));
 
-        Contact* meeting = nullptr;
-        const double taken = find_meeting(trial, left, meeting);
-        if (meeting == nullptr) {
+        TrackedContact* closing = nullptr;
+        const double taken = find_closing(trial, left, closing);
+        if (closing == nullptr) {
             x = trial;
             if (part > 0) restart(x);  // its history is of another step
             return iterations;
         }
         if (taken > 0) model.accepted(node, trial);
-        collide(trial, *meeting, h);
+        collide(trial, *closing, h);
         x = trial;
         left -= taken;
         if (left <= rest * h) {
@@ -189,8 +189,8 @@ int UnilateralStep::advance(State& x, double h)
         }
     }
     std::string last;
-    for (const Contact& c : contact)
-        if (c.meetings >= most_meetings) last += (last.empty() ? "'" : ", '") + c.contact->name + "'";
+    for (const TrackedContact& c : contact)
+        if (c.closings >= most_meetings) last += (last.empty() ? "'" : ", '") + c.contact->name + "'";
     throw lie::NumericalFailure("too_many_impacts",
                                 "contacts open and close without end within one step, more than " +
                                     std::to_string(most) + " times: " + last);
@@ -202,7 +202,7 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
     to = from;
     const int k = scheme->step(to, h);
     to.t = from.t + h;
-    track(to);
+    update_alpha(to);
     return k;
 }
 
@@ -210,11 +210,12 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
 /// that is the one to blame.
 bool UnilateralStep::hand_over_flattest(State& x)
 {
-    Contact* flattest = nullptr;
+    TrackedContact* flattest = nullptr;
     double least = std::numeric_limits<double>::infinity();
-    for (Contact& c : contact)
-        if (closed(c, x) && c.contact->hands_over())
-            if (const double k = least_curvature(c.contact->touch(model.at(*c.contact, x))) * c.contact->L;
+    for (TrackedContact& c : contact)
+        if (closed(c, x) && c.contact->has_fallback())
+            if (const double k =
+                    least_curvature(c.contact->contact_point(model.at(*c.contact, x))) * c.contact->L;
                 k < least)
                 flattest = &c, least = k;
     if (flattest == nullptr) return false;
@@ -225,23 +226,23 @@ bool UnilateralStep::hand_over_flattest(State& x)
 /// A contact may have handed over in the start, or when the step to x was accepted.
 void UnilateralStep::tell_of_handed_over(const State& x)
 {
-    for (Contact& c : contact) {
-        if (c.gone || mode(c, x) != dae::Constraint::handed_over) continue;
+    for (TrackedContact& c : contact) {
+        if (c.gone || mode(c, x) != dae::Constraint::fallback_active) continue;
         c.gone = true;
         const auto told = [&](const ContactEvent& e) {
-            return e.contact == c.number && e.kind == ContactEvent::Kind::handed_over;
+            return e.contact == c.number && e.type == ContactEvent::Type::fallback_active;
         };
         if (std::none_of(happened.begin(), happened.end(), told))
             happened.push_back(
-                {.kind = ContactEvent::Kind::handed_over, .t = x.t, .contact = c.number, .speed = 0});
+                {.type = ContactEvent::Type::fallback_active, .t = x.t, .contact = c.number, .speed = 0});
     }
 }
 
-void UnilateralStep::hand_over(const Contact& c, State& x, double speed)
+void UnilateralStep::hand_over(const TrackedContact& c, State& x, double speed)
 {
-    dae::Model::set_mode(*c.contact, x, dae::Constraint::handed_over);
+    dae::Model::set_mode(*c.contact, x, dae::Constraint::fallback_active);
     happened.push_back(
-        {.kind = ContactEvent::Kind::handed_over, .t = x.t, .contact = c.number, .speed = speed});
+        {.type = ContactEvent::Type::fallback_active, .t = x.t, .contact = c.number, .speed = speed});
 }
 
 /// Accelerations and multipliers of a node, from which a scheme is to start anew
@@ -255,27 +256,27 @@ void UnilateralStep::restart(State& x)
 /// Opens the closed contact that pulls most, by the multipliers in x, if there is one.
 bool UnilateralStep::release_pulling(State& x)
 {
-    Contact* worst = nullptr;
+    TrackedContact* worst = nullptr;
     double least = 0, largest = 0;
-    for (Contact& c : contact) {
+    for (TrackedContact& c : contact) {
         if (!closed(c, x)) continue;
         const double F_N = force(c, x, x.lambda);
         largest = std::max(largest, std::abs(F_N));
-        if (c.contact->unilateral.opens && !c.held && F_N < least) worst = &c, least = F_N;
+        if (c.contact->unilateral.enabled && !c.held && F_N < least) worst = &c, least = F_N;
     }
     if (worst == nullptr || !(least < -rounding * largest)) return false;
     happened.push_back(
-        {.kind = ContactEvent::Kind::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
-    dae::Model::set_mode(*worst->contact, x, dae::Constraint::is_open);
+        {.type = ContactEvent::Type::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
+    dae::Model::set_mode(*worst->contact, x, dae::Constraint::inactive);
     return true;
 }
 
 /// Of the contacts that overlap in `to` and did not in `from`, the one whose gap a straight line has zero first
-UnilateralStep::Contact* UnilateralStep::first_to_meet(const State& from, const State& to)
+UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from, const State& to)
 {
-    Contact* next = nullptr;
+    TrackedContact* next = nullptr;
     double earliest = 2;
-    for (Contact& c : contact) {
+    for (TrackedContact& c : contact) {
         if (!overlaps(c, to)) continue;
         const double g = std::max(gap(c, from), 0.), part = g / (g - gap(c, to));
         if (part < earliest) earliest = part, next = &c;
@@ -285,11 +286,11 @@ UnilateralStep::Contact* UnilateralStep::first_to_meet(const State& from, const 
 
 /// How long a step from `anew` takes to where the first gap is zero; `to` is then there. h, and no contact, where none
 /// overlaps in `to`.
-double UnilateralStep::find_meeting(State& to, double h, Contact*& first)
+double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
 {
     first = nullptr;
     const double whole = h;
-    while (Contact* next = first_to_meet(anew, to)) {
+    while (TrackedContact* next = first_to_close(anew, to)) {
         first = next;
         h = zero_of_gap(*next, to, h);
         if (!(h > 0)) {
@@ -304,7 +305,7 @@ double UnilateralStep::find_meeting(State& to, double h, Contact*& first)
 
 /// The length of step, up to h, after which the gap of c is zero, where it is negative after h; 0 where it is none to
 /// begin with and does not open.
-double UnilateralStep::zero_of_gap(const Contact& c, State& to, double h)
+double UnilateralStep::zero_of_gap(const TrackedContact& c, State& to, double h)
 {
     const double none = touching * c.contact->L;
     double a = 0, g_a = gap(c, anew), b = h, g_b = gap(c, to);
@@ -343,7 +344,7 @@ std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const 
                                                  const lie::Settings& settings)
 {
     for (const auto& c : model.evolving())
-        if (c->opens()) return std::make_unique<UnilateralStep>(model, scheme, settings);
+        if (c->may_be_inactive()) return std::make_unique<UnilateralStep>(model, scheme, settings);
     return scheme.make(model, settings);
 }
 

@@ -10,7 +10,7 @@ namespace hilda::contact {
 
 /// What happened to a contact, and when
 struct ContactEvent {
-    enum class Kind { lift_off, impact, closing, handed_over } kind = Kind::lift_off;
+    enum class Type { lift_off, impact, closing, fallback_active } type = Type::lift_off;
     double t = 0;      ///< [s]
     int contact = 0;   ///< its number in Model::evolving()
     double speed = 0;  ///< of approach at an impact and a closing [m/s]
@@ -47,8 +47,8 @@ public:
     UnilateralStep(const dae::Model& model, const lie::Scheme& scheme, const lie::Settings& settings);
 
     int step(lie::State& x, double h) override;
-    bool lags() const override { return scheme->lags(); }
-    void complete(lie::State& node, const lie::State& after) const override;
+    bool is_staggered() const override { return scheme->is_staggered(); }
+    void fill_node(lie::State& node, const lie::State& after) const override;
     bool keeps_history() const override { return scheme->keeps_history(); }
     const lie::State* pivots() const override { return scheme->pivots(); }
     void choose_pivots(const lie::State& x) override { scheme->choose_pivots(x); }
@@ -76,11 +76,11 @@ private:
     static constexpr double rounding =
         1e-9;  ///< of the largest force, and of a size that is approached in a step
 
-    struct Contact {
+    struct TrackedContact {
         const EvolvingContact* contact;
         int number;
         Known last = {}, before = {};
-        int meetings = 0;   ///< in the step
+        int closings = 0;   ///< in the step
         bool held = false;  ///< stays closed for the rest of the step
         bool gone = false;  ///< handed over, and told of
 
@@ -88,34 +88,40 @@ private:
         double lift_off(double t, double F_N) const;
     };
 
-    static int mode(const Contact& c, const lie::State& x) { return dae::Model::mode(*c.contact, x); }
-    static bool open(const Contact& c, const lie::State& x) { return mode(c, x) == dae::Constraint::is_open; }
-    static bool closed(const Contact& c, const lie::State& x) { return mode(c, x) == dae::Constraint::holds; }
-    double force(const Contact& c, const lie::State& x, const Eigen::VectorXd& lambda) const;
-    double gap(const Contact& c, const lie::State& x) const;
-    double separation_speed(const Contact& c, const lie::State& x) const;
-    bool overlaps(const Contact& c, const lie::State& x) const;
-    void track(lie::State& x) const;
+    static int mode(const TrackedContact& c, const lie::State& x) { return dae::Model::mode(*c.contact, x); }
+    static bool open(const TrackedContact& c, const lie::State& x)
+    {
+        return mode(c, x) == dae::Constraint::inactive;
+    }
+    static bool closed(const TrackedContact& c, const lie::State& x)
+    {
+        return mode(c, x) == dae::Constraint::active;
+    }
+    double force(const TrackedContact& c, const lie::State& x, const Eigen::VectorXd& lambda) const;
+    double gap(const TrackedContact& c, const lie::State& x) const;
+    double separation_speed(const TrackedContact& c, const lie::State& x) const;
+    bool overlaps(const TrackedContact& c, const lie::State& x) const;
+    void update_alpha(lie::State& x) const;
 
     int advance(lie::State& x, double h);
     int try_step(const lie::State& from, lie::State& to, double h);
     void restart(lie::State& x);
     bool release_pulling(lie::State& x);
-    Contact* first_to_meet(const lie::State& from, const lie::State& to);
-    double find_meeting(lie::State& to, double h, Contact*& first);
-    double zero_of_gap(const Contact& c, lie::State& to, double h);
-    void collide(lie::State& x, Contact& c, double h);
-    bool determined(const Contact& c, lie::State& x);
-    void hand_over(const Contact& c, lie::State& x, double speed);
+    TrackedContact* first_to_close(const lie::State& from, const lie::State& to);
+    double find_closing(lie::State& to, double h, TrackedContact*& first);
+    double zero_of_gap(const TrackedContact& c, lie::State& to, double h);
+    void collide(lie::State& x, TrackedContact& c, double h);
+    bool determined(const TrackedContact& c, lie::State& x);
+    void hand_over(const TrackedContact& c, lie::State& x, double speed);
     bool hand_over_flattest(lie::State& x);
     void tell_of_handed_over(const lie::State& x);
-    void jump(lie::State& x, const Contact* rebounding, double speed);
-    void push(const Contact& c, double impulse, const lie::State& x);
+    void jump(lie::State& x, const TrackedContact* rebounding, double speed);
+    void push(const TrackedContact& c, double impulse, const lie::State& x);
 
     const dae::Model& model;
     std::unique_ptr<lie::Integrator> scheme;
     lie::Saddle K;  ///< for impacts and restarts
-    std::vector<Contact> contact;
+    std::vector<TrackedContact> contact;
     std::vector<ContactEvent> happened;
     lie::State first;          ///< the state to go back to where the step fails ...
     lie::State begin;          ///< of the step, to go back to

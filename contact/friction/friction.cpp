@@ -28,7 +28,7 @@ double reduced(double a, double b)
     return a * b / (a + b);
 }
 
-Rates mean_rates(const Slip& slip, double h)
+Rates mean_rates(const SlidingDisplacement& slip, double h)
 {
     const double per_step = 1 / h;
     return {.s = per_step * slip.ds,
@@ -37,20 +37,23 @@ Rates mean_rates(const Slip& slip, double h)
             .psi = per_step * slip.psi};
 }
 
-Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj)
+Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, const Motion& bi,
+            const Motion& bj)
 {
     const Vec3& n = slip.n;
     const Vec3 omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar, omega = omega_i - omega_j;
     const auto flat = [&](const Vec3& v) -> Vec3 { return v - n * n.dot(v); };
-    const Vec3 v =
-        flat(bj.rdot + omega_j.cross(touch.C_j - bj.r) - bi.rdot - omega_i.cross(touch.C_i - bi.r));
-    Rates r{
-        .s = v + touch.gap * omega_j.cross(n), .p_i = Vec3::Zero(), .p_j = Vec3::Zero(), .psi = omega.dot(n)};
+    const Vec3 v = flat(bj.rdot + omega_j.cross(contact_point.C_j - bj.r) - bi.rdot -
+                        omega_i.cross(contact_point.C_i - bi.r));
+    Rates r{.s = v + contact_point.gap * omega_j.cross(n),
+            .p_i = Vec3::Zero(),
+            .p_j = Vec3::Zero(),
+            .psi = omega.dot(n)};
 
     // (K_i + K_j) ṗ = q, of a body with an edge along the edge alone
-    const Mat3 K = touch.K_i + touch.K_j;
-    const bool edge_j = touch.edge_j.squaredNorm() > 0;
-    const Vec3 edge = touch.edge_i + touch.edge_j;  // at most one of the two
+    const Mat3 K = contact_point.K_i + contact_point.K_j;
+    const bool edge_j = contact_point.edge_j.squaredNorm() > 0;
+    const Vec3 edge = contact_point.edge_i + contact_point.edge_j;  // at most one of the two
     const Vec3 u = slip.u, w = n.cross(u), Ku = K * u, Kw = K * w;
     const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
     if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
@@ -61,13 +64,13 @@ Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion
     };
     for (int pass = 0; pass < 2; ++pass) {  // the gap is small against the radii: a part (gap κ)² is left out
         if (edge_j) {
-            r.p_j = solve(omega.cross(n) - touch.K_i * r.s);
+            r.p_j = solve(omega.cross(n) - contact_point.K_i * r.s);
             r.p_i = r.p_j + r.s;
         } else {
-            r.p_i = solve(omega.cross(n) + touch.K_j * r.s);
+            r.p_i = solve(omega.cross(n) + contact_point.K_j * r.s);
             r.p_j = r.p_i - r.s;
         }
-        if (pass == 0) r.s = v + touch.gap * (omega_j.cross(n) + touch.K_j * r.p_j);
+        if (pass == 0) r.s = v + contact_point.gap * (omega_j.cross(n) + contact_point.K_j * r.p_j);
     }
     return r;
 }
@@ -75,9 +78,9 @@ Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion
 std::shared_ptr<const FrictionModel> frictionless()
 {
     struct Frictionless final : FrictionModel {
-        void advance(const Meeting&, History&) const override {}
-        Wrench load(const Meeting&, const Rates&, const History&) const override { return {}; }
-        Springs springs(const Meeting&) const override { return {}; }
+        void advance(const ContactState&, Deflections&) const override {}
+        Wrench load(const ContactState&, const Rates&, const Deflections&) const override { return {}; }
+        Springs springs(const ContactState&) const override { return {}; }
     };
     static const auto none = std::make_shared<const Frictionless>();
     return none;
@@ -122,7 +125,7 @@ const FrictionLaw& friction_law(const std::string& name)
     lie::reject("contact::friction_law", "there are " + all, "'" + name + "'");
 }
 
-bool enrol(FrictionLaw law)
+bool register_friction_law(FrictionLaw law)
 {
     std::vector<FrictionLaw>& all = list();
     const auto at =

@@ -24,7 +24,7 @@ struct Regime {
 };
 
 /// What a contact remembers of its friction. Vectors by their components in (u, w) of the Track.
-struct History {
+struct Deflections {
     Vec2 S = Vec2::Zero();                                ///< sliding micro-deflection [m]
     Vec2 Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();  ///< rolling micro-deflections [rad]
     double Psi = 0;                                       ///< spinning micro-deflection [rad]
@@ -32,10 +32,10 @@ struct History {
 };
 
 /// A contact at one instant, as a friction law sees it
-struct Meeting {
-    Touch touch;
-    Slip slip;     ///< since the instant before
-    double N = 0;  ///< normal force [N]; not positive where the surfaces do not touch
+struct ContactState {
+    ContactPoint contact_point;
+    SlidingDisplacement slip;  ///< since the instant before
+    double N = 0;              ///< normal force [N]; not positive where the surfaces do not touch
     /// Fictitious mass and moments of inertia of the pair for the dashpots, about the tangents and about the
     /// normal [kg, kg m²]                                                                    Eqs. 4.4, 4.10
     double m = 0, I_roll = 0, I_spin = 0;
@@ -51,7 +51,7 @@ struct Rates {
 };
 
 /// The mean over a step of length h
-Rates mean_rates(const Slip& slip, double h);
+Rates mean_rates(const SlidingDisplacement& slip, double h);
 
 /// At this instant, from the velocities of the bodies, the limit of the mean rates for a small step:
 ///
@@ -60,7 +60,8 @@ Rates mean_rates(const Slip& slip, double h);
 /// the velocity of each body at its own point: in the middle between the two there is a false slip of |ω gap|. The
 /// contact point moves as Montana's equations say: (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ. Zero for p where K_i +
 /// K_j is singular.
-Rates rates(const Touch& touch, const Slip& slip, const Motion& bi, const Motion& bj);
+Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, const Motion& bi,
+            const Motion& bj);
 
 /// Friction on the two bodies of a contact, global: F [N] on i at C, -F on j; torques [N m]
 struct Wrench {
@@ -92,10 +93,11 @@ public:
     virtual double fictitious(double a, double b) const { return reduced(a, b); }
 
     /// The history from the last instant to this one
-    virtual void advance(const Meeting& now, History& history) const = 0;
+    virtual void advance(const ContactState& now, Deflections& deflections) const = 0;
     /// Friction of the history it has got to
-    virtual Wrench load(const Meeting& now, const Rates& rates, const History& history) const = 0;
-    virtual Springs springs(const Meeting& now) const = 0;
+    virtual Wrench load(const ContactState& now, const Rates& rates,
+                        const Deflections& deflections) const = 0;
+    virtual Springs springs(const ContactState& now) const = 0;
     virtual bool needs_curvature() const { return false; }  ///< rolling or spinning that it resists
 };
 
@@ -139,14 +141,14 @@ struct FrictionLaw {
 const std::vector<FrictionLaw>& friction_laws();
 /// The law of that name; InvalidInput names those there are.
 const FrictionLaw& friction_law(const std::string& name);
-bool enrol(FrictionLaw law);
+bool register_friction_law(FrictionLaw law);
 template <class Law>
-bool enrol(FrictionLaw law)
+bool register_friction_law(FrictionLaw law)
 {
     law.make = [](const FrictionParameters& p) -> std::shared_ptr<const FrictionModel> {
         return std::make_shared<Law>(p);
     };
-    return enrol(std::move(law));
+    return register_friction_law(std::move(law));
 }
 
 }  // namespace hilda::contact

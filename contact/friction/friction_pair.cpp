@@ -50,25 +50,26 @@ void FrictionPair::rethrow(const lie::NumericalFailure& e) const
     throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
 }
 
-void FrictionPair::set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const
+void FrictionPair::set_fictitious(ContactState& now, const Motion& bi, const Motion& bj) const
 {
     now.m = m;
     now.lever = longest_lever * length;
-    const Moments a = moments(of_i, bi.A, now.touch.n), b = moments(of_j, bj.A, now.touch.n);
+    const Moments a = moments(of_i, bi.A, now.contact_point.n), b = moments(of_j, bj.A, now.contact_point.n);
     now.I_roll = friction->fictitious(a.tangential, b.tangential);
     now.I_spin = friction->fictitious(a.normal, b.normal);
 }
 
-Meeting FrictionPair::meeting(const Touch& touch, double N, const Motion& bi, const Motion& bj,
-                              const Memory& memory) const
+ContactState FrictionPair::contact_state(const ContactPoint& contact_point, double N, const Motion& bi,
+                                         const Motion& bj, const ContactHistory& history) const
 {
-    Meeting now;
-    now.touch = touch;
+    ContactState now;
+    now.contact_point = contact_point;
     now.N = N;
     if (!(now.N > 0)) return now;
     try {
-        now.slip = memory.touching ? follow(memory.track, now.touch, i, j, bi, bj, friction->tracking())
-                                   : no_slip(now.touch, now.touch.n.unitOrthogonal());
+        now.slip = history.touching
+                       ? follow(history.contact_frame, now.contact_point, i, j, bi, bj, friction->tracking())
+                       : no_slip(now.contact_point, now.contact_point.n.unitOrthogonal());
     } catch (const lie::NumericalFailure& e) {
         rethrow(e);
     }
@@ -76,26 +77,28 @@ Meeting FrictionPair::meeting(const Touch& touch, double N, const Motion& bi, co
     return now;
 }
 
-void FrictionPair::advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const
+void FrictionPair::advance(const ContactState& now, const Motion& bi, const Motion& bj,
+                           ContactHistory& history) const
 {
     const bool touching = now.N > 0;
     if (!touching)
-        memory.history = {};
-    else if (memory.touching)
-        friction->advance(now, memory.history);
-    memory.track = track(now.touch, touching ? now.slip.u : now.touch.n.unitOrthogonal(), bi, bj);
-    memory.found = true;
-    memory.touching = touching;
+        history.deflections = {};
+    else if (history.touching)
+        friction->advance(now, history.deflections);
+    history.contact_frame = contact_frame(
+        now.contact_point, touching ? now.slip.u : now.contact_point.n.unitOrthogonal(), bi, bj);
+    history.found = true;
+    history.touching = touching;
 }
 
-double FrictionPair::stable_step(const Meeting& now, const NormalHold& normal, const Motion& bi,
+double FrictionPair::stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
                                  const Motion& bj, int contacts_of_i, int contacts_of_j) const
 {
     using Mat6 = Eigen::Matrix<double, 6, 6>;
     using Rows = Eigen::Matrix<double, 6, 3>;
     using Vec6 = Eigen::Matrix<double, 6, 1>;
     const Springs springs = friction->springs(now);
-    const Vec3 n = now.touch.n, u = n.unitOrthogonal(), w = n.cross(u);
+    const Vec3 n = now.contact_point.n, u = n.unitOrthogonal(), w = n.cross(u);
 
     // Rows: sliding along u and w, pressing along n, rolling about u and w, spinning about n
     constexpr int pressing = 2;
@@ -112,8 +115,8 @@ double FrictionPair::stable_step(const Meeting& now, const NormalHold& normal, c
         W += contacts *
              (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
     };
-    add(of_i, bi, now.touch.C_i, contacts_of_i);
-    add(of_j, bj, now.touch.C_j, contacts_of_j);
+    add(of_i, bi, now.contact_point.C_i, contacts_of_i);
+    add(of_j, bj, now.contact_point.C_j, contacts_of_j);
     if (normal.rigid && W(pressing, pressing) > 0) {
         // what friction moves, the force that holds the normal having answered
         const Vec6 answer = W.col(pressing);

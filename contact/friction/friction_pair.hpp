@@ -19,15 +19,15 @@ struct Inertia {
 };
 
 /// What a contact keeps from step to step
-struct Memory {
+struct ContactHistory {
     bool found = false;     ///< track has the points of the last touch, where the search begins
     bool touching = false;  ///< history and frames go on from them
-    Track track = {};
-    History history = {};
+    ContactFrame contact_frame = {};
+    Deflections deflections = {};
 };
 
 /// What keeps two bodies apart along the normal of their contact
-struct NormalHold {
+struct NormalSupport {
     double K = 0, D = 0;  ///< of a spring and dashpot [N/m, N s/m]
     bool rigid = false;   ///< or a constraint, and nothing moves along it
 };
@@ -40,14 +40,14 @@ public:
 
     /// The contact at this touch under the normal force N [N], with the motion of its point since the memory. Where N is
     /// not positive there is the touch and no more.
-    Meeting meeting(const Touch& touch, double N, const Motion& bi, const Motion& bj,
-                    const Memory& memory) const;
+    ContactState contact_state(const ContactPoint& contact_point, double N, const Motion& bi,
+                               const Motion& bj, const ContactHistory& history) const;
     /// From the instant of the memory to that of the meeting. Where the surfaces have parted, histories are
     /// dropped; where they meet anew, they begin at zero.
-    void advance(const Meeting& now, const Motion& bi, const Motion& bj, Memory& memory) const;
-    Wrench load(const Meeting& now, const Rates& rates, const Memory& memory) const
+    void advance(const ContactState& now, const Motion& bi, const Motion& bj, ContactHistory& history) const;
+    Wrench load(const ContactState& now, const Rates& rates, const ContactHistory& history) const
     {
-        return now.N > 0 ? friction->load(now, rates, memory.history) : Wrench();
+        return now.N > 0 ? friction->load(now, rates, history.deflections) : Wrench();
     }
 
     /// The largest step [s] with which symplectic Euler is stable on the springs and dashpots of this contact, none of
@@ -57,8 +57,8 @@ public:
     ///
     /// A sphere that does not resist rolling and is held on its surface: h = (√(d² + 4 k) - d)/k with d = D q, k = K q,
     /// q = 1/m + R²/I.
-    double stable_step(const Meeting& now, const NormalHold& normal, const Motion& bi, const Motion& bj,
-                       int contacts_of_i = 1, int contacts_of_j = 1) const;
+    double stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
+                       const Motion& bj, int contacts_of_i = 1, int contacts_of_j = 1) const;
 
     const std::string name;
     const Shape i, j;
@@ -67,7 +67,7 @@ public:
 
 protected:
     [[noreturn]] void rethrow(const lie::NumericalFailure& e) const;
-    void set_fictitious(Meeting& now, const Motion& bi, const Motion& bj) const;
+    void set_fictitious(ContactState& now, const Motion& bi, const Motion& bj) const;
 
     double length;  ///< the smaller size of the two [m], infinite where neither has one
 

@@ -16,7 +16,7 @@ constexpr double at_rest = 1e-12;
 struct Kept {
     Vec2 S = Vec2::Zero(), Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();
     Vec2 p_i = Vec2::Zero(), p_j = Vec2::Zero();
-    Track track = {};
+    ContactFrame contact_frame = {};
     double Psi = 0, t = 0;
 };
 constexpr size_t numbers = 5 * 2 + 6 * 3 + 2;
@@ -25,27 +25,29 @@ static_assert(sizeof(Kept) == numbers * sizeof(double), "what is kept is numbers
 Kept kept(const lie::State& x, int first)
 {
     Kept all;
-    std::memcpy(static_cast<void*>(&all), x.remembered.data() + first, sizeof all);
+    std::memcpy(static_cast<void*>(&all), x.internal_state.data() + first, sizeof all);
     return all;
 }
 
 /// The one whole number: a bit for each flag that is not as in a memory without a past, so that zero is such a one
-int flags_of(const Memory& m)
+int flags_of(const ContactHistory& m)
 {
     int flags = m.found | m.touching << 1, bit = 2;
-    for (const Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin}) {
+    for (const Regime* r :
+         {&m.deflections.slide, &m.deflections.roll_i, &m.deflections.roll_j, &m.deflections.spin}) {
         flags |= r->slipping << bit++;
         flags |= !r->damped << bit++;
     }
     return flags;
 }
 
-void set_flags(int flags, Memory& m)
+void set_flags(int flags, ContactHistory& m)
 {
     int bit = 0;
     const auto next = [&] { return (flags >> bit++ & 1) != 0; };
     m.found = next(), m.touching = next();
-    for (Regime* r : {&m.history.slide, &m.history.roll_i, &m.history.roll_j, &m.history.spin})
+    for (Regime* r :
+         {&m.deflections.slide, &m.deflections.roll_i, &m.deflections.roll_j, &m.deflections.spin})
         r->slipping = next(), r->damped = !next();
 }
 
@@ -73,87 +75,87 @@ Inertia TrackedForce::inertia(const dae::Model& model, int b)
     return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
 }
 
-int TrackedForce::remembered() const { return numbers; }
+int TrackedForce::internal_states() const { return numbers; }
 
-Memory TrackedForce::recall(const lie::State& x) const
+ContactHistory TrackedForce::recall(const lie::State& x) const
 {
-    Memory m;
-    set_flags(x.memory[first_memory], m);
-    const Kept all = kept(x, first_remembered);
-    m.track = all.track;
-    m.history.S = all.S, m.history.Theta_i = all.Theta_i, m.history.Theta_j = all.Theta_j;
-    m.history.Psi = all.Psi;
+    ContactHistory m;
+    set_flags(x.discrete_state[first_discrete_state], m);
+    const Kept all = kept(x, first_internal_state);
+    m.contact_frame = all.contact_frame;
+    m.deflections.S = all.S, m.deflections.Theta_i = all.Theta_i, m.deflections.Theta_j = all.Theta_j;
+    m.deflections.Psi = all.Psi;
     return m;
 }
 
 void TrackedForce::keep(const Instant& now, lie::State& x) const
 {
-    const Memory& m = now.memory;
-    x.memory[first_memory] = flags_of(m);
-    const Slip& s = now.meeting.slip;
+    const ContactHistory& m = now.history;
+    x.discrete_state[first_discrete_state] = flags_of(m);
+    const SlidingDisplacement& s = now.contact_state.slip;
     Kept all;
-    all.S = m.history.S, all.Theta_i = m.history.Theta_i, all.Theta_j = m.history.Theta_j;
-    all.Psi = m.history.Psi;
-    all.track = m.track;
+    all.S = m.deflections.S, all.Theta_i = m.deflections.Theta_i, all.Theta_j = m.deflections.Theta_j;
+    all.Psi = m.deflections.Psi;
+    all.contact_frame = m.contact_frame;
     all.t = x.t;
     if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
-    std::memcpy(x.remembered.data() + first_remembered, static_cast<const void*>(&all), sizeof all);
+    std::memcpy(x.internal_state.data() + first_internal_state, static_cast<const void*>(&all), sizeof all);
 }
 
 TrackedForce::Instant TrackedForce::at(const lie::State& x) const
 {
-    Instant now{.meeting = {}, .memory = recall(x)};
+    Instant now{.contact_state = {}, .history = recall(x)};
     try {
-        now.meeting = meet(x, now.memory);
+        now.contact_state = evaluate(x, now.history);
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
-    Slip& s = now.meeting.slip;
-    if (now.meeting.N > 0 && now.memory.touching) {
-        const Kept last = kept(x, first_remembered);
-        const double length = at_rest * (1 + now.meeting.touch.C().norm());
+    SlidingDisplacement& s = now.contact_state.slip;
+    if (now.contact_state.N > 0 && now.history.touching) {
+        const Kept last = kept(x, first_internal_state);
+        const double length = at_rest * (1 + now.contact_state.contact_point.C().norm());
         if (std::abs(x.t - last.t) <= at_rest * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
             s.p_j.norm() < length && std::abs(s.psi) < at_rest) {
             const Vec3 n = s.n, u = s.u;
-            s = no_slip(now.meeting.touch, u);
+            s = no_slip(now.contact_state.contact_point, u);
             s.p_i = tangent(last.p_i, n, u), s.p_j = tangent(last.p_j, n, u);
-            now.remembered = true;
+            now.is_saved = true;
             return now;
         }
     }
-    pair().advance(now.meeting, motion(x, i), motion(x, j), now.memory);
+    pair().advance(now.contact_state, motion(x, i), motion(x, j), now.history);
     return now;
 }
 
 Wrench TrackedForce::load(const Instant& now, const lie::State& x) const
 {
-    const Meeting& m = now.meeting;
+    const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return {};
-    return pair().load(m, speeds(now, x), now.memory);
+    return pair().load(m, speeds(now, x), now.history);
 }
 
 Rates TrackedForce::speeds(const Instant& now, const lie::State& x) const
 {
-    return rates(now.meeting.touch, now.meeting.slip, motion(x, i), motion(x, j));
+    return rates(now.contact_state.contact_point, now.contact_state.slip, motion(x, i), motion(x, j));
 }
 
 void TrackedForce::add(const lie::State& x, lie::Loads& out) const
 {
     if (!works(x)) return;
     const Instant now = at(x);
-    const Meeting& m = now.meeting;
+    const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return;
     const Wrench w = load(now, x);
-    const Vec3 F = presses() ? Vec3(m.N * m.touch.n + w.F) : w.F, C = m.touch.C();
+    const Vec3 F = presses() ? Vec3(m.N * m.contact_point.n + w.F) : w.F, C = m.contact_point.C();
     put(i, F, C, w.T_i, x, out);
     put(j, -F, C, w.T_j, x, out);
 }
 
 Wrench TrackedForce::friction(const lie::State& x) const { return works(x) ? load(at(x), x) : Wrench(); }
 
-double TrackedForce::instant_of_memory(const lie::State& x) const { return kept(x, first_remembered).t; }
+double TrackedForce::time_of_history(const lie::State& x) const { return kept(x, first_internal_state).t; }
 
-void TrackedForce::remember(lie::State& x) const
+void TrackedForce::update_internal_state(lie::State& x) const
 {
     if (works(x)) keep(at(x), x);
 }

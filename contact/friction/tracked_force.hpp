@@ -19,21 +19,21 @@ class TrackedForce : public dae::Force {
 public:
     void add(const lie::State& x, lie::Loads& out) const override;
 
-    int memory() const override { return 1; }
-    int remembered() const override;
-    void remember(lie::State& x) const override;
+    int discrete_states() const override { return 1; }
+    int internal_states() const override;
+    void update_internal_state(lie::State& x) const override;
 
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
     std::string in_words() const override { return "contact '" + name + "'"; }
 
     /// What it remembers in x
-    Memory recall(const lie::State& x) const;
+    ContactHistory recall(const lie::State& x) const;
     /// The contact at x, with the histories carried on to it
     struct Instant {
-        Meeting meeting;
-        Memory memory;
-        bool remembered =
+        ContactState contact_state;
+        ContactHistory history;
+        bool is_saved =
             false;  ///< x is that of the memory itself, as it was when the step to it was accepted
     };
     Instant at(const lie::State& x) const;
@@ -50,7 +50,7 @@ protected:
 
     virtual const FrictionPair& pair() const = 0;
     /// Touch, normal force, and motion of the contact point since the memory
-    virtual Meeting meet(const lie::State& x, const Memory& memory) const = 0;
+    virtual ContactState evaluate(const lie::State& x, const ContactHistory& history) const = 0;
     /// That the dashpots go by: at this instant, from the velocities of the bodies
     virtual Rates speeds(const Instant& now, const lie::State& x) const;
     /// Whether the normal force is a load; else a constraint has it
@@ -66,7 +66,7 @@ protected:
     static Inertia inertia(const dae::Model& model, int b);
 
     void keep(const Instant& now, lie::State& x) const;
-    double instant_of_memory(const lie::State& x) const;  ///< t_n [s]
+    double time_of_history(const lie::State& x) const;  ///< t_n [s]
 
     const dae::Model& model;
 

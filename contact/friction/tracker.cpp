@@ -33,20 +33,21 @@ Vec3 carried(const Vec3& u_0, const Vec3& n_0, const Vec3& n)
 
 }  // namespace
 
-Track track(const Touch& touch, const Vec3& u, const Motion& bi, const Motion& bj)
+ContactFrame contact_frame(const ContactPoint& contact_point, const Vec3& u, const Motion& bi,
+                           const Motion& bj)
 {
-    return {.c_i = bi.A.transpose() * (touch.C_i - bi.r),
-            .c_j = bj.A.transpose() * (touch.C_j - bj.r),
-            .n_i = bi.A.transpose() * touch.n,
-            .n_j = bj.A.transpose() * touch.n,
+    return {.c_i = bi.A.transpose() * (contact_point.C_i - bi.r),
+            .c_j = bj.A.transpose() * (contact_point.C_j - bj.r),
+            .n_i = bi.A.transpose() * contact_point.n,
+            .n_j = bj.A.transpose() * contact_point.n,
             .u_i = bi.A.transpose() * u,
             .u_j = bj.A.transpose() * u};
 }
 
-Slip no_slip(const Touch& touch, const Vec3& u)
+SlidingDisplacement no_slip(const ContactPoint& contact_point, const Vec3& u)
 {
     const Vec3 zero = Vec3::Zero();
-    return {.n = touch.n,
+    return {.n = contact_point.n,
             .u = u,
             .u_i = u,
             .u_j = u,
@@ -58,10 +59,10 @@ Slip no_slip(const Touch& touch, const Vec3& u)
             .ds = zero};
 }
 
-Slip follow(const Track& from, const Touch& to, const Shape& i, const Shape& j, const Motion& bi,
-            const Motion& bj, const Tracking& how)
+SlidingDisplacement follow(const ContactFrame& from, const ContactPoint& to, const Shape& i, const Shape& j,
+                           const Motion& bi, const Motion& bj, const Tracking& how)
 {
-    Slip s;
+    SlidingDisplacement s;
     s.n = to.n;
     s.u_i = carried(bi.A * from.u_i, bi.A * from.n_i, s.n);
     s.u_j = carried(bj.A * from.u_j, bj.A * from.n_j, s.n);

@@ -11,7 +11,7 @@ using Vec2 = Eigen::Vector2d;
 
 /// What is kept of a contact from one instant to the next, each vector in the frame of its body: the contact
 /// points, the normal, and the first tangent vector of the frame (n, u, w = n × u) that carries the histories.
-struct Track {
+struct ContactFrame {
     Vec3 c_i, c_j, n_i, n_j, u_i, u_j;
 };
 
@@ -30,7 +30,7 @@ struct Tracking {
 };
 
 /// How the contact point moved from t_0 to t_1. Vectors are global, at t_1; all but n lie in the tangent plane.
-struct Slip {
+struct SlidingDisplacement {
     Vec3 n;         ///< unit normal, into body i
     Vec3 u;         ///< the frame (n, u, n × u) that carries the histories
     Vec3 u_i, u_j;  ///< u of t_0 carried along by each body alone
@@ -52,16 +52,17 @@ inline Vec3 tangent(const Vec2& c, const Vec3& n, const Vec3& u) { return c[0] *
 inline Vec2 components(const Vec3& v, const Vec3& n, const Vec3& u) { return {u.dot(v), n.cross(u).dot(v)}; }
 
 /// The track of a contact at t_1 with u in both bodies. For a new contact u may be any tangent vector.
-Track track(const Touch& touch, const Vec3& u, const Motion& bi, const Motion& bj);
+ContactFrame contact_frame(const ContactPoint& contact_point, const Vec3& u, const Motion& bi,
+                           const Motion& bj);
 
 /// No motion yet: the slip of a new contact, with any unit tangent u.
-Slip no_slip(const Touch& touch, const Vec3& u);
+SlidingDisplacement no_slip(const ContactPoint& contact_point, const Vec3& u);
 
 /// From the track at t_0 to the touch at t_1. The frames follow the normal by the smallest rotation, which is the
 /// minimum of (A.6) in closed form; p_b is the way from where the old contact point of body b went to the
 /// new one, put into the tangent plane at its length along the surface of the body (Fig. 4.2).
 /// lie::NumericalFailure where a normal has turned round within the step.
-Slip follow(const Track& from, const Touch& to, const Shape& i, const Shape& j, const Motion& bi,
-            const Motion& bj, const Tracking& how);
+SlidingDisplacement follow(const ContactFrame& from, const ContactPoint& to, const Shape& i, const Shape& j,
+                           const Motion& bi, const Motion& bj, const Tracking& how);
 
 }  // namespace hilda::contact

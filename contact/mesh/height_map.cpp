@@ -201,7 +201,7 @@ Vec3 HeightMap::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled = enrol(
+const bool registered = register_surface(
     {.name = "height-map", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const MatrixXd heights = read_rows(o, "heights");
          if (std::min(heights.rows(), heights.cols()) < fewest)

@@ -260,7 +260,7 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
     }
 }
 
-const bool enrolled = enrol({.name = "mesh", .read = read});
+const bool registered = register_surface({.name = "mesh", .read = read});
 
 }  // namespace
 

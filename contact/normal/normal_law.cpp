@@ -53,9 +53,9 @@ Hooke Hooke::rebounding(double stiffness, double restitution, double m)
     return law;
 }
 
-double Hooke::damping(const Pressing& p) const { return c + 2 * zeta * std::sqrt((m > 0 ? m : p.m) * k); }
+double Hooke::damping(const NormalInput& p) const { return c + 2 * zeta * std::sqrt((m > 0 ? m : p.m) * k); }
 
-double Hooke::force(const Pressing& p) const
+double Hooke::force(const NormalInput& p) const
 {
     return p.overlap > 0 ? k * p.overlap + damping(p) * p.overlap_rate : 0;
 }
@@ -75,17 +75,17 @@ Hertz Hertz::of_free_oscillation(double E_star, double restitution, double m)
     return law;
 }
 
-double Hertz::stiffness(const Pressing& p) const
+double Hertz::stiffness(const NormalInput& p) const
 {
     return p.overlap > 0 ? 2 * E_star * std::sqrt(p.overlap / p.curvature) : 0;
 }
 
-double Hertz::damping(const Pressing& p) const
+double Hertz::damping(const NormalInput& p) const
 {
     return 2 * std::sqrt(5. / 6) * zeta * std::sqrt(stiffness(p) * (m > 0 ? m : p.m));
 }
 
-double Hertz::force(const Pressing& p) const
+double Hertz::force(const NormalInput& p) const
 {
     if (!(p.overlap > 0)) return 0;
     return 2. / 3 * stiffness(p) * p.overlap + damping(p) * p.overlap_rate;

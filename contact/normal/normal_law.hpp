@@ -8,7 +8,7 @@
 namespace hilda::contact {
 
 /// What a normal law sees of a touch
-struct Pressing {
+struct NormalInput {
     double overlap;       ///< δ = -gap [m]
     double overlap_rate;  ///< δ̇ [m/s]
     double curvature;  ///< κ_i + κ_j [1/m], each the mean over the directions: 1/R of the effective radius
@@ -20,12 +20,12 @@ public:
     virtual ~NormalLaw() = default;
 
     /// N [N]; zero or less where the surfaces do not touch
-    virtual double force(const Pressing& p) const = 0;
+    virtual double force(const NormalInput& p) const = 0;
     /// ∂N/∂δ and ∂N/∂δ̇ [N/m, N s/m], for the stability bound
-    virtual double stiffness(const Pressing&) const { return 0; }
-    virtual double damping(const Pressing&) const { return 0; }
+    virtual double stiffness(const NormalInput&) const { return 0; }
+    virtual double damping(const NormalInput&) const { return 0; }
     /// What the spring has taken up, ∫ N dδ without damping [J]; zero for a law that has no spring
-    virtual double energy(const Pressing&) const { return 0; }
+    virtual double energy(const NormalInput&) const { return 0; }
     virtual bool needs_curvature() const { return false; }  ///< a radius to press on
 };
 
@@ -34,7 +34,7 @@ class GivenForce final : public NormalLaw {
 public:
     explicit GivenForce(double N);
 
-    double force(const Pressing&) const override { return N; }
+    double force(const NormalInput&) const override { return N; }
 
 private:
     double N;
@@ -48,11 +48,11 @@ public:
     /// the speed at which they met. m is that of the pair, or the one given.
     static Hooke rebounding(double stiffness, double restitution, double m = 0);
 
-    double force(const Pressing& p) const override;
-    double stiffness(const Pressing&) const override { return k; }
-    double damping(const Pressing& p) const override;
+    double force(const NormalInput& p) const override;
+    double stiffness(const NormalInput&) const override { return k; }
+    double damping(const NormalInput& p) const override;
     /// k δ²/2
-    double energy(const Pressing& p) const override
+    double energy(const NormalInput& p) const override
     {
         return p.overlap > 0 ? 0.5 * k * p.overlap * p.overlap : 0;
     }
@@ -74,11 +74,11 @@ public:
     /// does, they part a little faster: at 0.55 instead of 0.5.
     static Hertz of_free_oscillation(double E_star, double restitution, double m = 0);
 
-    double force(const Pressing& p) const override;
-    double stiffness(const Pressing& p) const override;
-    double damping(const Pressing& p) const override;
+    double force(const NormalInput& p) const override;
+    double stiffness(const NormalInput& p) const override;
+    double damping(const NormalInput& p) const override;
     /// 2/5 k δ^(5/2)
-    double energy(const Pressing& p) const override
+    double energy(const NormalInput& p) const override
     {
         return p.overlap > 0 ? 4. / 15 * stiffness(p) * p.overlap * p.overlap : 0;
     }

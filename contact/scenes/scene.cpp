@@ -26,29 +26,29 @@ int Scene::add(const std::string& name, int i, const Shape& shape_i, int j, cons
         if (b < 0 || b >= static_cast<int>(body.size()))
             lie::reject("contact::Scene", "no body has this number", b);
     if (i == j) lie::reject("contact::Scene", "a contact needs two different bodies", i);
-    pair.push_back({.contact = Contact(name, shape_i, shape_j, inertia[i], inertia[j], std::move(law),
-                                       std::move(friction)),
+    pair.push_back({.contact = CompliantContact(name, shape_i, shape_j, inertia[i], inertia[j],
+                                                std::move(law), std::move(friction)),
                     .i = i,
                     .j = j});
     return static_cast<int>(pair.size()) - 1;
 }
 
-int Scene::add(const Kind& kind) { return crowd.add(kind); }
+int Scene::add(const BodyType& kind) { return neighbors.add(kind); }
 
 int Scene::enter(int kind, const Motion& start)
 {
-    const int b = add(crowd.kind(kind).inertia, start);
-    crowd.enter(b, kind);
+    const int b = add(neighbors.kind(kind).inertia, start);
+    neighbors.enter(b, kind);
     return b;
 }
 
 void Scene::between(const std::string& name, int kind_i, int kind_j, std::shared_ptr<const NormalLaw> law,
                     std::shared_ptr<const FrictionModel> friction)
 {
-    const Kind &i = crowd.kind(kind_i), &j = crowd.kind(kind_j);
-    crowd.set(kind_i, kind_j,
-              std::make_unique<Contact>(name, i.shape, j.shape, i.inertia, j.inertia, std::move(law),
-                                        std::move(friction)));
+    const BodyType &i = neighbors.kind(kind_i), &j = neighbors.kind(kind_j);
+    neighbors.set(kind_i, kind_j,
+                  std::make_unique<CompliantContact>(name, i.shape, j.shape, i.inertia, j.inertia,
+                                                     std::move(law), std::move(friction)));
 }
 
 void Scene::check(double h) const
@@ -57,24 +57,24 @@ void Scene::check(double h) const
     for (const Inertia& of : inertia)
         if (of.moves()) weight += gravity.norm() * of.m;
     struct Checked {
-        const Contact& contact;
+        const CompliantContact& contact;
         int i, j;
-        const Memory& memory;
+        const ContactHistory& history;
     };
     std::vector<Checked> all;
-    for (const Pair& p : pair) all.push_back({p.contact, p.i, p.j, p.memory});
-    const auto near = crowd.near(body);
-    for (const auto& p : near) all.push_back({*p.law, p.i, p.j, p.state.memory});
+    for (const Pair& p : pair) all.push_back({p.contact, p.i, p.j, p.history});
+    const auto near = neighbors.near(body);
+    for (const auto& p : near) all.push_back({*p.law, p.i, p.j, p.state.history});
     std::vector<int> contacts(body.size());
     for (const Checked& p : all) {
         const Motion &bi = body[p.i], &bj = body[p.j];
         if (const std::string why = p.contact.objection(bi, bj); !why.empty())
             throw lie::InvalidInput("contact '" + p.contact.name + "': " + why);
-        if (p.contact.close(bi, bj, p.memory)) ++contacts[p.i], ++contacts[p.j];
+        if (p.contact.close(bi, bj, p.history)) ++contacts[p.i], ++contacts[p.j];
     }
     for (const Checked& p : all) {
         const Motion &bi = body[p.i], &bj = body[p.j];
-        const double bound = p.contact.stable_step(p.contact.hardest(bi, bj, p.memory, weight), bi, bj,
+        const double bound = p.contact.stable_step(p.contact.hardest(bi, bj, p.history, weight), bi, bj,
                                                    std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
         if (h > bound) {
             std::ostringstream what;
@@ -87,17 +87,18 @@ void Scene::check(double h) const
 
 /// Loads of one contact at t_n
 template <class Kept>
-void Scene::touch(const Contact& contact, int i, int j, Kept& kept, double h)
+void Scene::contact_point(const CompliantContact& contact, int i, int j, Kept& kept, double h)
 {
     const Motion &bi = body[i], &bj = body[j];
-    kept.meeting = contact.meet(bi, bj, kept.memory);
-    contact.advance(kept.meeting, bi, bj, kept.memory);
-    if (!(kept.meeting.N > 0)) {
+    kept.contact_state = contact.evaluate(bi, bj, kept.history);
+    contact.advance(kept.contact_state, bi, bj, kept.history);
+    if (!(kept.contact_state.N > 0)) {
         kept.wrench = {};
         return;
     }
-    kept.wrench = contact.load(kept.meeting, mean_rates(kept.meeting.slip, h), kept.memory);
-    const Vec3 C = kept.meeting.touch.C(), on_i = kept.meeting.N * kept.meeting.touch.n + kept.wrench.F;
+    kept.wrench = contact.load(kept.contact_state, mean_rates(kept.contact_state.slip, h), kept.history);
+    const Vec3 C = kept.contact_state.contact_point.C(),
+               on_i = kept.contact_state.N * kept.contact_state.contact_point.n + kept.wrench.F;
     F[i] += on_i;
     T[i] += (C - bi.r).cross(on_i) + kept.wrench.T_i;
     F[j] -= on_i;
@@ -110,8 +111,8 @@ void Scene::step(double h)
         F[b].setZero();
         T[b].setZero();
     }
-    for (Pair& p : pair) touch(p.contact, p.i, p.j, p, h);
-    for (auto& p : crowd.find(body)) touch(*p.law, p.i, p.j, p.state, h);
+    for (Pair& p : pair) contact_point(p.contact, p.i, p.j, p, h);
+    for (auto& p : neighbors.find(body)) contact_point(*p.law, p.i, p.j, p.state, h);
     for (size_t b = 0; b < body.size(); ++b) {
         Motion& m = body[b];
         const Inverse& of = inverse[b];

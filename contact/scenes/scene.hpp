@@ -25,7 +25,7 @@ public:
             std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction);
 
     /// A kind of bodies, of which any two that come near each other are in contact, and its number
-    int add(const Kind& kind);
+    int add(const BodyType& kind);
     /// A body of a kind
     int enter(int kind, const Motion& start);
     /// The contact that two bodies of these kinds have, or two of one. Its memory lasts while they are near.
@@ -40,29 +40,30 @@ public:
 
     /// A contact as it was when the last step left its node
     struct Pair {
-        Contact contact;
+        CompliantContact contact;
         int i, j;
-        Memory memory = {};
-        Meeting meeting = {};
+        ContactHistory history = {};
+        ContactState contact_state = {};
         Wrench wrench = {};
     };
 
     /// What two bodies of a crowd keep while they are near
     struct Encounter {
-        Memory memory = {};
-        Meeting meeting = {};
+        ContactHistory history = {};
+        ContactState contact_state = {};
         Wrench wrench = {};
     };
 
     double t = 0;  ///< [s]
     std::vector<Motion> body;
     std::vector<Pair> pair;
-    Crowd<Contact, Encounter> crowd;  ///< what add(Kind) made; the force on body i is meeting.N n + wrench.F
+    NeighborList<CompliantContact, Encounter>
+        neighbors;  ///< what add(Kind) made; the force on body i is meeting.N n + wrench.F
     double kinetic_energy() const;
 
 private:
     template <class Kept>
-    void touch(const Contact& contact, int i, int j, Kept& kept, double h);
+    void contact_point(const CompliantContact& contact, int i, int j, Kept& kept, double h);
 
     struct Inverse {
         double m;

@@ -59,15 +59,15 @@ Vec3 Cone::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled =
-    enrol({.name = "cone",
-           .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-               const double beta = o.number("half_angle");
-               if (!angle_allowed(beta))
-                   o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + dae::shortest(beta));
-               return std::make_shared<Cone>(beta, o.flag("concave", false));
-           },
-           .z = "axis"});
+const bool registered = register_surface(
+    {.name = "cone",
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const double beta = o.number("half_angle");
+         if (!angle_allowed(beta))
+             o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + dae::shortest(beta));
+         return std::make_shared<Cone>(beta, o.flag("concave", false));
+     },
+     .z = "axis"});
 
 }  // namespace
 

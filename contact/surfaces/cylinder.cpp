@@ -22,12 +22,12 @@ Vec3 Cylinder::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled = enrol({.name = "cylinder",
-                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                 const double R = o.positive("radius");
-                                 return std::make_shared<Cylinder>(R, o.flag("concave", false));
-                             },
-                             .z = "axis"});
+const bool registered = register_surface({.name = "cylinder",
+                                          .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                              const double R = o.positive("radius");
+                                              return std::make_shared<Cylinder>(R, o.flag("concave", false));
+                                          },
+                                          .z = "axis"});
 
 }  // namespace
 

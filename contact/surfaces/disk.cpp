@@ -24,11 +24,11 @@ double Disk::arc(double chord) const { return 2 * R * std::asin(std::min(chord /
 
 namespace {
 
-const bool enrolled = enrol({.name = "disk",
-                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                 return std::make_shared<Disk>(o.positive("radius"));
-                             },
-                             .z = "axis"});
+const bool registered = register_surface({.name = "disk",
+                                          .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                              return std::make_shared<Disk>(o.positive("radius"));
+                                          },
+                                          .z = "axis"});
 
 }  // namespace
 

@@ -64,11 +64,11 @@ Vec3 Ellipsoid::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled =
-    enrol({.name = "ellipsoid", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-               const Vec3 semi_axes = read_semi_axes(o);
-               return std::make_shared<Ellipsoid>(semi_axes, o.flag("concave", false));
-           }});
+const bool registered = register_surface(
+    {.name = "ellipsoid", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const Vec3 semi_axes = read_semi_axes(o);
+         return std::make_shared<Ellipsoid>(semi_axes, o.flag("concave", false));
+     }});
 
 }  // namespace
 

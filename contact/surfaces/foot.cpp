@@ -7,7 +7,7 @@ namespace hilda::contact {
 
 namespace {
 
-const bool enrolled = enrol(
+const bool registered = register_surface(
     {.name = "foot",
      .read = [](dae::ObjectReader&) -> std::shared_ptr<const Surface> { return std::make_shared<Foot>(); },
      .z = "normal"});

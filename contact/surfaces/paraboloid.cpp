@@ -65,15 +65,15 @@ Vec3 Paraboloid::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled =
-    enrol({.name = "paraboloid",
-           .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-               const std::vector<double> R = o.numbers("radii", 2);
-               if (!(R[0] > 0 && R[1] > 0))
-                   o.fail("radii", "radii must be positive, got " + dae::described(*o.look("radii")));
-               return std::make_shared<Paraboloid>(R[0], R[1], o.flag("concave", false));
-           },
-           .z = "axis"});
+const bool registered = register_surface(
+    {.name = "paraboloid",
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const std::vector<double> R = o.numbers("radii", 2);
+         if (!(R[0] > 0 && R[1] > 0))
+             o.fail("radii", "radii must be positive, got " + dae::described(*o.look("radii")));
+         return std::make_shared<Paraboloid>(R[0], R[1], o.flag("concave", false));
+     },
+     .z = "axis"});
 
 }  // namespace
 

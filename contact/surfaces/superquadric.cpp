@@ -90,18 +90,18 @@ std::optional<Vec3> Superquadric::support(const Vec3& u) const
 
 namespace {
 
-const bool enrolled =
-    enrol({.name = "superquadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-               const Vec3 semi_axes = read_semi_axes(o);
-               const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {
-                   const double p = o.number(key, fallback);
-                   if (!exponent_allowed(p))
-                       o.fail(key, std::string(key) + " must be between 2 and 100, got " + dae::shortest(p));
-                   return p;
-               };
-               const double p = exponent("exponent");
-               return std::make_shared<Superquadric>(semi_axes, p, exponent("exponent_z", p));
-           }});
+const bool registered = register_surface(
+    {.name = "superquadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const Vec3 semi_axes = read_semi_axes(o);
+         const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {
+             const double p = o.number(key, fallback);
+             if (!exponent_allowed(p))
+                 o.fail(key, std::string(key) + " must be between 2 and 100, got " + dae::shortest(p));
+             return p;
+         };
+         const double p = exponent("exponent");
+         return std::make_shared<Superquadric>(semi_axes, p, exponent("exponent_z", p));
+     }});
 
 }  // namespace
 

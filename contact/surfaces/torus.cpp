@@ -56,15 +56,15 @@ Vec3 Torus::project(const Vec3& a) const
 
 namespace {
 
-const bool enrolled = enrol({.name = "torus",
-                             .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                 const double R = o.positive("ring_radius"), r = o.positive("tube_radius");
-                                 if (!(r < R))
-                                     o.fail("tube_radius", "tube_radius must be less than ring_radius, got " +
-                                                               dae::shortest(r));
-                                 return std::make_shared<Torus>(R, r, o.flag("concave", false));
-                             },
-                             .z = "axis"});
+const bool registered = register_surface(
+    {.name = "torus",
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const double R = o.positive("ring_radius"), r = o.positive("tube_radius");
+         if (!(r < R))
+             o.fail("tube_radius", "tube_radius must be less than ring_radius, got " + dae::shortest(r));
+         return std::make_shared<Torus>(R, r, o.flag("concave", false));
+     },
+     .z = "axis"});
 
 }  // namespace
 

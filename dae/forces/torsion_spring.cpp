@@ -33,13 +33,13 @@ double TorsionSpring::angle(const State& x) const
 {
     const Vec3 u_j = motion(x, i).A.transpose() * (motion(x, j).A * u_bar_j);
     const double within_turn = std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j));
-    const double remembered = x.memory[first_memory] * (pi / 2);
-    return within_turn + 2 * pi * std::round((remembered - within_turn) / (2 * pi));
+    const double saved_angle = x.discrete_state[first_discrete_state] * (pi / 2);
+    return within_turn + 2 * pi * std::round((saved_angle - within_turn) / (2 * pi));
 }
 
-void TorsionSpring::remember(State& x) const
+void TorsionSpring::update_internal_state(State& x) const
 {
-    x.memory[first_memory] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
+    x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
 }
 
 void TorsionSpring::add(const State& x, lie::Loads& out) const

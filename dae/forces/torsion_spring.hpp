@@ -29,8 +29,8 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
 
-    int memory() const override { return 1; }
-    void remember(State& x) const override;
+    int discrete_states() const override { return 1; }
+    void update_internal_state(State& x) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 

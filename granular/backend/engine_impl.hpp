@@ -39,7 +39,7 @@ struct OnBoundary {
 
 /// What a pair does to its boundary
 struct FindOnBoundary {
-    Grid grid;
+    CellGrid grid;
     const Position* position;
     const std::uint32_t *i, *j;
     const Load* load;

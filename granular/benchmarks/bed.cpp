@@ -73,7 +73,7 @@ void report(const char* phase, World& world, long steps, bool gpu)
     const World::Times t = world.take_times();
     const double n = static_cast<double>(world.count()), work = n * static_cast<double>(steps);
     std::size_t touching = 0;
-    for (const Contact& c : world.contacts()) touching += c.boundary ? 1 : 2;
+    for (const ContactRecord& c : world.contacts()) touching += c.boundary ? 1 : 2;
     std::printf("%9zu %3d %-8s %8.2f %8.1f %8.1f %8.1f %8ld %6.2f %6.2f %8.0f\n", world.count(),
                 omp_get_max_threads(), phase, 1e-6 * work / wall, 1e9 * t.loads / work,
                 1e9 * t.advance / work, 1e9 * t.neighbours / work, found,
@@ -91,7 +91,7 @@ void report_memory(World& world, long steps)
     constexpr double state = sizeof(Position) + 2 * sizeof(Four);
     const double loads = state + pairs * (2 * sizeof(std::uint32_t) + 1) +
                          touching * (2 * sizeof(Four) + sizeof(Load)),
-                 advance = 2 * (state + sizeof(Rest)) + 2 * sizeof(std::uint32_t) +
+                 advance = 2 * (state + sizeof(Compensation)) + 2 * sizeof(std::uint32_t) +
                            pairs * sizeof(std::uint32_t) + 2 * touching * sizeof(Load);
     const double copy = world.copy_rate();
     world.set_timed(true);

@@ -69,7 +69,7 @@ void read_domain(Keys domain, WorldOptions& o)
 /// Against the memory that there is. A close-packed crystal, with six contacts a particle, takes most when its contacts
 /// are written: with laws of rolling and spin 3460 bytes a particle.
 void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<Filling>& fills,
-                  const Surroundings& there)
+                  const Environment& there)
 {
     constexpr double gigabyte = 1e9, of_output = 2560, of_cell = 4;
     std::uint16_t replicas = 0;
@@ -110,7 +110,7 @@ void seed_fills(Case& c, std::uint64_t seed)
     }
 }
 
-void read(Case& out, const Surroundings& surroundings)
+void read(Case& out, const Environment& environment)
 {
     Keys keys(out.source.json(), "");
     if (keys.count("hilda_case", -1) != 1) throw InvalidCase("/hilda_case: must be 1");
@@ -119,7 +119,7 @@ void read(Case& out, const Surroundings& surroundings)
 
     WorldOptions o;
     read_domain(keys.object("domain"), o);
-    o.device = surroundings.device;
+    o.device = environment.device;
     o.gravity = keys.vector("gravity", {0, 0, -9.81});
     out.h = o.h = keys.positive("step");
     out.end = keys.positive("end");
@@ -165,7 +165,7 @@ void read(Case& out, const Surroundings& surroundings)
         const std::string name = b.text("name", "boundary " + std::to_string(out.boundaries.size()));
         if (name.find_first_of(",\"\n\r") != std::string::npos)
             b.refuse("name", "must be without commas, quotes and line ends, since it names columns", name);
-        for (NamedBoundary& n : read_boundary(b, name, surroundings.compile)) {
+        for (NamedBoundary& n : read_boundary(b, name, environment.compile)) {
             if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
                 b.refuse("name", "another boundary has this name", n.name);
             n.boundary.material = made_of;
@@ -218,7 +218,7 @@ void read(Case& out, const Surroundings& surroundings)
         f.end();
     }
     keys.end();
-    check_memory(static_cast<double>(out.world->count()), largest, o, fillings, surroundings);
+    check_memory(static_cast<double>(out.world->count()), largest, o, fillings, environment);
     for (std::size_t k = 0; k < fillings.size(); ++k) {
         const std::string place = "/fill/" + std::to_string(k);
         out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()), place);
@@ -241,13 +241,13 @@ void read(Case& out, const Surroundings& surroundings)
 
 }  // namespace
 
-Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings)
+Case read_case(const std::string& text, const std::string& file, const Environment& environment)
 {
     Case out{.source = CaseText(text, file)};
-    for (const Setting& setting : surroundings.settings) out.source.set(setting);
+    for (const Setting& setting : environment.settings) out.source.set(setting);
     try {
-        if (surroundings.seed) seed_fills(out, *surroundings.seed);
-        read(out, surroundings);
+        if (environment.seed) seed_fills(out, *environment.seed);
+        read(out, environment);
     } catch (const InvalidCase& e) {
         throw InvalidCase(out.source.placed(e.what()));
     } catch (const Json::exception& e) {

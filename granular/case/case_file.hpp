@@ -25,7 +25,7 @@ struct Case {
 };
 
 /// What a case meets in the program that reads it
-struct Surroundings {
+struct Environment {
     static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
     std::size_t memory = any, device_memory = any;  ///< that there is [bytes]
@@ -37,7 +37,7 @@ struct Surroundings {
 
 /// InvalidCase, with line, column and JSON pointer of what is wrong; DeviceError. Nothing large is allocated before it is
 /// known that the memory will do.
-Case read_case(const std::string& text, const std::string& file, const Surroundings& surroundings = {});
+Case read_case(const std::string& text, const std::string& file, const Environment& environment = {});
 
 /// Takes the particles into their cells. InvalidCase, with the entry of what cannot begin so
 void settle(const Case& c);

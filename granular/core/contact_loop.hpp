@@ -32,7 +32,7 @@ struct PairView {
 };
 
 struct ParticleView {
-    Grid grid;
+    CellGrid grid;
     const Position* position;
     const Four* velocity;  ///< [m/s], radius [m]
     const Four* omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
@@ -55,7 +55,7 @@ void find_loads(Backend on, const ParticleView& particles, const PairView& pairs
 
 /// Two particles out of whole numbers: the overlap is q/(D + d), with q = D² - d² exact. All in units but for t.
 template <class R>
-HILDA_HD inline void set_overlap(Touch<R>& t, const R& q, const R& d2, const R& D, const Vec<R>& apart,
+HILDA_HD inline void set_overlap(ContactPoint<R>& t, const R& q, const R& d2, const R& D, const Vec<R>& apart,
                                  const R& metre)
 {
     const R d = sqrt(d2);
@@ -64,7 +64,7 @@ HILDA_HD inline void set_overlap(Touch<R>& t, const R& q, const R& d2, const R& 
 }
 
 template <class R>
-HILDA_HD inline void set_masses(Touch<R>& t, R inverse_i, R inverse_j)
+HILDA_HD inline void set_masses(ContactPoint<R>& t, R inverse_i, R inverse_j)
 {
     t.R_eff = t.R_i * t.R_j / (t.R_i + t.R_j);
     t.m_eff = R(1.f) / (inverse_i + inverse_j);
@@ -72,7 +72,8 @@ HILDA_HD inline void set_masses(Touch<R>& t, R inverse_i, R inverse_j)
 
 /// Rates of overlap and slip from the velocities of the centres and the turning of the bodies
 template <class R>
-HILDA_HD inline void set_rates(Touch<R>& t, const Vec<R>& v, const Vec<R>& omega_i, const Vec<R>& omega_j)
+HILDA_HD inline void set_rates(ContactPoint<R>& t, const Vec<R>& v, const Vec<R>& omega_i,
+                               const Vec<R>& omega_j)
 {
     const R along = v.dot(t.n);
     t.v_n = -along;
@@ -81,8 +82,8 @@ HILDA_HD inline void set_rates(Touch<R>& t, const Vec<R>& v, const Vec<R>& omega
 }
 
 /// A particle and a boundary, but for the step; false where they do not touch
-HILDA_HD inline bool meet(Touch<float>& t, const Grid& grid, const Position& p, const Four& v, const Four& w,
-                          const Boundary& b)
+HILDA_HD inline bool meet(ContactPoint<float>& t, const CellGrid& grid, const Position& p, const Four& v,
+                          const Four& w, const Boundary& b)
 {
     const Vec3 r = place(grid, p);
     const Nearest near = nearest(b, r);

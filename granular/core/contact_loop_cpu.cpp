@@ -37,7 +37,7 @@ struct Loop {
         Ints D;
     };
 
-    static Ints along(Ints cell_i, Ints cell_j, Ints i, Ints j, const Grid& g, int axis)
+    static Ints along(Ints cell_i, Ints cell_j, Ints i, Ints j, const CellGrid& g, int axis)
     {
         Ints::V d = cell_i.v - cell_j.v;
         if (g.periodic[axis] != 0) {
@@ -52,13 +52,13 @@ struct Loop {
 
     Apart apart(const std::uint32_t* i, const std::uint32_t* j, Pack R_i, Pack R_j) const
     {
-        const Grid& g = particles.grid;
+        const CellGrid& g = particles.grid;
         const auto a = rows<Ints>(particles.position, i), b = rows<Ints>(particles.position, j);
-        constexpr int mask_x = (1 << Grid::bits_x) - 1, mask_y = (1 << Grid::bits_y) - 1,
-                      mask_z = (1 << Grid::bits_z) - 1;
+        constexpr int mask_x = (1 << CellGrid::bits_x) - 1, mask_y = (1 << CellGrid::bits_y) - 1,
+                      mask_z = (1 << CellGrid::bits_z) - 1;
         const auto x_of = [](Ints c) { return Ints{c.v & mask_x}; };
-        const auto y_of = [](Ints c) { return Ints{c.v >> Grid::bits_x & mask_y}; };
-        const auto z_of = [](Ints c) { return Ints{c.v >> (Grid::bits_x + Grid::bits_y) & mask_z}; };
+        const auto y_of = [](Ints c) { return Ints{c.v >> CellGrid::bits_x & mask_y}; };
+        const auto z_of = [](Ints c) { return Ints{c.v >> (CellGrid::bits_x + CellGrid::bits_y) & mask_z}; };
         Apart out;
         out.x = along(x_of(a.x), x_of(b.x), a.y, b.y, g, 0);
         out.y = along(y_of(a.x), y_of(b.x), a.z, b.z, g, 1);
@@ -158,8 +158,8 @@ struct Loop {
     void answer_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t count) const
     {
         // as many as there are lanes, as a Touch of packs is in memory
-        constexpr int values = sizeof(Touch<float>) / sizeof(float);
-        static_assert(sizeof(Touch<Pack>) >= (values - 1) * sizeof(Pack));
+        constexpr int values = sizeof(ContactPoint<float>) / sizeof(float);
+        static_assert(sizeof(ContactPoint<Pack>) >= (values - 1) * sizeof(Pack));
         struct alignas(64) Lanes {
             float of[values - 1][lanes];  // all but the step
         } in = {};
@@ -171,7 +171,7 @@ struct Loop {
                 hit[k] = hit[0];
                 for (auto& row : in.of) row[k] = row[0];
             }
-            Touch<Pack> t;
+            ContactPoint<Pack> t;
             std::memcpy(static_cast<void*>(&t), &in, sizeof in);
             t.h = laws.h;
             respond(law, t, hit);
@@ -179,7 +179,7 @@ struct Loop {
         };
         for (std::uint32_t m = 0; m < count; ++m) {
             const std::uint32_t at = which[m], i = pairs.i[at];
-            Touch<float> one{};
+            ContactPoint<float> one{};
             if (!meet(one, particles.grid, particles.position[i], particles.velocity[i], particles.omega[i],
                       laws.boundary[pairs.j[at] & ~PairView::boundary])) {
                 if (pairs.touches[at] != 0) forget(at);
@@ -202,7 +202,7 @@ struct Loop {
         const auto v_i = rows<Pack>(particles.velocity, i), v_j = rows<Pack>(particles.velocity, j);
         const auto w_i = rows<Pack>(particles.omega, i), w_j = rows<Pack>(particles.omega, j);
         const Apart a = apart(i, j, v_i.w, v_j.w);
-        Touch<Pack> t;
+        ContactPoint<Pack> t;
         t.h = laws.h;
         t.R_i = v_i.w, t.R_j = v_j.w;
         set_overlap(t, to_float(a.q), to_float(a.d2), to_float(a.D),
@@ -214,7 +214,7 @@ struct Loop {
     }
 
     /// Lanes may repeat a pair: they write the same.
-    void respond(const PairLaw& law, const Touch<Pack>& t, const std::uint32_t* which) const
+    void respond(const PairLaw& law, const ContactPoint<Pack>& t, const std::uint32_t* which) const
     {
         const auto u = rows<Pack>(pairs.history, which);
         History<Pack> history;
@@ -226,7 +226,7 @@ struct Loop {
             const auto psi = rows<Pack>(pairs.turning, which);
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
-        const Answer<Pack> out = answer(law, t, history, turning);
+        const ContactForce<Pack> out = evaluate(law, t, history, turning);
         if (turning) {
             const Pack to_turning[4] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
             const Pack to_torque[4] = {out.T.x, out.T.y, out.T.z, Pack(0.f)};

@@ -9,7 +9,7 @@ namespace hilda::granular {
 
 /// Two bodies that overlap. Vectors are global. Against a wall, R_j is zero and the wall has no mass to share.
 template <class R>
-struct Touch {
+struct ContactPoint {
     R delta;         ///< overlap [m], positive
     R R_i, R_j;      ///< [m]; the levers of the tangential force
     R R_eff, m_eff;  ///< R_i R_j/(R_i + R_j) [m], m_i m_j/(m_i + m_j) [kg]; R_i and m_i against a wall
@@ -32,7 +32,7 @@ struct History {
 
 /// The answer of a normal law
 template <class R>
-struct Pressing {
+struct NormalForce {
     R F;      ///< along n on body i [N]; damping may make it tensile at the end of a contact
     R scale;  ///< what the tangential stiffness of this law goes by: √(R_eff δ), √(δ/R) or 1
     Number<R> power = 0;  ///< scale goes with this power of δ

@@ -117,7 +117,7 @@ HILDA_HD inline Went<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const
 struct Advance {
     Position* position;
     Four *velocity, *omega;
-    Rest* rest;
+    Compensation* rest;
     Four *acc, *turn;                      ///< of the step before; nullptr where the scheme needs none
     Four *orientation, *orientation_rest;  ///< nullptr where it is not kept
     const std::uint32_t *start, *other_start, *other;

@@ -20,7 +20,7 @@ struct FindLoad {
     {
         const std::uint32_t i = pairs.i[k], j = pairs.j[k];
         const Position p_i = particles.position[i];
-        Touch<float> t{};
+        ContactPoint<float> t{};
         t.h = laws.h;
         bool touches = false;
         if ((j & PairView::boundary) != 0) {
@@ -62,8 +62,8 @@ struct FindLoad {
             const Four psi = pairs.turning[k];
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
-        const Answer<float> out =
-            answer(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], t, history, turning);
+        const ContactForce<float> out =
+            evaluate(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], t, history, turning);
         const Vec<float> M = -t.n.cross(out.F_t);
         pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
         pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {M.x, M.y, M.z, 0}};
@@ -109,7 +109,7 @@ struct AdvanceOne {
             }
             T = v.w * M + T;
         }
-        Rest rest = to.rest[k];
+        Compensation rest = to.rest[k];
         Moving<float> m{.v = vec(v),
                         .omega = vec(w),
                         .v_rest = from_halves(rest.v),

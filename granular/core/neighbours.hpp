@@ -13,8 +13,8 @@ struct Particles {
     par::Array<Backend, Position> position;
     par::Array<Backend, Four> velocity;  ///< [m/s], radius [m]
     par::Array<Backend, Four> omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
-    par::Array<Backend, Rest> rest;
-    par::Array<Backend, Kind> kind;
+    par::Array<Backend, Compensation> rest;
+    par::Array<Backend, Species> kind;
     par::Array<Backend, std::uint32_t> id;
     par::Array<Backend, Four> acc, turn;  ///< of the step before; none where the scheme asks for none
     par::Array<Backend, Four> orientation, orientation_rest;  ///< e0, e; none where it is not kept
@@ -61,7 +61,7 @@ struct TooManyPairs {};
 
 /// Where particles are and how far neighbours are looked for
 struct Scene {
-    Grid grid;
+    CellGrid grid;
     float skin = 0;              ///< [m]
     float radius = 0;            ///< of all [m]; 0 where they differ
     std::uint32_t replicas = 1;  ///< systems in the same place that do not see each other

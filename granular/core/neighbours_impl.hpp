@@ -26,9 +26,9 @@ HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
 /// The cell a particle is in now; its place becomes that in the cell. Its sort key has the replica, the cell in order of
 /// z, y, x and then the id; all bits set where it has left the domain.
 struct Settle {
-    Grid grid;
+    CellGrid grid;
     Position* position;
-    const Kind* kind;
+    const Species* kind;
     const std::uint32_t* id;
     std::uint64_t* key;
     std::uint32_t* order;
@@ -50,14 +50,14 @@ struct Settle {
     HILDA_HD void operator()(std::uint32_t k) const
     {
         Position p = position[k];
-        std::int32_t x = Grid::x_of(p.cell), y = Grid::y_of(p.cell), z = Grid::z_of(p.cell);
+        std::int32_t x = CellGrid::x_of(p.cell), y = CellGrid::y_of(p.cell), z = CellGrid::z_of(p.cell);
         const bool in_x = move(x, p.x, 0), in_y = move(y, p.y, 1), in_z = move(z, p.z, 2);
         order[k] = k;
         if (!(in_x && in_y && in_z)) {
             key[k] = ~std::uint64_t{0};
             return;
         }
-        p.cell = Grid::pack(x, y, z);
+        p.cell = CellGrid::pack(x, y, z);
         position[k] = p;
         const std::uint64_t row =
             (static_cast<std::uint64_t>(kind[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
@@ -108,10 +108,10 @@ struct Invert {
 
 /// Calls f(j) for the particles after k that are within reach of it, in a fixed order.
 struct Search {
-    Grid grid;
+    CellGrid grid;
     const Position* position;
     const Four *velocity, *omega;
-    const Kind* kind;
+    const Species* kind;
     const std::uint32_t* cell_start;
     float metre, skin;
     const Boundary* boundary;
@@ -135,7 +135,7 @@ struct Search {
     HILDA_HD void operator()(std::uint32_t k, const F& f) const
     {
         const std::uint32_t cell = position[k].cell;
-        const std::int32_t x = Grid::x_of(cell), y = Grid::y_of(cell), z = Grid::z_of(cell);
+        const std::int32_t x = CellGrid::x_of(cell), y = CellGrid::y_of(cell), z = CellGrid::z_of(cell);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
         const std::uint32_t replica = kind[k].replica;
         // Of the 27 cells around, those after this one in the order z, y, x of an endless grid: rows (y, z) of three
@@ -314,7 +314,7 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
 {
     const Backend on;
     const std::uint32_t n = p.count;
-    const Grid& g = reach.scene.grid;
+    const CellGrid& g = reach.scene.grid;
     const auto cells =
         static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * reach.scene.replicas;
     key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);

@@ -32,7 +32,7 @@ inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 
 
 /// What a contact does to body i, and the opposite of to body j but for the levers of F_t
 template <class R>
-struct Answer {
+struct ContactForce {
     Vec<R> F;    ///< [N]
     Vec<R> F_t;  ///< of that the part across n
     Vec<R> T;    ///< rolling and spin [N m]
@@ -40,11 +40,12 @@ struct Answer {
 
 /// `turning`: whether any law of the world resists rolling or spin; else T is zero
 template <class R>
-HILDA_HD inline Answer<R> answer(const PairLaw& law, const Touch<R>& t, History<R>& history, bool turning)
+HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<R>& t, History<R>& history,
+                                         bool turning)
 {
-    Pressing<R> p{};
+    NormalForce<R> p{};
     law.normal.visit([&](const auto& l) { p = l(t); });
-    Answer<R> out{};
+    ContactForce<R> out{};
     law.tangential.visit([&](const auto& l) { out.F_t = l(t, p, history); });
     R attraction{};
     law.cohesion.visit([&](const auto& l) { attraction = l(t); });

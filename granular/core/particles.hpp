@@ -21,13 +21,13 @@ struct alignas(16) Four {
 };
 
 /// What a particle is made of, and which system it belongs to
-struct Kind {
+struct Species {
     std::uint16_t material = 0, replica = 0;
 };
 
 /// What rounding left of ways, velocities and turnings for the next step: three times ten bits of a unit, and numbers of
 /// single precision without their lower half.
-struct alignas(16) Rest {
+struct alignas(16) Compensation {
     std::int32_t way = 0;                                  ///< see carried
     std::uint16_t v[3] = {0, 0, 0}, omega[3] = {0, 0, 0};  ///< [m/s, rad/s]
 };
@@ -83,7 +83,7 @@ HILDA_HD inline Carried<R> carried(const Vec<R>& way, float dither)
 }
 
 /// Cells of a box-shaped domain, at least as wide as the largest particle and the skin
-struct Grid {
+struct CellGrid {
     static constexpr int bits_x = 11, bits_y = 11, bits_z = 10;
     static constexpr std::int32_t widest = 1 << 29;  ///< cell, in units
 
@@ -107,7 +107,7 @@ struct Grid {
 /// i - j along one axis, in units; by the shorter way round where the domain is periodic. Steps over 2^31 on the way there
 /// cancel: what is near is less than that away.
 HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
-                                        std::int32_t j, const Grid& g, int axis)
+                                        std::int32_t j, const CellGrid& g, int axis)
 {
     std::int32_t d = cell_i - cell_j;
     if (g.periodic[axis] != 0)
@@ -120,19 +120,19 @@ HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j
 struct Difference {
     std::int32_t x, y, z;
 };
-HILDA_HD inline Difference difference(const Grid& g, const Position& i, const Position& j)
+HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, const Position& j)
 {
-    return {difference(Grid::x_of(i.cell), Grid::x_of(j.cell), i.x, j.x, g, 0),
-            difference(Grid::y_of(i.cell), Grid::y_of(j.cell), i.y, j.y, g, 1),
-            difference(Grid::z_of(i.cell), Grid::z_of(j.cell), i.z, j.z, g, 2)};
+    return {difference(CellGrid::x_of(i.cell), CellGrid::x_of(j.cell), i.x, j.x, g, 0),
+            difference(CellGrid::y_of(i.cell), CellGrid::y_of(j.cell), i.y, j.y, g, 1),
+            difference(CellGrid::z_of(i.cell), CellGrid::z_of(j.cell), i.z, j.z, g, 2)};
 }
 
 /// [m]
-HILDA_HD inline Vec<double> place(const Grid& g, const Position& p)
+HILDA_HD inline Vec<double> place(const CellGrid& g, const Position& p)
 {
-    return {g.low[0] + (static_cast<double>(Grid::x_of(p.cell)) * g.width[0] + p.x) * g.unit,
-            g.low[1] + (static_cast<double>(Grid::y_of(p.cell)) * g.width[1] + p.y) * g.unit,
-            g.low[2] + (static_cast<double>(Grid::z_of(p.cell)) * g.width[2] + p.z) * g.unit};
+    return {g.low[0] + (static_cast<double>(CellGrid::x_of(p.cell)) * g.width[0] + p.x) * g.unit,
+            g.low[1] + (static_cast<double>(CellGrid::y_of(p.cell)) * g.width[1] + p.y) * g.unit,
+            g.low[2] + (static_cast<double>(CellGrid::z_of(p.cell)) * g.width[2] + p.z) * g.unit};
 }
 
 /// The radius in units, as both sides of a pair see it

@@ -17,11 +17,11 @@ namespace {
 
 int run_case(const Options& o)
 {
-    Surroundings here{.memory = available_memory(),
-                      .compile = compile,
-                      .device = o.device,
-                      .settings = o.settings,
-                      .seed = o.seed};
+    Environment here{.memory = available_memory(),
+                     .compile = compile,
+                     .device = o.device,
+                     .settings = o.settings,
+                     .seed = o.seed};
     make_engine(o.device);  // one that is not there is refused before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     std::string text;

@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 
 long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
-class Run {
+class CaseRun {
 public:
-    Run(const Options& o, Case from)
+    CaseRun(const Options& o, Case from)
         : o(o), c(std::move(from)), text(c.source.text()), every(steps_in(c.every, c.h)),
           frames_every(o.no_vtk ? 0 : steps_in(c.frames_every, c.h)), anew(steps_in(c.anew, c.h)),
           steps(std::lround(c.end / c.h)), rows(o.output, c, every, frames_every)
@@ -192,7 +192,7 @@ private:
     {
         // where these times come fast, one in so many seconds is kept, and takes a twentieth of the time at most
         const double seldom = std::max(0.2, 20 * keep_seconds);
-        c.world->look_again();
+        c.world->invalidate_neighbours();
         const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint;
         if (due || caught != 0 || seconds_since(kept_when) > seldom) keep();
         if (due) save();
@@ -302,6 +302,6 @@ private:
 
 }  // namespace
 
-int run(const Options& options, Case c) { return Run(options, std::move(c)).go(); }
+int run(const Options& options, Case c) { return CaseRun(options, std::move(c)).go(); }
 
 }  // namespace hilda::granular

@@ -109,7 +109,7 @@ Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
         if (p.v.norm() < slow) out.way = x;
         if (motion != nullptr && (n % every == 0 || !std::isnan(out.way)))
             motion->rows.push_back({mu, static_cast<double>(n) * h, x, p.v.x});
-        for (const Contact& c : world.contacts())
+        for (const ContactRecord& c : world.contacts())
             out.most_friction = worse(out.most_friction, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
     return out;
@@ -152,8 +152,8 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool enrolled =
-    enrol({.name = "brick", .answers = "how far a brick slides, over friction (Fig. 7.4)", .run = run});
+const bool registered = register_validation(
+    {.name = "brick", .answers = "how far a brick slides, over friction (Fig. 7.4)", .run = run});
 
 }  // namespace
 

@@ -236,10 +236,10 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool enrolled =
-    enrol({.name = "head-on",
-           .answers = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
-           .run = run});
+const bool registered =
+    register_validation({.name = "head-on",
+                         .answers = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
+                         .run = run});
 
 }  // namespace
 

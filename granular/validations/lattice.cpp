@@ -73,7 +73,7 @@ public:
     std::vector<Pressed::At> look() const
     {
         std::vector<Pressed::At> at(all.size());
-        for (const Contact& c : world.contacts()) {
+        for (const ContactRecord& c : world.contacts()) {
             if (!c.boundary) continue;
             Pressed::At& of = at[c.replica];
             const std::uint32_t k = c.i % lattice::spheres;

@@ -216,9 +216,10 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool enrolled = enrol({.name = "oblique",
-                             .answers = "speed and spin after an oblique impact, over its angle (Fig. 7.6)",
-                             .run = run});
+const bool registered =
+    register_validation({.name = "oblique",
+                         .answers = "speed and spin after an oblique impact, over its angle (Fig. 7.6)",
+                         .run = run});
 
 }  // namespace
 

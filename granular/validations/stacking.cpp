@@ -215,8 +215,9 @@ private:
     std::vector<ValidationCheck> checks;
 };
 
-const bool enrolled = enrol({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
-                             [](const ValidationOptions& options) { return Stacking(options).run(); }});
+const bool registered =
+    register_validation({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
+                         [](const ValidationOptions& options) { return Stacking(options).run(); }});
 
 }  // namespace
 

@@ -17,7 +17,7 @@ std::vector<Validation>& list()
 
 const std::vector<Validation>& validations() { return list(); }
 
-bool enrol(Validation v)
+bool register_validation(Validation v)
 {
     const auto before = [](const Validation& a, const Validation& b) { return a.name < b.name; };
     list().insert(std::upper_bound(list().begin(), list().end(), v, before), v);

@@ -53,6 +53,6 @@ struct Validation {
 };
 
 const std::vector<Validation>& validations();
-bool enrol(Validation validation);
+bool register_validation(Validation validation);
 
 }  // namespace hilda::granular

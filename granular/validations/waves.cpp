@@ -133,8 +133,8 @@ ValidationResult waves(const ValidationOptions& options)
     return {.tables = {study, profiles}, .checks = judge(all)};
 }
 
-const bool enrolled =
-    enrol({"waves", "a force on a lattice of spheres, at its floor (Figs. 7.9, 7.10)", waves});
+const bool registered =
+    register_validation({"waves", "a force on a lattice of spheres, at its floor (Figs. 7.9, 7.10)", waves});
 
 }  // namespace
 

@@ -68,7 +68,7 @@ struct Unpack {
 
 std::string World::to_bytes(const std::string& of_run)
 {
-    settle_in();
+    insert_pending();
     Pack a;
     a.bytes.append(magic, sizeof magic);
     a(format), a(std::uint64_t{0});
@@ -100,7 +100,7 @@ std::string World::to_bytes(const std::string& of_run)
     const std::uint64_t length = a.bytes.size() + tail;
     std::memcpy(a.bytes.data() + sizeof magic + sizeof format, &length, sizeof length);
     a(checksum(a.bytes.data(), a.bytes.size()));
-    look_again();
+    invalidate_neighbours();
     return std::move(a.bytes);
 }
 
@@ -125,7 +125,7 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     std::string run;
     a.list(run);
     if (run != of_run) throw FileError(file + ": the checkpoint belongs to another run");
-    settle_in();
+    insert_pending();
     number = a.one<long>(), found = a.one<long>();
     fastest = a.one<float>(), scene = a.one<Scene>();
     a.list(boundaries), a.list(forces);
@@ -157,7 +157,7 @@ void World::from_bytes(const std::string& bytes, const std::string& of_run, cons
     }
     engine->written();
     time = static_cast<double>(number) * options.h;
-    look_again();
+    invalidate_neighbours();
 }
 
 }  // namespace hilda::granular

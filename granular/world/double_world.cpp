@@ -8,7 +8,7 @@ void DoubleWorld::find_loads()
     const int n = static_cast<int>(particle.size());
     F.assign(n, {0, 0, 0}), T.assign(n, {0, 0, 0});
     const auto inverse = [](const Particle& p) { return p.fixed ? 0 : 1 / p.mass; };
-    const auto meet = [&](int i, int j, Touch<double>& t, double delta) {
+    const auto meet = [&](int i, int j, ContactPoint<double>& t, double delta) {
         if (!(delta > 0)) {
             history.erase({i, j});
             return;
@@ -17,14 +17,14 @@ void DoubleWorld::find_loads()
         History<double>& kept =
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
         kept.age += t.h;
-        const Answer<double> out = answer(law, t, kept, law.turns());
+        const ContactForce<double> out = evaluate(law, t, kept, law.turns());
         const Vec3 M = -t.n.cross(out.F_t);
         F[i] += out.F, T[i] += t.R_i * M + out.T;
         if (j >= 0) F[j] -= out.F, T[j] += t.R_j * M - out.T;
     };
     for (int i = 0; i < n; ++i) {
         const Particle& p = particle[i];
-        Touch<double> t{};
+        ContactPoint<double> t{};
         for (int j = i + 1; j < n; ++j) {
             const Particle& q = particle[j];
             const Vec3 d = p.r - q.r;

@@ -44,9 +44,9 @@ std::string particles_csv(const World& world)
 std::string contacts_csv(const World& world)
 {
     std::string csv = "i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz\n";
-    const std::vector<Contact> all = world.contacts();
+    const std::vector<ContactRecord> all = world.contacts();
     csv.reserve(240 * all.size());
-    for (const Contact& c : all) {
+    for (const ContactRecord& c : all) {
         csv += std::to_string(c.i) + ',' + std::to_string(c.j) + ',' + (c.boundary ? '1' : '0');
         append(csv, c.n);
         csv += ',';
@@ -111,11 +111,11 @@ std::string pvd(const std::vector<std::pair<double, std::string>>& frames)
     return xml + "</Collection>\n</VTKFile>\n";
 }
 
-std::array<double, 9> stress(const World& world, const std::vector<Contact>& contacts, double volume)
+std::array<double, 9> stress(const World& world, const std::vector<ContactRecord>& contacts, double volume)
 {
     std::array<double, 9> sum{};
     const std::vector<Particle> all = world.particles();
-    for (const Contact& c : contacts) {
+    for (const ContactRecord& c : contacts) {
         // the branch from the centre of j, or from the boundary, to that of i
         const double length = all[c.i].radius + (c.boundary ? 0 : all[c.j].radius) - c.delta;
         const double l[] = {length * c.n.x, length * c.n.y, length * c.n.z}, F[] = {c.F.x, c.F.y, c.F.z};

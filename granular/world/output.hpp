@@ -17,6 +17,6 @@ std::string particles_vtp(const World& world);
 std::string pvd(const std::vector<std::pair<double, std::string>>& frames);
 
 /// The Love-Weber stress of the contacts over a volume [Pa]: σ = 1/V Σ l ⊗ F, pressure positive; row by row
-std::array<double, 9> stress(const World& world, const std::vector<Contact>& contacts, double volume);
+std::array<double, 9> stress(const World& world, const std::vector<ContactRecord>& contacts, double volume);
 
 }  // namespace hilda::granular

@@ -63,7 +63,7 @@ void World::set_law(int i, int j, const PairLaw& law)
     law_of[i * n + j] = law_of[j * n + i] = static_cast<std::uint8_t>(laws.size());
     laws.push_back(law);
     laws_changed = true;
-    look_again();
+    invalidate_neighbours();
 }
 
 int World::add(const Boundary& b)
@@ -81,7 +81,7 @@ int World::add(const Boundary& b)
         refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
     boundaries.push_back(b);
     laws_changed = true;
-    look_again();
+    invalidate_neighbours();
     return static_cast<int>(boundaries.size()) - 1;
 }
 
@@ -89,7 +89,7 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 {
     if (id >= count()) refuse("velocity", "no particle has this id", id);
     if (!finite(v) || !finite(omega)) refuse("velocity of " + name_of(id), "must be finite", v.norm());
-    settle_in();
+    insert_pending();
     Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (p.id.data()[k] == id) {
@@ -221,10 +221,10 @@ void World::before_each_step(std::function<void(World&)> f) { callbacks.push_bac
 
 void World::step(long n)
 {
-    settle_in();
+    insert_pending();
     for (; n > 0; --n) {
         for (const auto& f : callbacks) f(*this);
-        settle_in();
+        insert_pending();
         one_step();
         time = static_cast<double>(++number) * options.h;
     }
@@ -250,7 +250,7 @@ void World::one_step()
     if (forces_changed) engine->set_forces(forces);
     forces_changed = false;
     const auto limit = [&](double way) {
-        if (way < scene.grid.unit * Grid::widest) return;
+        if (way < scene.grid.unit * CellGrid::widest) return;
         const Particles<par::Cpu>& p = engine->arrays().particle;
         std::uint32_t worst = 0;
         double most = -1;

@@ -46,7 +46,7 @@ struct Particle {
     std::array<double, 4> e = {1, 0, 0, 0};
 };
 
-struct Contact {
+struct ContactRecord {
     std::uint32_t i = 0, j = 0;  ///< ids; j a boundary's number where `boundary`
     bool boundary = false;
     Vec3 C = {0, 0, 0};  ///< point where F acts on i, at its radius [m]; on the boundary where it is one
@@ -94,12 +94,12 @@ public:
     double t() const { return time; }
     long steps() const { return number; }
 
-    std::vector<Particle> particles() const;  ///< by id, at t
-    std::vector<Contact> contacts() const;    ///< by ids, at t
+    std::vector<Particle> particles() const;      ///< by id, at t
+    std::vector<ContactRecord> contacts() const;  ///< by ids, at t
     /// On a boundary, at t; by the particles of one replica where that is given
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
     /// Out of contacts() that are at hand
-    Wrench wrench(const std::vector<Contact>& contacts, int boundary, int replica = -1) const;
+    Wrench wrench(const std::vector<ContactRecord>& contacts, int boundary, int replica = -1) const;
     /// Sums over all contacts at t, in a sixth of the time that contacts() takes
     struct Totals {
         std::size_t contacts = 0;
@@ -131,7 +131,7 @@ public:
         return wide.x * wide.y * wide.z;
     }
     Vec3 momentum() const;  ///< [kg m/s]
-    std::size_t count() const { return particles_in + waiting.size(); }
+    std::size_t count() const { return particles_in + pending.size(); }
     std::size_t candidates() const { return engine->arrays().pairs.count; }
     long rebuilds() const { return found; }
     /// Seconds that went into each part of the steps since the last call
@@ -147,7 +147,7 @@ public:
     static std::size_t bytes_needed(std::size_t particles, bool orientation = false);
     bool keeps_orientation() const { return options.orientation; }
     /// Looks for neighbours before the next step, as a world does that was loaded from a file
-    void look_again() { moved = std::numeric_limits<double>::infinity(); }
+    void invalidate_neighbours() { moved = std::numeric_limits<double>::infinity(); }
 
     /// What an explicit step is measured by
     struct StepLimits {
@@ -159,7 +159,7 @@ public:
 private:
     static constexpr std::uint8_t no_law = 255;
 
-    void settle_in();
+    void insert_pending();
     Scene scene_of(const std::vector<Particle>& all) const;
     struct Placed {
         Position position;
@@ -170,7 +170,7 @@ private:
     void check_overlaps(std::uint32_t first) const;
     struct LoadsNow;
     LoadsNow loads_now() const;
-    Contact contact(const LoadsNow& now, std::uint32_t pair) const;
+    ContactRecord contact(const LoadsNow& now, std::uint32_t pair) const;
     void keep_neighbours();
     void look_for_neighbours() const;
     void one_step();
@@ -185,7 +185,7 @@ private:
     std::vector<std::uint8_t> law_of;
     std::vector<Boundary> boundaries;
     std::vector<Four> forces;       ///< from outside, by id [N]
-    std::vector<Particle> waiting;  ///< added since the last step
+    std::vector<Particle> pending;  ///< added since the last step
     std::vector<std::function<void(World&)>> callbacks;
 
     std::unique_ptr<Engine> engine;

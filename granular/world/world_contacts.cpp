@@ -11,7 +11,7 @@ using namespace detail;
 namespace {
 
 /// What a contact with a boundary does to it
-void add_wrench(Wrench& to, const Contact& c, const Boundary& b)
+void add_wrench(Wrench& to, const ContactRecord& c, const Boundary& b)
 {
     to.F -= c.F;
     to.T -= (c.C - b.r).cross(c.F) + c.T;
@@ -61,11 +61,11 @@ World::LoadsNow World::loads_now() const
 }
 
 /// Of pair n, which touches, with the lower id as i
-Contact World::contact(const LoadsNow& now, std::uint32_t n) const
+ContactRecord World::contact(const LoadsNow& now, std::uint32_t n) const
 {
     const Particles<par::Cpu>& particle = now.of.particle;
     const std::uint32_t i = now.of.pairs.i.data()[n], j = now.of.pairs.j.data()[n];
-    Contact c;
+    ContactRecord c;
     c.boundary = (j & PairView::boundary) != 0;
     c.i = particle.id.data()[i];
     c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
@@ -93,7 +93,7 @@ Contact World::contact(const LoadsNow& now, std::uint32_t n) const
     return c;
 }
 
-std::vector<Contact> World::contacts() const
+std::vector<ContactRecord> World::contacts() const
 {
     const LoadsNow now = loads_now();
     const std::uint32_t* id = now.of.particle.id.data();
@@ -110,15 +110,15 @@ std::vector<Contact> World::contacts() const
         key.push_back((boundary ? last : 0) | std::uint64_t{i} << 32 | j);
     }
     par::stable_sort_by_key(par::Cpu(), key.data(), pair.data(), pair.size(), 64);
-    std::vector<Contact> all(pair.size());
+    std::vector<ContactRecord> all(pair.size());
     par::for_each(par::Cpu(), pair.size(), [&](std::uint32_t k) { all[k] = contact(now, pair[k]); });
     return all;
 }
 
-Wrench World::wrench(const std::vector<Contact>& contacts, int b, int replica) const
+Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int replica) const
 {
     Wrench sum;
-    for (const Contact& c : contacts) {
+    for (const ContactRecord& c : contacts) {
         if (!c.boundary || static_cast<int>(c.j) != b || (replica >= 0 && c.replica != replica)) continue;
         add_wrench(sum, c, boundaries[c.j]);
     }
@@ -158,7 +158,7 @@ World::Totals World::totals() const
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         const std::uint32_t j = pairs.j.data()[n];
         if (now.touches.data()[n] == 0 || (j & PairView::boundary) == 0) continue;
-        const Contact c = contact(now, n);
+        const ContactRecord c = contact(now, n);
         add_wrench(all.on_boundary[c.j], c, boundaries[c.j]);
         const double R = now.of.particle.velocity.data()[pairs.i.data()[n]].w;
         add_stress(sum, (R - c.delta) * c.n, now.load.data()[n].F);

@@ -33,7 +33,7 @@ inline double sphere_mass(double radius, double density)
 inline Vec3 to_double(const Four& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 /// From the centre of j to that of i [m]
-inline Vec3 apart_of(const Grid& g, const Position& i, const Position& j)
+inline Vec3 apart_of(const CellGrid& g, const Position& i, const Position& j)
 {
     const Difference d = difference(g, i, j);
     return g.unit * Vec3{double(d.x), double(d.y), double(d.z)};

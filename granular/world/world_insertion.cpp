@@ -22,9 +22,9 @@ std::uint32_t World::add(const Particle& p)
     if (!options.orientation && p.e != Particle().e)
         refuse(where, "has an orientation, and this world keeps none; e0", p.e[0]);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
-    waiting.push_back(p);
+    pending.push_back(p);
     if (!(p.mass > 0))
-        waiting.back().mass = sphere_mass(p.radius, materials[static_cast<std::size_t>(p.material)].density);
+        pending.back().mass = sphere_mass(p.radius, materials[static_cast<std::size_t>(p.material)].density);
     return id;
 }
 
@@ -32,7 +32,7 @@ std::uint32_t World::add(const Particle& p)
 Scene World::scene_of(const std::vector<Particle>& all) const
 {
     Scene in;
-    Grid& grid = in.grid;
+    CellGrid& grid = in.grid;
     double largest = 0;
     in.radius = static_cast<float>(all[0].radius);
     for (const Particle& p : all) {
@@ -50,7 +50,7 @@ Scene World::scene_of(const std::vector<Particle>& all) const
         grid.periodic[k] = options.periodic[k];
         const double length = high[k] - low[k];
         const double cells = options.periodic[k] ? std::floor(length / edge) : std::ceil(length / edge);
-        const int most = k == 2 ? 1 << Grid::bits_z : 1 << Grid::bits_y;
+        const int most = k == 2 ? 1 << CellGrid::bits_z : 1 << CellGrid::bits_y;
         if (cells > most)
             refuse("domain",
                    "is more cells wide than " + std::to_string(most) + "; a cell is a diameter and the skin",
@@ -63,7 +63,7 @@ Scene World::scene_of(const std::vector<Particle>& all) const
     }
     const double cells = double(in.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
     if (cells > 0x7fffffff) refuse("domain", "has more than 2^31 cells, with all of its replicas", cells);
-    grid.unit = widest / Grid::widest;
+    grid.unit = widest / CellGrid::widest;
     for (int k = 0; k < 3; ++k) {
         const double length = high[k] - low[k];
         grid.width[k] = static_cast<std::int32_t>(
@@ -77,7 +77,7 @@ Scene World::scene_of(const std::vector<Particle>& all) const
 /// Cells and places in them. ParticleLost for one that had left the domain; InvalidCase for one that was never in it.
 std::vector<World::Placed> World::places(const Scene& in, const std::vector<Particle>& all) const
 {
-    const Grid& grid = in.grid;
+    const CellGrid& grid = in.grid;
     std::vector<Placed> placed(all.size());
     for (std::uint32_t k = 0; k < all.size(); ++k) {
         std::int32_t cell[3], at[3];
@@ -101,7 +101,7 @@ std::vector<World::Placed> World::places(const Scene& in, const std::vector<Part
             at[c] = static_cast<std::int32_t>(std::lround(in_cell));
             left[c] = static_cast<float>(in_cell - at[c]);
         }
-        placed[k] = {{Grid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
+        placed[k] = {{CellGrid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
                      {left[0], left[1], left[2]}};
     }
     return placed;
@@ -109,10 +109,10 @@ std::vector<World::Placed> World::places(const Scene& in, const std::vector<Part
 
 /// Those that were added since the last step become part of the arrays, which are then in the order of the ids. What is
 /// refused before that leaves the world as it was.
-void World::settle_in()
+void World::insert_pending()
 {
     if (!refused.empty()) throw InvalidCase(refused);
-    if (waiting.empty()) return;
+    if (pending.empty()) return;
     if (laws.empty()) refuse("world", "no law is set for its materials", "none");
     const std::vector<Particle> all = particles();
     const Scene next = scene_of(all);
@@ -143,7 +143,7 @@ void World::settle_in()
         p.velocity.data()[k] = to_four(one.v, one.radius);
         p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
         p.kind.data()[k] = {.material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
-        Rest& rest = p.rest.data()[k] = {.way = left.word};
+        Compensation& rest = p.rest.data()[k] = {.way = left.word};
         put_halves(rest.v, left_of(one.v), to_nearest);
         put_halves(rest.omega, left_of(one.omega), to_nearest);
         p.id.data()[k] = k;
@@ -161,7 +161,7 @@ void World::settle_in()
             p.orientation_rest.data()[k] = {left_of(e0), left_of(e1), left_of(e2), left_of(e3)};
         }
     }
-    waiting.clear();
+    pending.clear();
     particles_in = all.size();
     if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
     engine->written();
@@ -200,7 +200,7 @@ void World::check_overlaps(std::uint32_t first) const
 {
     constexpr double deepest = 0.05;  // of the smaller radius
     const std::vector<Particle> all = particles();
-    for (const Contact& c : contacts()) {
+    for (const ContactRecord& c : contacts()) {
         if (c.i < first && (c.boundary || c.j < first)) continue;
         const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
         if (c.delta > deepest * R)

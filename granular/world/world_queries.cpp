@@ -11,12 +11,12 @@ using namespace detail;
 std::vector<Particle> World::particles() const
 {
     const Particles<par::Cpu>& in = engine->arrays().particle;
-    const Grid& grid = scene.grid;
+    const CellGrid& grid = scene.grid;
     std::vector<Particle> all(in.count);
     for (std::uint32_t k = 0; k < in.count; ++k) {
         const Four v = in.velocity.data()[k], w = in.omega.data()[k];
-        const Rest& rest = in.rest.data()[k];
-        const Kind kind = in.kind.data()[k];
+        const Compensation& rest = in.rest.data()[k];
+        const Species kind = in.kind.data()[k];
         Particle& p = all[in.id.data()[k]];
         p.r = place(grid, in.position.data()[k]) + grid.unit * to_double(rest_of_way<float>(rest.way));
         p.v = to_double(v) + to_double(from_halves(rest.v));
@@ -33,7 +33,7 @@ std::vector<Particle> World::particles() const
         p.mass =
             p.fixed ? sphere_mass(p.radius, materials[kind.material].density) : 1 / static_cast<double>(w.w);
     }
-    all.insert(all.end(), waiting.begin(), waiting.end());
+    all.insert(all.end(), pending.begin(), pending.end());
     return all;
 }
 
@@ -86,8 +86,8 @@ World::StepLimits World::step_limits() const
 std::size_t World::bytes_needed(std::size_t n, bool orientation)
 {
     // with laws of rolling and spin
-    constexpr std::size_t of_particle =
-                              3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Rest) + sizeof(Kind) + 40,
+    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Compensation) +
+                                        sizeof(Species) + 40,
                           of_pair = 3 * sizeof(Four) + sizeof(Load) + 14, pairs = 6;
     return n * (of_particle + (orientation ? 2 * sizeof(Four) : 0) + pairs * of_pair + 2 * sizeof(Particle));
 }

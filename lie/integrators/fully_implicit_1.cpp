@@ -49,7 +49,7 @@ private:
             z.segment<3>(6 * i + 3) = x_n.body[i].omegadot_bar;
         }
         K.constraint_part(z) = x_n.lambda;
-        K.massless_part(z).setZero();
+        K.algebraic_part(z).setZero();
     }
 
     /// Eq. 3.19
@@ -65,7 +65,7 @@ private:
             body.r = from.r + h * body.rdot;
             body.A = from.A * exp(h * body.omega_bar);
         }
-        place_massless(x, h * h);
+        place_algebraic(x, h * h);
         x.lambda = K.constraint_part(z);
     }
 
@@ -80,8 +80,8 @@ private:
             e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
         }
         C.add_transpose(1, x.lambda, e);
-        K.massless_part(e).setZero();
-        C.add_massless_transpose(1, x.lambda, K.massless_part(e));
+        K.algebraic_part(e).setZero();
+        C.add_algebraic_transpose(1, x.lambda, K.algebraic_part(e));
         model.phi(x, K.constraint_part(e));
         K.constraint_part(e) /= h * h;
     }
@@ -89,13 +89,13 @@ private:
     Rows C;  ///< Φ_r, Π̄ at the iterate
 };
 
-const bool enrolled = enrol<FullyImplicit1>({.name = "rA-full-1",
-                                             .order = 1,
-                                             .order_lambda = 1,
-                                             .formulation = "rA",
-                                             .unknowns = "r'', omega', lambda",
-                                             .source = "Fang (2022), Sec. 3.4",
-                                             .massless = true});
+const bool registered = register_scheme<FullyImplicit1>({.name = "rA-full-1",
+                                                         .order = 1,
+                                                         .order_lambda = 1,
+                                                         .formulation = "rA",
+                                                         .unknowns = "r'', omega', lambda",
+                                                         .source = "Fang (2022), Sec. 3.4",
+                                                         .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -161,13 +161,13 @@ private:
     std::vector<int> body_at, row_at, column_at, second_at, load_at;
 };
 
-const bool enrolled =
-    enrol<FullyImplicit1Exact>({.name = "rA-full-1-exact",
-                                .order = 1,
-                                .order_lambda = 1,
-                                .formulation = "rA",
-                                .unknowns = "r'', omega', lambda",
-                                .source = "Fang (2022), Sec. 3.4, all of the Newton matrix"});
+const bool registered =
+    register_scheme<FullyImplicit1Exact>({.name = "rA-full-1-exact",
+                                          .order = 1,
+                                          .order_lambda = 1,
+                                          .formulation = "rA",
+                                          .unknowns = "r'', omega', lambda",
+                                          .source = "Fang (2022), Sec. 3.4, all of the Newton matrix"});
 
 }  // namespace
 }  // namespace hilda::lie

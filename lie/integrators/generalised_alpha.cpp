@@ -72,11 +72,11 @@ private:
             body.rdot += h * body.rddot;
             body.omega_bar += h * body.omegadot_bar;
         }
-        model.track(ahead);
+        model.update_alpha(ahead);
         K.assemble(ahead);
         model.loads(ahead, loads);
         for (int i = 0; i < model.bodies(); ++i) e.segment<6>(6 * i) << loads.F[i], tau_bar(i, ahead.body[i]);
-        K.massless_part(e).setZero();
+        K.algebraic_part(e).setZero();
         model.gamma(ahead, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -94,7 +94,7 @@ private:
                 h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
         }
         K.constraint_part(z) = kappa * x_n.lambda;
-        K.massless_part(z).setZero();
+        K.algebraic_part(z).setZero();
     }
 
     void place(State& x, double h)
@@ -116,7 +116,7 @@ private:
             body.rdot = v.head<3>(), body.omega_bar = v.tail<3>();
             body.rddot = vdot.head<3>(), body.omegadot_bar = vdot.tail<3>();
         }
-        place_massless(x, 1);
+        place_algebraic(x, 1);
         x.lambda = K.constraint_part(z) / kappa;
     }
 
@@ -130,8 +130,8 @@ private:
             e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
         }
         C.add_transpose(1, x.lambda, e);
-        K.massless_part(e).setZero();
-        C.add_massless_transpose(1, x.lambda, K.massless_part(e));
+        K.algebraic_part(e).setZero();
+        C.add_algebraic_transpose(1, x.lambda, K.algebraic_part(e));
         e *= kappa;
         model.phi(x, K.constraint_part(e));
     }
@@ -141,13 +141,14 @@ private:
     Eigen::VectorXd a_n, a_next;
 };
 
-const bool enrolled = enrol<GeneralisedAlpha>({.name = "rA-genalpha",
-                                               .order = 2,
-                                               .order_lambda = 2,
-                                               .formulation = "rA",
-                                               .unknowns = "increment of (r, A), beta' h^2 lambda",
-                                               .source = "Bruls, Cardona, Arnold (2012)",
-                                               .massless = true});
+const bool registered =
+    register_scheme<GeneralisedAlpha>({.name = "rA-genalpha",
+                                       .order = 2,
+                                       .order_lambda = 2,
+                                       .formulation = "rA",
+                                       .unknowns = "increment of (r, A), beta' h^2 lambda",
+                                       .source = "Bruls, Cardona, Arnold (2012)",
+                                       .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -33,15 +33,15 @@ private:
     }
 };
 
-const bool enrolled = enrol<HalfImplicit1>({.name = "rA-half-1",
-                                            .order = 1,
-                                            .order_lambda = 1,
-                                            .formulation = "rA",
-                                            .unknowns = "r, h omega, h^2 lambda",
-                                            .source = "Fang (2022), Sec. 3.5",
-                                            .massless = true,
-                                            .velocities = true,
-                                            .compliant = true});
+const bool registered = register_scheme<HalfImplicit1>({.name = "rA-half-1",
+                                                        .order = 1,
+                                                        .order_lambda = 1,
+                                                        .formulation = "rA",
+                                                        .unknowns = "r, h omega, h^2 lambda",
+                                                        .source = "Fang (2022), Sec. 3.5",
+                                                        .algebraic = true,
+                                                        .nonholonomic = true,
+                                                        .regularised = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -26,16 +26,16 @@ public:
     {}
 };
 
-const bool enrolled =
-    enrol<HalfImplicit1Kick>({.name = "rA-half-1-kick",
-                              .order = 2,
-                              .order_lambda = 2,
-                              .formulation = "rA",
-                              .unknowns = "r, h omega, h^2 lambda",
-                              .source = "Fang (2022), Sec. 3.5, with leapfrog's start and velocities",
-                              .massless = true,
-                              .velocities = true,
-                              .compliant = true});
+const bool registered = register_scheme<HalfImplicit1Kick>(
+    {.name = "rA-half-1-kick",
+     .order = 2,
+     .order_lambda = 2,
+     .formulation = "rA",
+     .unknowns = "r, h omega, h^2 lambda",
+     .source = "Fang (2022), Sec. 3.5, with leapfrog's start and velocities",
+     .algebraic = true,
+     .nonholonomic = true,
+     .regularised = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -68,7 +68,7 @@ private:
     void correct(int k, const State& x) override
     {
         set_linear_residual(rows_of_node());
-        if (k > 1) K.massless_part(e).setZero();  // Φ_αᵀ λ = 0 is linear, and holds
+        if (k > 1) K.algebraic_part(e).setZero();  // Φ_αᵀ λ = 0 is linear, and holds
         for (int i = 0; i < model.bodies(); ++i) {
             const Vec3 theta = z.segment<3>(6 * i + 3);
             e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;
@@ -90,7 +90,7 @@ private:
         }
         const Rows& C = rows_of_node();
         for (int k = C.position_rows(); k < C.rows(); ++k)
-            if (!C.gives_way(k)) K.constraint_part(e)[k] -= C.dot(k, beyond);
+            if (!C.is_regularised(k)) K.constraint_part(e)[k] -= C.dot(k, beyond);
     }
 
     /// ω̄_n of the angular momentum half-way between those on both sides
@@ -103,16 +103,16 @@ private:
     double h = 0;            ///< of this step
 };
 
-const bool enrolled =
-    enrol<HalfImplicit1Momentum>({.name = "rA-half-1-momentum",
-                                  .order = 2,
-                                  .order_lambda = 2,
-                                  .formulation = "rA",
-                                  .unknowns = "r, h omega, h^2 lambda",
-                                  .source = "Fang (2022), Sec. 3.5, as the leapfrog of angular momentum",
-                                  .massless = true,
-                                  .velocities = true,
-                                  .compliant = true});
+const bool registered = register_scheme<HalfImplicit1Momentum>(
+    {.name = "rA-half-1-momentum",
+     .order = 2,
+     .order_lambda = 2,
+     .formulation = "rA",
+     .unknowns = "r, h omega, h^2 lambda",
+     .source = "Fang (2022), Sec. 3.5, as the leapfrog of angular momentum",
+     .algebraic = true,
+     .nonholonomic = true,
+     .regularised = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -44,13 +44,13 @@ private:
     double half_h = 0;
 };
 
-const bool enrolled = enrol<HalfImplicit2>({.name = "rA-half-2",
-                                            .order = 2,
-                                            .order_lambda = 1,
-                                            .formulation = "rA",
-                                            .unknowns = "r, h omega, h^2 lambda",
-                                            .source = "Fang (2022), Sec. 3.6",
-                                            .massless = true});
+const bool registered = register_scheme<HalfImplicit2>({.name = "rA-half-2",
+                                                        .order = 2,
+                                                        .order_lambda = 1,
+                                                        .formulation = "rA",
+                                                        .unknowns = "r, h omega, h^2 lambda",
+                                                        .source = "Fang (2022), Sec. 3.6",
+                                                        .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

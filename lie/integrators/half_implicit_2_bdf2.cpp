@@ -65,13 +65,14 @@ private:
     Eigen::VectorXd increments;  ///< r_n - r_{n-1} and ψ_n of each body
 };
 
-const bool enrolled = enrol<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",
-                                                .order = 2,
-                                                .order_lambda = 2,
-                                                .formulation = "rA",
-                                                .unknowns = "r, h omega, h^2 lambda",
-                                                .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
-                                                .massless = true});
+const bool registered =
+    register_scheme<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",
+                                        .order = 2,
+                                        .order_lambda = 2,
+                                        .formulation = "rA",
+                                        .unknowns = "r, h omega, h^2 lambda",
+                                        .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
+                                        .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -67,7 +67,7 @@ private:
                 h * (model.mass().J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
         }
         K.constraint_part(b).setZero();
-        K.massless_part(b).setZero();
+        K.algebraic_part(b).setZero();
     }
 
     void predict(double h)
@@ -78,7 +78,7 @@ private:
             z.segment<3>(6 * i + 3) = h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
         }
         K.constraint_part(z) = 0.5 * h * h * x_n.lambda;
-        K.massless_part(z).setZero();
+        K.algebraic_part(z).setZero();
     }
 
     void place(State& x)
@@ -87,7 +87,7 @@ private:
             x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
             x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
         }
-        place_massless(x, 1);
+        place_algebraic(x, 1);
     }
 
     void set_velocities(State& x, double h)
@@ -104,7 +104,7 @@ private:
                                       0.5 * h * loads.n_bar[i];
         }
         assemble_once(x);
-        K.massless_part(e).setZero();
+        K.algebraic_part(e).setZero();
         model.nu(x, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -114,13 +114,13 @@ private:
     }
 };
 
-const bool enrolled = enrol<Rattle>({.name = "rA-rattle",
-                                     .order = 2,
-                                     .order_lambda = 2,
-                                     .formulation = "rA",
-                                     .unknowns = "r, h omega, h^2 lambda / 2",
-                                     .source = "Hante, Arnold (2021)",
-                                     .massless = true});
+const bool registered = register_scheme<Rattle>({.name = "rA-rattle",
+                                                 .order = 2,
+                                                 .order_lambda = 2,
+                                                 .formulation = "rA",
+                                                 .unknowns = "r, h omega, h^2 lambda / 2",
+                                                 .source = "Hante, Arnold (2021)",
+                                                 .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

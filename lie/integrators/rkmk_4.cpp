@@ -34,14 +34,14 @@ public:
         for (const auto& [c, weight] : {std::pair{0.5, 2.0}, {0.5, 2.0}, {1.0, 1.0}}) {
             place(x, c * h, slope);
             x.t = x_n.t + c * h;
-            model.track(x);
+            model.update_alpha(x);
             set_accelerations(x);
             set_slope(x);
             sum += weight * slope;
         }
         sum /= 6;
         place(x, h, sum);
-        model.track(x);
+        model.update_alpha(x);
         const int k = project_positions(x);
         project_velocities(x);
         set_accelerations(x);
@@ -89,7 +89,7 @@ private:
                 x.body[i].r += e.segment<3>(6 * i);
                 x.body[i].A = orthonormalised(x.body[i].A * exp(e.segment<3>(6 * i + 3)));
             }
-            move_massless(x, K.massless_part(e));
+            move_algebraic(x, K.algebraic_part(e));
             if (converged(k, length_of_motion(e), K.constraint_part(e), 0)) return k;
         }
         no_convergence("rA-rkmk-4", correction, x);
@@ -102,7 +102,7 @@ private:
         for (int i = 0; i < model.bodies(); ++i)
             e.segment<6>(6 * i) << model.mass().m[i] * x.body[i].rdot,
                 model.mass().J_bar[i] * x.body[i].omega_bar;
-        K.massless_part(e).setZero();
+        K.algebraic_part(e).setZero();
         model.nu(x, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -114,14 +114,14 @@ private:
     Eigen::VectorXd sum, slope, theta;  ///< θ of each body at the stage
 };
 
-const bool enrolled = enrol<Rkmk4>({.name = "rA-rkmk-4",
-                                    .order = 4,
-                                    .order_lambda = 4,
-                                    .formulation = "rA",
-                                    .unknowns = "none; projection",
-                                    .source = "Munthe-Kaas (1998), with projection",
-                                    .massless = true,
-                                    .velocities = true});
+const bool registered = register_scheme<Rkmk4>({.name = "rA-rkmk-4",
+                                                .order = 4,
+                                                .order_lambda = 4,
+                                                .formulation = "rA",
+                                                .unknowns = "none; projection",
+                                                .source = "Munthe-Kaas (1998), with projection",
+                                                .algebraic = true,
+                                                .nonholonomic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -76,7 +76,7 @@ private:
     struct Soft {
         int row, at;  ///< a row that gives way, its diagonal entry in `value`
     };
-    std::vector<Soft> soft;
+    std::vector<Soft> regularised;
     std::vector<double> W, value, diagonal;  ///< diagonal: of S, to judge pivots
     Eigen::VectorXd y;
     double smallest = 1, flops = 0;

@@ -14,13 +14,13 @@ constexpr double worst_diagonal = 1e-13;
 
 }  // namespace
 
-Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
+Elimination::Elimination(const Rows& pattern, const std::vector<char>& inactive)
 {
     int row = 0, alpha = 0;
     const auto plain_until = [&](int end) {
         bool begun = false;
         for (; row < end; ++row) {
-            if (empty[row]) {
+            if (inactive[row]) {
                 left_out.push_back({row, 1, 0, 0});
                 begun = false;
                 continue;
@@ -33,10 +33,10 @@ Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
             left.start.push_back(static_cast<int>(left.entry.size()));
         }
     };
-    for (size_t n = 0; n < pattern.massless.size(); ++n) {
-        const Rows::Massless& m = pattern.massless[n];
+    for (size_t n = 0; n < pattern.algebraic.size(); ++n) {
+        const Rows::AlgebraicGroup& m = pattern.algebraic[n];
         plain_until(m.first);
-        if (empty[m.first + m.rows - 1]) {
+        if (inactive[m.first + m.rows - 1]) {
             left_out.push_back({m.first, m.rows, alpha, m.count});
             row += m.rows;
             alpha += m.count;
@@ -64,13 +64,13 @@ Elimination::Elimination(const Rows& pattern, const std::vector<char>& empty)
         alpha += m.count;
     }
     plain_until(pattern.rows());
-    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !empty[k];
-    for (size_t n = 0; n < pattern.compliant.size(); ++n)
+    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !inactive[k];
+    for (size_t n = 0; n < pattern.regularised.size(); ++n)
         for (const Group& g : group)
-            if (const int k = pattern.compliant[n].first - g.first; k >= 0 && k < g.rows) {
-                soft.push_back(static_cast<int>(n));
-                left.compliant.push_back(pattern.compliant[n]);
-                left.compliant.back().first = g.reduced_first + k;
+            if (const int k = pattern.regularised[n].first - g.first; k >= 0 && k < g.rows) {
+                regularised.push_back(static_cast<int>(n));
+                left.regularised.push_back(pattern.regularised[n]);
+                left.regularised.back().first = g.reduced_first + k;
             }
 }
 
@@ -88,7 +88,8 @@ void Elimination::reflect(const Group& g, Few& v, bool transpose)
 
 void Elimination::factor(const Rows& full)
 {
-    for (size_t n = 0; n < soft.size(); ++n) left.compliant[n].softness = full.compliant[soft[n]].softness;
+    for (size_t n = 0; n < regularised.size(); ++n)
+        left.regularised[n].compliance = full.regularised[regularised[n]].compliance;
     for (Group& g : group) {
         if (g.count == 0) {
             std::copy(full.entry.begin() + full.start[g.first],
@@ -96,7 +97,7 @@ void Elimination::factor(const Rows& full)
                       left.entry.begin() + left.start[g.reduced_first]);
             continue;
         }
-        const Rows::Massless& m = full.massless[g.massless];
+        const Rows::AlgebraicGroup& m = full.algebraic[g.algebraic];
         g.QR = m.D;
         double largest = 0, smallest = std::numeric_limits<double>::infinity();
         for (int k = 0; k < g.count; ++k) {

@@ -22,7 +22,7 @@ namespace hilda::lie {
 class Elimination {
 public:
     /// The rows with empty[k] hold nothing; of a group its last one tells.
-    explicit Elimination(const Rows& pattern, const std::vector<char>& empty);
+    explicit Elimination(const Rows& pattern, const std::vector<char>& inactive);
 
     /// The rows that are left. Rows of no group stay as they are, with their softness; of a group Zᵀ B; and what is not empty.
     const Rows& reduced() const { return left; }
@@ -44,7 +44,7 @@ private:
         int first, rows, count;  ///< in the whole system
         int reduced_first;       ///< in the reduced one
         int alpha;               ///< among the massless unknowns of the system
-        int massless;            ///< number in Rows::massless
+        int algebraic;           ///< number in Rows::massless
         Small QR, Z;             ///< Householder vectors below the diagonal, their heads 1; R above
         Few beta;
         Few of_p;  ///< Q_1 R⁻ᵀ p
@@ -59,7 +59,7 @@ private:
     Rows left;
     std::vector<Group> group;
     std::vector<LeftOut> left_out;  ///< what is empty: its multipliers and unknowns stay as they are
-    std::vector<int> soft;          ///< of the rows that give way, those that are left
+    std::vector<int> regularised;   ///< of the rows that give way, those that are left
     int bodies = 0;
 };
 

@@ -7,17 +7,17 @@ namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
     : system(system), metric(metric), solver(solver), bodies(system.bodies()), m(system.rows()),
-      unknowns(system.pattern().unknowns()), C(system.pattern()), empty(m, 0), work(size()), residual(size()),
+      unknowns(system.pattern().unknowns()), C(system.pattern()), inactive(m, 0), work(size()), residual(size()),
       right_side(size())
 {
     // which of the rows are empty is known with the first state
-    if (solver == LinearSolver::klu || unknowns == 0 || C.opening.empty()) choose_solver();
+    if (solver == LinearSolver::klu || unknowns == 0 || C.unilateral.empty()) choose_solver();
 }
 
 void Saddle::choose_solver()
 {
     if (unknowns > 0 && solver != LinearSolver::klu) {
-        elimination = std::make_unique<Elimination>(C, empty);
+        elimination = std::make_unique<Elimination>(C, inactive);
         reduced.resize(6 * bodies + elimination->reduced().rows());
     }
     scale = Eigen::VectorXd::Ones(elimination ? reduced.size() : size());
@@ -34,12 +34,12 @@ void Saddle::choose_solver()
 }
 
 /// Rows that are empty in the state last evaluated are not part of what is factored.
-void Saddle::leave_out_empty()
+void Saddle::leave_out_inactive()
 {
     bool changed = false;
-    for (const int k : C.opening)
-        if (const char now = C.empty(k); now != empty[k]) {
-            empty[k] = now;
+    for (const int k : C.unilateral)
+        if (const char now = C.is_inactive(k); now != inactive[k]) {
+            inactive[k] = now;
             changed = true;
         }
     if (!chosen || (changed && elimination))
@@ -52,7 +52,7 @@ void Saddle::analyse()
 {
     const Rows& R = solved();
     const int rows = R.rows();
-    slot.clear(), mass_slot.clear(), opening_slot.clear(), soft_slot.clear();
+    slot.clear(), mass_slot.clear(), unilateral_slot.clear(), regularised_slot.clear();
     // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
     std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
     std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
@@ -66,7 +66,7 @@ void Saddle::analyse()
                     slot.push_back({0, 0, 1});
                 }
     int alpha = 0;
-    for (const Rows::Massless& group : R.massless)
+    for (const Rows::AlgebraicGroup& group : R.algebraic)
         for (int c = 0; c < group.count; ++c, ++alpha)
             for (int k = 0; k < group.rows; ++k) {
                 const int s = static_cast<int>(slot.size());
@@ -95,17 +95,17 @@ void Saddle::analyse()
             slot[s].upper = static_cast<int>(row_index.size());
             row_index.push_back(row);
         }
-        if (std::find(R.opening.begin(), R.opening.end(), k) != R.opening.end()) {
-            opening_slot.push_back(static_cast<int>(row_index.size()));
+        if (std::find(R.unilateral.begin(), R.unilateral.end(), k) != R.unilateral.end()) {
+            unilateral_slot.push_back(static_cast<int>(row_index.size()));
             row_index.push_back(6 * bodies + k);
         }
-        if (R.gives_way(k)) {
+        if (R.is_regularised(k)) {
             if (row_index.back() != 6 * bodies + k) row_index.push_back(6 * bodies + k);
-            soft_slot.push_back(static_cast<int>(row_index.size()) - 1);
+            regularised_slot.push_back(static_cast<int>(row_index.size()) - 1);
         }
         end_column();
     }
-    if (!R.massless.empty())
+    if (!R.algebraic.empty())
         for (const auto& column : of_alpha) {
             for (const auto& [row, s] : column) {
                 slot[s].lower = static_cast<int>(row_index.size());
@@ -137,7 +137,7 @@ void Saddle::scale_rows()
         scale[6 * bodies + k] = sum > 0 ? 1 / std::sqrt(sum) : std::numeric_limits<double>::infinity();
     }
     int alpha = 6 * bodies + R.rows();
-    for (const Rows::Massless& group : R.massless) {
+    for (const Rows::AlgebraicGroup& group : R.algebraic) {
         auto of_rows = scale.segment(6 * bodies + group.first, group.rows);
         const double factor = of_rows.minCoeff();
         of_rows.setConstant(std::isfinite(factor) ? factor : 1);
@@ -176,19 +176,19 @@ void Saddle::fill()
                     s->factor * (c < 3 ? entry.r[c] : entry.pi[c - 3]);
                 ++s;
             }
-    for (const Rows::Massless& group : solved().massless)
+    for (const Rows::AlgebraicGroup& group : solved().algebraic)
         for (int c = 0; c < group.count; ++c)
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
     const Rows& R = solved();
-    for (size_t n = 0; n < opening_slot.size(); ++n)  // an empty row leaves its multiplier alone
-        klu.value[opening_slot[n]] = C.empty(C.opening[n]) ? -1 : 0;
-    if (R.opening.empty())  // what gives way is left out where it is empty
-        for (const int at : soft_slot) klu.value[at] = 0;
-    for (size_t n = 0; n < soft_slot.size(); ++n) {
-        const Rows::Compliant& c = R.compliant[n / 2];
+    for (size_t n = 0; n < unilateral_slot.size(); ++n)  // an empty row leaves its multiplier alone
+        klu.value[unilateral_slot[n]] = C.is_inactive(C.unilateral[n]) ? -1 : 0;
+    if (R.unilateral.empty())  // what gives way is left out where it is empty
+        for (const int at : regularised_slot) klu.value[at] = 0;
+    for (size_t n = 0; n < regularised_slot.size(); ++n) {
+        const Rows::Regularised& c = R.regularised[n / 2];
         const double of_row = scale[6 * bodies + c.first + static_cast<int>(n % 2)];
-        klu.value[soft_slot[n]] -= of_row * of_row * c.softness;
+        klu.value[regularised_slot[n]] -= of_row * of_row * c.compliance;
     }
 }
 
@@ -196,19 +196,19 @@ void Saddle::assemble(const State& x, double step)
 {
     h = step;
     system.variation(x, C);
-    C.soften(h);
+    C.regularise(h);
     factor_rows(x);
 }
 
-void Saddle::give_way(const State& x)
+void Saddle::refactor_regularised(const State& x)
 {
-    C.soften(h);
+    C.regularise(h);
     factor_rows(x);
 }
 
 void Saddle::factor_rows(const State& x)
 {
-    leave_out_empty();
+    leave_out_inactive();
     if (elimination) elimination->factor(C);
     by_condensed = condensed != nullptr && condensed->factor(solved());
     if (by_condensed) {
@@ -223,8 +223,8 @@ void Saddle::factor_rows(const State& x)
 void Saddle::choose_pivots(const State& x)
 {
     system.variation(x, C);
-    C.soften(h);
-    leave_out_empty();
+    C.regularise(h);
+    leave_out_inactive();
     if (elimination) elimination->factor(C);
     by_condensed = false;
     factor(x);
@@ -272,7 +272,7 @@ void Saddle::solve_constraints(Eigen::VectorXd& b)
         solve_solved(reduced, true);
         elimination->expand(C, reduced, b);
     } else {
-        massless_part(b).setZero();
+        algebraic_part(b).setZero();
         solve_solved(b, true);
     }
     if (!std::isfinite(b.sum())) throw NonFinite("the solution of the saddle system is not finite");
@@ -299,13 +299,13 @@ void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& 
     const auto lambda = z.segment(6 * bodies, m);
     C.add_transpose(1, lambda, out);
     for (int k = 0; k < m; ++k) out[6 * bodies + k] = C.dot(k, z);
-    for (const Rows::Compliant& c : C.compliant)
-        for (int k = 0; k < 2; ++k) out[6 * bodies + c.first + k] -= c.softness * lambda[c.first + k];
-    if (C.massless.empty()) return;
+    for (const Rows::Regularised& c : C.regularised)
+        for (int k = 0; k < 2; ++k) out[6 * bodies + c.first + k] -= c.compliance * lambda[c.first + k];
+    if (C.algebraic.empty()) return;
     out.tail(unknowns).setZero();
-    C.add_massless_transpose(1, lambda, out.tail(unknowns));
+    C.add_algebraic_transpose(1, lambda, out.tail(unknowns));
     int at = 6 * bodies + m;
-    for (const Rows::Massless& group : C.massless)
+    for (const Rows::AlgebraicGroup& group : C.algebraic)
         for (int c = 0; c < group.count; ++c, ++at)
             for (int k = 0; k < group.rows; ++k) out[6 * bodies + group.first + k] += group.D(k, c) * z[at];
 }

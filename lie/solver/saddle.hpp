@@ -51,9 +51,9 @@ public:
     /// finite. Rows that give way do so over a step h.
     void assemble(const State& x, double h = 0);
     /// How much softer than they are those rows are taken: p of each, by the next assemble() or give_way()
-    void set_softer(int n, double p) { C.compliant[n].p = p; }
+    void set_compliance_scale(int n, double p) { C.regularised[n].p = p; }
     /// Factors K anew with those, of the rows and the h of the last assemble(); x as there
-    void give_way(const State& x);
+    void refactor_regularised(const State& x);
 
     /// The state at which KLU's pivots in use were chosen; without bodies where there are none.
     const State& pivots() const { return pivot_state; }
@@ -80,7 +80,7 @@ public:
         return z.segment(6 * bodies, m);
     }
     /// Of the massless unknowns, group by group
-    Eigen::VectorBlock<Eigen::VectorXd> massless_part(Eigen::VectorXd& z) const { return z.tail(unknowns); }
+    Eigen::VectorBlock<Eigen::VectorXd> algebraic_part(Eigen::VectorXd& z) const { return z.tail(unknowns); }
 
     /// KLU's estimate for the scaled matrix; of the condensed one its smallest pivot
     double reciprocal_condition() const
@@ -95,7 +95,7 @@ public:
 private:
     void analyse();
     void choose_solver();
-    void leave_out_empty();
+    void leave_out_inactive();
     void scale_rows();
     void fill();
     void factor(const State& x);
@@ -112,7 +112,7 @@ private:
     Rows C;
 
     std::unique_ptr<Elimination> elimination;  ///< of the massless unknowns; without, they stay in K
-    std::vector<char> empty;                   ///< of the rows, when that was made
+    std::vector<char> inactive;                ///< of the rows, when that was made
     bool chosen = false;                       ///< what K is solved with, for these rows
     Eigen::VectorXd reduced;                   ///< right side and solution without them
 
@@ -130,8 +130,8 @@ private:
     };
     std::vector<Slot> slot;
     std::vector<int> mass_slot;
-    std::vector<int> opening_slot;  ///< diagonal entries of the rows that may be empty
-    std::vector<int> soft_slot;     ///< and of those that give way
+    std::vector<int> unilateral_slot;   ///< diagonal entries of the rows that may be empty
+    std::vector<int> regularised_slot;  ///< and of those that give way
     Eigen::VectorXd work, residual, right_side;
 
     State pivot_state;

@@ -35,13 +35,13 @@ public:
                 accept(x, h);
                 return done(attempt, corrections);
             }
-            if (refreshed) soften_as_K(C_n, h);
+            if (refreshed) scale_compliance_as_K(C_n, h);
         }
         no_convergence(name, correction, x);
     }
 
-    bool lags() const override { return true; }
-    void complete(State& node, const State& after) const override { take_loads(node, after); }
+    bool is_staggered() const override { return true; }
+    void fill_node(State& node, const State& after) const override { take_loads(node, after); }
 
 protected:
     using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -102,7 +102,7 @@ private:
     {
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
-            place_massless(x, 1 / q);
+            place_algebraic(x, 1 / q);
             if (k > patience) refresh(x, h);
             correct(refreshed ? 1 : k, x);
             if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
@@ -120,9 +120,9 @@ private:
             b.segment<3>(6 * i + 3) = known_moment(i, h);
         }
         K.constraint_part(b).setZero();
-        K.massless_part(b).setZero();
+        K.algebraic_part(b).setZero();
         if (K.rows().velocity_rows > 0) hold_mean_velocity(h);
-        for (const Rows::Compliant& c : K.rows().compliant)
+        for (const Rows::Regularised& c : K.rows().regularised)
             K.constraint_part(b).segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
     }
 
@@ -147,13 +147,13 @@ private:
             z.segment<3>(6 * i + 3) += h * h * body.omegadot_bar;
         }
         K.constraint_part(z) = w * h * h * x_n.lambda;
-        K.massless_part(z).setZero();
+        K.algebraic_part(z).setZero();
     }
 
     /// Length of the correction in r, θ̄ and α: the unknowns of Eqs. 3.27 and 3.43
     double length()
     {
-        double sum = K.massless_part(e).squaredNorm() / (q * q);
+        double sum = K.algebraic_part(e).squaredNorm() / (q * q);
         for (int i = 0; i < model.bodies(); ++i)
             sum += e.segment<3>(6 * i).squaredNorm() / (q * q) + e.segment<3>(6 * i + 3).squaredNorm();
         return std::sqrt(sum);
@@ -168,16 +168,16 @@ private:
     }
 
     /// The rows of t_n, as much softer than they are as those of K
-    void soften_as_K(Rows& C, double h) const
+    void scale_compliance_as_K(Rows& C, double h) const
     {
-        for (size_t n = 0; n < C.compliant.size(); ++n) C.compliant[n].p = K.rows().compliant[n].p;
-        C.soften(h);
+        for (size_t n = 0; n < C.regularised.size(); ++n) C.regularised[n].p = K.rows().regularised[n].p;
+        C.regularise(h);
     }
 
     void accept(State& x, double h)
     {
         place(x);
-        place_massless(x, 1 / q);
+        place_algebraic(x, 1 / q);
         x.lambda = K.constraint_part(z) / (w * h * h);
         b.setZero();
         rows_of_node().add_transpose(1, x.lambda, b);
@@ -194,7 +194,7 @@ private:
     static constexpr int most_solved = 50;  ///< until all that gives way is within its bound
     bool refreshed = false;
     Rows C_n;
-    GiveWay within_bounds;
+    BoundedRows within_bounds;
 };
 
 }  // namespace hilda::lie

@@ -13,7 +13,7 @@ class LeapfrogStep : public HalfImplicitStep {
 public:
     bool keeps_history() const override { return true; }
     /// What the step found at t_n, and the velocities between those on both sides of it
-    void complete(State& node, const State& after) const override
+    void fill_node(State& node, const State& after) const override
     {
         take_loads(node, after);
         for (int i = 0; i < model.bodies(); ++i) {

@@ -161,7 +161,8 @@ private:
         hanging.setZero(C.rows());
         for (int k = 0; k < C.rows(); ++k)
             if (C.start[k] < C.start[k + 1]) hanging[k] = 4 * mass[first(C.entry[C.start[k]].body)];
-        for (const Rows::Massless& some : C.massless) {  // rows without a body have the forces of the others
+        for (const Rows::AlgebraicGroup& some :
+             C.algebraic) {  // rows without a body have the forces of the others
             auto of_rows = hanging.segment(some.first, some.rows);
             of_rows.setConstant(of_rows.maxCoeff());
         }
@@ -226,7 +227,7 @@ protected:
     /// Its length, with the massless unknowns
     double length_of_motion(Eigen::VectorXd& e) const
     {
-        return std::sqrt(motion_part(e).squaredNorm() + K.massless_part(e).squaredNorm());
+        return std::sqrt(motion_part(e).squaredNorm() + K.algebraic_part(e).squaredNorm());
     }
     /// The rows that hold velocities, last of the constraints
     Eigen::VectorBlock<Eigen::VectorXd> velocity_part(Eigen::VectorXd& z) const
@@ -236,20 +237,20 @@ protected:
 
     /// The massless unknowns of x moved by these, which stand group by group
     template <class Step>
-    void move_massless(State& x, const Step& by) const
+    void move_algebraic(State& x, const Step& by) const
     {
         Eigen::Index at = 0;
-        for (const Rows::Massless& group : K.rows().massless) {
+        for (const Rows::AlgebraicGroup& group : K.rows().algebraic) {
             x.alpha.segment(group.first_alpha, group.count) += by.segment(at, group.count);
             at += group.count;
         }
     }
     /// Those of x_n, moved by a factor times those of z
-    void place_massless(State& x, double factor)
+    void place_algebraic(State& x, double factor)
     {
         x.alpha = x_n.alpha;
-        if (K.rows().massless.empty()) return;
-        move_massless(x, factor * K.massless_part(z));
+        if (K.rows().algebraic.empty()) return;
+        move_algebraic(x, factor * K.algebraic_part(z));
     }
 
     Saddle K;

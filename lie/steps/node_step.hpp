@@ -36,7 +36,7 @@ protected:
         assemble_once(x);
         model.loads(x, loads);
         for (int i = 0; i < model.bodies(); ++i) e.segment<6>(6 * i) << loads.F[i], tau_bar(i, x.body[i]);
-        K.massless_part(e).setZero();
+        K.algebraic_part(e).setZero();
         model.gamma(x, K.constraint_part(e));
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
@@ -49,7 +49,7 @@ protected:
 private:
     bool assembled_at(const State& x) const
     {
-        if (at.t != x.t || at.memory != x.memory || at.alpha != x.alpha) return false;
+        if (at.t != x.t || at.discrete_state != x.discrete_state || at.alpha != x.alpha) return false;
         for (size_t i = 0; i < x.body.size(); ++i)
             if (at.body[i].r != x.body[i].r || at.body[i].A != x.body[i].A) return false;
         return true;
@@ -59,8 +59,8 @@ private:
              .body = {},
              .alpha = {},
              .lambda = {},
-             .memory = {},
-             .remembered = {},
+             .discrete_state = {},
+             .internal_state = {},
              .history = {}};
 };
 

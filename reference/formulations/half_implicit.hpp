@@ -49,9 +49,9 @@ public:
 template <class Coordinates>
 class HalfImplicit : public lie::NewtonStep {
 public:
-    enum class Start { plain, kick };
+    enum class StartMethod { plain, kick };
 
-    HalfImplicit(const lie::System& model, const lie::Settings& settings, std::string name, Start start)
+    HalfImplicit(const lie::System& model, const lie::Settings& settings, std::string name, StartMethod start)
         : NewtonStep(model, settings), name(std::move(name)), start(start), C(model.pattern()),
           part(model.bodies()), Ct_lambda(6 * model.bodies())
     {
@@ -98,11 +98,11 @@ public:
 
     lie::Statistics statistics() const override { return statistics_with(N); }
 
-    bool lags() const override { return true; }
-    void complete(lie::State& node, const lie::State& after) const override
+    bool is_staggered() const override { return true; }
+    void fill_node(lie::State& node, const lie::State& after) const override
     {
         take_loads(node, after);
-        if (start == Start::plain) return;
+        if (start == StartMethod::plain) return;
         for (int i = 0; i < model.bodies(); ++i) {
             const auto left = after.history.template segment<6>(stride * i);
             node.body[i].rdot = left.template head<3>();
@@ -151,7 +151,7 @@ private:
             }
             if constexpr (Coordinates::singular_somewhere) keep_off_singular_set(i, h, at_start);
             if (at_start) {
-                const double back = start == Start::kick ? 0.5 * h : 0;
+                const double back = start == StartMethod::kick ? 0.5 * h : 0;
                 p.rdot = body.rdot - back * body.rddot;
                 p.qdot = p.at.qdot(body.omega_bar);
                 p.qdot -= back * p.at.qddot(p.qdot, body.omegadot_bar);
@@ -300,7 +300,7 @@ private:
 
             const Vec3 rdot = z.segment<3>(at_r(i)) / h;
             const Vector qdot = z.segment<k>(at_q(i)) / h;
-            const double ahead = start == Start::kick ? 0.5 : 0;
+            const double ahead = start == StartMethod::kick ? 0.5 : 0;
             body.rdot = rdot + ahead * (rdot - p.rdot);
             body.omega_bar = p.after.T() * (qdot + ahead * (qdot - p.qdot));
 
@@ -316,7 +316,7 @@ private:
     }
 
     const std::string name;
-    const Start start;
+    const StartMethod start;
     lie::NewtonMatrix N;
     lie::Rows C;  ///< Φ_r, Π̄ at t_n
     std::vector<Part> part;

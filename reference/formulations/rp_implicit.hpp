@@ -40,7 +40,7 @@ public:
             if (converged(k, h * h * length_of_motion(e), e.segment(equations.at_lambda(), model.rows()),
                           h * h)) {
                 equations.place(formula, z, x);
-                remember(x, h);
+                save_step(x, h);
                 return done(attempt, k);
             }
         }
@@ -55,7 +55,7 @@ protected:
     /// What is carried besides p_n, ṗ_n, after them: its length, and its values after an accepted step from
     /// q_n, q̇_n
     virtual int more() const { return 0; }
-    virtual void remember_more(double /*h*/, Eigen::Ref<Eigen::VectorXd> /*out*/) const {}
+    virtual void save_more(double /*h*/, Eigen::Ref<Eigen::VectorXd> /*out*/) const {}
 
     const std::string name;
     RpStepEquations equations;
@@ -99,13 +99,13 @@ private:
         return std::sqrt(sum);
     }
 
-    void remember(lie::State& x, double h)
+    void save_step(lie::State& x, double h)
     {
         const int bodies = model.bodies();
         x.history.resize(8 * bodies + more());
         for (int i = 0; i < bodies; ++i)
             x.history.segment<8>(8 * i) << equations.p(i).normalized(), equations.pdot(i);
-        remember_more(h, x.history.tail(more()));
+        save_more(h, x.history.tail(more()));
     }
 };
 

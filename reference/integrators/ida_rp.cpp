@@ -20,21 +20,21 @@ private:
 };
 
 template <RpForm form>
-bool enrol_ida(const std::string& name, const std::string& unknowns, const std::string& how)
+bool register_ida(const std::string& name, const std::string& unknowns, const std::string& how)
 {
-    return lie::enrol<Ida<form>>({.name = name,
-                                  .order = 5,
-                                  .order_lambda = 5,
-                                  .formulation = "rp",
-                                  .unknowns = unknowns,
-                                  .source = "SUNDIALS IDA, " + how + "; Fang (2022), Eq. 2.23",
-                                  .adaptive = true});
+    return lie::register_scheme<Ida<form>>({.name = name,
+                                            .order = 5,
+                                            .order_lambda = 5,
+                                            .formulation = "rp",
+                                            .unknowns = unknowns,
+                                            .source = "SUNDIALS IDA, " + how + "; Fang (2022), Eq. 2.23",
+                                            .adaptive = true});
 }
 
-const bool ggl = enrol_ida<RpForm::ggl>("ida-rp", "r, p, r', p', lambda, mu", "GGL index 2");
+const bool ggl = register_ida<RpForm::ggl>("ida-rp", "r, p, r', p', lambda, mu", "GGL index 2");
 const bool baumgarte =
-    enrol_ida<RpForm::baumgarte>("ida-rp-baumgarte", "r, p, r', p', lambda", "Baumgarte, 20/s");
-const bool index1 = enrol_ida<RpForm::index1>("ida-rp-index1", "r, p, r', p', lambda", "index 1, drifts");
+    register_ida<RpForm::baumgarte>("ida-rp-baumgarte", "r, p, r', p', lambda", "Baumgarte, 20/s");
+const bool index1 = register_ida<RpForm::index1>("ida-rp-index1", "r, p, r', p', lambda", "index 1, drifts");
 
 }  // namespace
 }  // namespace hilda::reference

@@ -9,31 +9,31 @@ namespace {
 class RepsHalf1 final : public HalfImplicit<EulerAngles> {
 public:
     RepsHalf1(const lie::System& model, const lie::Settings& settings)
-        : HalfImplicit(model, settings, "reps-half-1", Start::plain)
+        : HalfImplicit(model, settings, "reps-half-1", StartMethod::plain)
     {}
 };
 
 class RepsHalf1Kick final : public HalfImplicit<EulerAngles> {
 public:
     RepsHalf1Kick(const lie::System& model, const lie::Settings& settings)
-        : HalfImplicit(model, settings, "reps-half-1-kick", Start::kick)
+        : HalfImplicit(model, settings, "reps-half-1-kick", StartMethod::kick)
     {}
 };
 
-const bool enrolled = lie::enrol<RepsHalf1>({.name = "reps-half-1",
-                                             .order = 1,
-                                             .order_lambda = 1,
-                                             .formulation = "reps",
-                                             .unknowns = "r, eps, h^2 lambda",
-                                             .source = "Fang (2022), Secs. 3.5, 3.9"});
+const bool registered = lie::register_scheme<RepsHalf1>({.name = "reps-half-1",
+                                                         .order = 1,
+                                                         .order_lambda = 1,
+                                                         .formulation = "reps",
+                                                         .unknowns = "r, eps, h^2 lambda",
+                                                         .source = "Fang (2022), Secs. 3.5, 3.9"});
 
-const bool enrolled_kick =
-    lie::enrol<RepsHalf1Kick>({.name = "reps-half-1-kick",
-                               .order = 2,
-                               .order_lambda = 2,
-                               .formulation = "reps",
-                               .unknowns = "r, eps, h^2 lambda",
-                               .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
+const bool registered_kick =
+    lie::register_scheme<RepsHalf1Kick>({.name = "reps-half-1-kick",
+                                         .order = 2,
+                                         .order_lambda = 2,
+                                         .formulation = "reps",
+                                         .unknowns = "r, eps, h^2 lambda",
+                                         .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -54,17 +54,17 @@ private:
         formula.g_v = h / 2, formula.g_q = h * h / 6;
     }
 
-    void remember_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }
+    void save_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }
 
     Eigen::VectorXd qddot;  ///< of the start
 };
 
-const bool enrolled = lie::enrol<RpBdf2>({.name = "rp-bdf2",
-                                          .order = 2,
-                                          .order_lambda = 2,
-                                          .formulation = "rp",
-                                          .unknowns = "r'', p'', lambda, lambda_P",
-                                          .source = "Fang (2022), Sec. 2.1.7, with BDF2"});
+const bool registered = lie::register_scheme<RpBdf2>({.name = "rp-bdf2",
+                                                      .order = 2,
+                                                      .order_lambda = 2,
+                                                      .formulation = "rp",
+                                                      .unknowns = "r'', p'', lambda, lambda_P",
+                                                      .source = "Fang (2022), Sec. 2.1.7, with BDF2"});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -29,12 +29,12 @@ private:
     }
 };
 
-const bool enrolled = lie::enrol<RpFull1>({.name = "rp-full-1",
-                                           .order = 1,
-                                           .order_lambda = 1,
-                                           .formulation = "rp",
-                                           .unknowns = "r'', p'', lambda, lambda_P",
-                                           .source = "Fang (2022), Sec. 2.1.7"});
+const bool registered = lie::register_scheme<RpFull1>({.name = "rp-full-1",
+                                                       .order = 1,
+                                                       .order_lambda = 1,
+                                                       .formulation = "rp",
+                                                       .unknowns = "r'', p'', lambda, lambda_P",
+                                                       .source = "Fang (2022), Sec. 2.1.7"});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -10,31 +10,31 @@ namespace {
 class RpHalf1 final : public HalfImplicit<EulerParameters> {
 public:
     RpHalf1(const lie::System& model, const lie::Settings& settings)
-        : HalfImplicit(model, settings, "rp-half-1", Start::plain)
+        : HalfImplicit(model, settings, "rp-half-1", StartMethod::plain)
     {}
 };
 
 class RpHalf1Kick final : public HalfImplicit<EulerParameters> {
 public:
     RpHalf1Kick(const lie::System& model, const lie::Settings& settings)
-        : HalfImplicit(model, settings, "rp-half-1-kick", Start::kick)
+        : HalfImplicit(model, settings, "rp-half-1-kick", StartMethod::kick)
     {}
 };
 
-const bool enrolled = lie::enrol<RpHalf1>({.name = "rp-half-1",
-                                           .order = 1,
-                                           .order_lambda = 1,
-                                           .formulation = "rp",
-                                           .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
-                                           .source = "Fang (2022), Secs. 3.5, 3.9"});
+const bool registered = lie::register_scheme<RpHalf1>({.name = "rp-half-1",
+                                                       .order = 1,
+                                                       .order_lambda = 1,
+                                                       .formulation = "rp",
+                                                       .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
+                                                       .source = "Fang (2022), Secs. 3.5, 3.9"});
 
-const bool enrolled_kick =
-    lie::enrol<RpHalf1Kick>({.name = "rp-half-1-kick",
-                             .order = 2,
-                             .order_lambda = 2,
-                             .formulation = "rp",
-                             .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
-                             .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
+const bool registered_kick =
+    lie::register_scheme<RpHalf1Kick>({.name = "rp-half-1-kick",
+                                       .order = 2,
+                                       .order_lambda = 2,
+                                       .formulation = "rp",
+                                       .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
+                                       .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -83,7 +83,7 @@ struct Node {
 
 Vec3 gravity(const BallInBowl& bowl) { return {0, 0, -bowl.g}; }
 
-Node ready(const BallInBowl& bowl, const BallInBowl::Start& start)
+Node ready(const BallInBowl& bowl, const BallInBowl::InitialState& start)
 {
     const char* where = "reference::BallInBowl";
     for (const double positive :
@@ -259,14 +259,14 @@ double BallInBowl::energy(const Motion& ball) const
     return m * (0.5 * ball.rdot.squaredNorm() + g * ball.r.z()) + 0.5 * J * ball.omega_bar.squaredNorm();
 }
 
-std::vector<ContactInstant> BallInBowl::slide(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> BallInBowl::slide(const InitialState& start, const std::vector<double>& instants,
                                               const OdeTolerance& tolerance) const
 {
     Sliding law(*this, tolerance);
     return at(law, ready(*this, start), instants);
 }
 
-std::vector<ContactInstant> BallInBowl::roll(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> BallInBowl::roll(const InitialState& start, const std::vector<double>& instants,
                                              const OdeTolerance& tolerance) const
 {
     Rolling law(*this, tolerance);

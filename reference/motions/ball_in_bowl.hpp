@@ -34,7 +34,7 @@ struct BallInBowl {
     double g = 9.81;                 ///< [m/s²], along -z
 
     /// The start is at t = 0
-    struct Start {
+    struct InitialState {
         Vec3 p = Vec3(0, 0, -2);   ///< contact point, on the bowl [m]
         Vec3 rdot = Vec3::Zero();  ///< of the centre, tangent to the bowl [m/s]
         double spin = 0;           ///< n·ω [rad/s]; without friction the ball starts with ω = spin n
@@ -50,9 +50,9 @@ struct BallInBowl {
 
     /// At these instants [s], ascending, none negative. InvalidInput for a ball that is not smaller than the
     /// smallest radius of curvature, and for a start that is not on the bowl or leaves it, beyond 1e-9 of R.
-    std::vector<ContactInstant> slide(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> slide(const InitialState& start, const std::vector<double>& instants,
                                       const OdeTolerance& tolerance = {}) const;
-    std::vector<ContactInstant> roll(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> roll(const InitialState& start, const std::vector<double>& instants,
                                      const OdeTolerance& tolerance = {}) const;
 };
 

@@ -62,7 +62,8 @@ double BallInGroove::steady(double beta) const
     return std::sqrt(g * std::tan(beta) / (R_t + (a - R) * std::sin(beta)));
 }
 
-std::vector<ContactInstant> BallInGroove::slide(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> BallInGroove::slide(const InitialState& start,
+                                                const std::vector<double>& instants,
                                                 const OdeTolerance& tolerance) const
 {
     check(*this);

@@ -25,7 +25,7 @@ struct BallInGroove {
     double g = 9.81;             ///< [m/s²], along -z
 
     /// The start is at t = 0 at φ = 0, with A = 1
-    struct Start {
+    struct InitialState {
         double beta = 0.5;               ///< [rad]
         double betadot = 0, phidot = 0;  ///< [rad/s]
         Vec3 omega = Vec3::Zero();       ///< of the ball [rad/s], stays
@@ -36,7 +36,7 @@ struct BallInGroove {
 
     /// At these instants [s], ascending, none negative. InvalidInput unless R < a < R_t and for numbers that make
     /// no sense.
-    std::vector<ContactInstant> slide(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> slide(const InitialState& start, const std::vector<double>& instants,
                                       const OdeTolerance& tolerance = {}) const;
 };
 

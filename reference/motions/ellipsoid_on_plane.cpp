@@ -66,7 +66,7 @@ using Law = Acceleration (*)(const EllipsoidOnPlane&, const Mat3& A, const Vec3&
 class EllipsoidMotion {
 public:
     /// velocity along the plane: what it was at the start, or that of rolling
-    EllipsoidMotion(const EllipsoidOnPlane& body, const EllipsoidOnPlane::Start& start, bool rolls,
+    EllipsoidMotion(const EllipsoidOnPlane& body, const EllipsoidOnPlane::InitialState& start, bool rolls,
                     const OdeTolerance& tolerance)
         : body(body), law(rolls ? rolling : sliding), rolls(rolls), v_0(start.xdot, start.ydot, 0),
           ode(
@@ -190,13 +190,15 @@ double EllipsoidOnPlane::energy(const Motion& body) const
 
 double EllipsoidOnPlane::L_z(const Motion& body) const { return (body.A * (J_bar * body.omega_bar)).z(); }
 
-std::vector<ContactInstant> EllipsoidOnPlane::slide(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> EllipsoidOnPlane::slide(const InitialState& start,
+                                                    const std::vector<double>& instants,
                                                     const OdeTolerance& tolerance) const
 {
     return EllipsoidMotion(*this, start, false, tolerance).at(instants);
 }
 
-std::vector<ContactInstant> EllipsoidOnPlane::roll(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> EllipsoidOnPlane::roll(const InitialState& start,
+                                                   const std::vector<double>& instants,
                                                    const OdeTolerance& tolerance) const
 {
     return EllipsoidMotion(*this, start, true, tolerance).at(instants);

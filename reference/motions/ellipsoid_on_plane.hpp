@@ -36,7 +36,7 @@ struct EllipsoidOnPlane {
     static Mat3 homogeneous(const Vec3& semi_axes, double m);
 
     /// The start is at t = 0. The height and its rate, and in rolling all of the velocity, follow.
-    struct Start {
+    struct InitialState {
         Mat3 A = Mat3::Identity();
         Vec3 omega_bar = Vec3::Zero();  ///< [rad/s]
         double x = 0, y = 0;            ///< of the centre [m]
@@ -48,9 +48,9 @@ struct EllipsoidOnPlane {
     double L_z(const Motion& body) const;
 
     /// At these instants [s], ascending, none negative. InvalidInput for numbers that make no sense.
-    std::vector<ContactInstant> slide(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> slide(const InitialState& start, const std::vector<double>& instants,
                                       const OdeTolerance& tolerance = {}) const;
-    std::vector<ContactInstant> roll(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> roll(const InitialState& start, const std::vector<double>& instants,
                                      const OdeTolerance& tolerance = {}) const;
 
     /// Of rocking in the plane of y and z, about the shortest axis being upright, from rest at the angle θ_0 about

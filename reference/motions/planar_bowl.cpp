@@ -47,7 +47,7 @@ struct PlanarMotion {
     using Law = std::function<Action(const Place& here, const ConstVectorRef& y, double F_N)>;
 
     /// The ball starts with ω_x = -omega_by_v v.
-    PlanarMotion(const PlanarBowl& bowl, const PlanarBowl::Start& start, double omega_by_v, Law law,
+    PlanarMotion(const PlanarBowl& bowl, const PlanarBowl::InitialState& start, double omega_by_v, Law law,
                  const OdeTolerance& tolerance)
         : bowl(bowl), law(std::move(law)),
           ode(
@@ -162,14 +162,14 @@ double period(const PlanarBowl& bowl, double y, double mass)
 
 }  // namespace
 
-std::vector<ContactInstant> PlanarBowl::slide(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> PlanarBowl::slide(const InitialState& start, const std::vector<double>& instants,
                                               const OdeTolerance& tolerance) const
 {
     const auto nothing = [](const Place&, const ConstVectorRef&, double) { return Action{}; };
     return PlanarMotion(*this, start, 0, nothing, tolerance).at(instants);
 }
 
-std::vector<ContactInstant> PlanarBowl::roll(const Start& start, const std::vector<double>& instants,
+std::vector<ContactInstant> PlanarBowl::roll(const InitialState& start, const std::vector<double>& instants,
                                              const OdeTolerance& tolerance) const
 {
     const auto stick = [this](const Place& here, const ConstVectorRef&, double) {
@@ -178,7 +178,7 @@ std::vector<ContactInstant> PlanarBowl::roll(const Start& start, const std::vect
     return PlanarMotion(*this, start, 1 / R, stick, tolerance).at(instants);
 }
 
-std::vector<ContactInstant> PlanarBowl::spring(const Start& start, const TangentialSpring& law,
+std::vector<ContactInstant> PlanarBowl::spring(const InitialState& start, const TangentialSpring& law,
                                                const std::vector<double>& instants,
                                                const OdeTolerance& tolerance) const
 {
@@ -188,7 +188,7 @@ std::vector<ContactInstant> PlanarBowl::spring(const Start& start, const Tangent
     return PlanarMotion(*this, start, 1 / R, force, tolerance).at(instants);
 }
 
-ResistedRoll PlanarBowl::resist(const Start& start, const RollingResistance& law,
+ResistedRoll PlanarBowl::resist(const InitialState& start, const RollingResistance& law,
                                 const std::vector<double>& instants, const OdeTolerance& tolerance) const
 {
     if (!(law.eta >= 0 && law.mu_k >= 0 && law.mu_s >= law.mu_k))

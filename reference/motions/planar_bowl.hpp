@@ -54,22 +54,22 @@ struct PlanarBowl {
     double J = 0.4 * m * R * R;  ///< [kg m²]
     double g = 9.81;             ///< [m/s²], along -z
 
-    struct Start {
+    struct InitialState {
         double y = 1.5;  ///< of the contact point, below the equator [m]
         double v = 0;    ///< of the centre, along t [m/s]
     };
 
     /// At these instants [s], ascending, none negative. InvalidInput for a ball that is not smaller than the
     /// smallest radius of curvature, and for numbers that make no sense.
-    std::vector<ContactInstant> slide(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> slide(const InitialState& start, const std::vector<double>& instants,
                                       const OdeTolerance& tolerance = {}) const;
-    std::vector<ContactInstant> roll(const Start& start, const std::vector<double>& instants,
+    std::vector<ContactInstant> roll(const InitialState& start, const std::vector<double>& instants,
                                      const OdeTolerance& tolerance = {}) const;
-    std::vector<ContactInstant> spring(const Start& start, const TangentialSpring& law,
+    std::vector<ContactInstant> spring(const InitialState& start, const TangentialSpring& law,
                                        const std::vector<double>& instants,
                                        const OdeTolerance& tolerance = {}) const;
-    ResistedRoll resist(const Start& start, const RollingResistance& law, const std::vector<double>& instants,
-                        const OdeTolerance& tolerance = {}) const;
+    ResistedRoll resist(const InitialState& start, const RollingResistance& law,
+                        const std::vector<double>& instants, const OdeTolerance& tolerance = {}) const;
 
     Vec3 gravity() const { return {0, 0, -g}; }
 

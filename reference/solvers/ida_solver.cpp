@@ -102,11 +102,11 @@ public:
         if (!(t_end > x.t) || !std::isfinite(t_end))
             lie::reject("reference::IdaSolver", "the end must be finite and after t = " + number(x.t) + " s",
                         t_end);
-        if (!x.remembered.empty())
+        if (!x.internal_state.empty())
             lie::reject("reference::IdaSolver",
                         "what remembers real numbers from step to step jumps there, and needs a scheme of "
                         "fixed steps; numbers remembered",
-                        x.remembered.size());
+                        x.internal_state.size());
         const long before = statistics().iterations;
         const bool goes_on = valid && is_left(x);
         valid = false;  // until it is reached
@@ -130,8 +130,8 @@ public:
             check(IDAGetDky(memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
             equations.read(t_end, map(at_node.get()), left);
         }
-        left.memory = inner.memory;
-        left.memory = remembered(left).memory;
+        left.discrete_state = inner.discrete_state;
+        left.discrete_state = updated_internal_state(left).discrete_state;
         dae::solve_accelerations(system, K, left);
         valid = true;
         x = left;
@@ -165,8 +165,8 @@ private:
     /// of a driver, and its time been rounded.
     bool is_left(const lie::State& x) const
     {
-        if (std::abs(x.t - left.t) > 1e-13 * std::max(1.0, std::abs(x.t)) || x.memory != left.memory ||
-            x.body.size() != left.body.size())
+        if (std::abs(x.t - left.t) > 1e-13 * std::max(1.0, std::abs(x.t)) ||
+            x.discrete_state != left.discrete_state || x.body.size() != left.body.size())
             return false;
         for (size_t b = 0; b < x.body.size(); ++b) {
             const lie::Motion &a = x.body[b], &c = left.body[b];
@@ -176,10 +176,10 @@ private:
     }
 
     /// The state as it is once the system has been told of it, on its constraints. Without memory: as it is.
-    const lie::State& remembered(const lie::State& x)
+    const lie::State& updated_internal_state(const lie::State& x)
     {
         told = x;
-        if (x.memory.empty()) return told;
+        if (x.discrete_state.empty()) return told;
         project(system, K, told);
         if (told.lambda.size() != system.rows()) told.lambda.setZero(system.rows());
         const lie::State before = told;
@@ -260,12 +260,12 @@ private:
         if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
         if (code < 0 && !nonfinite.empty()) throw lie::NonFinite(nonfinite);
         check(code, "IDASolve");
-        if (inner.memory.empty()) return;
+        if (inner.discrete_state.empty()) return;
         equations.read(t, map(y.get()), inner);
-        const lie::State& now = remembered(inner);
-        if (now.memory == inner.memory) return;
+        const lie::State& now = updated_internal_state(inner);
+        if (now.discrete_state == inner.discrete_state) return;
         inner = now;
-        to_restart = !equations.remember(inner.memory, t, map(y.get()), map(ydot.get()));
+        to_restart = !equations.set_discrete_state(inner.discrete_state, t, map(y.get()), map(ydot.get()));
     }
 
     [[noreturn]] void give_up(long steps) const

@@ -44,11 +44,11 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
                     "a mechanism needs a degree of freedom to have equations of motion; where every one is "
                     "driven, use kinematic analysis (dae::Kinematics)",
                     0);
-    if (!start.remembered.empty())
+    if (!start.internal_state.empty())
         lie::reject("reference::index1",
                     "what remembers real numbers from step to step has no equations of motion between the "
                     "steps; numbers remembered",
-                    start.remembered.size());
+                    start.internal_state.size());
     lie::Saddle K(model);
     lie::State x = start, stage = start;
 
@@ -71,7 +71,7 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
         const lie::State before = x;
         read(t, y, x);
         model.accepted(before, x);
-        stage.memory = x.memory;
+        stage.discrete_state = x.discrete_state;
     };
 
     lie::Trajectory run;

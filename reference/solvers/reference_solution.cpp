@@ -76,12 +76,12 @@ std::optional<lie::Trajectory> completed(const dae::Model& model, const lie::Sta
 
 lie::Trajectory trusted(const dae::Model& model, const lie::State& start, const std::vector<double>& instants)
 {
-    if (!start.remembered.empty())
+    if (!start.internal_state.empty())
         lie::reject(
             "reference::trusted",
             "what contacts remember from step to step leaves no equations of motion between the steps: "
             "let an integrator be the reference (--reference NAME); numbers remembered",
-            start.remembered.size());
+            start.internal_state.size());
     if (6 * model.bodies() != model.rows()) return index1(model, start, instants);
     dae::Kinematics kinematics(model);
     lie::Trajectory run;
@@ -98,7 +98,7 @@ lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std:
 {
     try {
         // What drives or remembers is beyond the closed forms here.
-        if (x.memory.empty() && x.remembered.empty())
+        if (x.discrete_state.empty() && x.internal_state.empty())
             if (auto run = completed(model, x, instants, closed_form)) return *std::move(run);
     } catch (const lie::InvalidInput&) {  // a closed form that does not cover the model
     } catch (const lie::NumericalFailure&) {

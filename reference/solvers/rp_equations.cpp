@@ -82,8 +82,8 @@ std::string RpEquations::name(int k) const
 
 void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
 {
-    x.memory = from.memory;
-    x.remembered = from.remembered;
+    x.discrete_state = from.discrete_state;
+    x.internal_state = from.internal_state;
     y.setZero();
     ydot.setZero();
     for (int b = 0; b < bodies; ++b) {
@@ -99,14 +99,14 @@ void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
     y.segment(first_lambda, m) = from.lambda;
 }
 
-bool RpEquations::remember(const std::vector<int>& memory, double t, const ConstVectorRef& y,
-                           const ConstVectorRef& ydot)
+bool RpEquations::set_discrete_state(const std::vector<int>& discrete_state, double t,
+                                     const ConstVectorRef& y, const ConstVectorRef& ydot)
 {
-    if (memory == x.memory) return true;
+    if (discrete_state == x.discrete_state) return true;
     evaluate(t, y, ydot);
     const lie::Rows C_before = C;
     const lie::Loads load_before = load;
-    x.memory = memory;
+    x.discrete_state = discrete_state;
     evaluate(t, y, ydot);
     const auto differ = [](const Vec3& a, const Vec3& b) {
         return !((a - b).norm() <= 1e-12 * std::max({1.0, a.norm(), b.norm()}));

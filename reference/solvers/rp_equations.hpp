@@ -47,8 +47,8 @@ public:
 
     /// Takes over what the system remembers, and says whether the equations at y go on as they were: a driver
     /// that is swapped ends them, a turn that is counted does not.
-    bool remember(const std::vector<int>& memory, double t, const ConstVectorRef& y,
-                  const ConstVectorRef& ydot);
+    bool set_discrete_state(const std::vector<int>& discrete_state, double t, const ConstVectorRef& y,
+                            const ConstVectorRef& ydot);
 
     void residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
     /// ∂F/∂y + c_j ∂F/∂ẏ, in compressed columns of a fixed pattern, for μ = 0: they are zero but for what a

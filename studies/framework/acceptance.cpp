@@ -11,33 +11,34 @@
 
 namespace hilda::studies {
 
-Demand between(const std::string& what, double measured, double least, double most)
+Criterion between(const std::string& what, double measured, double least, double most)
 {
     return {.what = what, .measured = measured, .least = least, .most = most};
 }
 
-Demand demand(const std::string& what, double measured, double value, double tolerance)
+Criterion criterion(const std::string& what, double measured, double value, double tolerance)
 {
     return between(what, measured, value - tolerance, value + tolerance);
 }
 
-bool judge(const std::vector<Demand>& demands, std::ostream& out, nlohmann::ordered_json& json)
+bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohmann::ordered_json& json)
 {
     Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"met"}, {"what"}});
     json["checks"] = nlohmann::ordered_json::array();
-    for (const Demand& d : demands) {
-        table.add({d.measured, d.least, d.most, d.met() ? "yes" : "NO", d.what});
+    for (const Criterion& d : criteria) {
+        table.add({d.measured, d.least, d.most, d.passed() ? "yes" : "NO", d.what});
         json["checks"].push_back({{"what", d.what},
                                   {"measured", number_or_null(d.measured)},
                                   {"least", d.least},
                                   {"most", d.most},
-                                  {"met", d.met()}});
+                                  {"met", d.passed()}});
     }
-    const auto met = std::count_if(demands.begin(), demands.end(), [](const Demand& d) { return d.met(); });
+    const auto passed =
+        std::count_if(criteria.begin(), criteria.end(), [](const Criterion& d) { return d.passed(); });
     out << '\n';
     table.print(out);
-    out << fmt::format("{} of {} met\n", met, demands.size());
-    return met == static_cast<long>(demands.size());
+    out << fmt::format("{} of {} met\n", passed, criteria.size());
+    return passed == static_cast<long>(criteria.size());
 }
 
 }  // namespace hilda::studies

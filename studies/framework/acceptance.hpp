@@ -12,18 +12,18 @@
 namespace hilda::studies {
 
 /// What came out, and between which bounds it must be; NaN is between none.
-struct Demand {
+struct Criterion {
     std::string what;
     double measured = 0, least = 0, most = 0;
 
-    bool met() const { return measured >= least && measured <= most; }
+    bool passed() const { return measured >= least && measured <= most; }
 };
 
-Demand between(const std::string& what, double measured, double least, double most);
+Criterion between(const std::string& what, double measured, double least, double most);
 /// value +- tolerance
-Demand demand(const std::string& what, double measured, double value, double tolerance);
+Criterion criterion(const std::string& what, double measured, double value, double tolerance);
 
 /// Whether all are met; a table of them, "N of M met" below it, and the same as "checks" for study.json.
-bool judge(const std::vector<Demand>& demands, std::ostream& out, nlohmann::ordered_json& json);
+bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohmann::ordered_json& json);
 
 }  // namespace hilda::studies

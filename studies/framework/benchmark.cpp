@@ -15,7 +15,7 @@ dae::Description ready(const Problem& problem, const StudyOptions& options)
     return d;
 }
 
-Case make_case(Problem problem, const StudyOptions& options, const DefaultEnd& end)
+Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end)
 {
     dae::Description d = dae::read_model(problem.model, problem.name, options.set);
     const dae::StartReport report = dae::start(d, {});
@@ -25,23 +25,23 @@ Case make_case(Problem problem, const StudyOptions& options, const DefaultEnd& e
             warning(problem.name + ": " + row +
                     ": redundant with the constraints before it, dropped from the equations");
     }
-    Case c;
+    Benchmark c;
     c.end = options.end ? *options.end : end(d);
-    c.watched = problem.watched;
-    if (c.watched.body.empty()) c.watched.body = d.model->all_bodies().back().name;
+    c.observable = problem.observable;
+    if (c.observable.body.empty()) c.observable.body = d.model->all_bodies().back().name;
     c.instants.dt = c.end / static_cast<double>(c.instants.count);
-    c.truth_name = problem.truth_name;
+    c.reference_name = problem.reference_name;
     c.problem = std::move(problem);
     c.started = std::make_shared<const dae::Description>(std::move(d));
     return c;
 }
 
-std::vector<Case> cases(const std::string& kind, const StudyOptions& options,
-                        const std::vector<std::string>& otherwise, const DefaultEnd& end)
+std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
+                                  const std::vector<std::string>& otherwise, const DefaultEnd& end)
 {
-    std::vector<Case> all;
+    std::vector<Benchmark> all;
     for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
-        all.push_back(make_case(problem_or_file(name), options, end));
+        all.push_back(make_benchmark(problem_or_file(name), options, end));
         for (size_t k = 0; k + 1 < all.size(); ++k)
             if (all[k].problem.name == all.back().problem.name)
                 throw UsageError("study " + kind + ": two problems are called '" + all[k].problem.name + "'");
@@ -58,7 +58,7 @@ bool divides(double h, double end)
 }
 
 /// As `hilda run` does: above the bound of a force a study would measure an explosion.
-void check_stable(const std::string& kind, const Case& c, const std::vector<double>& steps)
+void check_stable(const std::string& kind, const Benchmark& c, const std::vector<double>& steps)
 {
     const dae::Model& model = *c.started->model;
     const dae::Model::StableStep stable = model.stable_step(c.started->x);
@@ -73,7 +73,7 @@ void check_stable(const std::string& kind, const Case& c, const std::vector<doub
 
 }  // namespace
 
-void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps, double most)
+void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps, double most)
 {
     check_stable(kind, c, steps);
     for (const double h : steps)
@@ -83,7 +83,7 @@ void check_steps(const std::string& kind, const Case& c, const std::vector<doubl
                 c.problem.name, c.end, most, h));
 }
 
-void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps)
+void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps)
 {
     check_stable(kind, c, steps);
     for (const double h : steps)

@@ -11,16 +11,16 @@
 
 namespace hilda::studies {
 
-struct Case {
+struct Benchmark {
     Problem problem;
     std::shared_ptr<const dae::Description> started;  ///< shared by the runs, which change nothing in it
     double end = 0;                                   ///< [s]
-    Watched watched;                                  ///< with the name of its body
+    Observable observable;                            ///< with the name of its body
 
     // Of studies with a truth: see truth.hpp.
     Instants instants;
-    lie::Trajectory truth;
-    std::string truth_name;
+    lie::Trajectory reference_solution;
+    std::string reference_name;
     Errors size;
 };
 
@@ -33,14 +33,15 @@ inline double end_of_model(const dae::Description& d) { return d.end; }
 
 /// The problems of --problem, or else these: read and started one after the other, so that the first error is
 /// always the same one. Says on stderr what models drop. UsageError for two of one name.
-std::vector<Case> cases(const std::string& kind, const StudyOptions& options,
-                        const std::vector<std::string>& otherwise, const DefaultEnd& end = end_of_model);
+std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
+                                  const std::vector<std::string>& otherwise,
+                                  const DefaultEnd& end = end_of_model);
 
 /// One of them
-Case make_case(Problem problem, const StudyOptions& options, const DefaultEnd& end = end_of_model);
+Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end = end_of_model);
 
 /// UsageError for a step that does not divide the end, or is longer than `most` [s].
-void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps, double most);
-void check_steps(const std::string& kind, const Case& c, const std::vector<double>& steps);
+void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps, double most);
+void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps);
 
 }  // namespace hilda::studies

@@ -7,19 +7,20 @@ namespace {
 
 using lie::State;
 
-int watched_body(const dae::Model& model, const Watched& watched)
+int watched_body(const dae::Model& model, const Observable& observable)
 {
-    if (watched.component.size() != 2 || std::string("rvw").find(watched.component[0]) == std::string::npos ||
-        std::string("xyz").find(watched.component[1]) == std::string::npos)
+    if (observable.component.size() != 2 ||
+        std::string("rvw").find(observable.component[0]) == std::string::npos ||
+        std::string("xyz").find(observable.component[1]) == std::string::npos)
         lie::reject("studies::errors", "a watched component is one of rx … wz",
-                    "'" + watched.component + "'");
-    return watched.body.empty() ? model.bodies() - 1 : model.find(watched.body);
+                    "'" + observable.component + "'");
+    return observable.body.empty() ? model.bodies() - 1 : model.find(observable.body);
 }
 
 /// Squared differences of one state, stacked over the bodies from first to last
 struct Squares {
     double r = 0, A = 0, v = 0, omega = 0;
-    Squares(const State& x, const State* truth, int first, int last)
+    Squares(const State& x, const State* reference_solution, int first, int last)
     {
         static const lie::Motion zero = [] {
             lie::Motion m;
@@ -27,7 +28,7 @@ struct Squares {
             return m;
         }();
         for (int b = first; b <= last; ++b) {
-            const lie::Motion& to = truth != nullptr ? truth->body[b] : zero;
+            const lie::Motion& to = reference_solution != nullptr ? reference_solution->body[b] : zero;
             r += (x.body[b].r - to.r).squaredNorm();
             A += (x.body[b].A - to.A).squaredNorm();
             v += (x.body[b].rdot - to.rdot).squaredNorm();
@@ -37,9 +38,9 @@ struct Squares {
 };
 
 /// |ΔQ|² / |Q|²; 0 where the truth has no constraint loads
-double load_error(const dae::Model& model, const State& x, const State& truth)
+double load_error(const dae::Model& model, const State& x, const State& reference_solution)
 {
-    const auto a = dae::reactions(model, x), b = dae::reactions(model, truth);
+    const auto a = dae::reactions(model, x), b = dae::reactions(model, reference_solution);
     double difference = 0, size = 0;
     for (size_t k = 0; k < a.size(); ++k) {
         difference += (a[k].F - b[k].F).squaredNorm() + (a[k].T - b[k].T).squaredNorm();
@@ -57,23 +58,23 @@ double component(const State& x, int body, const std::string& name)
     return vector[name[1] - 'x'];
 }
 
-Difference difference(const State& x, const State& truth)
+Difference difference(const State& x, const State& reference_solution)
 {
-    const Squares all(x, &truth, 0, static_cast<int>(x.body.size()) - 1);
+    const Squares all(x, &reference_solution, 0, static_cast<int>(x.body.size()) - 1);
     return {std::sqrt(all.r), std::sqrt(all.A), std::sqrt(all.v), std::sqrt(all.omega)};
 }
 
 Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::vector<long>& at,
-              const lie::Trajectory& truth, const Instants& instants, const Watched& watch)
+              const lie::Trajectory& reference_solution, const Instants& instants, const Observable& watch)
 {
     const int body = watched_body(model, watch);
     Errors out;
     int with_loads = 0, nodes = 0;
     for (size_t k = 0; k < at.size(); ++k) {
         if (at[k] == 0) continue;
-        const State &x = run.row[k], &exact = truth.row[at[k]];
+        const State &x = run.row[k], &exact = reference_solution.row[at[k]];
         const double z = component(x, body, watch.component) - component(exact, body, watch.component);
-        out.value[norm::watched] += z * z;
+        out.value[norm::observable] += z * z;
         ++nodes;
         if (at[k] == instants.count) {
             const Squares end(x, &exact, body, body);
@@ -92,25 +93,25 @@ Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::ve
     for (const int n : {norm::r, norm::A, norm::v, norm::omega})
         out.value[n] = std::sqrt(out.value[n] / out.instants);
     out.value[norm::Q] = std::sqrt(out.value[norm::Q] / with_loads);
-    out.value[norm::watched] = std::sqrt(out.value[norm::watched] / nodes);
+    out.value[norm::observable] = std::sqrt(out.value[norm::observable] / nodes);
     return out;
 }
 
-Errors sizes(const dae::Model& model, const lie::Trajectory& truth, const Instants& instants,
-             const Watched& watch)
+Errors sizes(const dae::Model& model, const lie::Trajectory& reference_solution, const Instants& instants,
+             const Observable& watch)
 {
     const int body = watched_body(model, watch);
     Errors out;
     int rows = 0;
     for (long k = 1; k <= instants.count; ++k) {
-        const Squares all(truth.row[k], nullptr, 0, model.bodies() - 1);
+        const Squares all(reference_solution.row[k], nullptr, 0, model.bodies() - 1);
         out.value[norm::r] += all.r, out.value[norm::A] += all.A, out.value[norm::v] += all.v,
             out.value[norm::omega] += all.omega;
-        const double z = component(truth.row[k], body, watch.component);
-        out.value[norm::watched] += z * z;
+        const double z = component(reference_solution.row[k], body, watch.component);
+        out.value[norm::observable] += z * z;
         ++rows;
     }
-    for (const int n : {norm::r, norm::A, norm::v, norm::omega, norm::watched})
+    for (const int n : {norm::r, norm::A, norm::v, norm::omega, norm::observable})
         out.value[n] = std::sqrt(out.value[n] / rows);
     for (int n = 0; n < 4; ++n) out.value[norm::r_end + n] = out.value[norm::r + n];
     out.value[norm::Q] = 1;

@@ -22,7 +22,7 @@ namespace hilda::studies {
 ///                         over every node that is also an instant of the truth
 namespace norm {
 
-enum : int { r, A, v, omega, Q, r_end, A_end, v_end, omega_end, watched, count };
+enum : int { r, A, v, omega, Q, r_end, A_end, v_end, omega_end, observable, count };
 inline constexpr std::array<const char*, count> names = {"r",     "A",     "v",     "omega",     "Q",
                                                          "r_end", "A_end", "v_end", "omega_end", "watched"};
 
@@ -37,7 +37,7 @@ struct Errors {
 struct Difference {
     double r = 0, A = 0, v = 0, omega = 0;
 };
-Difference difference(const lie::State& x, const lie::State& truth);
+Difference difference(const lie::State& x, const lie::State& reference_solution);
 
 /// A component rx … wz of a body
 double component(const lie::State& x, int body, const std::string& name);
@@ -52,10 +52,11 @@ struct Instants {
 /// Compares `run`, whose row k is the state at the instant number at[k], with the truth. Only instants that
 /// the run has are compared.
 Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::vector<long>& at,
-              const lie::Trajectory& truth, const Instants& instants, const Watched& watched);
+              const lie::Trajectory& reference_solution, const Instants& instants,
+              const Observable& observable);
 
 /// The size of each quantity in the truth, in the same norm: what rounding is measured against.
-Errors sizes(const dae::Model& model, const lie::Trajectory& truth, const Instants& instants,
-             const Watched& watched);
+Errors sizes(const dae::Model& model, const lie::Trajectory& reference_solution, const Instants& instants,
+             const Observable& observable);
 
 }  // namespace hilda::studies

@@ -18,7 +18,7 @@ void AtInstants::accepted(const lie::State& x, long n, int)
         orthogonality = std::max(orthogonality, lie::orthogonality_error(body.A));
 }
 
-void judge(JudgedRun& run, const lie::Settings& of_study)
+void evaluate(EvaluatedRun& run, const lie::Settings& of_study)
 {
     const dae::Model& model = *run.c->started->model;
     AtInstants nodes(model, run.c->instants, run.h);
@@ -29,7 +29,8 @@ void judge(JudgedRun& run, const lie::Settings& of_study)
     if (run.failed())
         run.errors.value.fill(std::nan(""));
     else
-        run.errors = errors(model, nodes.run, nodes.at, run.c->truth, run.c->instants, run.c->watched);
+        run.errors =
+            errors(model, nodes.run, nodes.at, run.c->reference_solution, run.c->instants, run.c->observable);
 }
 
 }  // namespace hilda::studies

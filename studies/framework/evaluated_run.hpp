@@ -7,13 +7,13 @@
 
 namespace hilda::studies {
 
-struct JudgedRun : Member {
+struct EvaluatedRun : Run {
     Errors errors;                                  ///< NaN where the run failed
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the instants
 };
 
 /// Integrates; errors and invariants into `run`.
-void judge(JudgedRun& run, const lie::Settings& of_study);
+void evaluate(EvaluatedRun& run, const lie::Settings& of_study);
 
 /// Keeps the nodes that are instants of the truth, and what the invariants were there.
 class AtInstants final : public lie::Observer {

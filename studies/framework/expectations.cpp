@@ -25,7 +25,7 @@ void check_keys(const std::string& kind, const StudyOptions& options, std::span<
 
 bool as_expected(const std::vector<Expectation>& expectations, const std::vector<Measured>& measured)
 {
-    bool met = true;
+    bool passed = true;
     for (const Expectation& e : expectations) {
         bool seen = false;
         for (const Measured& m : measured) {
@@ -33,15 +33,15 @@ bool as_expected(const std::vector<Expectation>& expectations, const std::vector
             if (found == m.value.end()) continue;
             seen = true;
             if (std::abs(found->second - e.value) <= e.tolerance) continue;
-            met = false;
+            passed = false;
             message(
                 fmt::format("hilda: error: expected {}, got {:.6g} for {}\n", e.text, found->second, m.of));
         }
         if (seen) continue;
-        met = false;
+        passed = false;
         message(fmt::format("hilda: error: expected {}, but no run measured '{}'\n", e.text, e.key));
     }
-    return met;
+    return passed;
 }
 
 }  // namespace hilda::studies

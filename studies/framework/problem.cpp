@@ -53,7 +53,7 @@ Problem problem(const std::string& name)
                             ", and n_pendulum_N for any N");
 }
 
-bool enrol(Problem problem)
+bool register_problem(Problem problem)
 {
     std::vector<Problem>& all = list();
     const auto at = std::lower_bound(all.begin(), all.end(), problem,

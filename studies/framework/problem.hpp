@@ -12,10 +12,11 @@ namespace hilda::studies {
 
 /// States of a trusted solution at these instants [s], ascending, the first not before 0. Complete states:
 /// with accelerations and multipliers.
-using Truth = std::function<lie::Trajectory(dae::Description&, const std::vector<double>& instants)>;
+using ReferenceSolution =
+    std::function<lie::Trajectory(dae::Description&, const std::vector<double>& instants)>;
 
 /// A scalar of one body, such as the height of bar 2: what the figures of the dissertation plot.
-struct Watched {
+struct Observable {
     std::string body;              ///< "" for the last
     std::string component = "rz";  ///< rx ry rz vx vy vz wx wy wz
 
@@ -24,11 +25,11 @@ struct Watched {
 
 struct Problem {
     std::string name;
-    std::string what;        ///< one line: what moves, and where its numbers come from
-    std::string model;       ///< the text of its model file
-    std::string truth_name;  ///< what the truth is, for tables
-    Truth truth;             ///< after dae::start() has been called on the description
-    Watched watched;         ///< what single-scalar figures show of it
+    std::string what;                      ///< one line: what moves, and where its numbers come from
+    std::string model;                     ///< the text of its model file
+    std::string reference_name;            ///< what the truth is, for tables
+    ReferenceSolution reference_solution;  ///< after dae::start() has been called on the description
+    Observable observable;                 ///< what single-scalar figures show of it
 };
 
 /// All built-in problems, by name. n_pendulum stands for the family n_pendulum_N.
@@ -43,6 +44,6 @@ Problem problem(const std::string& name);
 Problem problem_or_file(const std::string& name_or_path);
 
 /// Puts a problem into the list: the last line of its file.
-bool enrol(Problem problem);
+bool register_problem(Problem problem);
 
 }  // namespace hilda::studies

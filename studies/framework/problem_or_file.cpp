@@ -17,10 +17,12 @@ Problem problem_or_file(const std::string& name_or_path)
     return {.name = std::filesystem::path(name_or_path).stem().string(),
             .what = "model file " + name_or_path,
             .model = read_file(name_or_path, most),
-            .truth_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13",
-            .truth = [](dae::Description& d,
-                        const std::vector<double>& t) { return reference::trusted(*d.model, d.x, t); },
-            .watched = {}};
+            .reference_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13",
+            .reference_solution =
+                [](dae::Description& d, const std::vector<double>& t) {
+                    return reference::trusted(*d.model, d.x, t);
+                },
+            .observable = {}};
 }
 
 }  // namespace hilda::studies

@@ -11,12 +11,12 @@
 
 namespace hilda::studies {
 
-std::string Member::grain() const
+std::string Run::grain() const
 {
     return rtol > 0 ? "rtol = " + step_text(rtol) : "h = " + step_text(h) + " s";
 }
 
-std::string Member::name() const { return scheme->name + " on " + c->problem.name + " at " + grain(); }
+std::string Run::name() const { return scheme->name + " on " + c->problem.name + " at " + grain(); }
 
 double thread_seconds()
 {
@@ -25,14 +25,14 @@ double thread_seconds()
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-lie::Settings settings_of(const Member& member, const lie::Settings& of_study)
+lie::Settings settings_of(const Run& member, const lie::Settings& of_study)
 {
     lie::Settings settings = of_study;
     if (member.rtol > 0) settings.rtol = member.rtol;
     return settings;
 }
 
-void march(Member& member, const lie::Settings& of_study, std::span<lie::Observer* const> observers)
+void march(Run& member, const lie::Settings& of_study, std::span<lie::Observer* const> observers)
 {
     const dae::Description& d = *member.c->started;
     const double begin = thread_seconds();
@@ -44,7 +44,7 @@ void march(Member& member, const lie::Settings& of_study, std::span<lie::Observe
     try {
         integrator = contact::make_integrator(*d.model, *member.scheme, settings_of(member, of_study));
         lie::March march(d.x, *integrator, member.h);
-        const lie::Grid grid = lie::Grid::over(member.c->end, member.h);
+        const lie::TimeGrid grid = lie::TimeGrid::over(member.c->end, member.h);
         while (march.number() < grid.steps) march.advance(observers);
         member.statistics = integrator->statistics();  // the look ahead of finish() is no step of the run
         member.seconds = thread_seconds() - begin;
@@ -59,15 +59,15 @@ void march(Member& member, const lie::Settings& of_study, std::span<lie::Observe
     member.seconds = thread_seconds() - begin;
 }
 
-std::string failures(const std::vector<const Member*>& members)
+std::string failures(const std::vector<const Run*>& run_pointers)
 {
     std::string lines;
-    for (const Member* m : members)
+    for (const Run* m : run_pointers)
         if (m->failed()) lines += fmt::format("{}: {}: {}\n", m->name(), m->status, m->message);
     return lines.empty() ? lines : "\nfailed:\n" + lines;
 }
 
-nlohmann::ordered_json as_json(const Member& m)
+nlohmann::ordered_json as_json(const Run& m)
 {
     nlohmann::ordered_json out = {{"problem", m.c->problem.name}, {"integrator", m.scheme->name}};
     if (m.rtol > 0)

@@ -11,8 +11,8 @@
 
 namespace hilda::studies {
 
-struct Member {
-    const Case* c = nullptr;
+struct Run {
+    const Benchmark* c = nullptr;
     const lie::Scheme* scheme = nullptr;
     double h = 0;     ///< between nodes [s]
     double rtol = 0;  ///< of a scheme that chooses its own steps; 0: this one does not
@@ -32,25 +32,25 @@ struct Member {
 double thread_seconds();
 
 /// The settings of a study, with the tolerance of this member
-lie::Settings settings_of(const Member& member, const lie::Settings& of_study);
+lie::Settings settings_of(const Run& member, const lie::Settings& of_study);
 
 /// Marches from the start to the end of the member's case. A failure becomes its status: the other members of
 /// the study go on.
-void march(Member& member, const lie::Settings& of_study, std::span<lie::Observer* const> observers = {});
+void march(Run& member, const lie::Settings& of_study, std::span<lie::Observer* const> observers = {});
 
 /// Members of any study, for what looks only at how they ended
-template <class Run>
-std::vector<const Member*> members(const std::vector<Run>& runs)
+template <class AnyRun>
+std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
 {
-    std::vector<const Member*> all;
-    for (const Run& run : runs) all.push_back(&run);
+    std::vector<const Run*> all;
+    for (const AnyRun& run : runs) all.push_back(&run);
     return all;
 }
 
 /// A line for each member that failed, with why
-std::string failures(const std::vector<const Member*>& members);
+std::string failures(const std::vector<const Run*>& run_pointers);
 
 /// problem, integrator, h or rtol, status and message: what study.json says of every member
-nlohmann::ordered_json as_json(const Member& member);
+nlohmann::ordered_json as_json(const Run& member);
 
 }  // namespace hilda::studies

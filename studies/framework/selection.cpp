@@ -9,15 +9,15 @@ namespace hilda::studies {
 
 Schemes any_schemes(const StudyOptions& options, const std::vector<std::string>& otherwise)
 {
-    Schemes chosen;
-    for (const std::string& name : options.integrators) chosen.push_back(&lie::scheme(name));
-    if (!chosen.empty()) return chosen;
+    Schemes selected;
+    for (const std::string& name : options.integrators) selected.push_back(&lie::scheme(name));
+    if (!selected.empty()) return selected;
     for (const std::string& name : otherwise)
         for (const lie::Scheme& s : lie::schemes())
-            if (s.name == name) chosen.push_back(&s);
+            if (s.name == name) selected.push_back(&s);
     if (otherwise.empty())
-        for (const lie::Scheme& s : lie::schemes()) chosen.push_back(&s);
-    return chosen;
+        for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
+    return selected;
 }
 
 Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,

@@ -40,11 +40,11 @@ double ratio(const TimedRun& a, const TimedRun& b)
     return spread(of_each).median;
 }
 
-double seconds_of_march(const Member& member, const lie::Settings& of_study)
+double seconds_of_march(const Run& member, const lie::Settings& of_study)
 {
     const dae::Description& d = *member.c->started;
     const lie::Settings settings = settings_of(member, of_study);
-    const lie::Grid grid = lie::Grid::over(member.c->end, member.h);
+    const lie::TimeGrid grid = lie::TimeGrid::over(member.c->end, member.h);
     double seconds = 0;
     long runs = 0;
     while (seconds < long_enough) {

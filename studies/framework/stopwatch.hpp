@@ -15,7 +15,7 @@ struct Spread {
 Spread spread(std::vector<double> values);
 
 /// A member that is timed
-struct TimedRun : Member {
+struct TimedRun : Run {
     std::vector<double> repeat;  ///< thread CPU time of each march [s]; none where it failed
 
     Spread seconds_of_repeats() const { return spread(repeat); }
@@ -29,7 +29,7 @@ double ratio(const TimedRun& a, const TimedRun& b);
 
 /// Thread CPU seconds of the march of a member with nothing observing it. Where it is over sooner than 20 ms it
 /// is run again until they have passed, and the mean is taken. Making the integrator is not counted.
-double seconds_of_march(const Member& member, const lie::Settings& of_study);
+double seconds_of_march(const Run& member, const lie::Settings& of_study);
 
 /// What the k-th of some members is run with
 using SettingsOf = std::function<lie::Settings(long k)>;

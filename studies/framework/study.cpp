@@ -27,17 +27,17 @@ std::vector<Maker>& makers()
 const std::vector<Study>& studies()
 {
     for (const Maker make : std::exchange(makers(), {}))
-        for (Study& study : make()) enrol(std::move(study));
+        for (Study& study : make()) register_study(std::move(study));
     return list();
 }
 
-bool enrol_later(Maker make)
+bool register_studies(Maker make)
 {
     makers().push_back(make);
     return true;
 }
 
-bool enrol(Study study)
+bool register_study(Study study)
 {
     std::vector<Study>& all = list();
     const auto at = std::lower_bound(all.begin(), all.end(), study,

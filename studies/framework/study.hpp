@@ -75,8 +75,8 @@ struct Study {
 };
 
 const std::vector<Study>& studies();
-bool enrol(Study study);
+bool register_study(Study study);
 /// Studies that follow from another list: it is asked when studies() is, and not before all is enrolled that enrols itself.
-bool enrol_later(std::vector<Study> (*make)());
+bool register_studies(std::vector<Study> (*make)());
 
 }  // namespace hilda::studies

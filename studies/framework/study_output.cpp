@@ -59,20 +59,20 @@ void write(const StudyOptions& options, const StudyOutput& output, const ordered
 
 }  // namespace
 
-int finish(const StudyOptions& options, const StudyOutput& output, const std::vector<const Member*>& members,
-           const std::vector<Measured>& measured)
+int finish(const StudyOptions& options, const StudyOutput& output,
+           const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured)
 {
     const ordered_json json = whole(options, output);
     if (options.json)
         std::cout << as_text(json);
     else if (!options.quiet)
-        std::cout << output.text.str() << failures(members);
+        std::cout << output.text.str() << failures(run_pointers);
     if (!options.output.empty()) write(options, output, json);
-    if (!members.empty() &&
-        std::all_of(members.begin(), members.end(), [](const Member* m) { return m->failed(); })) {
+    if (!run_pointers.empty() &&
+        std::all_of(run_pointers.begin(), run_pointers.end(), [](const Run* m) { return m->failed(); })) {
         message(fmt::format("hilda: error[{}]: study {}: all {} runs failed; {}: {}\n",
-                            members.front()->status, output.kind, members.size(), members.front()->name(),
-                            members.front()->message));
+                            run_pointers.front()->status, output.kind, run_pointers.size(),
+                            run_pointers.front()->name(), run_pointers.front()->message));
         return exit_code::numerical_failure;
     }
     return as_expected(options.expect, measured) ? exit_code::done : exit_code::expectation_failed;

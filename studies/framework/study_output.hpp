@@ -25,8 +25,8 @@ struct StudyOutput {
 
 /// Prints and writes; returns the exit code: 4 when all members failed, 6 when an expectation did not come
 /// out. The head of study.json has the settings, the seed, the repeats and where the result comes from.
-int finish(const StudyOptions& options, const StudyOutput& output, const std::vector<const Member*>& members,
-           const std::vector<Measured>& measured);
+int finish(const StudyOptions& options, const StudyOutput& output,
+           const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured);
 
 /// Of numbers that may be none: null
 nlohmann::ordered_json number_or_null(double value);

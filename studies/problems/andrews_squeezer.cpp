@@ -105,14 +105,14 @@ std::string model()
                        bodies, joints, point(C), point(K3.in_body(D)));
 }
 
-const bool enrolled =
-    enrol(Problem{.name = "andrews_squeezer",
-                  .what = "Andrews' squeezer, seven bodies and three loops; Hairer and Wanner II, VII.7",
-                  .model = model(),
-                  .truth_name = "index-1 equations (GSL rk8pd, 1e-13)",
-                  .truth = [](dae::Description& d,
-                              const std::vector<double>& t) { return reference::trusted(*d.model, d.x, t); },
-                  .watched = {.body = "K1", .component = "ry"}});
+const bool registered = register_problem(Problem{
+    .name = "andrews_squeezer",
+    .what = "Andrews' squeezer, seven bodies and three loops; Hairer and Wanner II, VII.7",
+    .model = model(),
+    .reference_name = "index-1 equations (GSL rk8pd, 1e-13)",
+    .reference_solution = [](dae::Description& d,
+                             const std::vector<double>& t) { return reference::trusted(*d.model, d.x, t); },
+    .observable = {.body = "K1", .component = "ry"}});
 
 }  // namespace
 }  // namespace hilda::studies

@@ -11,16 +11,17 @@ namespace {
 
 constexpr double fine = 2e-6;  // [s]
 
-lie::Trajectory truth(dae::Description& d, const std::vector<double>& instants)
+lie::Trajectory reference_solution(dae::Description& d, const std::vector<double>& instants)
 {
     return run_with_small_steps(d, instants, lie::scheme("rA-rattle"), fine);
 }
 
-constexpr const char* truth_name = "rA-rattle at h = 2e-6 s";
+constexpr const char* reference_name = "rA-rattle at h = 2e-6 s";
 
-const bool ball = enrol({.name = "rolling_ball",
-                         .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
-                         .model = R"({"hilda_model": 1, "name": "rolling_ball",
+const bool ball =
+    register_problem({.name = "rolling_ball",
+                      .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
+                      .model = R"({"hilda_model": 1, "name": "rolling_ball",
   "note": "ball of 5 kg and radius 0.2 m in its sag on the floor; a rigid ball would roll after 2 v / 7 mu_k g = 0.29 s",
   "gravity": [0, 0, -9.81], "end": 1,
   "bodies": [
@@ -34,11 +35,11 @@ const bool ball = enrol({.name = "rolling_ball",
   ]
 }
 )",
-                         .truth_name = truth_name,
-                         .truth = truth,
-                         .watched = {.body = "ball", .component = "vx"}});
+                      .reference_name = reference_name,
+                      .reference_solution = reference_solution,
+                      .observable = {.body = "ball", .component = "vx"}});
 
-const bool ellipsoid = enrol(
+const bool ellipsoid = register_problem(
     {.name = "bouncing_ellipsoid",
      .what = "ellipsoid dropped askew on a floor, Hertzian with friction; smooth enough for steps of 1e-4 s",
      .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
@@ -56,11 +57,11 @@ const bool ellipsoid = enrol(
   ]
 }
 )",
-     .truth_name = truth_name,
-     .truth = truth,
-     .watched = {.body = "egg", .component = "rz"}});
+     .reference_name = reference_name,
+     .reference_solution = reference_solution,
+     .observable = {.body = "egg", .component = "rz"}});
 
-const bool mill = enrol(
+const bool mill = register_problem(
     {.name = "edge_mill",
      .what = "ball on an arm that goes round and can rise: it rolls on the floor and presses by its spin",
      .model = R"({"hilda_model": 1, "name": "edge_mill",
@@ -84,9 +85,9 @@ const bool mill = enrol(
   ]
 }
 )",
-     .truth_name = truth_name,
-     .truth = truth,
-     .watched = {.body = "ball", .component = "ry"}});
+     .reference_name = reference_name,
+     .reference_solution = reference_solution,
+     .observable = {.body = "ball", .component = "ry"}});
 
 }  // namespace
 

@@ -50,12 +50,12 @@ Problem double_pendulum(const std::string& name, const std::string& what, const 
     return {.name = name,
             .what = what,
             .model = "{\"hilda_model\": 1, \"name\": \"" + name + "\"," + head_and_bodies + joints,
-            .truth_name = "two-angle equations (rk8pd, 1e-13)",
-            .truth = two_angles,
-            .watched = {}};
+            .reference_name = "two-angle equations (rk8pd, 1e-13)",
+            .reference_solution = two_angles,
+            .observable = {}};
 }
 
-const bool thick = enrol(double_pendulum(
+const bool thick = register_problem(double_pendulum(
     "double_pendulum", "planar double pendulum from rest, bars of section 0.1 m (Fang 2022, Table 3.2)", R"(
   "note": "Fang (2022), Table 3.2: bars of 4 m and 2 m, section 0.1 m, 7800 kg/m3",
   "gravity": [0, 0, -9.81], "end": 3,
@@ -64,9 +64,9 @@ const bool thick = enrol(double_pendulum(
     {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
   ],)"));
 
-const bool thin =
-    enrol(double_pendulum("double_pendulum_w005",
-                          "planar double pendulum from rest, bars of section 0.05 m (the published code)", R"(
+const bool thin = register_problem(
+    double_pendulum("double_pendulum_w005",
+                    "planar double pendulum from rest, bars of section 0.05 m (the published code)", R"(
   "note": "section 0.05 m, as in the published code of Fang (2022); the dissertation's Table 3.2 says 0.1 m",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
@@ -74,7 +74,7 @@ const bool thin =
     {"name": "bar_2", "mass": 39, "inertia": [0.01625, 13.008125, 13.008125], "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
   ],)"));
 
-const bool moving = enrol(double_pendulum(
+const bool moving = register_problem(double_pendulum(
     "double_pendulum_moving", "planar double pendulum that moves from the start; our own test case", R"(
   "note": "double_pendulum with 1 rad/s of bar 1 and -2 rad/s of bar 2 at the start",
   "gravity": [0, 0, -9.81], "end": 3,

@@ -14,32 +14,32 @@ struct BallInBowl {
     std::string name, what, contact_point, r, friction = {}, note = {};
 };
 
-bool enrol(const BallInBowl& ball)
+bool register_problem(const BallInBowl& ball)
 {
     const std::string friction = ball.friction.empty() ? "" : R"(,
       "friction": )" + ball.friction;
-    return studies::enrol({.name = ball.name,
-                           .what = ball.what,
-                           .model = R"({"hilda_model": 1, "name": ")" + ball.name + R"(",
+    return studies::register_problem({.name = ball.name,
+                                      .what = ball.what,
+                                      .model = R"({"hilda_model": 1, "name": ")" + ball.name + R"(",
   "note": "semi-axes 4, 3 and 2 m, seen from inside; let go at the contact point )" +
-                                    ball.contact_point + ball.note + R"(",
+                                               ball.contact_point + ball.note + R"(",
   "gravity": [0, 0, -9.81], "end": 10,
   "bodies": [
     {"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [)" +
-                                    ball.r + R"(]}
+                                               ball.r + R"(]}
   ],
   "contacts": [
     {"name": "ball-bowl", "body_i": "ball", "body_j": "ground",
       "surface_i": {"type": "sphere", "radius": 0.5},
       "surface_j": {"type": "ellipsoid", "semi_axes": [4, 3, 2], "concave": true},
-      "normal": {"type": "constraint"})" +
-                                    friction + R"(}
+      "normal": {"type": "constraint"})" + friction +
+                                               R"(}
   ]
 }
 )",
-                           .truth_name = evolving_truth_name,
-                           .truth = evolving_truth,
-                           .watched = {.body = "ball", .component = "ry"}});
+                                      .reference_name = evolving_truth_name,
+                                      .reference_solution = evolving_reference,
+                                      .observable = {.body = "ball", .component = "ry"}});
 }
 
 const std::string planar_point = "0, 1.5, -1.7321", planar_r = "0, 1.320394697973225, -1.265422544940186",
@@ -47,31 +47,33 @@ const std::string planar_point = "0, 1.5, -1.7321", planar_r = "0, 1.32039469797
                   xy_r = "0.9307364355190585, 1.315297161384156, -1.1988698851259592",
                   rolling = R"({"law": "rolling"})";
 
-const bool planar = enrol(
+const bool planar = register_problem(
     {.name = "ball_in_bowl",
      .what = "ball let go in an ellipsoidal bowl, swings in a plane without friction (Fang 2022, Sec. 5.5.1)",
      .contact_point = planar_point,
      .r = planar_r});
 
-const bool xy =
-    enrol({.name = "ball_in_bowl_xy",
-           .what = "ball let go in the same bowl where it leaves the plane (Fang 2022, Sec. 5.5.1)",
-           .contact_point = xy_point,
-           .r = xy_r});
+const bool xy = register_problem(
+    {.name = "ball_in_bowl_xy",
+     .what = "ball let go in the same bowl where it leaves the plane (Fang 2022, Sec. 5.5.1)",
+     .contact_point = xy_point,
+     .r = xy_r});
 
-const bool rolling_planar = enrol({.name = "rolling_ball_in_bowl",
-                                   .what = "ball that rolls in the bowl of ball_in_bowl without slipping",
-                                   .contact_point = planar_point,
-                                   .r = planar_r,
-                                   .friction = rolling});
+const bool rolling_planar =
+    register_problem({.name = "rolling_ball_in_bowl",
+                      .what = "ball that rolls in the bowl of ball_in_bowl without slipping",
+                      .contact_point = planar_point,
+                      .r = planar_r,
+                      .friction = rolling});
 
-const bool rolling_xy = enrol({.name = "rolling_ball_in_bowl_xy",
-                               .what = "ball that rolls in the bowl of ball_in_bowl_xy, and pivots",
-                               .contact_point = xy_point,
-                               .r = xy_r,
-                               .friction = rolling});
+const bool rolling_xy =
+    register_problem({.name = "rolling_ball_in_bowl_xy",
+                      .what = "ball that rolls in the bowl of ball_in_bowl_xy, and pivots",
+                      .contact_point = xy_point,
+                      .r = xy_r,
+                      .friction = rolling});
 
-const bool braked = enrol(
+const bool braked = register_problem(
     {.name = "braked_ball_in_bowl",
      .what = "ball that rolls in the same bowl by friction, and comes to rest (Fang 2022, Sec. 5.5.2)",
      .contact_point = planar_point,
@@ -82,49 +84,48 @@ const bool braked = enrol(
 
 /// An ellipsoid on the plane z = 0
 struct OnTheFloor {
-    std::string name, what, note, end, body, body_keys, semi_axes, watched, friction = {};
+    std::string name, what, note, end, body, body_keys, semi_axes, observable, friction = {};
 };
 
-bool enrol(const OnTheFloor& e)
+bool register_problem(const OnTheFloor& e)
 {
     const std::string friction = e.friction.empty() ? "" : R"(, "friction": )" + e.friction;
-    return studies::enrol({.name = e.name,
-                           .what = e.what,
-                           .model = R"({"hilda_model": 1, "name": ")" + e.name + R"(",
+    return studies::register_problem({.name = e.name,
+                                      .what = e.what,
+                                      .model = R"({"hilda_model": 1, "name": ")" + e.name + R"(",
   "note": ")" + e.note + R"(",
-  "gravity": [0, 0, -9.81], "end": )" +
-                                    e.end + R"(,
+  "gravity": [0, 0, -9.81], "end": )" + e.end + R"(,
   "bodies": [
-    {"name": ")" + e.body + R"(", )" +
-                                    e.body_keys + R"(}
+    {"name": ")" + e.body + R"(", )" + e.body_keys +
+                                               R"(}
   ],
   "contacts": [
     {"name": ")" + e.body + R"(-floor", "body_i": ")" +
-                                    e.body + R"(", "body_j": "ground",
+                                               e.body + R"(", "body_j": "ground",
       "surface_i": {"type": "ellipsoid", "semi_axes": )" +
-                                    e.semi_axes + R"(}, "surface_j": {"type": "plane"},
-      "normal": {"type": "constraint"})" +
-                                    friction + R"(}
+                                               e.semi_axes + R"(}, "surface_j": {"type": "plane"},
+      "normal": {"type": "constraint"})" + friction +
+                                               R"(}
   ]
 }
 )",
-                           .truth_name = evolving_truth_name,
-                           .truth = evolving_truth,
-                           .watched = {.body = e.body, .component = e.watched}});
+                                      .reference_name = evolving_truth_name,
+                                      .reference_solution = evolving_reference,
+                                      .observable = {.body = e.body, .component = e.observable}});
 }
 
-const bool rocking =
-    enrol({.name = "rocking_ellipsoid",
-           .what = "ellipsoid that rocks on a smooth floor, with a period of 0.7120300728 s",
-           .note = "homogeneous, semi-axes 0.3, 0.25 and 0.15 m, let go 0.6 rad from upright",
-           .end = "2",
-           .body = "ellipsoid",
-           .body_keys = R"("mass": 2, "inertia": [0.034, 0.045, 0.061], "r": [0, 0, 0.187757409735186],
+const bool rocking = register_problem(
+    {.name = "rocking_ellipsoid",
+     .what = "ellipsoid that rocks on a smooth floor, with a period of 0.7120300728 s",
+     .note = "homogeneous, semi-axes 0.3, 0.25 and 0.15 m, let go 0.6 rad from upright",
+     .end = "2",
+     .body = "ellipsoid",
+     .body_keys = R"("mass": 2, "inertia": [0.034, 0.045, 0.061], "r": [0, 0, 0.187757409735186],
       "axis_angle": [1, 0, 0, 0.6])",
-           .semi_axes = "[0.3, 0.25, 0.15]",
-           .watched = "rz"});
+     .semi_axes = "[0.3, 0.25, 0.15]",
+     .observable = "rz"});
 
-const bool wobbling = enrol(
+const bool wobbling = register_problem(
     {.name = "wobbling_ellipsoid",
      .what = "ellipsoid that spins, wobbles and drifts on a smooth floor",
      .note =
@@ -135,22 +136,23 @@ const bool wobbling = enrol(
       "p": [0.95656808142202909, 0.24637008399760019, 0.14782205039856011, 0.049274016799520037],
       "r_dot": [0.3, 0, 0.16523035228314287], "omega": [1, 2, 4])",
      .semi_axes = "[0.3, 0.25, 0.15]",
-     .watched = "rz"});
+     .observable = "rz"});
 
-const bool rattle = enrol({.name = "rattleback",
-                           .what = "celt that rolls: spun one way it begins to rattle and turns round",
-                           .note = "semi-axes 0.2, 0.05 and 0.04 m; the axes of inertia are turned by 0.1 "
-                                   "rad about z; tilted by 0.011 rad",
-                           .end = "4",
-                           .body = "celt",
-                           .body_keys = R"("mass": 1,
+const bool rattle =
+    register_problem({.name = "rattleback",
+                      .what = "celt that rolls: spun one way it begins to rattle and turns round",
+                      .note = "semi-axes 0.2, 0.05 and 0.04 m; the axes of inertia are turned by 0.1 "
+                              "rad about z; tilted by 0.011 rad",
+                      .end = "4",
+                      .body = "celt",
+                      .body_keys = R"("mass": 1,
       "inertia": [[0.000894750333095344, -0.0007450099904814797, 0],
                   [-0.0007450099904814797, 0.008245249666904658, 0], [0, 0, 0.0085]],
       "r": [0, 0, 0.040048250137367833], "p": [0.99998437504069015, 0.0024999869791870119, 0.0049999739583740238, 0],
       "r_dot": [0.00093705324820102199, 0.029962880624740451, 0.00014044972276224167], "omega": [0, 0, -3])",
-                           .semi_axes = "[0.2, 0.05, 0.04]",
-                           .watched = "wz",
-                           .friction = rolling});
+                      .semi_axes = "[0.2, 0.05, 0.04]",
+                      .observable = "wz",
+                      .friction = rolling});
 
 }  // namespace
 

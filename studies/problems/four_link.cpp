@@ -62,15 +62,15 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
   ]
 }
 )json",
-            .truth_name = "kinematic analysis at 1e-13",
-            .truth =
+            .reference_name = "kinematic analysis at 1e-13",
+            .reference_solution =
                 [](dae::Description& d, const std::vector<double>& instants) {
                     return reference::trusted(*d.model, d.x, instants);
                 },
-            .watched = {.body = "link_2", .component = "vz"}};
+            .observable = {.body = "link_2", .component = "vz"}};
 }
 
-const bool code = enrol(four_link(
+const bool code = register_problem(four_link(
     "four_link",
     "spatial four-link, rotor driven at half a turn a second, nothing free (the published code of Fang 2022)",
     "mass and inertia of the published code of Fang (2022); start projected on the constraints",
@@ -78,7 +78,7 @@ const bool code = enrol(four_link(
      .link_2 = R"json("mass": 1, "inertia": [12.4, 0.1, 12.4])json",
      .link_3 = R"json("mass": 1, "inertia": [4.54, 0.01, 4.54])json"}));
 
-const bool table = enrol(four_link(
+const bool table = register_problem(four_link(
     "four_link_table33", "four_link with the densities and sizes of the text (Fang 2022, Table 3.3)",
     "Fang (2022), Table 3.3: 1500 kg/m3, disk of radius 2 m and thickness 0.1 m, rods as cylinders of radius "
     "0.1 m; start projected",

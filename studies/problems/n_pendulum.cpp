@@ -44,12 +44,12 @@ Problem chain(const std::string& name, const std::string& what, const std::strin
   "bodies": [
 )" + bodies + "\n  ],\n  \"constraints\": [\n" +
                      constraints + "\n  ]\n}\n",
-            .truth_name = "index-1 equations by rk8pd at 1e-13",
-            .truth =
+            .reference_name = "index-1 equations by rk8pd at 1e-13",
+            .reference_solution =
                 [](dae::Description& d, const std::vector<double>& instants) {
                     return reference::trusted(*d.model, d.x, instants);
                 },
-            .watched = {}};
+            .observable = {}};
 }
 
 const std::string family = "n_pendulum";
@@ -98,15 +98,15 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
 
 namespace {
 
-const bool two = enrol(n_pendulum(2, family));
+const bool two = register_problem(n_pendulum(2, family));
 
-const bool spin =
-    enrol(chain("n_pendulum_2_spin",
-                "two bars on ball joints, moving in space and spinning from the start; our own test case",
-                "n_pendulum_2 with a consistent spatial start: spin about each bar, and joints that move",
-                bar(1, R"(, "r_dot": [-0.5, -1, 0], "omega": [3, 0.5, -1])") + ",\n" +
-                    bar(2, R"(, "r_dot": [-2, 0, 0], "omega": [-4, 1, 2])"),
-                ball(1) + ",\n" + ball(2)));
+const bool spin = register_problem(
+    chain("n_pendulum_2_spin",
+          "two bars on ball joints, moving in space and spinning from the start; our own test case",
+          "n_pendulum_2 with a consistent spatial start: spin about each bar, and joints that move",
+          bar(1, R"(, "r_dot": [-0.5, -1, 0], "omega": [3, 0.5, -1])") + ",\n" +
+              bar(2, R"(, "r_dot": [-2, 0, 0], "omega": [-4, 1, 2])"),
+          ball(1) + ",\n" + ball(2)));
 
 }  // namespace
 

@@ -9,10 +9,10 @@ namespace hilda::studies {
 
 namespace {
 
-const bool enrolled = enrol(
-    {.name = "single_pendulum",
-     .what = "bar driven to and fro about x, nothing free (the published code of Fang 2022)",
-     .model = R"json({"hilda_model": 1, "name": "single_pendulum",
+const bool registered =
+    register_problem({.name = "single_pendulum",
+                      .what = "bar driven to and fro about x, nothing free (the published code of Fang 2022)",
+                      .model = R"json({"hilda_model": 1, "name": "single_pendulum",
   "note": "bar of 4 m, section 0.05 m, 7800 kg/m3; driver of the published code of Fang (2022)",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
@@ -31,10 +31,12 @@ const bool enrolled = enrol(
   ]
 }
 )json",
-     .truth_name = "kinematic analysis at 1e-13",
-     .truth = [](dae::Description& d,
-                 const std::vector<double>& instants) { return reference::trusted(*d.model, d.x, instants); },
-     .watched = {}});
+                      .reference_name = "kinematic analysis at 1e-13",
+                      .reference_solution =
+                          [](dae::Description& d, const std::vector<double>& instants) {
+                              return reference::trusted(*d.model, d.x, instants);
+                          },
+                      .observable = {}});
 
 }  // namespace
 

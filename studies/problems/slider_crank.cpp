@@ -9,7 +9,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool enrolled = enrol(
+const bool registered = register_problem(
     {.name = "slider_crank",
      .what = "spatial slider-crank, crank driven at one turn a second, nothing free (Fang 2022, Table 3.4)",
      .model = R"json({"hilda_model": 1, "name": "slider_crank",
@@ -52,10 +52,12 @@ const bool enrolled = enrol(
   ]
 }
 )json",
-     .truth_name = "kinematic analysis at 1e-13",
-     .truth = [](dae::Description& d,
-                 const std::vector<double>& instants) { return reference::trusted(*d.model, d.x, instants); },
-     .watched = {.body = "slider", .component = "vx"}});
+     .reference_name = "kinematic analysis at 1e-13",
+     .reference_solution =
+         [](dae::Description& d, const std::vector<double>& instants) {
+             return reference::trusted(*d.model, d.x, instants);
+         },
+     .observable = {.body = "slider", .component = "vx"}});
 
 }  // namespace
 

@@ -49,10 +49,10 @@ lie::Trajectory steady_precession(dae::Description& d, const std::vector<double>
     return reference::trusted(*d.model, d.x, instants, one_body([&](double t) { return top.at(t - d.x.t); }));
 }
 
-const bool thrown =
-    enrol({.name = "free_top",
-           .what = "symmetric top thrown up spinning, three turns of its axis in three seconds (closed form)",
-           .model = R"({"hilda_model": 1, "name": "free_top",
+const bool thrown = register_problem(
+    {.name = "free_top",
+     .what = "symmetric top thrown up spinning, three turns of its axis in three seconds (closed form)",
+     .model = R"({"hilda_model": 1, "name": "free_top",
   "note": "cylinder of radius 0.1 m and height 0.3 m; its angular momentum is upright, its axis 18.4 degrees off; back at its height after 3 s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
@@ -62,14 +62,14 @@ const bool thrown =
   ]
 }
 )",
-           .truth_name = "closed form",
-           .truth = free_flight,
-           .watched = {.body = "top", .component = "wx"}});
+     .reference_name = "closed form",
+     .reference_solution = free_flight,
+     .observable = {.body = "top", .component = "wx"}});
 
 const bool on_its_tip =
-    enrol({.name = "heavy_top",
-           .what = "symmetric top on its tip in steady precession at 2 rad/s (closed form)",
-           .model = R"({"hilda_model": 1, "name": "heavy_top",
+    register_problem({.name = "heavy_top",
+                      .what = "symmetric top on its tip in steady precession at 2 rad/s (closed form)",
+                      .model = R"({"hilda_model": 1, "name": "heavy_top",
   "note": "disc of radius 0.2 m and thickness 0.06 m, 0.1 m from its tip; cos(nutation) 0.8; spin such that it goes round at 2 rad/s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
@@ -82,9 +82,9 @@ const bool on_its_tip =
   ]
 }
 )",
-           .truth_name = "closed form",
-           .truth = steady_precession,
-           .watched = {.body = "top", .component = "rx"}});
+                      .reference_name = "closed form",
+                      .reference_solution = steady_precession,
+                      .observable = {.body = "top", .component = "rx"}});
 
 }  // namespace
 

@@ -208,16 +208,16 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
 {
     std::vector<std::string> known;
     for (const lie::Scheme& scheme : lie::schemes()) known.push_back(scheme.name);
-    std::vector<std::string> chosen = list(option, text);
-    for (size_t k = 0; k < chosen.size(); ++k) {
-        if (std::find(known.begin(), known.end(), chosen[k]) == known.end())
-            throw UsageError(option + ": unknown integrator" + with_nearest(chosen[k], known) +
+    std::vector<std::string> selected = list(option, text);
+    for (size_t k = 0; k < selected.size(); ++k) {
+        if (std::find(known.begin(), known.end(), selected[k]) == known.end())
+            throw UsageError(option + ": unknown integrator" + with_nearest(selected[k], known) +
                              " (hilda integrators lists them)");
-        if (std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(k), chosen[k]) !=
-            chosen.begin() + static_cast<std::ptrdiff_t>(k))
+        if (std::find(selected.begin(), selected.begin() + static_cast<std::ptrdiff_t>(k), selected[k]) !=
+            selected.begin() + static_cast<std::ptrdiff_t>(k))
             refuse(option, "must name each integrator once", text);
     }
-    return chosen;
+    return selected;
 }
 
 std::string integrator(const std::string& option, const std::string& text)

@@ -78,11 +78,11 @@ std::vector<Touching> contacts(const dae::Model& model, const lie::State& x)
     for (const auto& force : model.forces()) {
         const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
         if (contact == nullptr || contact->held_by() != nullptr) continue;
-        const contact::Meeting m = contact->at(x).meeting;
+        const contact::ContactState m = contact->at(x).contact_state;
         all.push_back({.name = contact->name,
-                       .gap = m.touch.gap,
+                       .gap = m.contact_point.gap,
                        .N = std::max(0., m.N),
-                       .curvature = 0.5 * (m.touch.K_i + m.touch.K_j).trace(),
+                       .curvature = 0.5 * (m.contact_point.K_i + m.contact_point.K_j).trace(),
                        .stable_step = contact->stable_step(x)});
     }
     return all;
@@ -120,7 +120,7 @@ struct Evolving {
     int rows, velocity_rows, unknowns;
     lie::Vec3 C, n, alpha_i,
         alpha_j;  ///< where it touches, the normal into body i [m, global]; on both bodies
-    bool opens, open, handed_over;
+    bool opens, open, fallback_active;
     double gap, F_N;                 ///< [m], [N]
     contact::Curvatures of_i, of_j;  ///< principal [1/m]
     double
@@ -137,8 +137,9 @@ std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
     for (const EvolvingContact* c : evolving_contacts(model)) {
         const dae::Constraint::At at = model.at(*c, x);
         const ContactForces beside = forces_of(model, *c);
-        const bool handed_over = dae::Model::mode(*c, x) == dae::Constraint::handed_over;
-        const contact::Touch touch = handed_over ? beside.fallback->at(x).meeting.touch : c->touch(at);
+        const bool fallback_active = dae::Model::mode(*c, x) == dae::Constraint::fallback_active;
+        const contact::ContactPoint contact_point =
+            fallback_active ? beside.fallback->at(x).contact_state.contact_point : c->contact_point(at);
         const OnBodyI acts = on_body_i(model, *c, beside, x);
         all.push_back(
             {.name = c->name,
@@ -149,18 +150,18 @@ std::vector<Evolving> evolving(const dae::Model& model, const lie::State& x)
              .rows = c->rows(),
              .velocity_rows = c->velocity_rows(),
              .unknowns = c->unknowns(),
-             .C = touch.C(),
-             .n = touch.n,
-             .alpha_i = at.bi.A.transpose() * (touch.C_i - at.bi.r),
-             .alpha_j = at.bj.A.transpose() * (touch.C_j - at.bj.r),
-             .opens = c->unilateral.opens,
-             .open = dae::Model::mode(*c, x) == dae::Constraint::is_open,
-             .handed_over = handed_over,
-             .gap = touch.gap,
+             .C = contact_point.C(),
+             .n = contact_point.n,
+             .alpha_i = at.bi.A.transpose() * (contact_point.C_i - at.bi.r),
+             .alpha_j = at.bj.A.transpose() * (contact_point.C_j - at.bj.r),
+             .opens = c->unilateral.enabled,
+             .open = dae::Model::mode(*c, x) == dae::Constraint::inactive,
+             .fallback_active = fallback_active,
+             .gap = contact_point.gap,
              .F_N = acts.F_N,
-             .of_i = contact::principal_curvatures(touch.K_i, touch.n),
-             .of_j = contact::principal_curvatures(touch.K_j, touch.n),
-             .least_curvature = contact::least_curvature(touch) * c->L,
+             .of_i = contact::principal_curvatures(contact_point.K_i, contact_point.n),
+             .of_j = contact::principal_curvatures(contact_point.K_j, contact_point.n),
+             .least_curvature = contact::least_curvature(contact_point) * c->L,
              .F_f = acts.friction.norm()});
         if (beside.friction != nullptr) all.back().stable_step = beside.friction->stable_step(x);
         if (beside.fallback != nullptr) all.back().stable_fallback = beside.fallback->stable_step(x);
@@ -184,7 +185,7 @@ nlohmann::ordered_json as_json(const Evolving& c)
             {"alpha_j", as_json(c.alpha_j)},
             {"unilateral", c.opens},
             {"open", c.open},
-            {"handed_over", c.handed_over},
+            {"handed_over", c.fallback_active},
             {"gap", c.gap},
             {"normal_force", c.F_N},
             {"curvatures_i", {c.of_i.least, c.of_i.most}},
@@ -207,11 +208,11 @@ std::vector<std::string> in_words(const Evolving& c)
                     c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
         fmt::format("at {} m, normal {} into the first, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
         fmt::format("normal force {:.10g} N{}", c.F_N,
-                    c.handed_over ? ": of the fallback, to which it has handed over"
-                    : c.open      ? ": it is open"
-                    : c.F_N >= 0  ? ""
-                    : c.opens     ? ": it opens"
-                                  : ": it pulls"),
+                    c.fallback_active ? ": of the fallback, to which it has handed over"
+                    : c.open          ? ": it is open"
+                    : c.F_N >= 0      ? ""
+                    : c.opens         ? ": it opens"
+                                      : ": it pulls"),
         fmt::format("curvatures {:.4g}, {:.4g} and {:.4g}, {:.4g} 1/m; least of the sum, times size, {:.3g}",
                     c.of_i.least, c.of_i.most, c.of_j.least, c.of_j.most, c.least_curvature)};
     if (!std::isnan(c.stable_step))

@@ -82,8 +82,8 @@ public:
         } catch (const CLI::ExtrasError&) {
             refuse_extras();
         } catch (const CLI::ParseError& error) {
-            const std::vector<CLI::App*> chosen = app.get_subcommands();
-            throw UsageError((chosen.empty() ? "" : chosen.front()->get_name() + ": ") + error.what());
+            const std::vector<CLI::App*> selected = app.get_subcommands();
+            throw UsageError((selected.empty() ? "" : selected.front()->get_name() + ": ") + error.what());
         }
         for (const auto& [command, action] : actions)
             if (command->parsed()) return action();
@@ -175,7 +175,7 @@ private:
         RunOptions& o = run;
         CLI::App* c = add("run", "simulate one model", [this] {
             if (run.force && run.resume) throw UsageError("run: --force and --resume exclude each other");
-            if (!chosen_integrators.empty()) run.integrators = chosen_integrators;
+            if (!selected_integrators.empty()) run.integrators = selected_integrators;
             run.command_line = typed;
             return run_model(run);
         });
@@ -185,12 +185,12 @@ private:
         values(c, "--integrator", "NAME[,NAME...]",
                "one run each, by default rA-half-1; with contacts that are constraints rA-half-1-momentum is "
                "recommended",
-               append(chosen_integrators, integrators));
+               append(selected_integrators, integrators));
         value(c, "--step", "H", "step size in s, by default 1e-3; not for ida-rp, which chooses its own",
               assign(o.step, positive_number));
         value(c, "--end", "T", "end in s, by default the model's", assign(o.end, nonnegative_number));
         value(c, "--every", "DT", "s between output rows, by default end/1000; 0: every step",
-              assign(o.every, nonnegative_number));
+              assign(o.interval, nonnegative_number));
         add_settings(c, o.settings);
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
@@ -363,15 +363,15 @@ private:
 
     [[noreturn]] void refuse_extras() const
     {
-        const std::vector<CLI::App*> chosen = app.get_subcommands();
-        const CLI::App* command = chosen.empty() ? &app : chosen.front();
+        const std::vector<CLI::App*> selected = app.get_subcommands();
+        const CLI::App* command = selected.empty() ? &app : selected.front();
         const std::vector<std::string> extras = app.remaining(true);
         const std::string word = extras.empty() ? "" : extras.front(),
                           option = word.substr(0, word.find('='));
         std::vector<std::string> known;
         for (const CLI::Option* o : command->get_options())
             for (const std::string& long_name : o->get_lnames()) known.push_back("--" + long_name);
-        const std::string where = chosen.empty() ? "" : command->get_name() + ": ";
+        const std::string where = selected.empty() ? "" : command->get_name() + ": ";
         if (word.starts_with('-')) throw UsageError(where + "unknown option" + with_nearest(option, known));
         throw UsageError(where + "one argument too many: '" + word + "'");
     }
@@ -383,7 +383,7 @@ private:
     RunOptions run;
     CheckOptions check;
     StudyOptions study;
-    std::vector<std::string> chosen_integrators;
+    std::vector<std::string> selected_integrators;
     std::string name, write_to, kind, directory;
     bool json = false, verbose = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular

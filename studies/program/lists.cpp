@@ -70,8 +70,8 @@ namespace {
 
 std::string contacts_of(const lie::Scheme& s)
 {
-    if (!s.massless) return "-";
-    return s.velocities ? "evolve, roll" : "evolve";
+    if (!s.algebraic) return "-";
+    return s.nonholonomic ? "evolve, roll" : "evolve";
 }
 
 }  // namespace
@@ -86,8 +86,8 @@ int list_integrators(bool json)
                            {"order_lambda",
                             s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
                            {"adaptive", s.adaptive},
-                           {"evolving_contacts", s.massless},
-                           {"rolling_contacts", s.massless && s.velocities},
+                           {"evolving_contacts", s.algebraic},
+                           {"rolling_contacts", s.algebraic && s.nonholonomic},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"source", s.source}});

@@ -28,8 +28,8 @@ namespace {
 
 std::string python()
 {
-    const char* chosen = std::getenv("HILDA_PYTHON");
-    return chosen != nullptr && *chosen != '\0' ? chosen : version::python;
+    const char* selected = std::getenv("HILDA_PYTHON");
+    return selected != nullptr && *selected != '\0' ? selected : version::python;
 }
 
 /// Beside an installed program, or in the source tree; empty when it is in neither place.

@@ -42,7 +42,7 @@ void refuse_for_adaptive(const RunOptions& options)
             refuse(
                 "remembers past steps outside the state; --checkpoint and --resume are for fixed-step "
                 "schemes");
-        if (options.every && *options.every == 0)
+        if (options.interval && *options.interval == 0)
             refuse("chooses its own steps; --every must be positive, got 0");
     }
 }

@@ -14,8 +14,8 @@ namespace hilda::studies {
 struct RunOptions {
     std::string model;  ///< a built-in name or a path
     std::vector<std::string> integrators{"rA-half-1"};
-    std::optional<double> step;        ///< [s]; 1e-3
-    std::optional<double> end, every;  ///< [s]; the model's end, a thousandth of the end
+    std::optional<double> step;           ///< [s]; 1e-3
+    std::optional<double> end, interval;  ///< [s]; the model's end, a thousandth of the end
     lie::Settings settings;
     std::vector<std::string> set;  ///< /json/pointer=VALUE
     std::string

@@ -95,8 +95,8 @@ void pass(Archive& a, lie::State& x)
     pass_list(a, x.body);
     pass_list(a, x.alpha);
     pass_list(a, x.lambda);
-    pass_list(a, x.memory);
-    pass_list(a, x.remembered);
+    pass_list(a, x.discrete_state);
+    pass_list(a, x.internal_state);
     pass_list(a, x.history);
 }
 
@@ -105,9 +105,9 @@ constexpr size_t bytes_of_event = 2 * sizeof(int) + 2 * sizeof(double);
 template <class Archive>
 void pass(Archive& a, contact::ContactEvent& e)
 {
-    auto kind = static_cast<int>(e.kind);
+    auto kind = static_cast<int>(e.type);
     pass(a, kind);
-    e.kind = static_cast<contact::ContactEvent::Kind>(kind);
+    e.type = static_cast<contact::ContactEvent::Type>(kind);
     pass(a, e.t);
     pass(a, e.contact);
     pass(a, e.speed);

@@ -17,7 +17,7 @@ std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model&
 contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
                                              const lie::State& x)
 {
-    if (dae::Model::idle(c, x)) return {};
+    if (dae::Model::inactive(c, x)) return {};
     return c.multipliers(model.at(c, x), x.lambda);
 }
 
@@ -39,7 +39,8 @@ OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, co
                   const lie::State& x)
 {
     if (of.fallback != nullptr && of.fallback->works(x))
-        return {.F_N = std::max(0., of.fallback->at(x).meeting.N), .friction = of.fallback->friction(x).F};
+        return {.F_N = std::max(0., of.fallback->at(x).contact_state.N),
+                .friction = of.fallback->friction(x).F};
     const contact::EvolvingContact::Multipliers m = forces(model, c, x);
     return {.F_N = m.F_N, .friction = of.friction != nullptr ? of.friction->friction(x).F : m.friction};
 }
@@ -48,7 +49,7 @@ int contact_rank(const dae::Model& model, const lie::State& x)
 {
     int rank = 0;
     for (const auto& c : model.evolving())
-        if (!dae::Model::idle(*c, x)) rank += c->rows() + c->velocity_rows() - c->unknowns();
+        if (!dae::Model::inactive(*c, x)) rank += c->rows() + c->velocity_rows() - c->unknowns();
     return rank;
 }
 

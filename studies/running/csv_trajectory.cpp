@@ -9,7 +9,7 @@
 
 namespace hilda::studies {
 
-TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file,
+TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, OutputFile& file,
                              bool with_reactions)
     : model(model), grid(grid), file(file), with_reactions(with_reactions),
       contacts(evolving_contacts(model)), C(model.pattern())
@@ -46,7 +46,7 @@ void TrajectoryCsv::write_header()
             columns(c->name,
                     {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z", "lambda_N"});
             if (rubs(k)) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
-            if (c->opens()) columns(c->name, {"gap"});
+            if (c->may_be_inactive()) columns(c->name, {"gap"});
         }
     }
     row += '\n';
@@ -103,15 +103,15 @@ void TrajectoryCsv::write_contacts(const lie::State& x)
         const OnBodyI acts = on_body_i(model, *c, beside[k], x);
         row += ',';
         append_number(row, acts.F_N);
-        append_vector(row, c->touch(at).C());
+        append_vector(row, c->contact_point(at).C());
         append_vector(row, lie::Vec3::Map(at.alpha));
         append_vector(row, lie::Vec3::Map(at.alpha + 3));
         row += ',';
         append_number(row, forces(model, *c, x).N.norm());
         if (rubs(k)) append_vector(row, acts.friction);
-        if (!c->opens()) continue;
+        if (!c->may_be_inactive()) continue;
         row += ',';
-        append_number(row, c->touch(at).gap);
+        append_number(row, c->contact_point(at).gap);
     }
 }
 

@@ -48,7 +48,7 @@ struct Invariants {
 /// at the node where a constraint row that was dropped as redundant stops being so.
 class TrajectoryCsv final : public lie::Observer {
 public:
-    TrajectoryCsv(const dae::Model& model, const lie::Grid& grid, OutputFile& file, bool with_reactions);
+    TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, OutputFile& file, bool with_reactions);
 
     void write_header();
     void accepted(const lie::State& x, long n, int iterations) override;
@@ -61,7 +61,7 @@ private:
     bool rubs(size_t k) const;
 
     const dae::Model& model;
-    const lie::Grid& grid;
+    const lie::TimeGrid& grid;
     OutputFile& file;
     const bool with_reactions;
     std::vector<const contact::EvolvingContact*> contacts;

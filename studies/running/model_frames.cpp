@@ -3,12 +3,12 @@
 
 namespace hilda::studies {
 
-ModelFrames::ModelFrames(const dae::Model& model, const lie::Grid& grid)
+ModelFrames::ModelFrames(const dae::Model& model, const lie::TimeGrid& grid)
     : ModelFrames(model, [grid](long n) { return grid.is_row(n); })
 {}
 
-ModelFrames::ModelFrames(const dae::Model& model, EvenChoice chosen)
-    : ModelFrames(model, [chosen](long n) mutable { return chosen.takes(n); })
+ModelFrames::ModelFrames(const dae::Model& model, EvenChoice selected)
+    : ModelFrames(model, [selected](long n) mutable { return selected.takes(n); })
 {}
 
 ModelFrames::ModelFrames(const dae::Model& model, std::function<bool(long)> takes)
@@ -30,32 +30,32 @@ ModelFrames::ModelFrames(const dae::Model& model, std::function<bool(long)> take
 void ModelFrames::accepted(const lie::State& x, long n, int)
 {
     if (!takes(n)) return;
-    std::vector<Snapshots::Touch> touches;
+    std::vector<Snapshots::ContactPoint> touches;
     for (size_t k = 0; k < contacts.size(); ++k) {
         const contact::ContactForce& c = *contacts[k];
         if (!c.works(x)) continue;
         const contact::ContactForce::Instant now = c.at(x);
-        if (now.meeting.N > 0)
-            touches.push_back(
-                Snapshots::touch(static_cast<int>(k), c.i, now.meeting, c.friction(x), now.memory.history));
+        if (now.contact_state.N > 0)
+            touches.push_back(Snapshots::contact_point(static_cast<int>(k), c.i, now.contact_state,
+                                                       c.friction(x), now.history.deflections));
     }
     for (size_t k = 0; k < evolving.size(); ++k) {
         const contact::EvolvingContact& c = *evolving[k];
-        if (dae::Model::idle(c, x)) continue;
+        if (dae::Model::inactive(c, x)) continue;
         const dae::Constraint::At at = model.at(c, x);
-        const contact::Touch touch = c.touch(at);
+        const contact::ContactPoint contact_point = c.contact_point(at);
         const contact::EvolvingContact::Multipliers of = c.multipliers(at, x.lambda);
-        Snapshots::Touch shown{.contact = static_cast<int>(contacts.size() + k),
-                               .i = c.i,
-                               .C = touch.C(),
-                               .N = of.F_N * touch.n,
-                               .F = of.friction,
-                               .slipping = false,
-                               .rolling = c.velocity_rows() > 0};
+        Snapshots::ContactPoint shown{.contact = static_cast<int>(contacts.size() + k),
+                                      .i = c.i,
+                                      .C = contact_point.C(),
+                                      .N = of.F_N * contact_point.n,
+                                      .F = of.friction,
+                                      .slipping = false,
+                                      .rolling = c.velocity_rows() > 0};
         if (const contact::EvolvingFriction* friction = beside[k].friction; friction != nullptr) {
             const contact::EvolvingFriction::Instant now = friction->at(x);
-            const Snapshots::Touch by_force =
-                Snapshots::touch(shown.contact, c.i, now.meeting, friction->friction(x), now.memory.history);
+            const Snapshots::ContactPoint by_force = Snapshots::contact_point(
+                shown.contact, c.i, now.contact_state, friction->friction(x), now.history.deflections);
             shown.F = by_force.F, shown.slipping = by_force.slipping, shown.rolling = by_force.rolling;
         }
         touches.push_back(shown);

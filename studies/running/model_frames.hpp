@@ -15,8 +15,8 @@ namespace hilda::studies {
 class ModelFrames final : public lie::Observer {
 public:
     /// A frame at each row of the grid
-    ModelFrames(const dae::Model& model, const lie::Grid& grid);
-    ModelFrames(const dae::Model& model, EvenChoice chosen);
+    ModelFrames(const dae::Model& model, const lie::TimeGrid& grid);
+    ModelFrames(const dae::Model& model, EvenChoice selected);
 
     void accepted(const lie::State& x, long n, int iterations) override;
     bool has_contacts() const { return !contacts.empty() || !evolving.empty(); }

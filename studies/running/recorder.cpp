@@ -38,7 +38,7 @@ void PivotNode::restore(const lie::State& from, double h)
     seen = integrator.statistics().factorizations;
 }
 
-Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::Grid& grid,
+Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
                    const std::string& directory, const Options& options,
                    const std::optional<Checkpoint>& from)
     : integrator(integrator),

@@ -39,7 +39,7 @@ public:
 
     /// Begins the files in the directory, or goes on with them, and with the counts, where the checkpoint
     /// left them.
-    Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::Grid& grid,
+    Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
              const std::string& directory, const Options& options, const std::optional<Checkpoint>& from);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;

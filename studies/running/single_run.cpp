@@ -27,23 +27,23 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 constexpr double usual_step = 1e-3;  // [s]
 
 /// Of a scheme that chooses its own steps the nodes are the rows.
-lie::Grid grid_of(const RunOptions& options, double end, bool adaptive)
+lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive)
 {
-    const double every = options.every.value_or(end / 1000);
+    const double interval = options.interval.value_or(end / 1000);
     try {
-        if (adaptive) return lie::Grid::over(end, every > 0 ? every : usual_step);
-        return lie::Grid::over(end, options.step.value_or(usual_step), every);
+        if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : usual_step);
+        return lie::TimeGrid::over(end, options.step.value_or(usual_step), interval);
     } catch (const lie::InvalidInput& error) {
         throw UsageError(error.what());
     }
 }
 
-std::string in_words(contact::ContactEvent::Kind kind)
+std::string in_words(contact::ContactEvent::Type type)
 {
-    using Kind = contact::ContactEvent::Kind;
-    return kind == Kind::lift_off  ? "lift-off"
-           : kind == Kind::impact  ? "impact"
-           : kind == Kind::closing ? "closing"
+    using Type = contact::ContactEvent::Type;
+    return type == Type::lift_off  ? "lift-off"
+           : type == Type::impact  ? "impact"
+           : type == Type::closing ? "closing"
                                    : "handed over";
 }
 
@@ -78,7 +78,7 @@ Result SingleRun::go()
     const std::unique_ptr<lie::Integrator> integrator =
         contact::make_integrator(*description.model, scheme, told);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
-    judge_step(from.has_value());
+    evaluate_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, from);
@@ -87,7 +87,7 @@ Result SingleRun::go()
             if (e.t <= last_node)  // not of the step beyond the end, which completes the last node
                 result.events.push_back({e.t,
                                          description.model->evolving()[static_cast<size_t>(e.contact)]->name,
-                                         in_words(e.kind), e.speed});
+                                         in_words(e.type), e.speed});
     finish();
     return std::move(result);
 }
@@ -100,12 +100,12 @@ void SingleRun::read()
     result.end = options.end.value_or(description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
     const double reached = static_cast<double>(grid.steps) * grid.h,
-                 between = static_cast<double>(grid.every) * grid.h;
+                 between = static_cast<double>(grid.interval) * grid.h;
     if (reached > result.end * (1 + 1e-9))
         warn(fmt::format("the end {} s is no multiple of {}: the run ends at {:.12g} s", result.end,
                          scheme.adaptive ? "--every" : "the step", reached));
-    if (options.every && *options.every > 0 && between > *options.every * (1 + 1e-9))
-        warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.every,
+    if (options.interval && *options.interval > 0 && between > *options.interval * (1 + 1e-9))
+        warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.interval,
                          between));
     for (const std::string& w : description.warnings) warn(w);
     for (const std::string& row : result.start.dropped)
@@ -117,7 +117,7 @@ void SingleRun::read()
     result.model = description.name;
     result.integrator = scheme.name;
     result.step = grid.h;
-    result.every = static_cast<double>(grid.every) * grid.h;
+    result.interval = static_cast<double>(grid.interval) * grid.h;
     result.tolerance = options.settings.tolerance;
     if (scheme.adaptive) {
         result.rtol = options.settings.rtol;
@@ -138,7 +138,7 @@ void SingleRun::read()
     settings = fmt::format(
         "model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}, linear solver {}, rho "
         "{}{}{}{}{}",
-        hash(description.text), scheme.name, grid.h, result.end, result.every, options.settings.tolerance,
+        hash(description.text), scheme.name, grid.h, result.end, result.interval, options.settings.tolerance,
         static_cast<int>(options.settings.linear_solver), options.settings.rho_infinity,
         options.settings.reparametrise ? ", --reparametrise" : "",
         options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
@@ -147,11 +147,11 @@ void SingleRun::read()
 
 void SingleRun::prepare_frames()
 {
-    const lie::Grid at = lie::Grid::over(result.end, grid.h, *options.vtk);
-    if (at.steps / at.every + 2 > Snapshots::most)
+    const lie::TimeGrid at = lie::TimeGrid::over(result.end, grid.h, *options.vtk);
+    if (at.steps / at.interval + 2 > Snapshots::most)
         throw UsageError(fmt::format("run: --vtk {} makes {} frames, more than {}", *options.vtk,
-                                     at.steps / at.every + 1, Snapshots::most));
-    const double between = static_cast<double>(at.every) * at.h;
+                                     at.steps / at.interval + 1, Snapshots::most));
+    const double between = static_cast<double>(at.interval) * at.h;
     if (between > *options.vtk * (1 + 1e-9))
         warn(fmt::format("--vtk {} is no multiple of the step: frames are {:.12g} s apart", *options.vtk,
                          between));
@@ -161,12 +161,12 @@ void SingleRun::prepare_frames()
 }
 
 // A run that is gone on with has been judged when it began.
-void SingleRun::judge_step(bool resumed) const
+void SingleRun::evaluate_step(bool resumed) const
 {
     const dae::Model& model = *description.model;
     if (scheme.adaptive) {
         for (const auto& force : model.forces())
-            if (force->remembered() > 0)
+            if (force->internal_states() > 0)
                 throw UsageError(fmt::format(
                     "run: {} chooses its own steps; {} remembers numbers from step to step and needs a "
                     "fixed-step scheme",
@@ -223,12 +223,12 @@ void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoin
     last_node = march.node().t;
     result.invariants = recorder.invariants();
     recorder.flush();
-    judge_contacts();
+    evaluate_contacts();
 }
 
 // Where λ_N is not zero, the normals that a surface gives are not those of its points; where a contact pulls, the bodies
 // would have parted.
-void SingleRun::judge_contacts()
+void SingleRun::evaluate_contacts()
 {
     const auto tell = [&](const std::string& what) {
         warn(what);
@@ -242,7 +242,8 @@ void SingleRun::judge_contacts()
                 "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
                 "its surfaces are not those of their points",
                 result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
-        if (!contacts[k]->unilateral.opens && c.F_N_least < -ContactExtremes::rounding(*description.model) &&
+        if (!contacts[k]->unilateral.enabled &&
+            c.F_N_least < -ContactExtremes::rounding(*description.model) &&
             c.F_N_least < -1e-9 * std::abs(c.F_N_most))
             tell(fmt::format(
                 "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",

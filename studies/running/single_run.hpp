@@ -36,14 +36,14 @@ private:
     void read();
     void prepare_frames();
     /// Refuses a step that a force does not stand, or a scheme.
-    void judge_step(bool resumed) const;
+    void evaluate_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;
     void clear_directory() const;
     void march(lie::Integrator& integrator, const std::optional<Checkpoint>& from);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
-    void judge_contacts();
+    void evaluate_contacts();
     void failed(const lie::NumericalFailure& failure, const lie::March& march);
     void finish();
 
@@ -56,7 +56,7 @@ private:
     const std::string directory;
     dae::Description description;
     std::optional<ModelFrames> frames;
-    lie::Grid grid;
+    lie::TimeGrid grid;
     std::string settings;
     double last_node = 0;  ///< time of the last node [s]
     Clock::time_point begin;

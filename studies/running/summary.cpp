@@ -41,10 +41,10 @@ nlohmann::ordered_json summary(const Result& r)
                     {"warnings", r.warnings}};
     out["integrator"] = {{"name", r.integrator}};
     if (r.rtol > 0)
-        out["integrator"].update({{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"every", r.every}});
+        out["integrator"].update({{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"every", r.interval}});
     else
         out["integrator"].update(
-            {{"step", r.step}, {"end", r.end}, {"every", r.every}, {"tolerance", r.tolerance}});
+            {{"step", r.step}, {"end", r.end}, {"every", r.interval}, {"tolerance", r.tolerance}});
     out["counters"] = {{"steps", r.statistics.steps},
                        {"newton_iterations", r.statistics.iterations},
                        {"factorizations", r.statistics.factorizations},

@@ -19,7 +19,7 @@ struct Result {
     int exit_code = 0;
 
     std::string model, integrator;
-    double step = 0, end = 0, every = 0, tolerance = 0;  ///< every: between rows as they lie on the grid
+    double step = 0, end = 0, interval = 0, tolerance = 0;  ///< every: between rows as they lie on the grid
     double rtol = 0,
            atol = 0;  ///< of a scheme that chooses its own steps: it has no step, and a row is a node
     double t = 0;     ///< reached [s]

@@ -87,14 +87,14 @@ struct Cells {
 
 bool EvenChoice::takes(long n)
 {
-    if (chosen == count || n != next()) return false;
-    while (chosen < count && next() <= n) ++chosen;
+    if (selected == count || n != next()) return false;
+    while (selected < count && next() <= n) ++selected;
     return true;
 }
 
 long EvenChoice::next() const
 {
-    return count == 1 ? 0 : std::lround(static_cast<double>(steps) * chosen / (count - 1));
+    return count == 1 ? 0 : std::lround(static_cast<double>(steps) * selected / (count - 1));
 }
 
 void Snapshots::show(int body, const contact::Shape& shape)
@@ -106,19 +106,20 @@ void Snapshots::show(int body, const contact::Shape& shape)
     if (std::none_of(shown.begin(), shown.end(), same)) shown.push_back({body, shape});
 }
 
-Snapshots::Touch Snapshots::touch(int contact, int i, const contact::Meeting& now,
-                                  const contact::Wrench& friction, const contact::History& history)
+Snapshots::ContactPoint Snapshots::contact_point(int contact, int i, const contact::ContactState& now,
+                                                 const contact::Wrench& friction,
+                                                 const contact::Deflections& history)
 {
     return {.contact = contact,
             .i = i,
-            .C = now.touch.C(),
-            .N = now.N * now.touch.n,
+            .C = now.contact_point.C(),
+            .N = now.N * now.contact_point.n,
             .F = friction.F,
             .slipping = history.slide.slipping,
             .rolling = history.roll_i.slipping || history.roll_j.slipping};
 }
 
-void Snapshots::add(double t, std::vector<Motion> bodies, std::vector<Touch> touches)
+void Snapshots::add(double t, std::vector<Motion> bodies, std::vector<ContactPoint> touches)
 {
     instants.push_back({t, std::move(bodies), std::move(touches)});
 }
@@ -142,7 +143,7 @@ Reach Snapshots::reach(const Shown& of, const std::vector<double>& radius) const
             const Motion& b = motion(now.body, shown[k].body);
             visit(b.r + b.A * shown[k].shape.position, radius[k]);
         }
-        for (const Touch& t : now.touch) visit(t.C, 0);
+        for (const ContactPoint& t : now.contact_point) visit(t.C, 0);
     }
     if (!whole.isEmpty()) reach.motion = whole.diagonal().norm();
     return reach;
@@ -174,7 +175,7 @@ std::string Snapshots::poly_data(const Instant& now, const std::vector<Piece>& p
     Numbers slipping{"slipping", 1}, rolling{"rolling", 1}, body{"body", 1}, contact{"contact", 1};
     Cells vertices, polygons;  // in this order VTK takes the data of cells
     int count = 0;
-    for (const Touch& t : now.touch) {
+    for (const ContactPoint& t : now.contact_point) {
         points.add(t.C);
         velocities.add(velocity(motion(now.body, t.i), t.C));
         N.add(t.N);

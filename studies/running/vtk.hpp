@@ -23,7 +23,7 @@ private:
 
     int count;
     long steps;
-    int chosen = 0;
+    int selected = 0;
 };
 
 /// What there is to see of a run: the surfaces of its bodies, and instants. They are kept until the run has ended,
@@ -38,15 +38,15 @@ public:
     void show(int body, const contact::Shape& shape);
 
     /// A contact at an instant
-    struct Touch {
+    struct ContactPoint {
         int contact, i;  ///< its number, and that of its first body
         lie::Vec3 C, N, F;
         bool slipping, rolling;
     };
-    static Touch touch(int contact, int i, const contact::Meeting& now, const contact::Wrench& friction,
-                       const contact::History& history);
+    static ContactPoint contact_point(int contact, int i, const contact::ContactState& now,
+                                      const contact::Wrench& friction, const contact::Deflections& history);
 
-    void add(double t, std::vector<lie::Motion> bodies, std::vector<Touch> touches);
+    void add(double t, std::vector<lie::Motion> bodies, std::vector<ContactPoint> touches);
 
     /// DIR/vtk/NAME-000000.vtp and so on, then DIR/NAME.pvd, which lists them with their times
     void write(const std::string& directory, const std::string& name) const;
@@ -63,7 +63,7 @@ private:
     struct Instant {
         double t;
         std::vector<lie::Motion> body;
-        std::vector<Touch> touch;
+        std::vector<ContactPoint> contact_point;
     };
     /// A mesh in the frame of its body
     struct Piece {

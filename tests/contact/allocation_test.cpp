@@ -40,12 +40,12 @@ TEST_CASE("a step of bodies in contact takes nothing from the heap", "[contact][
         const long taken = tests::allocations_during([&] {
             for (int n = 0; n < 2000; ++n) {
                 scene.step(1e-4);
-                touched = touched || scene.pair[0].memory.touching;
+                touched = touched || scene.pair[0].history.touching;
             }
         });
         INFO(law.name);
         CHECK(touched);
-        CHECK(scene.pair[1].memory.touching);
+        CHECK(scene.pair[1].history.touching);
         CHECK(taken == 0);
     }
 }

@@ -81,7 +81,7 @@ TEST_CASE("a patch that resists spinning has the modulus of a Hertzian normal la
         dae::Description d = dae::read_model(ball(sphere, flat, normal, friction, 0.199), "m.json");
         dae::start(d);
         const auto& force = dynamic_cast<const ContactForce&>(*d.model->forces()[0]);
-        return force.contact.friction->springs(force.at(d.x).meeting).K_spin;
+        return force.contact.friction->springs(force.at(d.x).contact_state).K_spin;
     };
     CHECK(stiffness(hertz, "") > 0);
     CHECK(stiffness(hertz, "") == stiffness(hertz, R"(, "E_star": 2e6)"));

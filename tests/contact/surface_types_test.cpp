@@ -220,5 +220,5 @@ TEST_CASE("a bad mesh is refused with its place", "[contact][surface_types]")
 
 TEST_CASE("two kinds of surface with one name are refused", "[contact][surface_types]")
 {
-    CHECK_THROWS_AS(enrol(SurfaceType{.name = "sphere", .read = nullptr}), std::logic_error);
+    CHECK_THROWS_AS(register_surface(SurfaceType{.name = "sphere", .read = nullptr}), std::logic_error);
 }

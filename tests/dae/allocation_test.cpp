@@ -40,7 +40,7 @@ TEST_CASE("a step of a mechanism with drivers, springs, memories and expressions
             for (int n = 0; n < 300; ++n) march.advance({});  // past the first swap of the driver
         });
         INFO(s.name);
-        CHECK(march.node().memory[0] == 1);
+        CHECK(march.node().discrete_state[0] == 1);
         CHECK(taken <= integrator->statistics().factorizations * 64);  // new pivots are KLU's to store
         const long steady = tests::allocations_during([&] {
             for (int n = 0; n < 20; ++n) march.advance({});

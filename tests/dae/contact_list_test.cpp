@@ -58,7 +58,7 @@ TEST_CASE("contacts are read with the model and the start before them", "[dae][m
     CHECK(again.model->forces()[1]->name == "contact-1");
 
     dae::start(d);
-    CHECK(d.x.remembered == std::vector<double>{1, 0, 4, 0, 1, 3, 0, 0});
+    CHECK(d.x.internal_state == std::vector<double>{1, 0, 4, 0, 1, 3, 0, 0});
     CHECK(d.model->stable_step(d.x).force == 2);
 
     // a model without contacts is written without them

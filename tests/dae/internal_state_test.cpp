@@ -44,10 +44,10 @@ TEST_CASE("each force remembers in its own place, and in the state alone", "[dae
     model.load(Bristle(ground, 0, 3, 0.5));
     model.load(TorsionSpring(0, Z, 1, Z, 0, 0, 0, x));
     model.load(Bristle(0, 1, 5, 0.25));
-    x.remembered = {7, 7};  // of another model
+    x.internal_state = {7, 7};  // of another model
     model.prepare(x);
-    CHECK(x.memory == std::vector<int>{0, 0});
-    CHECK(x.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
+    CHECK(x.discrete_state == std::vector<int>{0, 0});
+    CHECK(x.internal_state == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
 
     const auto loads = [&](const State& at) {
         lie::Loads out(2);
@@ -61,14 +61,14 @@ TEST_CASE("each force remembers in its own place, and in the state alone", "[dae
     const lie::Loads before_accepted = loads(after);
     CHECK(before_accepted.F[1].isApprox(Vec3(0, -5, 0)));  // stretched by 1
     model.accepted(x, after);
-    CHECK(after.memory == std::vector<int>{1, -1});
-    CHECK(after.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2.75, 0});  // the second has slipped
+    CHECK(after.discrete_state == std::vector<int>{1, -1});
+    CHECK(after.internal_state == std::vector<double>{1, 1, 0, 0, 1, -1, 2.75, 0});  // the second has slipped
     CHECK(loads(after).F[1].isApprox(Vec3(0, -1.25, 0)));
     CHECK(loads(after).F[0].isApprox(Vec3(-0.75, 1.25, 0)));
-    CHECK(x.remembered == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
+    CHECK(x.internal_state == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
 
     model.prepare(after);  // a new start
-    CHECK(after.remembered == std::vector<double>{1, 1.25, 0, 0, 1, -1, 3, 0});
+    CHECK(after.internal_state == std::vector<double>{1, 1.25, 0, 0, 1, -1, 3, 0});
     CHECK(loads(after).F[0].norm() == 0);
 }
 
@@ -119,8 +119,8 @@ TEST_CASE("a force that cannot be used from a start is named before it remembers
         CHECK(e.force == 1);
         CHECK_THAT(e.what(), Catch::Equals("bristle 'velvet': the bodies must be apart at the start"));
     }
-    CHECK(two.x.memory.empty());
-    CHECK(two.x.remembered.empty());
+    CHECK(two.x.discrete_state.empty());
+    CHECK(two.x.internal_state.empty());
 }
 
 TEST_CASE("the stable step of a model is the smallest of its forces", "[dae][remembered]")

@@ -311,10 +311,10 @@ TEST_CASE("a DP1 driver swaps to its complement and so drives whole turns", "[da
                                          : DP1(ground, reference, 0, a_bar, Driver(f.str())));
     dae::start(model, x);
     Kinematics kinematics(model);
-    int swaps = 0, branch = x.memory[0];
+    int swaps = 0, branch = x.discrete_state[0];
     for (int k = 1; k <= 100; ++k) {
         kinematics.move_to(x, 0.02 * k);
-        if (x.memory[0] != branch) ++swaps, branch = x.memory[0];
+        if (x.discrete_state[0] != branch) ++swaps, branch = x.discrete_state[0];
         INFO(f.str() << " at t = " << x.t << ", crank is body " << (crank_first ? "i" : "j"));
         CHECK((x.body[0].A - lie::exp(sense * 2 * pi * x.t * X)).norm() < 1e-12);
         CHECK((x.body[0].omega_bar - sense * 2 * pi * X).norm() < 1e-11);

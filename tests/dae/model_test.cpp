@@ -248,7 +248,7 @@ TEST_CASE("a body that falls freely follows its parabola and keeps its energy", 
                       2 * model.gravity.dot(at_0.r)));
 
     const auto scheme = lie::scheme("rA-half-2").make(model, {});
-    const State end = lie::march(x, *scheme, lie::Grid::over(1, 1e-2)).row.back();
+    const State end = lie::march(x, *scheme, lie::TimeGrid::over(1, 1e-2)).row.back();
     CHECK(end.t == 1);
     CHECK((end.body[0].r - (at_0.r + at_0.rdot + 0.5 * model.gravity)).norm() < 1e-12);
     CHECK((end.body[0].rdot - (at_0.rdot + model.gravity)).norm() < 1e-12);

@@ -108,7 +108,7 @@ void bricard(Model& model, State& x)
 State last(const Model& model, const State& x, double t_end, double h)
 {
     const auto scheme = lie::scheme("rA-half-2").make(model, {.tolerance = 1e-12});
-    return lie::march(x, *scheme, lie::Grid::over(t_end, h, t_end)).row.back();
+    return lie::march(x, *scheme, lie::TimeGrid::over(t_end, h, t_end)).row.back();
 }
 
 double distance_between(const State& x, const State& y)
@@ -305,7 +305,7 @@ TEST_CASE("Bricard's mechanism moves although its rows leave it no freedom", "[d
     } watch(model, dropped, x);
     lie::Observer* observers[] = {&watch};
     const auto scheme = lie::scheme("rA-half-2").make(model, {.tolerance = 1e-12});
-    lie::march(x, *scheme, lie::Grid::over(2, 1e-3, 2), observers);
+    lie::march(x, *scheme, lie::TimeGrid::over(2, 1e-3, 2), observers);
     INFO("energy error " << watch.energy_error << " J of " << watch.kinetic << " J, dropped row "
                          << watch.residual << ", path " << watch.path << " m");
     CHECK(watch.path > 0.5);

@@ -20,33 +20,34 @@ std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
     return std::make_shared<ImplicitSurface<decltype(G)>>(G, R);
 }
 
-const bool egg = enrol({.name = "demo-egg", .read = read_egg});
+const bool egg = register_surface({.name = "demo-egg", .read = read_egg});
 
 /// F = c ṡ, never above μ_s N: a film of oil
 class DemoOil final : public FrictionModel {
 public:
     DemoOil(double c, double mu_s) : c(c), mu_s(mu_s) {}
 
-    void advance(const Meeting&, History&) const override {}
-    Wrench load(const Meeting& now, const Rates& rates, const History&) const override
+    void advance(const ContactState&, Deflections&) const override {}
+    Wrench load(const ContactState& now, const Rates& rates, const Deflections&) const override
     {
         Wrench out;
         out.F = c * rates.s;
         if (const double bound = mu_s * now.N, F = out.F.norm(); F > bound) out.F *= bound / F;
         return out;
     }
-    Springs springs(const Meeting&) const override { return {.D_slide = c}; }
+    Springs springs(const ContactState&) const override { return {.D_slide = c}; }
 
 private:
     const double c, mu_s;
 };
 
-const bool oil = enrol(FrictionLaw{.name = "demo-oil",
-                                   .what = "viscous, up to the Coulomb bound",
-                                   .read = [](dae::ObjectReader& o, FrictionParameters p,
-                                              const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
-                                       return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
-                                   }});
+const bool oil =
+    register_friction_law(FrictionLaw{.name = "demo-oil",
+                                      .what = "viscous, up to the Coulomb bound",
+                                      .read = [](dae::ObjectReader& o, FrictionParameters p,
+                                                 const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
+                                          return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+                                      }});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -54,12 +54,13 @@ private:
     long steps = 0;
 };
 
-const bool enrolled = enrol<DemoKick>({.name = "demo-kick",
-                                       .order = 1,
-                                       .order_lambda = 1,
-                                       .formulation = "rA",
-                                       .unknowns = "none",
-                                       .source = "symplectic Euler on Fang (2022), Eqs. 2.9, 2.17"});
+const bool registered =
+    register_scheme<DemoKick>({.name = "demo-kick",
+                               .order = 1,
+                               .order_lambda = 1,
+                               .formulation = "rA",
+                               .unknowns = "none",
+                               .source = "symplectic Euler on Fang (2022), Eqs. 2.9, 2.17"});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -29,7 +29,7 @@ inline std::vector<lie::State> run(const std::string& scheme, const lie::System&
                                    const lie::Settings& settings = {.tolerance = 1e-12})
 {
     const auto integrator = lie::scheme(scheme).make(system, settings);
-    std::vector<lie::State> rows = lie::march(x, *integrator, lie::Grid::over(t_end, h, dt)).row;
+    std::vector<lie::State> rows = lie::march(x, *integrator, lie::TimeGrid::over(t_end, h, dt)).row;
     rows.erase(rows.begin());
     return rows;
 }

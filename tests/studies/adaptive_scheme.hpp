@@ -21,8 +21,11 @@ public:
         for (long k = 0; k < steps; ++k) iterations += inner->step(x, h / static_cast<double>(steps));
         return iterations;
     }
-    bool lags() const override { return inner->lags(); }
-    void complete(lie::State& node, const lie::State& after) const override { inner->complete(node, after); }
+    bool is_staggered() const override { return inner->is_staggered(); }
+    void fill_node(lie::State& node, const lie::State& after) const override
+    {
+        inner->fill_node(node, after);
+    }
     const lie::System& system() const override { return inner->system(); }
     lie::Statistics statistics() const override { return inner->statistics(); }
 

@@ -97,7 +97,7 @@ TEST_CASE("a model file with contacts is judged by an integrator, or not at all"
     const Ended refused = call(in, study);
     CHECK(refused.code == studies::exit_code::invalid_input);
     CHECK_THAT(refused.err, Catch::Contains("let an integrator be the reference (--reference NAME)"));
-    std::vector<std::string> judged = study;
-    judged.insert(judged.end(), {"--reference", "rA-rattle"});
-    CHECK(call(in, judged).code == studies::exit_code::done);
+    std::vector<std::string> evaluated = study;
+    evaluated.insert(evaluated.end(), {"--reference", "rA-rattle"});
+    CHECK(call(in, evaluated).code == studies::exit_code::done);
 }

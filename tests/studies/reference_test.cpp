@@ -36,14 +36,14 @@ TEST_CASE("a fine run of another integrator judges like the truth", "[studies][r
     REQUIRE(ended.code == 0);
     CHECK_THAT(ended.out, Contains("truth: rA-half-2 at h = 0.0001 s"));
     REQUIRE(study(in, {"--reference", "rA-half-2", "--quiet", "--output", "b"}).code == 0);
-    const auto truth = csv(in / "truth/study.csv"), fine = csv(in / "a/study.csv"),
+    const auto reference_solution = csv(in / "truth/study.csv"), fine = csv(in / "a/study.csv"),
                usual = csv(in / "b/study.csv");
-    REQUIRE(truth.size() == 2);
+    REQUIRE(reference_solution.size() == 2);
     for (size_t k = 0; k < 2; ++k)
         for (const char* norm : {"r", "A", "Q"}) {
             CAPTURE(k, norm);
-            CHECK(number(fine[k], norm) == Approx(number(truth[k], norm)).epsilon(0.01));
-            CHECK(number(usual[k], norm) == Approx(number(truth[k], norm)).epsilon(0.05));
+            CHECK(number(fine[k], norm) == Approx(number(reference_solution[k], norm)).epsilon(0.01));
+            CHECK(number(usual[k], norm) == Approx(number(reference_solution[k], norm)).epsilon(0.05));
         }
 }
 
@@ -102,17 +102,17 @@ TEST_CASE("schemes that choose their own steps judge and are judged by their tol
     options.quiet = true;
     options.end = 0.3;
     options.jobs = 1;
-    std::vector<studies::Case> all = studies::cases("test", options, {"double_pendulum"});
-    studies::Reference("test", options, {}).judge(all);
+    std::vector<studies::Benchmark> all = studies::benchmarks("test", options, {"double_pendulum"});
+    studies::Reference("test", options, {}).evaluate(all);
 
-    studies::JudgedRun coarse, fine;
-    for (studies::JudgedRun* run : {&coarse, &fine}) {
+    studies::EvaluatedRun coarse, fine;
+    for (studies::EvaluatedRun* run : {&coarse, &fine}) {
         run->c = &all.front(), run->scheme = &inner_steps;
         run->h = all.front().instants.dt * all.front().instants.stride;
     }
     coarse.rtol = 1e-4, fine.rtol = 1e-6;
-    judge(coarse, options.settings);
-    judge(fine, options.settings);
+    evaluate(coarse, options.settings);
+    evaluate(fine, options.settings);
     CHECK(coarse.status == "ok");
     CHECK(coarse.errors.instants == 30);
     CHECK(fine.statistics.steps > 5 * coarse.statistics.steps);
@@ -137,10 +137,10 @@ TEST_CASE("adaptive schemes judge on the command line and have no place in studi
     const Scratch in;
     for (const std::string& name : adaptive_schemes()) {
         CAPTURE(name);
-        const Ended judged = study(in, {"--reference", name, "--output", "a-" + name});
-        CAPTURE(judged.err);
-        CHECK(judged.code == 0);
-        CHECK_THAT(judged.out, Contains("truth: " + name + " at rtol 1e-12"));
+        const Ended evaluated = study(in, {"--reference", name, "--output", "a-" + name});
+        CAPTURE(evaluated.err);
+        CHECK(evaluated.code == 0);
+        CHECK_THAT(evaluated.out, Contains("truth: " + name + " at rtol 1e-12"));
         for (const char* kind : {"convergence", "energy", "iterations", "timing", "scaling"}) {
             const Ended refused = call(in, {"study", kind, "--integrator", name});
             CHECK(refused.code == 2);

@@ -31,10 +31,10 @@ public:
     }
 
     /// Whether it has begun, and the distance vector at which it is relaxed [m, global]
-    int remembered() const override { return 4; }
-    void remember(lie::State& x) const override
+    int internal_states() const override { return 4; }
+    void update_internal_state(lie::State& x) const override
     {
-        double* const z = x.remembered.data() + first_remembered;
+        double* const z = x.internal_state.data() + first_internal_state;
         const lie::Vec3 d = between(x), stretch = d - held(x);
         if (z[0] == 0)
             Eigen::Map<lie::Vec3>(z + 1) = d;
@@ -44,7 +44,7 @@ public:
     }
     lie::Vec3 held(const lie::State& x) const
     {
-        return Eigen::Map<const lie::Vec3>(x.remembered.data() + first_remembered + 1);
+        return Eigen::Map<const lie::Vec3>(x.internal_state.data() + first_internal_state + 1);
     }
 
     /// For a reduced mass of 1 kg

@@ -12,8 +12,8 @@ namespace hilda::tests {
 struct BristleContacts {
     const dae::ReadContact before = dae::contact_reader();
 
-    BristleContacts() { dae::enrol_contacts(read); }
-    ~BristleContacts() { dae::enrol_contacts(before); }
+    BristleContacts() { dae::register_contact_reader(read); }
+    ~BristleContacts() { dae::register_contact_reader(before); }
     BristleContacts(const BristleContacts&) = delete;
     BristleContacts& operator=(const BristleContacts&) = delete;
 

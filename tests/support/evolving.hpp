@@ -95,8 +95,8 @@ struct Touching {
 };
 
 /// Body i put to body j, so that these of their points touch, turned by `angle` about the normal
-inline void touch(const Shape& shape_i, const Vec3& a_i, Motion& bi, const Shape& shape_j, const Vec3& a_j,
-                  const Motion& bj, double angle = 0)
+inline void contact_point(const Shape& shape_i, const Vec3& a_i, Motion& bi, const Shape& shape_j,
+                          const Vec3& a_j, const Motion& bj, double angle = 0)
 {
     const auto frame = [](const Vec3& n) {
         Mat3 A;
@@ -118,7 +118,7 @@ inline Touching touching(const Pair& pair, Random& random)
     x.bi = random.motion(), x.bj = random.motion();
     const Vec3 a_i = point(pair.i, pair.near_i, pair.spread_i, random),
                a_j = point(pair.j, pair.near_j, pair.spread_j, random);
-    touch(pair.i, a_i, x.bi, pair.j, a_j, x.bj, random.number(-3, 3));
+    contact_point(pair.i, a_i, x.bi, pair.j, a_j, x.bj, random.number(-3, 3));
     x.alpha << a_i, a_j;
     const Vec3 n_i = x.bi.A * (pair.i.orientation * pair.i.surface->normal(pair.i.to_surface(a_i)));
     x.T = contact::tangent_basis(n_i);
@@ -171,8 +171,8 @@ struct Scene {
         model.add({name, m, J_bar});
         x.body.push_back(motion);
     }
-    void touch(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
-               Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent)
+    void contact_point(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
+                       Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent)
     {
         model.constrain(name,
                         std::make_unique<EvolvingContact>(i, shape_i, j, shape_j, friction, normal_rows));
@@ -196,7 +196,7 @@ inline lie::State run(
     lie::Observer* observers[] = {&observer};
     const auto integrator =
         lie::scheme(scheme).make(scene.model, {.tolerance = 1e-14, .linear_solver = solver});
-    return lie::march(scene.x, *integrator, lie::Grid::over(t_end, h, t_end), observers).row.back();
+    return lie::march(scene.x, *integrator, lie::TimeGrid::over(t_end, h, t_end), observers).row.back();
 }
 
 inline const Vec3 bowl_axes(4, 3, 2);
@@ -211,8 +211,8 @@ struct BallInBowl : Scene {
         ball.r = r;
         ball.omega_bar = omega;
         add("ball", 1, 0.4 * R * R * Mat3::Identity(), ball);
-        touch("bowl", 0, shape<contact::Sphere>(R), dae::ground, shape<contact::Ellipsoid>(bowl_axes, true),
-              friction, normal_rows);
+        contact_point("bowl", 0, shape<contact::Sphere>(R), dae::ground,
+                      shape<contact::Ellipsoid>(bowl_axes, true), friction, normal_rows);
         start();
     }
 };

@@ -23,7 +23,7 @@ inline lie::State march(
     } watch(look);
     const auto integrator = lie::scheme(scheme).make(model, settings);
     lie::Observer* all[] = {&watch};
-    return lie::march(x, *integrator, lie::Grid::over(t, h, t), all).row.back();
+    return lie::march(x, *integrator, lie::TimeGrid::over(t, h, t), all).row.back();
 }
 
 }  // namespace hilda::tests

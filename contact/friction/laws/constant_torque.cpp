@@ -16,14 +16,16 @@ class ConstantTorque final : public Sliding {
 public:
     explicit ConstantTorque(const FrictionParameters& p) : Sliding(p) {}
 
-    void advance(const Meeting& now, History& h) const override { slide(now, h); }
+    void advance(const ContactState& now, Deflections& h) const override { slide(now, h); }
 
-    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    Wrench load(const ContactState& now, const Rates& rates, const Deflections& h) const override
     {
         Wrench out;
         add_sliding(now, rates, h, out);
-        const Vec3 q = now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j;  // (ω_i - ω_j) × n
-        const double speed = q.norm(), kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        const Vec3 q =
+            now.contact_point.K_i * rates.p_i + now.contact_point.K_j * rates.p_j;  // (ω_i - ω_j) × n
+        const double speed = q.norm(),
+                     kappa = 0.5 * (now.contact_point.K_i.trace() + now.contact_point.K_j.trace());
         if (!(speed > 0) || !(kappa > 0)) return out;
         out.T_roll_E = p.mu_r * now.N / (kappa * speed) * q.cross(now.slip.n);
         out.T_roll_E_j = -out.T_roll_E;
@@ -34,7 +36,10 @@ public:
 
     bool needs_curvature() const override { return p.mu_r > 0; }
 
-    Springs springs(const Meeting& now) const override { return {.K_slide = p.K_E, .D_slide = D_slide(now)}; }
+    Springs springs(const ContactState& now) const override
+    {
+        return {.K_slide = p.K_E, .D_slide = D_slide(now)};
+    }
 };
 
 std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
@@ -43,9 +48,10 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<ConstantTorque>(p);
 }
 
-const bool enrolled = enrol<ConstantTorque>({.name = "constant-torque",
-                                             .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
-                                             .read = read});
+const bool registered =
+    register_friction_law<ConstantTorque>({.name = "constant-torque",
+                                           .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
+                                           .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -17,24 +17,25 @@ class Epsd final : public Sliding {
 public:
     explicit Epsd(const FrictionParameters& p) : Sliding(p) {}
 
-    void advance(const Meeting& now, History& h) const override
+    void advance(const ContactState& now, Deflections& h) const override
     {
         slide(now, h);
-        const Slip& s = now.slip;
+        const SlidingDisplacement& s = now.slip;
         const Spring spring = rolling(now);
-        h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
-        give_way(h.Theta_i, h.roll_i, spring.cap, spring.cap);
+        h.Theta_i += components(now.contact_point.K_i * s.q_i + now.contact_point.K_j * s.q_j, s.n, s.u);
+        return_to_bound(h.Theta_i, h.roll_i, spring.cap, spring.cap);
     }
 
-    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    Wrench load(const ContactState& now, const Rates& rates, const Deflections& h) const override
     {
         Wrench out;
         add_sliding(now, rates, h, out);
-        const Slip& s = now.slip;
+        const SlidingDisplacement& s = now.slip;
         const Spring spring = rolling(now);
         const Vec3 elastic = spring.K * tangent(h.Theta_i, s.n, s.u);
         Vec3 tau = elastic;
-        if (h.roll_i.damped) tau += spring.D * (now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j);
+        if (h.roll_i.damped)
+            tau += spring.D * (now.contact_point.K_i * rates.p_i + now.contact_point.K_j * rates.p_j);
         out.T_roll_E = elastic.cross(s.n);
         out.T_roll_E_j = -out.T_roll_E;
         out.T_i = tau.cross(s.n);
@@ -44,7 +45,7 @@ public:
 
     bool needs_curvature() const override { return p.mu_r > 0; }
 
-    Springs springs(const Meeting& now) const override
+    Springs springs(const ContactState& now) const override
     {
         const Spring spring = rolling(now);
         return {.K_slide = p.K_E, .D_slide = D_slide(now), .K_roll = spring.K, .D_roll = spring.D};
@@ -55,9 +56,9 @@ private:
         double K = 0, D = 0, cap = 0;
     };
 
-    Spring rolling(const Meeting& now) const
+    Spring rolling(const ContactState& now) const
     {
-        const double kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        const double kappa = 0.5 * (now.contact_point.K_i.trace() + now.contact_point.K_j.trace());
         if (!(kappa > 0)) return {};
         const double R = 1 / kappa, K = p.K_E * R * R;
         return {.K = K,
@@ -72,10 +73,10 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<Epsd>(p);
 }
 
-const bool enrolled =
-    enrol<Epsd>({.name = "epsd",
-                 .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
-                 .read = read});
+const bool registered = register_friction_law<Epsd>(
+    {.name = "epsd",
+     .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
+     .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -46,10 +46,10 @@ double curvature(const Mat3& K, const Vec3& t)
 
 /// K_i + K_j in (u, w), and its inverse: the lever arms of rolling. Curvatures below 1/lever count as that.
 struct RollingLevers {
-    explicit RollingLevers(const Meeting& now)
+    explicit RollingLevers(const ContactState& now)
     {
         const Vec3 &n = now.slip.n, &u = now.slip.u, w = n.cross(u);
-        const Mat3 sum = now.touch.K_i + now.touch.K_j;
+        const Mat3 sum = now.contact_point.K_i + now.contact_point.K_j;
         const Vec3 Ku = sum * u, Kw = sum * w;
         K << u.dot(Ku), u.dot(Kw), u.dot(Kw), w.dot(Kw);
         const double mean = 0.5 * K.trace(), apart = std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
@@ -78,18 +78,18 @@ class SlideRollSpin final : public Sliding {
 public:
     explicit SlideRollSpin(const FrictionParameters& p) : Sliding(p) {}
 
-    void advance(const Meeting& now, History& h) const override
+    void advance(const ContactState& now, Deflections& h) const override
     {
         slide(now, h);
         if (p.eta_r > 0) p.relative_rolling ? roll_together(now, h) : roll_apart(now, h);
         if (p.eta_psi > 0 || p.E_star > 0) {
             const Spring spring = spinning(now);
             h.Psi += now.slip.psi;
-            give_way(h.Psi, h.spin, spring.cap_s, spring.cap_k);
+            return_to_bound(h.Psi, h.spin, spring.cap_s, spring.cap_k);
         }
     }
 
-    Wrench load(const Meeting& now, const Rates& rates, const History& h) const override
+    Wrench load(const ContactState& now, const Rates& rates, const Deflections& h) const override
     {
         Wrench out;
         add_sliding(now, rates, h, out);
@@ -105,7 +105,7 @@ public:
         return out;
     }
 
-    Springs springs(const Meeting& now) const override
+    Springs springs(const ContactState& now) const override
     {
         Springs all{.K_slide = p.K_E, .D_slide = D_slide(now)};
         if (p.eta_r > 0) {
@@ -128,7 +128,7 @@ private:
     };
 
     /// Eqs. 4.6, 4.7
-    Spring rolling(const Meeting& now, double kappa) const
+    Spring rolling(const ContactState& now, double kappa) const
     {
         kappa = std::max(kappa, 1 / now.lever);
         const double K = 4 * p.eta_r * p.K_E / (kappa * kappa), lever = kappa / (2 * p.K_E);
@@ -136,9 +136,9 @@ private:
     }
 
     /// Eq. 4.9, or A.21 to A.23
-    Spring spinning(const Meeting& now) const
+    Spring spinning(const ContactState& now) const
     {
-        const double kappa = 0.5 * (now.touch.K_i.trace() + now.touch.K_j.trace());
+        const double kappa = 0.5 * (now.contact_point.K_i.trace() + now.contact_point.K_j.trace());
         if (!(kappa > flat) || !(now.N > 0)) return {};
         double K = 0, per_newton = 0;  // of the bound of Psi
         if (p.E_star > 0) {
@@ -152,50 +152,52 @@ private:
         return {.K = K, .cap_s = per_newton * p.mu_s * now.N, .cap_k = per_newton * p.mu_k * now.N};
     }
 
-    double D_roll(const Meeting& now, double K) const
+    double D_roll(const ContactState& now, double K) const
     {
         return p.D_roll.value_or(2 * p.zeta * std::sqrt(now.I_roll * K));
     }
-    double D_spin(const Meeting& now, double K) const
+    double D_spin(const ContactState& now, double K) const
     {
         return p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K));
     }
 
-    void roll_together(const Meeting& now, History& h) const
+    void roll_together(const ContactState& now, Deflections& h) const
     {
-        const Slip& s = now.slip;
-        h.Theta_i += components(now.touch.K_i * s.q_i + now.touch.K_j * s.q_j, s.n, s.u);
+        const SlidingDisplacement& s = now.slip;
+        h.Theta_i += components(now.contact_point.K_i * s.q_i + now.contact_point.K_j * s.q_j, s.n, s.u);
         const double per_newton = 1 / (2 * p.K_E);
-        give_way(h.Theta_i, (RollingLevers(now).L * h.Theta_i).norm(), h.roll_i, per_newton * p.mu_s * now.N,
-                 per_newton * p.mu_k * now.N);
+        return_to_bound(h.Theta_i, (RollingLevers(now).L * h.Theta_i).norm(), h.roll_i,
+                        per_newton * p.mu_s * now.N, per_newton * p.mu_k * now.N);
     }
 
     /// Each along its own way, each carried by its own body and then written in the common frame
-    void roll_apart(const Meeting& now, History& h) const
+    void roll_apart(const ContactState& now, Deflections& h) const
     {
-        const Slip& s = now.slip;
-        const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
+        const SlidingDisplacement& s = now.slip;
+        const double kappa_i = curvature(now.contact_point.K_i, s.p_i),
+                     kappa_j = curvature(now.contact_point.K_j, s.p_j);
         const Spring spring = rolling(now, kappa_i + kappa_j);
         h.Theta_i = components(tangent(h.Theta_i, s.n, s.u_i) + kappa_i * s.p_i, s.n, s.u);
         h.Theta_j = components(tangent(h.Theta_j, s.n, s.u_j) + kappa_j * s.p_j, s.n, s.u);
-        give_way(h.Theta_i, h.roll_i, spring.cap_s, spring.cap_k);
-        give_way(h.Theta_j, h.roll_j, spring.cap_s, spring.cap_k);
+        return_to_bound(h.Theta_i, h.roll_i, spring.cap_s, spring.cap_k);
+        return_to_bound(h.Theta_j, h.roll_j, spring.cap_s, spring.cap_k);
     }
 
-    void add_rolling(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    void add_rolling(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
     {
         p.relative_rolling ? add_relative(now, rates, h, out) : add_each(now, rates, h, out);
     }
 
-    void add_relative(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    void add_relative(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
     {
-        const Slip& s = now.slip;
+        const SlidingDisplacement& s = now.slip;
         const RollingLevers levers(now);
         const double k = 4 * p.eta_r * p.K_E;
         const Vec2 elastic = k * (levers.L * (levers.L * h.Theta_i));
         Vec2 tau = elastic;
         if (h.roll_i.damped) {
-            const Vec2 rate = components(now.touch.K_i * rates.p_i + now.touch.K_j * rates.p_j, s.n, s.u);
+            const Vec2 rate =
+                components(now.contact_point.K_i * rates.p_i + now.contact_point.K_j * rates.p_j, s.n, s.u);
             if (p.D_roll)
                 tau += *p.D_roll * rate;
             else
@@ -210,10 +212,11 @@ private:
         out.T_j -= T;
     }
 
-    void add_each(const Meeting& now, const Rates& rates, const History& h, Wrench& out) const
+    void add_each(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
     {
-        const Slip& s = now.slip;
-        const double kappa_i = curvature(now.touch.K_i, s.p_i), kappa_j = curvature(now.touch.K_j, s.p_j);
+        const SlidingDisplacement& s = now.slip;
+        const double kappa_i = curvature(now.contact_point.K_i, s.p_i),
+                     kappa_j = curvature(now.contact_point.K_j, s.p_j);
         const Spring spring = rolling(now, kappa_i + kappa_j);
         const auto torque = [&](const Vec2& Theta, const Regime& regime, const Vec3& rate,
                                 Vec3& elastic) -> Vec3 {
@@ -243,10 +246,10 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<SlideRollSpin>(p);
 }
 
-const bool enrolled =
-    enrol<SlideRollSpin>({.name = "slide-roll-spin",
-                          .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
-                          .read = read});
+const bool registered = register_friction_law<SlideRollSpin>(
+    {.name = "slide-roll-spin",
+     .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
+     .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

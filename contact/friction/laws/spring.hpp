@@ -16,7 +16,7 @@ inline double size(const Vec3& v) { return v.norm(); }
 /// dissertation's wording would lose.
 /// `length` measures it where that is not its size.
 template <class Deflection>
-void give_way(Deflection& H, double length, Regime& regime, double cap_s, double cap_k)
+void return_to_bound(Deflection& H, double length, Regime& regime, double cap_s, double cap_k)
 {
     const double cap = regime.slipping ? cap_k : cap_s;
     const bool beyond = length > cap;
@@ -24,9 +24,9 @@ void give_way(Deflection& H, double length, Regime& regime, double cap_s, double
     regime = {.slipping = beyond, .damped = !beyond};
 }
 template <class Deflection>
-void give_way(Deflection& H, Regime& regime, double cap_s, double cap_k)
+void return_to_bound(Deflection& H, Regime& regime, double cap_s, double cap_k)
 {
-    give_way(H, size(H), regime, cap_s, cap_k);
+    return_to_bound(H, size(H), regime, cap_s, cap_k);
 }
 
 /// Spring and dashpot, and together no more than `bound` where it is to be kept.
@@ -53,22 +53,23 @@ public:
 protected:
     explicit Sliding(const FrictionParameters& p) : p(p) { p.validate(); }
 
-    void slide(const Meeting& now, History& history) const
+    void slide(const ContactState& now, Deflections& deflections) const
     {
         const Vec3& n = now.slip.n;
-        history.S += components(now.slip.ds, n, now.slip.u);
-        give_way(history.S, history.slide, p.mu_s * now.N / p.K_E, p.mu_k * now.N / p.K_E);
+        deflections.S += components(now.slip.ds, n, now.slip.u);
+        return_to_bound(deflections.S, deflections.slide, p.mu_s * now.N / p.K_E, p.mu_k * now.N / p.K_E);
     }
 
     /// F = K_E S + D Δs/h                                                                            Eq. 4.2
-    void add_sliding(const Meeting& now, const Rates& rates, const History& history, Wrench& out) const
+    void add_sliding(const ContactState& now, const Rates& rates, const Deflections& deflections,
+                     Wrench& out) const
     {
-        out.F_E = p.K_E * tangent(history.S, now.slip.n, now.slip.u);
-        const Vec3 damping = history.slide.damped ? Vec3(D_slide(now) * rates.s) : Vec3(Vec3::Zero());
+        out.F_E = p.K_E * tangent(deflections.S, now.slip.n, now.slip.u);
+        const Vec3 damping = deflections.slide.damped ? Vec3(D_slide(now) * rates.s) : Vec3(Vec3::Zero());
         out.F = within(out.F_E, damping, p.mu_s * now.N, p.capped);
     }
 
-    double D_slide(const Meeting& now) const
+    double D_slide(const ContactState& now) const
     {
         return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E));
     }

@@ -7,7 +7,7 @@ void ConeProblem::respond(const std::vector<Vec3>& gamma, std::vector<Velocity>&
 {
     out.assign(body.size(), {});  // D γ first: impulses and their moments
     for (size_t c = 0; c < contact.size(); ++c) {
-        const Contact& at = contact[c];
+        const ContactPair& at = contact[c];
         const Vec3 on_i = at.frame * gamma[c];
         out[at.i].v += on_i;
         out[at.i].omega += at.s_i.cross(on_i);
@@ -24,13 +24,13 @@ void ConeProblem::relative(const std::vector<Velocity>& v, std::vector<Vec3>& ou
 {
     out.resize(contact.size());
     for (size_t c = 0; c < contact.size(); ++c) {
-        const Contact& at = contact[c];
+        const ContactPair& at = contact[c];
         const Velocity &i = v[at.i], &j = v[at.j];
         out[c].noalias() = at.frame.transpose() * (i.v + i.omega.cross(at.s_i) - j.v - j.omega.cross(at.s_j));
     }
 }
 
-ConeProblem::Block ConeProblem::block(const Contact& c) const
+ConeProblem::Block ConeProblem::block(const ContactPair& c) const
 {
     const auto part = [&](const Body& b, const Vec3& s) -> Mat3 {
         const Mat3 moment = lie::tilde(s) * c.frame;

@@ -27,7 +27,7 @@ struct ConeProblem {
         double m_inverse = 0;           ///< [1/kg]
         Mat3 J_inverse = Mat3::Zero();  ///< A J̄⁻¹ Aᵀ, global axes [1/(kg m²)]
     };
-    struct Contact {
+    struct ContactPair {
         int i, j;
         Mat3 frame;     ///< columns (n, u, w), global; n into body i
         Vec3 s_i, s_j;  ///< from the centres of mass to the contact, global [m]
@@ -39,7 +39,7 @@ struct ConeProblem {
     };
 
     std::vector<Body> body;
-    std::vector<Contact> contact;
+    std::vector<ContactPair> contact;
 
     /// M⁻¹ D γ: the velocities that impulses give
     void respond(const std::vector<Vec3>& gamma, std::vector<Velocity>& out) const;
@@ -50,7 +50,7 @@ struct ConeProblem {
     struct Block {
         Mat3 i, j;
     };
-    Block block(const Contact& c) const;
+    Block block(const ContactPair& c) const;
 };
 
 }  // namespace hilda::contact

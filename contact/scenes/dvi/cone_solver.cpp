@@ -33,11 +33,11 @@ void ConeSolver::apply(const ConeProblem& problem, const std::vector<Vec3>& gamm
 void ConeSolver::measure(const ConeProblem& problem)
 {
     contacts.assign(problem.body.size(), 0);
-    for (const ConeProblem::Contact& c : problem.contact) ++contacts[c.i], ++contacts[c.j];
+    for (const ConeProblem::ContactPair& c : problem.contact) ++contacts[c.i], ++contacts[c.j];
     g.resize(problem.contact.size());
     L_max = 0;
     for (size_t c = 0; c < g.size(); ++c) {
-        const ConeProblem::Contact& at = problem.contact[c];
+        const ConeProblem::ContactPair& at = problem.contact[c];
         const auto [of_i, of_j] = problem.block(at);
         g[c] = (of_i.trace() + of_j.trace()) / 3;
         if (!(g[c] > 0))
@@ -81,7 +81,7 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, std::vector<Ve
         ++out.iterations;
         for (bool steep = true; steep;) {
             for (size_t c = 0; c < contacts; ++c) {
-                const ConeProblem::Contact& at = problem.contact[c];
+                const ConeProblem::ContactPair& at = problem.contact[c];
                 next[c] = project_on_cone(y[c] - (N_y[c] + at.r) / (L * g[c]), at.mu);
             }
             apply(problem, next, N_next);

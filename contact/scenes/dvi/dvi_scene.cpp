@@ -54,20 +54,20 @@ int DviScene::add(const std::string& name, int i, const Shape& shape_i, int j, c
     return static_cast<int>(pair.size()) - 1;
 }
 
-int DviScene::add(const Kind& kind) { return crowd.add(kind); }
+int DviScene::add(const BodyType& kind) { return neighbors.add(kind); }
 
 int DviScene::enter(int kind, const Motion& at)
 {
-    const int b = add(crowd.kind(kind).inertia, at);
-    crowd.enter(b, kind);
+    const int b = add(neighbors.kind(kind).inertia, at);
+    neighbors.enter(b, kind);
     return b;
 }
 
 void DviScene::between(const std::string& name, int kind_i, int kind_j, const RigidLaw& law)
 {
-    const Kind &i = crowd.kind(kind_i), &j = crowd.kind(kind_j);
-    crowd.set(kind_i, kind_j,
-              std::make_unique<Surfaces>(surfaces(name, i.shape, i.inertia, j.shape, j.inertia, law)));
+    const BodyType &i = neighbors.kind(kind_i), &j = neighbors.kind(kind_j);
+    neighbors.set(kind_i, kind_j,
+                  std::make_unique<Surfaces>(surfaces(name, i.shape, i.inertia, j.shape, j.inertia, law)));
 }
 
 void DviScene::step(double h)
@@ -106,25 +106,26 @@ void DviScene::release(double before, double h)
     }
 }
 
-void DviScene::meet(const Surfaces& of, int i, int j, Encounter& state, double within)
+void DviScene::detect_contact(const Surfaces& of, int i, int j, Encounter& state, double within)
 {
     const Motion &bi = body[i], &bj = body[j];
     try {
-        state.touch = of.detector->detect(bi, bj, state.found ? &state.points : nullptr);
+        state.contact_point = of.detector->detect(bi, bj, state.found ? &state.points : nullptr);
     } catch (const lie::NumericalFailure& e) {
         throw lie::NumericalFailure(e.status, "contact '" + of.name + "': " + e.what());
     }
-    const Touch& touch = state.touch;
-    state.points = {bi.A.transpose() * (touch.C_i - bi.r), bj.A.transpose() * (touch.C_j - bj.r)};
+    const ContactPoint& contact_point = state.contact_point;
+    state.points = {bi.A.transpose() * (contact_point.C_i - bi.r),
+                    bj.A.transpose() * (contact_point.C_j - bj.r)};
     state.found = true;
-    state.active = touch.gap < within;
+    state.active = contact_point.gap < within;
     if (!state.active) {
         state.F.setZero();
         return;
     }
     Mat3 frame;
-    frame << touch.n, tangent_basis(touch.n);
-    const Vec3 C = touch.C();
+    frame << contact_point.n, tangent_basis(contact_point.n);
+    const Vec3 C = contact_point.C();
     problem.contact.push_back({i, j, frame, C - bi.r, C - bj.r, of.law.mu, Vec3::Zero()});
     active.push_back({&state, of.law.restitution});
 }
@@ -134,17 +135,18 @@ void DviScene::pose(double h, double kick)
 {
     problem.contact.clear();
     active.clear();
-    for (Pair& p : pair) meet(p.surfaces, p.i, p.j, p.state, options.margin);
-    for (auto& p : crowd.find(body)) meet(*p.law, p.i, p.j, p.state, std::min(options.margin, crowd.margin));
+    for (Pair& p : pair) detect_contact(p.surfaces, p.i, p.j, p.state, options.margin);
+    for (auto& p : neighbors.find(body))
+        detect_contact(*p.law, p.i, p.j, p.state, std::min(options.margin, neighbors.margin));
 
     problem.relative(start, u_start);
     problem.relative(freely, u_free);
     gamma.resize(active.size());
     slip.resize(active.size());
     for (size_t c = 0; c < active.size(); ++c) {
-        ConeProblem::Contact& at = problem.contact[c];
+        ConeProblem::ContactPair& at = problem.contact[c];
         const Encounter& state = *active[c].state;
-        const double gap = state.touch.gap;
+        const double gap = state.contact_point.gap;
         double b = (options.stabilised ? gap : std::max(gap, 0.)) / h;
         const double approach = -u_start[c][0];
         const double rebound = active[c].restitution * approach;

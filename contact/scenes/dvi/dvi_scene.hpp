@@ -57,7 +57,7 @@ public:
             const RigidLaw& law);
 
     /// A kind of bodies, of which any two that come near each other are in contact, and its number
-    int add(const Kind& kind);
+    int add(const BodyType& kind);
     /// A body of a kind
     int enter(int kind, const Motion& start);
     /// The contact that two bodies of these kinds have, or two of one. They are looked for within crowd.margin.
@@ -76,10 +76,10 @@ public:
     struct Encounter {
         bool found = false;
         Points points = {};  ///< of the touch, in the bodies
-        Touch touch = {};
+        ContactPoint contact_point = {};
         bool active = false;    ///< within the margin
         Vec3 F = Vec3::Zero();  ///< on body i at touch.C() [N], -F on j
-        double N() const { return touch.n.dot(F); }
+        double N() const { return contact_point.n.dot(F); }
     };
     struct Pair {
         Surfaces surfaces;
@@ -92,7 +92,7 @@ public:
     /// so that v_n = v_{n+1/2} - h/2 v̈ of what was left.
     std::vector<Motion> body;
     std::vector<Pair> pair;
-    Crowd<Surfaces, Encounter> crowd;
+    NeighborList<Surfaces, Encounter> neighbors;
     ConeSolver::Outcome solved;                                                ///< of the last step
     int contacts() const { return static_cast<int>(problem.contact.size()); }  ///< active in the last step
     double kinetic_energy() const;
@@ -100,7 +100,7 @@ public:
 private:
     Surfaces surfaces(const std::string& name, const Shape& i, const Inertia& of_i, const Shape& j,
                       const Inertia& of_j, const RigidLaw& law) const;
-    void meet(const Surfaces& of, int i, int j, Encounter& state, double within);
+    void detect_contact(const Surfaces& of, int i, int j, Encounter& state, double within);
     void release(double before, double h);
     void pose(double h, double kick);
     void advance(double h, double kick);

@@ -14,7 +14,7 @@ struct ConstantCohesion {
     float F_c = 0;  ///< [N]
 
     template <class R>
-    HILDA_HD R operator()(const Touch<R>&) const
+    HILDA_HD R operator()(const ContactPoint<R>&) const
     {
         return R(F_c);
     }

@@ -11,7 +11,7 @@ struct NoCohesion {
     static constexpr const char* name = "none";
 
     template <class R>
-    HILDA_HD R operator()(const Touch<R>&) const
+    HILDA_HD R operator()(const ContactPoint<R>&) const
     {
         return R(0.f);
     }

@@ -16,7 +16,7 @@ struct Sjkr {
     float k = 0;
 
     template <class R>
-    HILDA_HD R operator()(const Touch<R>& t) const
+    HILDA_HD R operator()(const ContactPoint<R>& t) const
     {
         return Number<R>(3.14159265358979323846) * k * t.R_eff * t.delta;
     }

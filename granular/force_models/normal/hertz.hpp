@@ -20,7 +20,7 @@ struct Hertz {
     int clamped = 0;
 
     template <class R>
-    HILDA_HD Pressing<R> operator()(const Touch<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
     {
         const R a = sqrt(t.R_eff * t.delta), S = 2 * E_eff * a;
         const R F = Number<R>(2) / 3 * S * t.delta + c * sqrt(t.m_eff * S) * t.v_n;

@@ -16,7 +16,7 @@ struct Hooke {
     int clamped = 0;    ///< no tension
 
     template <class R>
-    HILDA_HD Pressing<R> operator()(const Touch<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
     {
         const R F = k_n * t.delta + gamma_n * t.m_eff * t.v_n;
         return {clamped != 0 ? larger(F, R(0.f)) : F, R(1.f)};

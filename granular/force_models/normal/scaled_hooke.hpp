@@ -18,7 +18,7 @@ struct ScaledHooke {
     int clamped = 0;    ///< no tension
 
     template <class R>
-    HILDA_HD Pressing<R> operator()(const Touch<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
     {
         const R scale = sqrt(t.delta / larger(t.R_i, t.R_j));
         const R F = scale * (k_n * t.delta + gamma_n * t.m_eff * t.v_n);

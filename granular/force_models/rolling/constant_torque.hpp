@@ -21,7 +21,8 @@ struct ConstantTorque {
     int half_radius = 0;
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, R, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R,
+                               History<R>& history) const
     {
         const R turning = t.omega.norm();
         const R lever = half_radius != 0 ? Number<R>(0.5) * larger(t.R_i, t.R_j) : t.R_eff;

@@ -17,7 +17,8 @@ struct Epsd {
     float mu_r = 0, eta_r = 0;
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, R k_t, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t,
+                               History<R>& history) const
     {
         const R k_r = k_t * t.R_eff * t.R_eff, bound = mu_r * t.R_eff * abs(p.F);
         const Vec<R> omega_r = t.omega - t.omega.dot(t.n) * t.n;

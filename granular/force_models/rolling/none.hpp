@@ -11,7 +11,7 @@ struct NoRolling {
     static constexpr const char* name = "none";
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>&, const Pressing<R>&, R, History<R>&) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>&, const NormalForce<R>&, R, History<R>&) const
     {
         return {R(0.f), R(0.f), R(0.f)};
     }

@@ -17,7 +17,8 @@ struct PseudoForce {
     float eta_r = 0;  ///< damping over critical
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, R k_t, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t,
+                               History<R>& history) const
     {
         const R k = k_r * k_t, gamma = 2 * eta_r * sqrt(t.m_eff * k);
         const Vec<R> v_r = -(t.R_eff * t.n.cross(t.omega));

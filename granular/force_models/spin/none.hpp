@@ -11,7 +11,7 @@ struct NoSpin {
     static constexpr const char* name = "none";
 
     template <class R>
-    HILDA_HD R operator()(const Touch<R>&, const Pressing<R>&, R, R, History<R>&) const
+    HILDA_HD R operator()(const ContactPoint<R>&, const NormalForce<R>&, R, R, History<R>&) const
     {
         return R(0.f);
     }

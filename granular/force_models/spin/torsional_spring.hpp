@@ -14,7 +14,7 @@ struct TorsionalSpring {
     float mu = 0;
 
     template <class R>
-    HILDA_HD R operator()(const Touch<R>& t, const Pressing<R>& p, R k_t, R gamma_t,
+    HILDA_HD R operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t, R gamma_t,
                           History<R>& history) const
     {
         const R a2 = t.R_eff * t.delta, K = Number<R>(0.5) * k_t * a2, D = Number<R>(0.5) * gamma_t * a2;

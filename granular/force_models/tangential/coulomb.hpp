@@ -15,7 +15,7 @@ struct Coulomb {
     float mu_k = 0;
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>&) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>&) const
     {
         const R gamma = spring.damping(t, p), F = gamma * t.v_t.norm(), bound = mu_k * abs(p.F);
         return -(select(F > bound, bound / larger(F, R(tiny)), R(1.f)) * gamma) * t.v_t;

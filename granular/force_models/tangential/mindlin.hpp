@@ -19,7 +19,7 @@ struct Mindlin {
     Cap cap = {};
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>& history) const
     {
         const R k = spring.stiffness(p), gamma = spring.damping(t, p);
         const Vec<R> u = carried(history.u, t.n) + R(t.h) * t.v_t;

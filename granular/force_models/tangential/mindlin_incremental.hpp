@@ -18,7 +18,7 @@ struct MindlinIncremental {
     Cap cap = {};
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const Touch<R>& t, const Pressing<R>& p, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>& history) const
     {
         const R k = spring.stiffness(p), gamma = spring.damping(t, p);
         // k over that of the last step, when the overlap was δ - h δ̇

@@ -17,12 +17,12 @@ struct TangentialSpring {
     float k_t = 0, c = 0, gamma_t = 0;
 
     template <class R>
-    HILDA_HD R stiffness(const Pressing<R>& p) const
+    HILDA_HD R stiffness(const NormalForce<R>& p) const
     {
         return k_t * p.scale;
     }
     template <class R>
-    HILDA_HD R damping(const Touch<R>& t, const Pressing<R>& p) const
+    HILDA_HD R damping(const ContactPoint<R>& t, const NormalForce<R>& p) const
     {
         return c * sqrt(t.m_eff * stiffness(p)) + gamma_t * t.m_eff * p.scale;
     }

@@ -27,7 +27,7 @@ const std::string kind = "compare";
 constexpr long fewest_rows = 100, most_rows = 1000;  // of compare.csv
 constexpr std::array<const char*, 4> quantities = {"r", "A", "v", "omega"};
 
-struct Run : Member {
+struct ComparedRun : Run {
     std::vector<lie::State> row;  ///< at the instants, as far as the run went
     std::vector<Difference> difference;
     std::array<double, 4> largest{}, last{};
@@ -44,14 +44,14 @@ Instants rows_on(double end, double h)
     return {.dt = static_cast<double>(every) * h, .stride = 1, .count = steps / every};
 }
 
-void compute(Run& run, const StudyOptions& options)
+void compute(ComparedRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
     AtInstants nodes(model, run.c->instants, run.h);
     lie::Observer* observers[] = {&nodes};
     march(run, options.settings, observers);
     for (size_t k = 0; k < nodes.at.size(); ++k)
-        run.difference.push_back(difference(nodes.run.row[k], run.c->truth.row[nodes.at[k]]));
+        run.difference.push_back(difference(nodes.run.row[k], run.c->reference_solution.row[nodes.at[k]]));
     run.row = std::move(nodes.run.row);
     for (const Difference& d : run.difference) {
         run.last = {d.r, d.A, d.v, d.omega};
@@ -60,7 +60,7 @@ void compute(Run& run, const StudyOptions& options)
     if (run.failed()) run.last.fill(std::nan("")), run.largest.fill(std::nan(""));
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<ComparedRun>& runs)
 {
     std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
                                           {"rtol"},    {"reference"},  {"watched_scalar"}};
@@ -69,14 +69,14 @@ Table as_table(const std::vector<Run>& runs)
     for (const char* name : {"steps", "iterations_per_step", "cpu_seconds", "status"})
         columns.push_back({name});
     Table table(columns);
-    for (const Run& run : runs) {
+    for (const ComparedRun& run : runs) {
         const bool adaptive = run.rtol > 0;
         std::vector<Table::Cell> row = {run.c->problem.name,
                                         run.scheme->name,
                                         adaptive ? std::nan("") : run.h,
                                         adaptive ? run.rtol : std::nan(""),
-                                        run.c->truth_name,
-                                        run.c->watched.name()};
+                                        run.c->reference_name,
+                                        run.c->observable.name()};
         for (const double d : run.largest) row.emplace_back(d);
         for (const double d : run.last) row.emplace_back(d);
         row.emplace_back(static_cast<double>(run.statistics.steps));
@@ -88,7 +88,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+void print(const std::vector<ComparedRun>& runs, const Benchmark& c, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}, {"step or rtol"}};
     for (const char* head : {"max dr [m]", "max dA", "max dv [m/s]", "max domega [rad/s]", "end dr [m]",
@@ -96,7 +96,7 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
         columns.push_back({head});
     columns.push_back({"status"});
     Table table(columns);
-    for (const Run& run : runs) {
+    for (const ComparedRun& run : runs) {
         std::vector<Table::Cell> row = {run.scheme->name, run.grain()};
         for (const double d : run.largest) row.emplace_back(d);
         for (const double d : run.last) row.emplace_back(d);
@@ -104,36 +104,36 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
         table.add(row);
     }
     out << fmt::format("\n{}, over {:g} s, {} instants; differences to: {}\n", c.problem.name, c.end,
-                       c.instants.count + 1, c.truth_name);
+                       c.instants.count + 1, c.reference_name);
     table.print(out);
 }
 
 /// The watched scalar and the position of the watched body
-void append(std::string& csv, const lie::State& x, const Watched& watched, int body)
+void append(std::string& csv, const lie::State& x, const Observable& observable, int body)
 {
     csv += ',';
-    append_number(csv, component(x, body, watched.component));
+    append_number(csv, component(x, body, observable.component));
     append_vector(csv, x.body[body].r);
 }
 
-std::string side_by_side(const Case& c, const std::vector<Run>& runs)
+std::string side_by_side(const Benchmark& c, const std::vector<ComparedRun>& runs)
 {
-    const int body = c.started->model->find(c.watched.body);
+    const int body = c.started->model->find(c.observable.body);
     std::string csv = "t";
     for (const char* column : {"watched", "rx", "ry", "rz"}) csv += std::string(",reference.") + column;
-    for (const Run& run : runs)
+    for (const ComparedRun& run : runs)
         for (const char* column : {"watched", "rx", "ry", "rz", "diff_r", "diff_A", "diff_v", "diff_omega"})
             csv += ',' + csv_field(run.scheme->name + '.' + column);
     csv += '\n';
     for (long k = 0; k <= c.instants.count; ++k) {
         append_number(csv, static_cast<double>(k) * c.instants.dt);
-        append(csv, c.truth.row[k], c.watched, body);
-        for (const Run& run : runs) {
+        append(csv, c.reference_solution.row[k], c.observable, body);
+        for (const ComparedRun& run : runs) {
             if (k >= static_cast<long>(run.row.size())) {  // it failed before
                 csv += ",,,,,,,,";
                 continue;
             }
-            append(csv, run.row[k], c.watched, body);
+            append(csv, run.row[k], c.observable, body);
             const Difference& d = run.difference[k];
             append_vector(csv, Eigen::Vector4d(d.r, d.A, d.v, d.omega));
         }
@@ -142,11 +142,11 @@ std::string side_by_side(const Case& c, const std::vector<Run>& runs)
     return csv;
 }
 
-ordered_json as_json(const std::vector<Run>& runs)
+ordered_json as_json(const std::vector<ComparedRun>& runs)
 {
     ordered_json rows = ordered_json::array();
-    for (const Run& run : runs) {
-        ordered_json row = as_json(static_cast<const Member&>(run));
+    for (const ComparedRun& run : runs) {
+        ordered_json row = as_json(static_cast<const Run&>(run));
         for (size_t q = 0; q < 4; ++q)
             row[std::string("max_") + quantities[q]] = number_or_null(run.largest[q]);
         for (size_t q = 0; q < 4; ++q) row[std::string("end_") + quantities[q]] = number_or_null(run.last[q]);
@@ -170,24 +170,25 @@ int compare(const StudyOptions& options)
     check_keys(kind, options, keys());
     const double h = one_step(kind, options, 1e-3);
     const Schemes schemes = any_schemes(options, {"rA-half-1", "rA-half-2", "rA-full-1"});
-    Judged judged;
+    Evaluated evaluated;
     for (const lie::Scheme* s : schemes)
         if (s->adaptive)
-            judged.smallest_rtol = options.settings.rtol;
+            evaluated.smallest_rtol = options.settings.rtol;
         else
-            judged.smallest_step = h, judged.highest_order = std::max(judged.highest_order, s->order);
-    const Reference reference(kind, options, judged);
+            evaluated.smallest_step = h,
+            evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    const Reference reference(kind, options, evaluated);
     if (options.problems.size() > 1) throw UsageError("study compare: takes one problem, --problem NAME");
-    std::vector<Case> all = cases(kind, options, {"double_pendulum"});
-    Case& c = all.front();
+    std::vector<Benchmark> all = benchmarks(kind, options, {"double_pendulum"});
+    Benchmark& c = all.front();
     check_steps(kind, c, {h});
     c.instants = rows_on(c.end, h);
     c.end = static_cast<double>(c.instants.count) * c.instants.dt;
-    reference.judge(all);
+    reference.evaluate(all);
 
-    std::vector<Run> runs;
+    std::vector<ComparedRun> runs;
     for (const lie::Scheme* s : schemes) {
-        Run run;
+        ComparedRun run;
         run.c = &c, run.scheme = s, run.h = s->adaptive ? c.instants.dt : h;
         if (s->adaptive) run.rtol = options.settings.rtol;
         runs.push_back(run);
@@ -199,25 +200,26 @@ int compare(const StudyOptions& options)
     StudyOutput output{
         .kind = kind,
         .table = as_table(runs).csv(),
-        .json = {{"truth", c.truth_name}, {"watched", c.watched.name()}, {"runs", as_json(runs)}},
+        .json = {{"truth", c.reference_name}, {"watched", c.observable.name()}, {"runs", as_json(runs)}},
         .files = {{"compare.csv", side_by_side(c, runs)}},
         .figures = {"compare.png"}};
     print(runs, c, output.text);
     std::vector<Measured> came;
-    for (const Run& run : runs) {
+    for (const ComparedRun& run : runs) {
         came.push_back({.of = run.name(), .value = {}});
         for (size_t q = 0; q < 4; ++q) {
             came.back().value[std::string("max_") + quantities[q]] = run.largest[q];
             came.back().value[std::string("end_") + quantities[q]] = run.last[q];
         }
     }
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled = enrol(Study{.kind = kind,
-                                  .answers = "one model, several integrators: trajectories and differences",
-                                  .also = takes::reference,
-                                  .run = compare});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "one model, several integrators: trajectories and differences",
+                         .also = takes::reference,
+                         .run = compare});
 
 }  // namespace
 

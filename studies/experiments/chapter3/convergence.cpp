@@ -33,19 +33,19 @@ constexpr double floor_change =
     0.05;  // an error that changes by more with a tighter tolerance is at its floor
 constexpr double asymptotic_step = 1e-3;  // a line is fitted through steps up to this [s]
 
-struct Run : JudgedRun {
+struct ConvergenceRun : EvaluatedRun {
     std::array<bool, norm::count> at_floor{};
     std::array<double, norm::count> order{};
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(ConvergenceRun& run, const StudyOptions& options)
 {
-    judge(run, options.settings);
+    evaluate(run, options.settings);
     if (run.failed()) return;
-    Run tighter = run;
+    ConvergenceRun tighter = run;
     lie::Settings settings = options.settings;
     settings.tolerance /= 100;
-    judge(tighter, settings);
+    evaluate(tighter, settings);
     if (tighter.failed()) return;  // below rounding already; no floor to see
     for (int n = 0; n < norm::count; ++n) {
         const double e = run.errors.value[n], e_tighter = tighter.errors.value[n];
@@ -55,7 +55,7 @@ void compute(Run& run, const StudyOptions& options)
 }
 
 /// The rows of one scheme on one problem, from the largest step down
-using Series = std::vector<const Run*>;
+using Series = std::vector<const ConvergenceRun*>;
 
 /// Slope through the clean rows with steps up to asymptotic_step; where there are fewer than three of these, as
 /// of a scheme of high order, which is at rounding there, through the three smallest.
@@ -63,7 +63,7 @@ double fit(const Series& series, int n)
 {
     std::vector<double> h, e;
     size_t asymptotic = 0;
-    for (const Run* run : series) {
+    for (const ConvergenceRun* run : series) {
         if (run->failed() || run->at_floor[n]) continue;
         h.push_back(run->h), e.push_back(run->errors.value[n]);
         asymptotic += run->h <= asymptotic_step * (1 + 1e-9);
@@ -76,10 +76,10 @@ double fit(const Series& series, int n)
 
 void print(const Series& series, std::ostream& out)
 {
-    const Run& first = *series.front();
+    const ConvergenceRun& first = *series.front();
     out << fmt::format("\n{}, {} (declared order {}, of lambda {}); truth: {}\n", first.c->problem.name,
                        first.scheme->name, first.scheme->order, first.scheme->order_lambda,
-                       first.c->truth_name);
+                       first.c->reference_name);
     std::vector<Table::Column> columns = {{"h [s]", "{:.1e}"}};
     const char* heads[] = {"r [m]", "A", "v [m/s]", "omega [rad/s]", "Q"};
     for (int n = norm::r; n <= norm::Q; ++n) {
@@ -88,7 +88,7 @@ void print(const Series& series, std::ostream& out)
     }
     columns.insert(columns.end(), {{"iter", "{:.2f}"}, {"|Phi|", "{:.1e}"}, {"|A'A-I|", "{:.1e}"}});
     Table table(columns);
-    for (const Run* run : series) {
+    for (const ConvergenceRun* run : series) {
         std::vector<Table::Cell> row = {run->h};
         for (int n = norm::r; n <= norm::Q; ++n) {
             const double e = run->errors.value[n];
@@ -112,7 +112,7 @@ void print(const Series& series, std::ostream& out)
 }
 
 /// Fitted orders of all schemes on one problem, side by side
-void print_fits(const std::vector<Series>& all, const Case& c, std::ostream& out)
+void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream& out)
 {
     Table table({{c.problem.name},
                  {"declared"},
@@ -124,14 +124,14 @@ void print_fits(const std::vector<Series>& all, const Case& c, std::ostream& out
                  {"r [m] at " + step_text(all.front().back()->h) + " s"},
                  {"status"}});
     for (const Series& series : all) {
-        const Run& first = *series.front();
+        const ConvergenceRun& first = *series.front();
         if (first.c != &c) continue;
         std::vector<Table::Cell> row = {
             first.scheme->name, fmt::format("{}, {}", first.scheme->order, first.scheme->order_lambda)};
         for (int n = norm::r; n <= norm::Q; ++n) row.emplace_back(fit(series, n));
         row.emplace_back(series.back()->errors.value[norm::r]);
         const auto failed =
-            std::find_if(series.begin(), series.end(), [](const Run* r) { return r->failed(); });
+            std::find_if(series.begin(), series.end(), [](const ConvergenceRun* r) { return r->failed(); });
         row.emplace_back(failed == series.end() ? "ok"
                                                 : (*failed)->status + " at " + step_text((*failed)->h));
         table.add(row);
@@ -140,7 +140,7 @@ void print_fits(const std::vector<Series>& all, const Case& c, std::ostream& out
     table.print(out);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<ConvergenceRun>& runs)
 {
     std::vector<Table::Column> columns = {
         {"problem"}, {"integrator"}, {"h"}, {"instants"}, {"watched_scalar"}};
@@ -151,9 +151,9 @@ Table as_table(const std::vector<Run>& runs)
                              "constraint_norm", "orthogonality", "cpu_seconds", "status"})
         columns.push_back({name});
     Table table(columns);
-    for (const Run& run : runs) {
+    for (const ConvergenceRun& run : runs) {
         std::vector<Table::Cell> row = {run.c->problem.name, run.scheme->name, run.h,
-                                        static_cast<double>(run.errors.instants), run.c->watched.name()};
+                                        static_cast<double>(run.errors.instants), run.c->observable.name()};
         for (const double e : run.errors.value) row.emplace_back(e);
         for (const double p : run.order) row.emplace_back(p);
         for (const bool f : run.at_floor) row.emplace_back(f ? 1.0 : 0.0);
@@ -174,10 +174,10 @@ ordered_json as_json(const std::vector<Series>& all)
 {
     ordered_json out = ordered_json::array();
     for (const Series& series : all) {
-        const Run& first = *series.front();
+        const ConvergenceRun& first = *series.front();
         ordered_json fits = ordered_json::object(), rows = ordered_json::array();
         for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
-        for (const Run* run : series) {
+        for (const ConvergenceRun* run : series) {
             ordered_json row = {{"h", run->h}, {"status", run->status}};
             if (!run->message.empty()) row["message"] = run->message;
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
@@ -190,8 +190,8 @@ ordered_json as_json(const std::vector<Series>& all)
                        {"integrator", first.scheme->name},
                        {"declared_order", first.scheme->order},
                        {"declared_order_lambda", first.scheme->order_lambda},
-                       {"truth", first.c->truth_name},
-                       {"watched", first.c->watched.name()},
+                       {"truth", first.c->reference_name},
+                       {"watched", first.c->observable.name()},
                        {"fitted_order", fits},
                        {"rows", rows}});
     }
@@ -234,18 +234,19 @@ int convergence(const StudyOptions& options)
     check_keys(kind, options, keys());
     const std::vector<double> steps = steps_or(options, default_steps());
     const Schemes schemes = fixed_step_schemes(kind, options);
-    Judged judged{.smallest_step = steps.back()};
-    for (const lie::Scheme* s : schemes) judged.highest_order = std::max(judged.highest_order, s->order);
-    const Reference reference(kind, options, judged);
-    std::vector<Case> all_cases = cases(kind, options, default_problems());
-    for (const Case& c : all_cases) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.judge(all_cases);
+    Evaluated evaluated{.smallest_step = steps.back()};
+    for (const lie::Scheme* s : schemes)
+        evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    const Reference reference(kind, options, evaluated);
+    std::vector<Benchmark> all_cases = benchmarks(kind, options, default_problems());
+    for (const Benchmark& c : all_cases) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
+    reference.evaluate(all_cases);
 
-    std::vector<Run> runs;
-    for (const Case& c : all_cases)
+    std::vector<ConvergenceRun> runs;
+    for (const Benchmark& c : all_cases)
         for (const lie::Scheme* s : schemes)
             for (const double h : steps) {
-                Run run;
+                ConvergenceRun run;
                 run.c = &c, run.scheme = s, run.h = h;
                 run.order.fill(std::nan(""));
                 runs.push_back(run);
@@ -274,20 +275,20 @@ int convergence(const StudyOptions& options)
     output.text
         << "\n* at rounding, or at the floor that the Newton tolerance sets: not in the fit, which takes "
            "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of lambda\n";
-    for (const Case& c : all_cases) print_fits(all, c, output.text);
-    for (const Case& c : all_cases) output.figures.push_back("convergence-" + c.problem.name + ".png");
+    for (const Benchmark& c : all_cases) print_fits(all, c, output.text);
+    for (const Benchmark& c : all_cases) output.figures.push_back("convergence-" + c.problem.name + ".png");
     std::vector<Measured> came;
     for (const Series& series : all) came.push_back(measured(series));
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
 namespace {
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "order of the schemes against a trusted solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-                .also = takes::reference,
-                .run = convergence});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "order of the schemes against a trusted solution (Figs. 3.4, 3.6, 3.7, 3.8)",
+          .also = takes::reference,
+          .run = convergence});
 
 }  // namespace
 

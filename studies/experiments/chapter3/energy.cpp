@@ -26,7 +26,7 @@ constexpr long most_rows = 1000;  // of one run in energy.csv
 /// E and T of every node; the curve of E, thinned
 class EnergyOfNodes final : public lie::Observer {
 public:
-    EnergyOfNodes(const dae::Model& model, const lie::Grid& grid) : model(model), grid(grid) {}
+    EnergyOfNodes(const dae::Model& model, const lie::TimeGrid& grid) : model(model), grid(grid) {}
 
     void accepted(const lie::State& x, long n, int) override
     {
@@ -45,18 +45,18 @@ public:
 
 private:
     const dae::Model& model;
-    const lie::Grid grid;
+    const lie::TimeGrid grid;
 };
 
-struct Run : Member {
+struct EnergyRun : Run {
     double start = 0, drift = 0, largest = 0, kinetic = 0;  ///< [J]
     std::vector<std::pair<double, double>> curve;           ///< t, E
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(EnergyRun& run, const StudyOptions& options)
 {
     EnergyOfNodes nodes(*run.c->started->model,
-                        lie::Grid::over(run.c->end, run.h, run.c->end / static_cast<double>(most_rows)));
+                        lie::TimeGrid::over(run.c->end, run.h, run.c->end / static_cast<double>(most_rows)));
     lie::Observer* observers[] = {&nodes};
     march(run, options.settings, observers);
     run.start = nodes.start;
@@ -66,7 +66,7 @@ void compute(Run& run, const StudyOptions& options)
     run.curve = std::move(nodes.curve);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<EnergyRun>& runs)
 {
     Table table({{"problem"},
                  {"integrator"},
@@ -82,7 +82,7 @@ Table as_table(const std::vector<Run>& runs)
                  {"iterations_per_step"},
                  {"cpu_seconds"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const EnergyRun& run : runs)
         table.add({run.c->problem.name, run.scheme->name, run.h, run.c->end, run.start, run.drift,
                    run.largest, run.kinetic, run.drift / run.kinetic, run.largest / run.kinetic,
                    static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
@@ -90,7 +90,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+void print(const std::vector<EnergyRun>& runs, const Benchmark& c, std::ostream& out)
 {
     Table table({{"integrator"},
                  {"h [s]", "{:.1e}"},
@@ -100,7 +100,7 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
                  {"max", "{:.1e}"},
                  {"max T [J]", "{:.5g}"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const EnergyRun& run : runs)
         if (run.c == &c)
             table.add({run.scheme->name, run.h, run.drift, run.largest, run.drift / run.kinetic,
                        run.largest / run.kinetic, run.kinetic, run.status});
@@ -108,10 +108,10 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
     table.print(out);
 }
 
-std::string curves(const std::vector<Run>& runs)
+std::string curves(const std::vector<EnergyRun>& runs)
 {
     std::string csv = "problem,integrator,h,t,energy,drift\n";
-    for (const Run& run : runs)
+    for (const EnergyRun& run : runs)
         for (const auto& [t, E] : run.curve) {
             csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
             for (const double value : {run.h, t, E, E - run.start}) {
@@ -123,11 +123,11 @@ std::string curves(const std::vector<Run>& runs)
     return csv;
 }
 
-ordered_json as_json(const std::vector<Run>& runs)
+ordered_json as_json(const std::vector<EnergyRun>& runs)
 {
     ordered_json rows = ordered_json::array();
-    for (const Run& run : runs) {
-        ordered_json row = as_json(static_cast<const Member&>(run));
+    for (const EnergyRun& run : runs) {
+        ordered_json row = as_json(static_cast<const Run&>(run));
         row.update({{"energy_start", run.start},
                     {"end_drift", number_or_null(run.drift)},
                     {"max_drift", number_or_null(run.largest)},
@@ -142,14 +142,14 @@ int energy(const StudyOptions& options)
     check_keys(kind, options, std::vector<std::string>{"end_drift", "max_drift", "max_drift_relative"});
     const std::vector<double> steps = steps_or(options, {1e-3});
     const Schemes schemes = fixed_step_schemes(kind, options);
-    const std::vector<Case> all = cases(kind, options, {"double_pendulum", "n_pendulum_2_spin"},
-                                        [](const dae::Description&) { return 30.; });
-    std::vector<Run> runs;
-    for (const Case& c : all) {
+    const std::vector<Benchmark> all = benchmarks(kind, options, {"double_pendulum", "n_pendulum_2_spin"},
+                                                  [](const dae::Description&) { return 30.; });
+    std::vector<EnergyRun> runs;
+    for (const Benchmark& c : all) {
         check_steps(kind, c, steps);
         for (const lie::Scheme* s : schemes)
             for (const double h : steps) {
-                Run run;
+                EnergyRun run;
                 run.c = &c, run.scheme = s, run.h = h;
                 runs.push_back(run);
             }
@@ -160,21 +160,21 @@ int energy(const StudyOptions& options)
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.files = {{"energy.csv", curves(runs)}};
-    for (const Case& c : all) {
+    for (const Benchmark& c : all) {
         print(runs, c, output.text);
         output.figures.push_back("energy-" + c.problem.name + ".png");
     }
     std::vector<Measured> came;
-    for (const Run& run : runs)
+    for (const EnergyRun& run : runs)
         came.push_back({.of = run.name(),
                         .value = {{"end_drift", run.drift},
                                   {"max_drift", run.largest},
                                   {"max_drift_relative", run.largest / run.kinetic}}});
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind, .answers = "energy of undamped systems over time (Fig. 3.5)", .run = energy});
+const bool registered = register_study(
+    Study{.kind = kind, .answers = "energy of undamped systems over time (Fig. 3.5)", .run = energy});
 
 }  // namespace
 

@@ -53,23 +53,23 @@ private:
     const long in_a_bin;
 };
 
-struct Run : Member {
+struct IterationsRun : Run {
     std::vector<Bin> bins;
     int most = 0;
 
     double mean() const { return failed() ? std::nan("") : statistics.iterations_per_step(); }
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(IterationsRun& run, const StudyOptions& options)
 {
-    IterationsOfSteps steps(lie::Grid::over(run.c->end, run.h).steps);
+    IterationsOfSteps steps(lie::TimeGrid::over(run.c->end, run.h).steps);
     lie::Observer* observers[] = {&steps};
     march(run, options.settings, observers);
     run.bins = std::move(steps.bins);
     run.most = steps.most;
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<IterationsRun>& runs)
 {
     Table table({{"problem"},
                  {"integrator"},
@@ -80,7 +80,7 @@ Table as_table(const std::vector<Run>& runs)
                  {"factorizations"},
                  {"refactorizations"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const IterationsRun& run : runs)
         table.add({run.c->problem.name, run.scheme->name, run.h, static_cast<double>(run.statistics.steps),
                    run.mean(), static_cast<double>(run.most),
                    static_cast<double>(run.statistics.factorizations),
@@ -89,7 +89,7 @@ Table as_table(const std::vector<Run>& runs)
 }
 
 /// A line for each scheme, mean and most for each step
-void print(const std::vector<Run>& runs, const Case& c, const Schemes& schemes,
+void print(const std::vector<IterationsRun>& runs, const Benchmark& c, const Schemes& schemes,
            const std::vector<double>& steps, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}};
@@ -100,7 +100,7 @@ void print(const std::vector<Run>& runs, const Case& c, const Schemes& schemes,
     Table table(columns);
     for (const lie::Scheme* s : schemes) {
         std::vector<Table::Cell> row = {s->name};
-        for (const Run& run : runs) {
+        for (const IterationsRun& run : runs) {
             if (run.c != &c || run.scheme != s) continue;
             row.emplace_back(run.failed() ? Table::Cell(run.status) : Table::Cell(run.mean()));
             row.emplace_back(static_cast<double>(run.most));
@@ -112,10 +112,10 @@ void print(const std::vector<Run>& runs, const Case& c, const Schemes& schemes,
     table.print(out);
 }
 
-std::string over_time(const std::vector<Run>& runs)
+std::string over_time(const std::vector<IterationsRun>& runs)
 {
     std::string csv = "problem,integrator,h,t,mean,max\n";
-    for (const Run& run : runs) {
+    for (const IterationsRun& run : runs) {
         for (const Bin& bin : run.bins) {
             csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
             for (const double value :
@@ -130,11 +130,11 @@ std::string over_time(const std::vector<Run>& runs)
     return csv;
 }
 
-ordered_json as_json(const std::vector<Run>& runs)
+ordered_json as_json(const std::vector<IterationsRun>& runs)
 {
     ordered_json rows = ordered_json::array();
-    for (const Run& run : runs) {
-        ordered_json row = as_json(static_cast<const Member&>(run));
+    for (const IterationsRun& run : runs) {
+        ordered_json row = as_json(static_cast<const Run&>(run));
         row.update({{"steps", run.statistics.steps},
                     {"iterations_per_step", number_or_null(run.mean())},
                     {"max_iterations", run.most},
@@ -149,13 +149,14 @@ int iterations(const StudyOptions& options)
     check_keys(kind, options, std::vector<std::string>{"iterations", "max_iterations"});
     const std::vector<double> steps = steps_or(options, {1e-2, 1e-3, 1e-4});
     const Schemes schemes = fixed_step_schemes(kind, options);
-    const std::vector<Case> all = cases(kind, options, {"double_pendulum", "slider_crank", "four_link"});
-    std::vector<Run> runs;
-    for (const Case& c : all) {
+    const std::vector<Benchmark> all =
+        benchmarks(kind, options, {"double_pendulum", "slider_crank", "four_link"});
+    std::vector<IterationsRun> runs;
+    for (const Benchmark& c : all) {
         check_steps(kind, c, steps);
         for (const lie::Scheme* s : schemes)
             for (const double h : steps) {
-                Run run;
+                IterationsRun run;
                 run.c = &c, run.scheme = s, run.h = h;
                 runs.push_back(run);
             }
@@ -166,21 +167,21 @@ int iterations(const StudyOptions& options)
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.files = {{"iterations.csv", over_time(runs)}};
-    for (const Case& c : all) {
+    for (const Benchmark& c : all) {
         print(runs, c, schemes, steps, output.text);
         output.figures.push_back("iterations-" + c.problem.name + ".png");
     }
     std::vector<Measured> came;
-    for (const Run& run : runs)
+    for (const IterationsRun& run : runs)
         came.push_back(
             {.of = run.name(), .value = {{"iterations", run.mean()}, {"max_iterations", run.most}}});
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "Newton iterations of a step, over step size and time (Figs. 3.9, 3.11-3.13)",
-                .run = iterations});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "Newton iterations of a step, over step size and time (Figs. 3.9, 3.11-3.13)",
+          .run = iterations});
 
 }  // namespace
 

@@ -26,7 +26,7 @@ const std::string kind = "scaling";
 const std::string compared_with = "rA-full-1";
 constexpr int many = 64;  // bars, from which the exponent is taken: below, what does not grow with N shows
 
-struct Run : TimedRun {
+struct ScalingRun : TimedRun {
     int N = 0;
     double start_seconds = 0;     ///< wall time of reading the model and starting it
     double ratio = std::nan("");  ///< to rA-full-1
@@ -34,7 +34,7 @@ struct Run : TimedRun {
 
 struct Chains {
     std::vector<int> N;
-    std::vector<Case> all;
+    std::vector<Benchmark> all;
     std::vector<double> start_seconds;
 };
 
@@ -48,7 +48,7 @@ Chains chains(const StudyOptions& options)
     const auto end = [](const dae::Description&) { return 0.1; };
     Pool(options.jobs, options.quiet ? "" : "starts", static_cast<long>(chains.N.size())).run([&](long k) {
         const auto begin = std::chrono::steady_clock::now();
-        chains.all[k] = make_case(spinning_n_pendulum(chains.N[k], options.seed), options, end);
+        chains.all[k] = make_benchmark(spinning_n_pendulum(chains.N[k], options.seed), options, end);
         chains.start_seconds[k] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     });
@@ -56,10 +56,10 @@ Chains chains(const StudyOptions& options)
 }
 
 /// Time over N of one scheme, N >= many
-Exponent exponent_of(const std::vector<Run>& runs, const lie::Scheme* scheme)
+Exponent exponent_of(const std::vector<ScalingRun>& runs, const lie::Scheme* scheme)
 {
     std::vector<double> N, seconds;
-    for (const Run& run : runs)
+    for (const ScalingRun& run : runs)
         if (run.scheme == scheme && run.N >= many && !run.failed()) {
             N.push_back(run.N);
             seconds.push_back(run.microseconds().median);
@@ -67,7 +67,7 @@ Exponent exponent_of(const std::vector<Run>& runs, const lie::Scheme* scheme)
     return exponent(N, seconds);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<ScalingRun>& runs)
 {
     Table table({{"problem"},
                  {"bars"},
@@ -83,7 +83,7 @@ Table as_table(const std::vector<Run>& runs)
                  {"ratio_to_full"},
                  {"start_seconds"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const ScalingRun& run : runs)
         table.add({run.c->problem.name, static_cast<double>(run.N), run.scheme->name, run.h,
                    static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
                    static_cast<double>(run.statistics.factorizations),
@@ -93,7 +93,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, const StudyOptions& options, std::ostream& out)
+void print(const std::vector<ScalingRun>& runs, const StudyOptions& options, std::ostream& out)
 {
     Table table({{"N", "{:.0f}"},
                  {"integrator"},
@@ -104,18 +104,18 @@ void print(const std::vector<Run>& runs, const StudyOptions& options, std::ostre
                  {"iter", "{:.2f}"},
                  {"over " + compared_with, "{:.3f}"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const ScalingRun& run : runs)
         table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
                    run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
                    run.statistics.iterations_per_step(), run.ratio, run.status});
-    const Run& first = runs.front();
+    const ScalingRun& first = runs.front();
     out << fmt::format("\nN-bar pendulum, h = {:g} s, over {:g} s, seed {}: thread CPU time of a step\n",
                        first.h, first.c->end, options.seed);
     table.print(out);
 }
 
 /// The exponents, and the mean ratio over N: the dissertation's 52 %
-void print_fits(const std::vector<Run>& runs, const Schemes& schemes, std::ostream& out)
+void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std::ostream& out)
 {
     Table table({{"integrator"},
                  {fmt::format("exponent, N >= {}", many), "{:.3f}"},
@@ -124,7 +124,7 @@ void print_fits(const std::vector<Run>& runs, const Schemes& schemes, std::ostre
     for (const lie::Scheme* s : schemes) {
         double sum = 0;
         int count = 0;
-        for (const Run& run : runs)
+        for (const ScalingRun& run : runs)
             if (run.scheme == s && !std::isnan(run.ratio)) sum += run.ratio, ++count;
         const Exponent p = exponent_of(runs, s);
         table.add({s->name, p.fitted, p.largest_local, count > 0 ? sum / count : std::nan("")});
@@ -133,11 +133,11 @@ void print_fits(const std::vector<Run>& runs, const Schemes& schemes, std::ostre
     table.print(out);
 }
 
-ordered_json as_json(const std::vector<Run>& runs)
+ordered_json as_json(const std::vector<ScalingRun>& runs)
 {
     ordered_json rows = ordered_json::array();
-    for (const Run& run : runs) {
-        ordered_json row = as_json(static_cast<const Member&>(run));
+    for (const ScalingRun& run : runs) {
+        ordered_json row = as_json(static_cast<const Run&>(run));
         row.update({{"bars", run.N},
                     {"us_per_step", number_or_null(run.microseconds().median)},
                     {"us_per_step_min", number_or_null(run.microseconds().least)},
@@ -159,11 +159,11 @@ int scaling(const StudyOptions& options)
     const Schemes schemes =
         fixed_step_schemes(kind, options, {"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
     const Chains of = chains(options);
-    std::vector<Run> runs;
+    std::vector<ScalingRun> runs;
     for (size_t k = 0; k < of.N.size(); ++k) {
         check_steps(kind, of.all[k], {h});
         for (const lie::Scheme* s : schemes) {
-            Run run;
+            ScalingRun run;
             run.c = &of.all[k], run.scheme = s, run.h = h, run.N = of.N[k];
             run.start_seconds = of.start_seconds[k];
             runs.push_back(run);
@@ -172,10 +172,10 @@ int scaling(const StudyOptions& options)
     Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
         .run([&](long k) { march(runs[k], options.settings); });
     std::vector<TimedRun*> timed;
-    for (Run& run : runs) timed.push_back(&run);
+    for (ScalingRun& run : runs) timed.push_back(&run);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
-    for (Run& run : runs)
-        for (const Run& full : runs)
+    for (ScalingRun& run : runs)
+        for (const ScalingRun& full : runs)
             if (full.N == run.N && full.scheme->name == compared_with) run.ratio = studies::ratio(run, full);
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
@@ -195,17 +195,17 @@ int scaling(const StudyOptions& options)
                               {"largest_local", number_or_null(p.largest_local)}};
     }
     output.json["exponents"] = exponents;
-    for (const Run& run : runs)
+    for (const ScalingRun& run : runs)
         if (run.scheme->name != compared_with)
             came.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "CPU time of a step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                .also = takes::repeats | takes::bars,
-                .run = scaling});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "CPU time of a step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+                         .also = takes::repeats | takes::bars,
+                         .run = scaling});
 
 }  // namespace
 

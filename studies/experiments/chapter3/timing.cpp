@@ -21,34 +21,34 @@ using nlohmann::ordered_json;
 const std::string kind = "timing";
 const std::string compared_with = "rA-full-1";
 
-struct Run : TimedRun {
+struct StepTimeRun : TimedRun {
     double ratio = std::nan("");  ///< to rA-full-1
 };
 
 /// Problem by problem, step by step, all schemes: neighbours are timed one right after the other.
-std::vector<Run> runs_of(const std::vector<Case>& all, const Schemes& schemes,
-                         const std::vector<double>& steps)
+std::vector<StepTimeRun> runs_of(const std::vector<Benchmark>& all, const Schemes& schemes,
+                                 const std::vector<double>& steps)
 {
-    std::vector<Run> runs;
-    for (const Case& c : all)
+    std::vector<StepTimeRun> runs;
+    for (const Benchmark& c : all)
         for (const double h : steps)
             for (const lie::Scheme* s : schemes) {
-                Run run;
+                StepTimeRun run;
                 run.c = &c, run.scheme = s, run.h = h;
                 runs.push_back(run);
             }
     return runs;
 }
 
-void set_ratios(std::vector<Run>& runs)
+void set_ratios(std::vector<StepTimeRun>& runs)
 {
-    for (Run& run : runs)
-        for (const Run& full : runs)
+    for (StepTimeRun& run : runs)
+        for (const StepTimeRun& full : runs)
             if (full.c == run.c && full.h == run.h && full.scheme->name == compared_with)
                 run.ratio = studies::ratio(run, full);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<StepTimeRun>& runs)
 {
     Table table({{"problem"},
                  {"integrator"},
@@ -63,7 +63,7 @@ Table as_table(const std::vector<Run>& runs)
                  {"ratio_to_full"},
                  {"cpu_seconds"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const StepTimeRun& run : runs)
         table.add({run.c->problem.name, run.scheme->name, run.h, static_cast<double>(run.statistics.steps),
                    run.statistics.iterations_per_step(), static_cast<double>(run.statistics.factorizations),
                    static_cast<double>(run.statistics.refactorizations), run.microseconds().median,
@@ -72,7 +72,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+void print(const std::vector<StepTimeRun>& runs, const Benchmark& c, std::ostream& out)
 {
     Table table({{"h [s]", "{:.1e}"},
                  {"integrator"},
@@ -82,7 +82,7 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
                  {"iter", "{:.2f}"},
                  {"over " + compared_with, "{:.3f}"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const StepTimeRun& run : runs)
         if (run.c == &c)
             table.add({run.h, run.scheme->name, run.microseconds().median, run.microseconds().least,
                        run.microseconds().most, run.statistics.iterations_per_step(), run.ratio, run.status});
@@ -91,12 +91,12 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
 }
 
 /// What the dissertation reports: half-implicit over fully implicit
-void print_half_over_full(const std::vector<Run>& runs, std::ostream& out)
+void print_half_over_full(const std::vector<StepTimeRun>& runs, std::ostream& out)
 {
     Table table({{"problem"}, {"h [s]", "{:.1e}"}, {"rA-half-1 / rA-full-1", "{:.3f}"}});
     double sum = 0;
     long count = 0;
-    for (const Run& run : runs) {
+    for (const StepTimeRun& run : runs) {
         if (run.scheme->name != "rA-half-1" || std::isnan(run.ratio)) continue;
         table.add({run.c->problem.name, run.h, run.ratio});
         sum += run.ratio, ++count;
@@ -107,11 +107,11 @@ void print_half_over_full(const std::vector<Run>& runs, std::ostream& out)
     out << fmt::format("mean {:.3f}\n", sum / static_cast<double>(count));
 }
 
-ordered_json as_json(const std::vector<Run>& runs)
+ordered_json as_json(const std::vector<StepTimeRun>& runs)
 {
     ordered_json rows = ordered_json::array();
-    for (const Run& run : runs) {
-        ordered_json row = as_json(static_cast<const Member&>(run));
+    for (const StepTimeRun& run : runs) {
+        ordered_json row = as_json(static_cast<const Run&>(run));
         row.update({{"us_per_step", number_or_null(run.microseconds().median)},
                     {"us_per_step_min", number_or_null(run.microseconds().least)},
                     {"us_per_step_max", number_or_null(run.microseconds().most)},
@@ -127,12 +127,13 @@ int timing(const StudyOptions& options)
     check_keys(kind, options, std::vector<std::string>{"us_per_step", "ratio_to_full"});
     const std::vector<double> steps = steps_or(options, {1e-2, 1e-3, 1e-4});
     const Schemes schemes = fixed_step_schemes(kind, options);
-    const std::vector<Case> all = cases(kind, options, {"double_pendulum", "slider_crank", "four_link"});
-    for (const Case& c : all) check_steps(kind, c, steps);
+    const std::vector<Benchmark> all =
+        benchmarks(kind, options, {"double_pendulum", "slider_crank", "four_link"});
+    for (const Benchmark& c : all) check_steps(kind, c, steps);
 
-    std::vector<Run> runs = runs_of(all, schemes, steps);
+    std::vector<StepTimeRun> runs = runs_of(all, schemes, steps);
     std::vector<TimedRun*> timed;
-    for (Run& run : runs) timed.push_back(&run);
+    for (StepTimeRun& run : runs) timed.push_back(&run);
     Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
         .run([&](long k) { march(runs[k], options.settings); });
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
@@ -140,23 +141,23 @@ int timing(const StudyOptions& options)
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.figures = {"timing.png"};
-    for (const Case& c : all) print(runs, c, output.text);
+    for (const Benchmark& c : all) print(runs, c, output.text);
     print_half_over_full(runs, output.text);
     output.text << fmt::format("\nmedian, min and max of {} repeats, {} side by side\n", options.repeats,
                                options.jobs);
     std::vector<Measured> came;
-    for (const Run& run : runs) {
+    for (const StepTimeRun& run : runs) {
         came.push_back({.of = run.name(), .value = {{"us_per_step", run.microseconds().median}}});
         if (run.scheme->name != compared_with) came.back().value["ratio_to_full"] = run.ratio;
     }
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "CPU time of a step by problem, scheme and step size (Fig. 3.10)",
-                .also = takes::repeats,
-                .run = timing});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "CPU time of a step by problem, scheme and step size (Fig. 3.10)",
+                         .also = takes::repeats,
+                         .run = timing});
 
 }  // namespace
 

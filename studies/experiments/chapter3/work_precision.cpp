@@ -27,17 +27,17 @@ using nlohmann::ordered_json;
 const std::string kind = "work-precision";
 constexpr double asked = 1e-3;  // rms of r [m]
 
-struct Run : TimedRun {
+struct WorkRun : TimedRun {
     Errors errors;
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(WorkRun& run, const StudyOptions& options)
 {
-    JudgedRun judged;
-    static_cast<Member&>(judged) = run;
-    judge(judged, options.settings);
-    static_cast<Member&>(run) = judged;
-    run.errors = judged.errors;
+    EvaluatedRun evaluated;
+    static_cast<Run&>(evaluated) = run;
+    evaluate(evaluated, options.settings);
+    static_cast<Run&>(run) = evaluated;
+    run.errors = evaluated.errors;
 }
 
 /// Chains of many bars are chaotic: after a second or two the errors of all but the smallest steps are as large
@@ -48,12 +48,12 @@ double end_of(const dae::Description& d)
 }
 
 /// Of one scheme on one problem, from the largest step or tolerance down
-using Series = std::vector<const Run*>;
+using Series = std::vector<const WorkRun*>;
 
-std::vector<Series> series_of(const std::vector<Run>& runs)
+std::vector<Series> series_of(const std::vector<WorkRun>& runs)
 {
     std::vector<Series> all;
-    for (const Run& run : runs) {
+    for (const WorkRun& run : runs) {
         if (all.empty() || all.back().front()->c != run.c || all.back().front()->scheme != run.scheme)
             all.emplace_back();
         all.back().push_back(&run);
@@ -64,12 +64,12 @@ std::vector<Series> series_of(const std::vector<Run>& runs)
 WorkNeeded needed(const Series& series)
 {
     std::vector<double> e, seconds;
-    for (const Run* run : series)
+    for (const WorkRun* run : series)
         e.push_back(run->errors.value[norm::r]), seconds.push_back(run->seconds_of_repeats().median);
     return work_needed(e, seconds, asked);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<WorkRun>& runs)
 {
     std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
                                           {"rtol"},    {"end"},        {"reference"}};
@@ -78,14 +78,14 @@ Table as_table(const std::vector<Run>& runs)
                              "cpu_seconds", "cpu_seconds_min", "cpu_seconds_max", "status"})
         columns.push_back({name});
     Table table(columns);
-    for (const Run& run : runs) {
+    for (const WorkRun& run : runs) {
         const bool adaptive = run.rtol > 0;
         std::vector<Table::Cell> row = {run.c->problem.name,
                                         run.scheme->name,
                                         adaptive ? std::nan("") : run.h,
                                         adaptive ? run.rtol : std::nan(""),
                                         run.c->end,
-                                        run.c->truth_name};
+                                        run.c->reference_name};
         for (const double e : run.errors.value) row.emplace_back(e);
         row.emplace_back(static_cast<double>(run.statistics.steps));
         row.emplace_back(run.statistics.iterations_per_step());
@@ -100,7 +100,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
+void print(const std::vector<WorkRun>& runs, const Benchmark& c, std::ostream& out)
 {
     Table table({{"integrator"},
                  {"step or rtol"},
@@ -111,17 +111,17 @@ void print(const std::vector<Run>& runs, const Case& c, std::ostream& out)
                  {"steps", "{:.0f}"},
                  {"iter", "{:.2f}"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const WorkRun& run : runs)
         if (run.c == &c)
             table.add({run.scheme->name, run.grain(), run.errors.value[norm::r], run.errors.value[norm::v],
                        run.errors.value[norm::Q], 1e3 * run.seconds_of_repeats().median,
                        static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
                        run.status});
-    out << fmt::format("\n{}, over {:g} s; truth: {}\n", c.problem.name, c.end, c.truth_name);
+    out << fmt::format("\n{}, over {:g} s; truth: {}\n", c.problem.name, c.end, c.reference_name);
     table.print(out);
 }
 
-void print_needed(const std::vector<Series>& all, const Case& c, std::ostream& out)
+void print_needed(const std::vector<Series>& all, const Benchmark& c, std::ostream& out)
 {
     const Series* fastest = nullptr;
     for (const Series& series : all)
@@ -151,8 +151,8 @@ ordered_json as_json(const std::vector<Series>& all)
     for (const Series& series : all) {
         const WorkNeeded w = needed(series);
         ordered_json rows = ordered_json::array();
-        for (const Run* run : series) {
-            ordered_json row = as_json(static_cast<const Member&>(*run));
+        for (const WorkRun* run : series) {
+            ordered_json row = as_json(static_cast<const Run&>(*run));
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
             row["steps"] = run->statistics.steps;
             row["iterations_per_step"] = run->statistics.iterations_per_step();
@@ -162,7 +162,7 @@ ordered_json as_json(const std::vector<Series>& all)
         }
         out.push_back({{"problem", series.front()->c->problem.name},
                        {"integrator", series.front()->scheme->name},
-                       {"truth", series.front()->c->truth_name},
+                       {"truth", series.front()->c->reference_name},
                        {"asked_r", asked},
                        {"cpu_seconds_needed", number_or_null(w.seconds)},
                        {"at_most", w.at_most},
@@ -179,25 +179,25 @@ int work_precision(const StudyOptions& options)
     const std::vector<double> rtols =
         options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
                               : options.rtols;
-    Judged judged;
+    Evaluated evaluated;
     for (const lie::Scheme* s : schemes)
         if (s->adaptive)
-            judged.smallest_rtol = rtols.back();
+            evaluated.smallest_rtol = rtols.back();
         else
-            judged.smallest_step = steps.back(),
-            judged.highest_order = std::max(judged.highest_order, s->order);
-    const Reference reference(kind, options, judged);
-    std::vector<Case> all =
-        cases(kind, options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
-    for (const Case& c : all)
-        if (judged.smallest_step > 0) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.judge(all);
+            evaluated.smallest_step = steps.back(),
+            evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    const Reference reference(kind, options, evaluated);
+    std::vector<Benchmark> all =
+        benchmarks(kind, options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
+    for (const Benchmark& c : all)
+        if (evaluated.smallest_step > 0) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
+    reference.evaluate(all);
 
-    std::vector<Run> runs;
-    for (const Case& c : all)
+    std::vector<WorkRun> runs;
+    for (const Benchmark& c : all)
         for (const lie::Scheme* s : schemes)
             for (const double grain : s->adaptive ? rtols : steps) {
-                Run run;
+                WorkRun run;
                 run.c = &c, run.scheme = s;
                 // No more nodes than the rms norms need: an adaptive scheme may stop at each.
                 run.h = s->adaptive ? c.instants.dt * c.instants.stride : grain;
@@ -207,13 +207,13 @@ int work_precision(const StudyOptions& options)
     Pool(options.jobs, options.quiet ? "" : kind + ", errors", static_cast<long>(runs.size()))
         .run([&](long k) { compute(runs[k], options); });
     std::vector<TimedRun*> timed;
-    for (Run& run : runs) timed.push_back(&run);
+    for (WorkRun& run : runs) timed.push_back(&run);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
 
     const std::vector<Series> series = series_of(runs);
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(series)}}};
-    for (const Case& c : all) print(runs, c, output.text);
-    for (const Case& c : all) {
+    for (const Benchmark& c : all) print(runs, c, output.text);
+    for (const Benchmark& c : all) {
         output.text << '\n' << c.problem.name << ':';
         print_needed(series, c, output.text);
         output.figures.push_back("work-precision-" + c.problem.name + ".png");
@@ -226,14 +226,14 @@ int work_precision(const StudyOptions& options)
     for (const Series& s : series)
         came.push_back({.of = s.front()->scheme->name + " on " + s.front()->c->problem.name,
                         .value = {{"cpu_seconds_needed", needed(s).seconds}}});
-    return finish(options, output, members(runs), came);
+    return finish(options, output, run_pointers(runs), came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "error against CPU time, also of integrators that choose their own steps",
-                .also = takes::reference | takes::rtols | takes::repeats,
-                .run = work_precision});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "error against CPU time, also of integrators that choose their own steps",
+                         .also = takes::reference | takes::rtols | takes::repeats,
+                         .run = work_precision});
 
 }  // namespace
 

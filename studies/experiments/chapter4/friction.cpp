@@ -32,28 +32,28 @@ const std::string kind = "friction";
 constexpr size_t most_rows = 2000;  // of one run in a CSV
 
 /// An experiment that was chosen, and its runs
-struct Chosen {
+struct Selection {
     const Experiment* experiment = nullptr;
-    std::vector<Run> runs;
+    std::vector<ExperimentRun> runs;
     std::vector<Series> series;
     std::vector<std::string> failures;
     std::vector<Check> checks;
 };
 
-std::vector<Chosen> chosen(const StudyOptions& options)
+std::vector<Selection> selected(const StudyOptions& options)
 {
     std::vector<std::string> known;
     for (const Experiment& e : experiments()) known.push_back(e.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
             throw UsageError("study friction: unknown experiment" + with_nearest(name, known));
-    std::vector<Chosen> all;
+    std::vector<Selection> all;
     for (const Experiment& e : experiments()) {
         const auto& wanted = options.problems;
         if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), e.name) == wanted.end()) continue;
-        Chosen c;
+        Selection c;
         c.experiment = &e, c.runs = e.runs();
-        std::erase_if(c.runs, [&](const Run& run) { return run.for_check && !options.check; });
+        std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.for_check && !options.check; });
         c.series.resize(c.runs.size());
         c.failures.resize(c.runs.size());
         all.push_back(std::move(c));
@@ -62,18 +62,19 @@ std::vector<Chosen> chosen(const StudyOptions& options)
 }
 
 /// Where nothing would come of --vtk
-void check_vtk(const StudyOptions& options, const std::vector<Chosen>& all)
+void check_vtk(const StudyOptions& options, const std::vector<Selection>& all)
 {
     if (options.vtk == 0) return;
     studies::check_vtk(kind, options);
-    if (std::any_of(all.begin(), all.end(), [](const Chosen& c) { return c.experiment->in_space; })) return;
+    if (std::any_of(all.begin(), all.end(), [](const Selection& c) { return c.experiment->in_space; }))
+        return;
     std::string those;
     for (const Experiment& e : experiments())
         if (e.in_space) those += (those.empty() ? "" : ", ") + e.name;
     throw UsageError("study friction: --vtk is for " + those);
 }
 
-std::string curves(const Chosen& c)
+std::string curves(const Selection& c)
 {
     std::string csv = "run";
     for (const Series& s : c.series)
@@ -152,7 +153,7 @@ void match(Match& m, const std::vector<double>& t, const std::vector<double>& th
                 m.difference = d, m.sign = sign;
 }
 
-std::vector<Match> matches(const std::string& file, const std::vector<Chosen>& all)
+std::vector<Match> matches(const std::string& file, const std::vector<Selection>& all)
 {
     const CsvTable table = read_csv_table(file);
     const std::vector<double> t = table.values("t");
@@ -161,7 +162,7 @@ std::vector<Match> matches(const std::string& file, const std::vector<Chosen>& a
         if (name == "t") continue;
         const std::vector<double> theirs = table.values(name);
         const size_t first = found.size();
-        for (const Chosen& c : all)
+        for (const Selection& c : all)
             for (size_t r = 0; r < c.runs.size(); ++r) {
                 const Series& s = c.series[r];
                 const size_t column = s.place(base_of(name, c.runs[r].name));
@@ -220,19 +221,19 @@ int study(const StudyOptions& options)
     refuse_schemes(kind, options);
     if (!options.steps.empty() || options.end)
         throw UsageError("study friction: --steps and --end are set by each experiment");
-    std::vector<Chosen> all = chosen(options);
+    std::vector<Selection> all = selected(options);
     check_vtk(options, all);
     struct Job {
-        Chosen* c;
+        Selection* c;
         size_t run;
     };
     std::vector<Job> jobs;
-    for (Chosen& c : all)
+    for (Selection& c : all)
         for (size_t r = 0; r < c.runs.size(); ++r) jobs.push_back({&c, r});
     const bool anew = options.force && !options.output.empty();
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(jobs.size())).run([&](long k) {
         const Job& job = jobs[k];
-        const Run& run = job.c->runs[job.run];
+        const ExperimentRun& run = job.c->runs[job.run];
         const std::string name = job.c->experiment->name + '-' + run.name;
         if (anew) Snapshots::remove(options.output, name);
         Frames frames{.count = options.vtk};
@@ -255,8 +256,8 @@ int study(const StudyOptions& options)
                  {"by"},
                  {"met"}});
     ordered_json rows = ordered_json::array();
-    size_t demands = 0, missed = 0;
-    for (Chosen& c : all) {
+    size_t criteria = 0, missed = 0;
+    for (Selection& c : all) {
         if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), c.checks);
         Table shown(
             {{"measured", "{:.8g}"}, {"demanded", "{:.8g}"}, {"+-", "{:.1e}"}, {"met"}, {"by"}, {"what"}});
@@ -265,20 +266,20 @@ int study(const StudyOptions& options)
                 c.checks.push_back({.what = "run " + c.runs[r].name + " ends",
                                     .measured = std::nan(""),
                                     .by = "failed: " + c.failures[r]});
-        demands += c.checks.size();
+        criteria += c.checks.size();
         for (const Check& k : c.checks) {
-            const std::string met = k.met() ? "yes" : "NO";
-            if (!k.met()) ++missed;
-            table.add({c.experiment->name, c.experiment->figure, k.what, k.measured, k.demanded, k.tolerance,
-                       k.by, met});
-            shown.add({k.measured, k.demanded, k.tolerance, met, k.by, k.what});
+            const std::string passed = k.passed() ? "yes" : "NO";
+            if (!k.passed()) ++missed;
+            table.add({c.experiment->name, c.experiment->figure, k.what, k.measured, k.required, k.tolerance,
+                       k.by, passed});
+            shown.add({k.measured, k.required, k.tolerance, passed, k.by, k.what});
             rows.push_back({{"experiment", c.experiment->name},
                             {"what", k.what},
                             {"measured", number_or_null(k.measured)},
-                            {"demanded", k.demanded},
+                            {"demanded", k.required},
                             {"tolerance", k.tolerance},
                             {"by", k.by},
-                            {"met", k.met()}});
+                            {"met", k.passed()}});
         }
         output.text << fmt::format("\n{}{}: {}\n", c.experiment->name, figure_of(*c.experiment),
                                    c.experiment->what);
@@ -286,7 +287,7 @@ int study(const StudyOptions& options)
         output.files.emplace_back(c.experiment->name + ".csv", curves(c));
         output.figures.push_back(fmt::format("{}-{}.png", kind, c.experiment->name));
     }
-    output.text << fmt::format("\n{} of {} demands met{}\n", demands - missed, demands,
+    output.text << fmt::format("\n{} of {} demands met{}\n", criteria - missed, criteria,
                                options.check ? "" : "; --check does the long runs too, and judges by them");
     std::vector<Measured> came;
     if (!options.against.empty()) {
@@ -301,22 +302,22 @@ int study(const StudyOptions& options)
         output.files.emplace_back("against.csv", differences.csv());
     }
     if (options.vtk > 0)
-        for (const Chosen& c : all)
+        for (const Selection& c : all)
             if (c.experiment->in_space)
                 output.text << fmt::format("\nfor ParaView: {}/{}-*.pvd", options.output, c.experiment->name);
     if (options.vtk > 0) output.text << '\n';
     output.table = table.csv();
-    output.json = {{"demands", demands}, {"met", demands - missed}, {"checks", rows}};
+    output.json = {{"demands", criteria}, {"met", criteria - missed}, {"checks", rows}};
     const int code = finish(options, output, {}, came);
     if (options.check && missed > 0) return exit_code::expectation_failed;
     return code;
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "sliding, rolling and spinning friction (Figs. 4.6-4.12, 4.15-4.18, Table 4.7)",
-                .also = takes::against | takes::check | takes::vtk,
-                .run = study});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "sliding, rolling and spinning friction (Figs. 4.6-4.12, 4.15-4.18, Table 4.7)",
+          .also = takes::against | takes::check | takes::vtk,
+          .run = study});
 
 }  // namespace
 

@@ -34,7 +34,7 @@ contact::Scene scene(const Incline& incline)
 
 Motions motions(const contact::Scene& of)
 {
-    const contact::History& history = of.pair[0].memory.history;
+    const contact::Deflections& history = of.pair[0].history.deflections;
     if (history.slide.slipping) return history.roll_i.slipping ? Motions::rolls_and_slips : Motions::slips;
     return history.roll_i.slipping ? Motions::rolls : Motions::rest;
 }

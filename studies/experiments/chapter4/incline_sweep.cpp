@@ -46,20 +46,20 @@ struct Range {
     }
 };
 
-struct Grid {
+struct ParameterGrid {
     std::string name;
     Range eta, angle;  ///< [1, degrees]
 };
 
 /// The default first: the published states. The text of the dissertation has fewer.
-const std::vector<Grid> grids = {{"published", {40, 120, 1, 200}, {10, 300, 1, 10}},
-                                 {"dissertation", {20, 50, 1, 100}, {10, 300, 1, 10}},
-                                 {"coarse", {20, 60, 5, 100}, {1, 30, 1, 1}}};
+const std::vector<ParameterGrid> grids = {{"published", {40, 120, 1, 200}, {10, 300, 1, 10}},
+                                          {"dissertation", {20, 50, 1, 100}, {10, 300, 1, 10}},
+                                          {"coarse", {20, 60, 5, 100}, {1, 30, 1, 1}}};
 
-const Grid& grid(const StudyOptions& options)
+const ParameterGrid& grid(const StudyOptions& options)
 {
     std::vector<std::string> known;
-    for (const Grid& g : grids) known.push_back(g.name);
+    for (const ParameterGrid& g : grids) known.push_back(g.name);
     const std::string name = options.grid.empty() ? known.front() : one_of("--grid", options.grid, known);
     return grids[std::find(known.begin(), known.end(), name) - known.begin()];
 }
@@ -136,14 +136,14 @@ Boundaries boundaries(const Map& map)
 /// What the map must show, by the bounds that Coulomb's law sets. A boundary is known to half a cell. Balanced friction
 /// leaves a sphere slipping where the dissertation's has it stick: it has no rolling limit of its own, and beyond
 /// η_r = 1/2 a sphere that slips decides on rest.
-std::vector<Demand> demands(const Map& map, const Boundaries& b, bool dissertation)
+std::vector<Criterion> criteria(const Map& map, const Boundaries& b, bool dissertation)
 {
     const double cell = map.angle[1] - map.angle[0], row = map.eta[1] - map.eta[0], half = 0.5 * cell;
     const Deviation& rest = dissertation ? b.rest : b.rest_by_torque;
     const std::string up_to = dissertation ? "" : " up to eta_r = 1/2";
-    std::vector<Demand> all = {
-        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", least [deg]", rest.least, 0, 0.15 + half),
-        demand("rest limit less atan(2 eta_r mu_k)" + up_to + ", most [deg]", rest.most, 0, 0.15 + half)};
+    std::vector<Criterion> all = {
+        criterion("rest limit less atan(2 eta_r mu_k)" + up_to + ", least [deg]", rest.least, 0, 0.15 + half),
+        criterion("rest limit less atan(2 eta_r mu_k)" + up_to + ", most [deg]", rest.most, 0, 0.15 + half)};
     if (dissertation)
         for (const auto& [which, value] :
              {std::pair("least", b.rolling.least), std::pair("most", b.rolling.most)})
@@ -266,7 +266,7 @@ int incline_sweep(const StudyOptions& options)
     refuse_models(kind, options);
     const double h = one_step(kind, options, 1e-4), end = options.end.value_or(1);
     const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const Grid& g = grid(options);
+    const ParameterGrid& g = grid(options);
     Map map{.eta = g.eta.values(), .angle = g.angle.values(), .cells = {}};
     map.cells.resize(map.eta.size() * map.angle.size());
     const auto incline = [&](size_t e, size_t a) {
@@ -307,8 +307,8 @@ int incline_sweep(const StudyOptions& options)
                                              {"rolling_limit_least", b.rolling.least},
                                              {"rolling_limit_most", b.rolling.most},
                                              {"slip_from", b.slip_from}}}};
-    std::vector<Demand> must;
-    if (options.check) must = demands(map, b, preset == "dissertation");
+    std::vector<Criterion> must;
+    if (options.check) must = criteria(map, b, preset == "dissertation");
     if (!published.empty()) {
         const Agreement a = agreement(map, published);
         must.push_back(between("agreement with the file [%]", a.percent(), 99.7, 100));
@@ -318,12 +318,12 @@ int incline_sweep(const StudyOptions& options)
         output.json["against"] = {
             {"file", options.against}, {"compared", a.compared}, {"agreement", a.percent()}, {"far", a.far}};
     }
-    const bool met = !options.check || judge(must, output.text, output.json);
+    const bool passed = !options.check || evaluate(must, output.text, output.json);
     const int code = finish(options, output, {}, came);
-    return code == exit_code::done && !met ? exit_code::expectation_failed : code;
+    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool enrolled = enrol(
+const bool registered = register_study(
     Study{.kind = kind,
           .answers = "final state of a sphere on an incline over slope and rolling resistance (Fig. 4.13)",
           .also = takes::preset | takes::against | takes::grid | takes::check,

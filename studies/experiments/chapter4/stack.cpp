@@ -28,10 +28,10 @@ Motion at(double x, double z)
 }
 
 /// Whether a friction spring slips, or there is no contact
-bool gives(const contact::Memory& memory)
+bool gives(const contact::ContactHistory& history)
 {
-    const contact::History& h = memory.history;
-    return !memory.touching || h.slide.slipping || h.roll_i.slipping || h.roll_j.slipping || h.spin.slipping;
+    const contact::Deflections& h = history.deflections;
+    return !history.touching || h.slide.slipping || h.roll_i.slipping || h.roll_j.slipping || h.spin.slipping;
 }
 
 }  // namespace
@@ -74,13 +74,13 @@ Fate fate(contact::Scene& of, double h, double end)
     for (double slipped = of.t; of.t < end && fate.is == Fate::undecided;) {
         of.step(h);
         for (const contact::Scene::Pair& pair : of.pair)
-            if (gives(pair.memory)) slipped = of.t;
+            if (gives(pair.history)) slipped = of.t;
         if (of.body[stacked::top].r.z() < lowest)
             fate.is = Fate::collapses;
         else if (of.t - slipped > quiet)
             fate.is = Fate::stands;
     }
-    const contact::History& history = of.pair[stacked::right_ground].memory.history;
+    const contact::Deflections& history = of.pair[stacked::right_ground].history.deflections;
     fate.t = of.t;
     fate.rolls = history.roll_i.slipping;
     fate.slides = history.slide.slipping;

@@ -21,7 +21,7 @@ struct Stack {
 
 namespace stacked {
 enum Body { left, right, top, ground };
-enum Contact { top_left, top_right, left_ground, right_ground };
+enum ContactNumber { top_left, top_right, left_ground, right_ground };
 }  // namespace stacked
 
 /// At t = 0, at rest: the lower spheres as deep in the ground as carries them alone, the upper one touches them

@@ -33,7 +33,7 @@ constexpr double kilogram = 1000;               // [g]
 constexpr int finer_by = 5;                     // the step of the cell that --check runs again
 constexpr int lightest = 250, heaviest = 4000;  // a lighter sphere is unstable on dashpots of the mean mass
 
-struct Grid {
+struct ParameterGrid {
     std::string name;
     std::vector<double> gaps, etas;
 };
@@ -47,13 +47,13 @@ std::vector<double> etas()
 }
 
 /// The default first
-const std::vector<Grid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
-                                 {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
+const std::vector<ParameterGrid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
+                                          {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
 
-const Grid& grid(const StudyOptions& options)
+const ParameterGrid& grid(const StudyOptions& options)
 {
     std::vector<std::string> names;
-    for (const Grid& g : grids) names.push_back(g.name);
+    for (const ParameterGrid& g : grids) names.push_back(g.name);
     const std::string name = options.grid.empty() ? names.front() : one_of("--grid", options.grid, names);
     return grids[std::find(names.begin(), names.end(), name) - names.begin()];
 }
@@ -96,7 +96,7 @@ void bisect(Cell& cell, double h, double end)
     cell.found = true;
 }
 
-std::string gives_way(const Cell& cell)
+std::string is_regularised(const Cell& cell)
 {
     const Fate& f = cell.heavy;
     return !cell.found           ? "-"
@@ -170,12 +170,12 @@ Table as_table(const std::vector<Cell>& cells)
                  {"runs"},
                  {"undecided"}});
     for (const Cell& c : cells)
-        table.add({c.stack.gap, c.stack.eta_r, c.m_c(), gives_way(c), c.published, c.m_c() - c.published,
+        table.add({c.stack.gap, c.stack.eta_r, c.m_c(), is_regularised(c), c.published, c.m_c() - c.published,
                    c.light.t, c.heavy.t, static_cast<double>(c.runs), static_cast<double>(c.undecided)});
     return table;
 }
 
-void print(const std::vector<Cell>& cells, const Grid& g, std::ostream& out)
+void print(const std::vector<Cell>& cells, const ParameterGrid& g, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"eta_r", "{:.2f}"}};
     for (const double gap : g.gaps)
@@ -186,7 +186,7 @@ void print(const std::vector<Cell>& cells, const Grid& g, std::ostream& out)
         for (size_t k = 0; k < g.gaps.size(); ++k) {
             const Cell& cell = cells[k * g.etas.size() + e];
             row.emplace_back(cell.m_c());
-            row.emplace_back(gives_way(cell));
+            row.emplace_back(is_regularised(cell));
         }
         table.add(row);
     }
@@ -211,29 +211,31 @@ const Known& known_of(double gap)
 }
 
 /// The cell that is run with a fifth of the step too: at the peak of the middle gap, where rolling goes over into sliding
-const Cell& tried_finer(const std::vector<Cell>& cells, const Grid& g)
+const Cell& tried_finer(const std::vector<Cell>& cells, const ParameterGrid& g)
 {
     const Known& k = known_of(g.gaps[g.gaps.size() / 2]);
     return *std::find_if(cells.begin(), cells.end(),
                          [&](const Cell& c) { return c.stack.gap == k.gap && c.stack.eta_r == k.peak_eta; });
 }
 
-std::vector<Demand> demands(const std::vector<Cell>& cells, const Grid& g, const Cell& finer, double h)
+std::vector<Criterion> criteria(const std::vector<Cell>& cells, const ParameterGrid& g, const Cell& finer,
+                                double h)
 {
-    std::vector<Demand> all;
+    std::vector<Criterion> all;
     for (const double gap : g.gaps) {
         const Known& must = known_of(gap);
         const Curve c = curve(cells, gap);
         all.push_back(
-            demand("eta_r of the largest mass, gap " + in_gaps(gap), c.peak_eta, must.peak_eta, 1e-9));
-        all.push_back(demand(fmt::format("mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), in_gaps(gap)),
-                             c.plateau, must.plateau, same_mass));
+            criterion("eta_r of the largest mass, gap " + in_gaps(gap), c.peak_eta, must.peak_eta, 1e-9));
+        all.push_back(
+            criterion(fmt::format("mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), in_gaps(gap)),
+                      c.plateau, must.plateau, same_mass));
     }
     const Cell& coarse = tried_finer(cells, g);
     all.push_back(
-        demand(fmt::format("mass with h = {:g} s less that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
-                           h / finer_by, h, in_gaps(coarse.stack.gap), coarse.stack.eta_r),
-               finer.m_c() - coarse.m_c(), 0, same_mass));
+        criterion(fmt::format("mass with h = {:g} s less that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
+                              h / finer_by, h, in_gaps(coarse.stack.gap), coarse.stack.eta_r),
+                  finer.m_c() - coarse.m_c(), 0, same_mass));
     return all;
 }
 
@@ -246,7 +248,7 @@ int stacking(const StudyOptions& options)
     refuse_models(kind, options);
     const double h = one_step(kind, options, 1e-4), end = options.end.value_or(10);
     const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const Grid& g = grid(options);
+    const ParameterGrid& g = grid(options);
     std::vector<Cell> cells;
     for (const double gap : g.gaps)
         for (const double eta : g.etas) {
@@ -273,8 +275,8 @@ int stacking(const StudyOptions& options)
         "{} friction, h = {:g} s\n",
         preset, h);
     print(cells, g, output.text);
-    std::vector<Demand> must;
-    if (options.check) must = demands(cells, g, finer, h);
+    std::vector<Criterion> must;
+    if (options.check) must = criteria(cells, g, finer, h);
     int undecided = 0;
     for (const Cell& c : cells) undecided += c.undecided;
     ordered_json curves = ordered_json::array();
@@ -308,18 +310,18 @@ int stacking(const StudyOptions& options)
         must.push_back(between("against the file, rms [kg]", a.rms, 0, 0.01));
         must.push_back(between("against the file, largest [kg]", a.largest, 0, 0.02));
     }
-    const bool met = !options.check || judge(must, output.text, output.json);
+    const bool passed = !options.check || evaluate(must, output.text, output.json);
     output.table = as_table(cells).csv();
     output.figures = {"stacking.png"};
     const int code = finish(options, output, {}, came);
-    return code == exit_code::done && !met ? exit_code::expectation_failed : code;
+    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "critical mass of three stacked spheres over rolling resistance (Fig. 4.19)",
-                .also = takes::preset | takes::against | takes::grid | takes::check,
-                .run = stacking});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "critical mass of three stacked spheres over rolling resistance (Fig. 4.19)",
+          .also = takes::preset | takes::against | takes::grid | takes::check,
+          .run = stacking});
 
 }  // namespace
 

@@ -40,14 +40,14 @@ const std::string text = "rA-half-1", recommended = "rA-half-1-momentum";
 constexpr size_t most_rows = 2000;  // of one run in a CSV
 constexpr double usual_step = 5e-3, usual_end = 10;
 
-struct Scene {
+struct BowlVariant {
     std::string name, problem, what;
     std::vector<std::string> set;
     double end = usual_end;
     bool rolls = false, loop = false;
 };
 
-const std::vector<Scene> scenes = {
+const std::vector<BowlVariant> scenes = {
     {.name = "planar", .problem = "ball_in_bowl", .what = "from (0, 1.5), without friction", .set = {}},
     {.name = "xy", .problem = "ball_in_bowl_xy", .what = "from (1, 1.5), without friction", .set = {}},
     {.name = "planar-roll",
@@ -94,8 +94,8 @@ constexpr std::array<const char*, samples> columns = {
     "G", "F_N",  "lambda_N", "lambda_t", "friction", "energy_change", "y",    "speed", "n_z"};
 using Sample = std::array<double, samples>;
 
-struct Run : Member {
-    const Scene* scene = nullptr;
+struct BowlRun : Run {
+    const BowlVariant* scene = nullptr;
     std::string rows;
     bool for_check = false;
     std::vector<Sample> sample;
@@ -115,7 +115,7 @@ struct Run : Member {
 /// two of them.
 class Watch final : public lie::Observer {
 public:
-    Watch(Run& run, bool between)
+    Watch(BowlRun& run, bool between)
         : run(run), model(*run.c->started->model), contact(*evolving_contacts(model).front()),
           at_start(lie::energy(model, run.c->started->x)), between(between)
     {}
@@ -134,7 +134,7 @@ public:
         s[F_N] = of.F_N, s[lambda_N] = of.N.norm(), s[lambda_t] = of.tangential.norm();
         s[friction] = of.friction.norm();
         s[energy] = lie::energy(model, x) - at_start;
-        s[y] = x.body[0].r.y(), s[speed] = x.body[0].rdot.norm(), s[n_z] = contact.touch(at).n.z();
+        s[y] = x.body[0].r.y(), s[speed] = x.body[0].rdot.norm(), s[n_z] = contact.contact_point(at).n.z();
         if (between && !run.sample.empty()) {
             last.body[0].rdot = 0.5 * (last.body[0].rdot + x.body[0].rdot);
             last.body[0].omega_bar = 0.5 * (last.body[0].omega_bar + x.body[0].omega_bar);
@@ -147,7 +147,7 @@ public:
     }
 
 private:
-    Run& run;
+    BowlRun& run;
     const dae::Model& model;
     const EvolvingContact& contact;
     const double at_start;
@@ -155,9 +155,9 @@ private:
     lie::State last;
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(BowlRun& run, const StudyOptions& options)
 {
-    AgainstTruth against(*run.c, run.h);
+    ReferenceErrors against(*run.c, run.h);
     Watch watch(run, run.scheme->name == text);
     std::vector<lie::Observer*> observers = {&watch, &against};
     std::optional<ModelFrames> frames;
@@ -177,7 +177,7 @@ void compute(Run& run, const StudyOptions& options)
 }
 
 /// Of a quantity at its largest node, by a parabola through it and its neighbours
-double peak(const Run& run, int column)
+double peak(const BowlRun& run, int column)
 {
     const auto& s = run.sample;
     size_t k = 0;
@@ -189,7 +189,7 @@ double peak(const Run& run, int column)
 }
 
 /// Between the first and the last passage of y = 0 downwards
-double period(const Run& run)
+double period(const BowlRun& run)
 {
     std::vector<double> down;
     for (size_t k = 1; k < run.sample.size(); ++k) {
@@ -201,14 +201,14 @@ double period(const Run& run)
                            : (down.back() - down.front()) / static_cast<double>(down.size() - 1);
 }
 
-double F_N_at_start(const Case& c)
+double F_N_at_start(const Benchmark& c)
 {
     const dae::Model& model = *c.started->model;
     const EvolvingContact& of = *evolving_contacts(model).front();
     return of.multipliers(model.at(of, c.started->x), c.started->x.lambda).F_N;
 }
 
-double friction_at_start(const Case& c)
+double friction_at_start(const Benchmark& c)
 {
     const dae::Model& model = *c.started->model;
     const EvolvingContact& of = *evolving_contacts(model).front();
@@ -219,7 +219,7 @@ double friction_at_start(const Case& c)
 struct Bounds {
     double r, F_N, energy;
 };
-Bounds bounds(const Run& run)
+Bounds bounds(const BowlRun& run)
 {
     const bool planar = run.scene->name == "planar";
     if (run.scheme->name == text) return planar ? Bounds{6e-3, 7.8e-3, 4e-5} : Bounds{6.4e-3, 9e-3, 0};
@@ -233,7 +233,7 @@ struct Swing {
 constexpr Swing sliding = {10.960602417068388, 2.145322742217019, 3.918321172588791},
                 rolling = {10.631858869334563, 1.8131286433505626, 4.636220134568755};
 
-void judge_run(const Run& run, const Run* half, std::vector<Demand>& must)
+void evaluate_run(const BowlRun& run, const BowlRun* half, std::vector<Criterion>& must)
 {
     const std::string of = ", " + run.scene->name + " by " + run.label();
     must.push_back(between("residual of Psi, N, G [m]" + of,
@@ -251,37 +251,40 @@ void judge_run(const Run& run, const Run* half, std::vector<Demand>& must)
         must.push_back(between("error of the normal force [N]" + of, run.error[norm::F_N], 0, b.F_N));
         if (planar) must.push_back(between("change of energy [J]" + of, run.largest(energy), 0, b.energy));
         if (half != nullptr && !half->failed())
-            must.push_back(demand("that over that of half of the step" + of,
-                                  run.largest(energy) / half->largest(energy), 4, 0.2));
+            must.push_back(criterion("that over that of half of the step" + of,
+                                     run.largest(energy) / half->largest(energy), 4, 0.2));
     }
     if (half != nullptr && !half->failed())
-        must.push_back(demand("order of position" + of, std::log2(run.error[norm::r] / half->error[norm::r]),
-                              is_text ? 1 : 2, 0.03));
+        must.push_back(criterion("order of position" + of,
+                                 std::log2(run.error[norm::r] / half->error[norm::r]), is_text ? 1 : 2,
+                                 0.03));
     if (!planar && run.scene->name != "planar-roll") return;
     const Swing& swing = run.scene->rolls ? rolling : sliding;
     const double tolerance = is_text ? 5e-3 : 1e-4;
-    must.push_back(demand("F_N at the bottom [N]" + of, peak(run, F_N), swing.F_N, tolerance));
-    must.push_back(demand("speed at the bottom [m/s]" + of, peak(run, speed), swing.speed, tolerance));
-    must.push_back(demand("period [s]" + of, period(run), swing.period, tolerance));
+    must.push_back(criterion("F_N at the bottom [N]" + of, peak(run, F_N), swing.F_N, tolerance));
+    must.push_back(criterion("speed at the bottom [m/s]" + of, peak(run, speed), swing.speed, tolerance));
+    must.push_back(criterion("period [s]" + of, period(run), swing.period, tolerance));
 }
 
-void judge_starts(const std::vector<Case>& cases, const std::vector<const Scene*>& chosen,
-                  std::vector<Demand>& must)
+void evaluate_starts(const std::vector<Benchmark>& benchmarks,
+                     const std::vector<const BowlVariant*>& selected, std::vector<Criterion>& must)
 {
-    for (size_t k = 0; k < chosen.size(); ++k) {
-        const Scene& s = *chosen[k];
+    for (size_t k = 0; k < selected.size(); ++k) {
+        const BowlVariant& s = *selected[k];
         if (s.name == "planar")
-            must.push_back(demand("F_N(0) [N], planar", F_N_at_start(cases[k]), 9.155246512774925, 1e-11));
+            must.push_back(
+                criterion("F_N(0) [N], planar", F_N_at_start(benchmarks[k]), 9.155246512774925, 1e-11));
         if (s.name == "xy")
-            must.push_back(demand("F_N(0) [N], xy", F_N_at_start(cases[k]), 9.014262047215154, 1e-11));
+            must.push_back(
+                criterion("F_N(0) [N], xy", F_N_at_start(benchmarks[k]), 9.014262047215154, 1e-11));
         if (s.name == "planar-roll")
-            must.push_back(demand("friction at release [N], planar-roll", friction_at_start(cases[k]),
-                                  1.006816007361521, 1e-11));
+            must.push_back(criterion("friction at release [N], planar-roll", friction_at_start(benchmarks[k]),
+                                     1.006816007361521, 1e-11));
     }
 }
 
 /// The loop goes through n_z = 0, which the tangents do not feel and the global x and y do not survive.
-void judge_loop(const Run& run, std::vector<Demand>& must)
+void evaluate_loop(const BowlRun& run, std::vector<Criterion>& must)
 {
     const std::string of = ", loop by " + run.label();
     double least = 1, most = -1;
@@ -299,12 +302,12 @@ void judge_loop(const Run& run, std::vector<Demand>& must)
     }
 }
 
-std::string curves(const std::vector<const Run*>& runs)
+std::string curves(const std::vector<const BowlRun*>& runs)
 {
     std::string csv = "run,h";
     for (const char* column : columns) csv += std::string(",") + column;
     csv += '\n';
-    for (const Run* run : runs) {
+    for (const BowlRun* run : runs) {
         const size_t every = std::max<size_t>(1, (run->sample.size() + most_rows - 1) / most_rows);
         for (size_t k = 0; k < run->sample.size(); k += every) {
             csv += csv_field(run->label()) + ',';
@@ -319,7 +322,7 @@ std::string curves(const std::vector<const Run*>& runs)
     return csv;
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<BowlRun>& runs)
 {
     Table table({{"scene"},
                  {"integrator"},
@@ -338,7 +341,7 @@ Table as_table(const std::vector<Run>& runs)
                  {"iterations_per_step"},
                  {"cpu_seconds"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const BowlRun& run : runs)
         table.add({run.scene->name, run.scheme->name, run.rows, run.h, run.error[norm::r],
                    run.error[norm::alpha], run.error[norm::F_N], run.largest(Psi), run.largest(N),
                    run.largest(G), run.largest(lambda_N), run.largest(lambda_t), run.largest(energy),
@@ -346,7 +349,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<const Run*>& runs, const Scene& s, std::ostream& out)
+void print(const std::vector<const BowlRun*>& runs, const BowlVariant& s, std::ostream& out)
 {
     Table table({{s.name},
                  {"h [s]", "{:.2e}"},
@@ -358,37 +361,37 @@ void print(const std::vector<const Run*>& runs, const Scene& s, std::ostream& ou
                  {"E-E0 [J]", "{:.1e}"},
                  {"iter", "{:.2f}"},
                  {"status"}});
-    for (const Run* run : runs)
+    for (const BowlRun* run : runs)
         table.add({run->label(), run->h, run->error[norm::r], run->error[norm::alpha], run->error[norm::F_N],
                    std::max({run->largest(Psi), run->largest(N), run->largest(G)}),
                    std::max(run->largest(lambda_N), run->largest(lambda_t)), run->largest(energy),
                    run->statistics.iterations_per_step(), run->status});
     out << fmt::format("\n{}: a ball in a bowl, {}; errors against {}\n", s.name, s.what,
-                       runs.front()->c->truth_name);
+                       runs.front()->c->reference_name);
     table.print(out);
 }
 
-std::vector<const Scene*> chosen_scenes(const StudyOptions& options)
+std::vector<const BowlVariant*> selected_variants(const StudyOptions& options)
 {
     std::vector<std::string> known;
-    for (const Scene& s : scenes) known.push_back(s.name);
+    for (const BowlVariant& s : scenes) known.push_back(s.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
             throw UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
-    std::vector<const Scene*> chosen;
-    for (const Scene& s : scenes)
+    std::vector<const BowlVariant*> selected;
+    for (const BowlVariant& s : scenes)
         if (options.problems.empty() ||
             std::find(options.problems.begin(), options.problems.end(), s.name) != options.problems.end())
-            chosen.push_back(&s);
-    return chosen;
+            selected.push_back(&s);
+    return selected;
 }
 
 /// The settings of the scene go into the text of its model, of which the truth is made too.
-Case case_of(const Scene& s, const StudyOptions& options, const std::string& rows)
+Benchmark benchmark_of(const BowlVariant& s, const StudyOptions& options, const std::string& rows)
 {
     Problem of = problem(s.problem);
     of.model = dae::read_model(of.model, of.name, normal_rows(s.problem, s.set, rows)).text;
-    return make_case(std::move(of), options, [&](const dae::Description&) { return s.end; });
+    return make_benchmark(std::move(of), options, [&](const dae::Description&) { return s.end; });
 }
 
 int study(const StudyOptions& options)
@@ -398,58 +401,61 @@ int study(const StudyOptions& options)
     const double h = one_step(kind, options, usual_step);
     const Schemes schemes = fixed_step_schemes(kind, options, {text, recommended});
     const std::string rows = options.normal_rows.empty() ? "tangent" : options.normal_rows;
-    const std::vector<const Scene*> chosen = chosen_scenes(options);
-    Judged judged{.smallest_step = h};
-    for (const lie::Scheme* s : schemes) judged.highest_order = std::max(judged.highest_order, s->order);
-    const Reference reference(kind, options, judged);
-    std::vector<Case> cases, fixed;  // fixed: the loop again, with the global x and y
-    for (const Scene* s : chosen) {
-        cases.push_back(case_of(*s, options, rows));
-        check_steps(kind, cases.back(), {h}, cases.back().instants.dt * cases.back().instants.stride);
-        if (s->loop && options.normal_rows.empty()) fixed.push_back(case_of(*s, options, "fixed-xy"));
+    const std::vector<const BowlVariant*> selected = selected_variants(options);
+    Evaluated evaluated{.smallest_step = h};
+    for (const lie::Scheme* s : schemes)
+        evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    const Reference reference(kind, options, evaluated);
+    std::vector<Benchmark> benchmarks, fixed;  // fixed: the loop again, with the global x and y
+    for (const BowlVariant* s : selected) {
+        benchmarks.push_back(benchmark_of(*s, options, rows));
+        check_steps(kind, benchmarks.back(), {h},
+                    benchmarks.back().instants.dt * benchmarks.back().instants.stride);
+        if (s->loop && options.normal_rows.empty()) fixed.push_back(benchmark_of(*s, options, "fixed-xy"));
     }
-    reference.judge(cases);
-    for (Case& c : fixed)
-        for (size_t k = 0; k < chosen.size(); ++k)
-            if (chosen[k]->loop) c.truth = cases[k].truth;
+    reference.evaluate(benchmarks);
+    for (Benchmark& c : fixed)
+        for (size_t k = 0; k < selected.size(); ++k)
+            if (selected[k]->loop) c.reference_solution = benchmarks[k].reference_solution;
 
-    std::vector<Run> runs;
-    const auto add = [&](const Case& c, const Scene& s, const lie::Scheme& scheme, const std::string& with,
-                         double step, bool for_check) {
-        Run run;
+    std::vector<BowlRun> runs;
+    const auto add = [&](const Benchmark& c, const BowlVariant& s, const lie::Scheme& scheme,
+                         const std::string& with, double step, bool for_check) {
+        BowlRun run;
         run.c = &c, run.scheme = &scheme, run.h = step;
         run.scene = &s, run.rows = with, run.for_check = for_check;
         runs.push_back(std::move(run));
     };
-    for (size_t k = 0; k < chosen.size(); ++k)
+    for (size_t k = 0; k < selected.size(); ++k)
         for (const lie::Scheme* scheme : schemes) {
-            add(cases[k], *chosen[k], *scheme, rows, h, false);
-            if (options.check && !chosen[k]->loop) add(cases[k], *chosen[k], *scheme, rows, h / 2, true);
-            for (const Case& c : fixed)
-                if (chosen[k]->loop) add(c, *chosen[k], *scheme, "fixed-xy", h, false);
+            add(benchmarks[k], *selected[k], *scheme, rows, h, false);
+            if (options.check && !selected[k]->loop)
+                add(benchmarks[k], *selected[k], *scheme, rows, h / 2, true);
+            for (const Benchmark& c : fixed)
+                if (selected[k]->loop) add(c, *selected[k], *scheme, "fixed-xy", h, false);
         }
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
         compute(runs[k], options);
     });
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv()};
-    std::vector<Demand> must;
-    judge_starts(cases, chosen, must);
+    std::vector<Criterion> must;
+    evaluate_starts(benchmarks, selected, must);
     std::vector<Measured> came;
-    std::vector<const Member*> to_end;  // but those whose failure is what is shown
-    for (const Scene* s : chosen) {
-        std::vector<const Run*> shown, drawn;
-        for (const Run& run : runs) {
+    std::vector<const Run*> to_end;  // but those whose failure is what is shown
+    for (const BowlVariant* s : selected) {
+        std::vector<const BowlRun*> shown, drawn;
+        for (const BowlRun& run : runs) {
             if (run.scene != s) continue;
             shown.push_back(&run);
             if (!run.for_check) drawn.push_back(&run);
             if (run.rows == rows) to_end.push_back(&run);
-            if (s->loop) judge_loop(run, must);
+            if (s->loop) evaluate_loop(run, must);
             if (run.for_check || s->loop) continue;
-            const auto half = std::find_if(runs.begin(), runs.end(), [&](const Run& other) {
+            const auto half = std::find_if(runs.begin(), runs.end(), [&](const BowlRun& other) {
                 return other.for_check && other.scene == s && other.scheme == run.scheme;
             });
-            judge_run(run, half == runs.end() ? nullptr : &*half, must);
+            evaluate_run(run, half == runs.end() ? nullptr : &*half, must);
             came.push_back({.of = run.label() + " on " + s->name,
                             .value = {{"r", run.error[norm::r]},
                                       {"alpha", run.error[norm::alpha]},
@@ -460,17 +466,17 @@ int study(const StudyOptions& options)
         output.files.emplace_back(s->name + ".csv", curves(drawn));
         output.figures.push_back(kind + '-' + s->name + ".png");
     }
-    const bool met = judge(must, output.text, output.json);
+    const bool passed = evaluate(must, output.text, output.json);
     if (!options.check) output.text << "--check does runs at half of the step too, and judges by all\n";
     const int code = finish(options, output, to_end, came);
-    return code == exit_code::done && options.check && !met ? exit_code::expectation_failed : code;
+    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "ball in a bowl with the contact points as unknowns (Figs. 5.2-5.6)",
-                .also = takes::reference | takes::check | takes::vtk | takes::normal_rows,
-                .run = study});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "ball in a bowl with the contact points as unknowns (Figs. 5.2-5.6)",
+                         .also = takes::reference | takes::check | takes::vtk | takes::normal_rows,
+                         .run = study});
 
 }  // namespace
 

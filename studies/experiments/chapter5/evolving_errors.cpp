@@ -5,27 +5,28 @@
 
 namespace hilda::studies {
 
-AgainstTruth::AgainstTruth(const Case& c, double h)
+ReferenceErrors::ReferenceErrors(const Benchmark& c, double h)
     : c(c), model(*c.started->model), h(h), contacts(evolving_contacts(model))
 {}
 
-void AgainstTruth::accepted(const lie::State& x, long n, int)
+void ReferenceErrors::accepted(const lie::State& x, long n, int)
 {
     constraint_norm = std::max(constraint_norm, model.largest_residual(x).value);
     const double k = static_cast<double>(n) * h / c.instants.dt;
     const long nearest = std::lround(k);
     if (nearest > c.instants.count || std::abs(k - static_cast<double>(nearest)) > 1e-6) return;
     ++instants;
-    const lie::State& truth = c.truth.row[nearest];
-    const Difference d = difference(x, truth);
+    const lie::State& reference_solution = c.reference_solution.row[nearest];
+    const Difference d = difference(x, reference_solution);
     const auto take = [&](int norm, double e) {
         if (!(e <= error[norm])) error[norm] = e;
     };
     take(evolving_norm::r, d.r);
     take(evolving_norm::A, d.A);
-    take(evolving_norm::alpha, (x.alpha - truth.alpha).norm());
+    take(evolving_norm::alpha, (x.alpha - reference_solution.alpha).norm());
     for (const contact::EvolvingContact* of : contacts)
-        take(evolving_norm::F_N, std::abs(forces(model, *of, x).F_N - forces(model, *of, truth).F_N));
+        take(evolving_norm::F_N,
+             std::abs(forces(model, *of, x).F_N - forces(model, *of, reference_solution).F_N));
 }
 
 }  // namespace hilda::studies

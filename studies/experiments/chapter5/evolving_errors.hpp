@@ -19,10 +19,10 @@ inline constexpr std::array<const char*, count> names = {"r", "A", "alpha", "F_N
 
 }  // namespace evolving_norm
 
-class AgainstTruth final : public lie::Observer {
+class ReferenceErrors final : public lie::Observer {
 public:
     /// Compares the nodes that are instants of the truth; at others it only takes the residual.
-    AgainstTruth(const Case& c, double h);
+    ReferenceErrors(const Benchmark& c, double h);
 
     void accepted(const lie::State& x, long n, int iterations) override;
 
@@ -31,7 +31,7 @@ public:
     int instants = 0;
 
 private:
-    const Case& c;
+    const Benchmark& c;
     const dae::Model& model;
     const double h;
     const std::vector<const contact::EvolvingContact*> contacts;

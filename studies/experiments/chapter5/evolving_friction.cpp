@@ -45,14 +45,14 @@ constexpr double compared_to = 3;    // of the run without resistance, with its 
 constexpr size_t ideal_rows = 1001;  // of an ideal limit in the CSV
 
 /// A run of the text, with what must come out: numbers of its ideal limit and, for the rest, of the springs
-struct Scene {
+struct BrakedVariant {
     std::string name;
     double eta_r;
     double rest = std::nan("");      ///< y of the contact point [m]
     double stops = std::nan("");     ///< [s]
     std::vector<double> turns = {};  ///< y of the contact point where the ball turns round [m]
 };
-const std::vector<Scene> scenes = {
+const std::vector<BrakedVariant> scenes = {
     {.name = "eta-0", .eta_r = 0},
     {.name = "eta-0.1", .eta_r = 0.1, .rest = -0.0929, .stops = 9.406, .turns = {-1.1110, 0.7137, -0.3114}},
     {.name = "eta-0.2", .eta_r = 0.2, .rest = -0.0859, .stops = 4.675, .turns = {-0.7170}},
@@ -68,8 +68,8 @@ struct Turn {
     double t, y;
 };
 
-struct Run : Member {
-    const Scene* scene = nullptr;
+struct BrakedRun : Run {
+    const BrakedVariant* scene = nullptr;
     bool for_check = false;
     std::vector<Sample> sample;
     std::vector<lie::Vec3> r;  ///< of the centre, while it is compared
@@ -110,7 +110,7 @@ struct Run : Member {
 
 class Watch final : public lie::Observer {
 public:
-    explicit Watch(Run& run)
+    explicit Watch(BrakedRun& run)
         : run(run), model(*run.c->started->model), contact(*evolving_contacts(model).front()),
           friction(*forces_of(model, contact).friction)
     {}
@@ -126,29 +126,30 @@ public:
     }
 
 private:
-    Run& run;
+    BrakedRun& run;
     const dae::Model& model;
     const contact::EvolvingContact& contact;
     const contact::EvolvingFriction& friction;
 };
 
 /// Without resistance the ball follows one equation, whose friction is smooth.
-void compare(Run& run)
+void compare(BrakedRun& run)
 {
     if (run.scene->eta_r != 0 || run.failed()) return;
     std::vector<double> instants;
     for (size_t k = 0; k < run.r.size(); ++k) instants.push_back(run.sample[k][t]);
-    const std::vector<ContactInstant> truth = PlanarBowl{}.spring({.y = begins}, {}, instants);
+    const std::vector<ContactInstant> reference_solution = PlanarBowl{}.spring({.y = begins}, {}, instants);
     run.error_r = run.error_F_f = 0;
-    for (size_t k = 0; k < truth.size(); ++k) {
-        run.error_r_last = (run.r[k] - truth[k].body.r).norm();
+    for (size_t k = 0; k < reference_solution.size(); ++k) {
+        run.error_r_last = (run.r[k] - reference_solution[k].body.r).norm();
         run.error_r = std::max(run.error_r, run.error_r_last);
         if (instants[k] > settled)
-            run.error_F_f = std::max(run.error_F_f, std::abs(run.sample[k][F_f] - truth[k].F_t.norm()));
+            run.error_F_f =
+                std::max(run.error_F_f, std::abs(run.sample[k][F_f] - reference_solution[k].F_t.norm()));
     }
 }
 
-void compute(Run& run, const StudyOptions& options)
+void compute(BrakedRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
     run.bound = model.stable_step(run.c->started->x).h;
@@ -168,39 +169,39 @@ void compute(Run& run, const StudyOptions& options)
     if (frames) frames->snapshots.write(options.output, name);
 }
 
-std::string label(const Run& run)
+std::string label(const BrakedRun& run)
 {
     return fmt::format(", {} by {} at {} s", run.scene->name, run.scheme->name, step_text(run.h));
 }
 
-void judge_run(const Run& run, const Run* half, std::vector<Demand>& must)
+void evaluate_run(const BrakedRun& run, const BrakedRun* half, std::vector<Criterion>& must)
 {
     const std::string of = label(run);
-    const Scene& s = *run.scene;
+    const BrakedVariant& s = *run.scene;
     if (s.eta_r == 0) {
-        must.push_back(demand("largest friction after 0.1 s [N]" + of, run.most_friction(), 1.007, 5e-3));
+        must.push_back(criterion("largest friction after 0.1 s [N]" + of, run.most_friction(), 1.007, 5e-3));
         must.push_back(between("friction against the equation in one angle [N]" + of, run.error_F_f, 0,
                                run.scheme->name == text ? 1e-2 : 5e-3));
         if (run.h != usual_step) return;
         if (run.scheme->name == text)
-            must.push_back(demand("error of position, 3 s [m]" + of, run.error_r, 2.3e-3, 1e-4));
+            must.push_back(criterion("error of position, 3 s [m]" + of, run.error_r, 2.3e-3, 1e-4));
         if (run.scheme->name == recommended)
             must.push_back(between("error of position, 3 s [m]" + of, run.error_r, 0, 3e-6));
         if (half != nullptr && !half->failed() &&
             (run.scheme->name == text || run.scheme->name == recommended))
-            must.push_back(demand("order of position at 3 s" + of,
-                                  std::log2(run.error_r_last / half->error_r_last),
-                                  run.scheme->name == text ? 1 : 2, 0.05));
+            must.push_back(criterion("order of position at 3 s" + of,
+                                     std::log2(run.error_r_last / half->error_r_last),
+                                     run.scheme->name == text ? 1 : 2, 0.05));
         return;
     }
-    must.push_back(demand("comes to rest at y [m]" + of, run.y_at_end(), s.rest, 1e-3));
-    must.push_back(demand("stops at t [s]" + of, run.stops(), s.stops, 0.03));
+    must.push_back(criterion("comes to rest at y [m]" + of, run.y_at_end(), s.rest, 1e-3));
+    must.push_back(criterion("stops at t [s]" + of, run.stops(), s.stops, 0.03));
     must.push_back(between("speed at the end [m/s]" + of,
                            run.failed() ? std::nan("") : run.sample.back()[speed], 0, 1e-4));
     const std::vector<Turn> turns = run.turns();
     for (size_t k = 0; k < s.turns.size(); ++k)
-        must.push_back(demand(fmt::format("turn {} at y [m]{}", k + 1, of),
-                              k < turns.size() ? turns[k].y : std::nan(""), s.turns[k], 1e-3));
+        must.push_back(criterion(fmt::format("turn {} at y [m]{}", k + 1, of),
+                                 k < turns.size() ? turns[k].y : std::nan(""), s.turns[k], 1e-3));
 }
 
 void add_row(std::string& csv, double eta_r, const std::string& run, double h, const Sample& s)
@@ -216,7 +217,7 @@ void add_row(std::string& csv, double eta_r, const std::string& run, double h, c
 }
 
 /// Rolling without slip, and a resistance that is full as soon as the ball rolls
-void add_ideal(std::string& csv, const Scene& scene, double end)
+void add_ideal(std::string& csv, const BrakedVariant& scene, double end)
 {
     std::vector<double> instants;
     for (size_t k = 0; k < ideal_rows; ++k)
@@ -228,14 +229,14 @@ void add_ideal(std::string& csv, const Scene& scene, double end)
                  at.body.omega_bar.norm()});
 }
 
-std::string curves(const std::vector<Run>& runs, const std::vector<const Scene*>& chosen, double end,
-                   bool with_ideal)
+std::string curves(const std::vector<BrakedRun>& runs, const std::vector<const BrakedVariant*>& selected,
+                   double end, bool with_ideal)
 {
     std::string csv = "eta_r,run,h";
     for (const char* column : columns) csv += std::string(",") + column;
     csv += '\n';
-    for (const Scene* s : chosen) {
-        for (const Run& run : runs)
+    for (const BrakedVariant* s : selected) {
+        for (const BrakedRun& run : runs)
             if (run.scene == s && !run.for_check)
                 for (const Sample& of : run.sample) add_row(csv, s->eta_r, run.scheme->name, run.h, of);
         if (with_ideal) add_ideal(csv, *s, end);
@@ -243,7 +244,7 @@ std::string curves(const std::vector<Run>& runs, const std::vector<const Scene*>
     return csv;
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<BrakedRun>& runs)
 {
     Table table({{"eta_r"},
                  {"integrator"},
@@ -258,14 +259,14 @@ Table as_table(const std::vector<Run>& runs)
                  {"iterations_per_step"},
                  {"cpu_seconds"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const BrakedRun& run : runs)
         table.add({run.scene->eta_r, run.scheme->name, run.h, run.bound, run.y_at_end(), run.stops(),
                    static_cast<double>(run.turns().size()), run.most_friction(), run.error_r, run.error_F_f,
                    run.statistics.iterations_per_step(), run.seconds, run.status});
     return table;
 }
 
-void print(const std::vector<Run>& runs, std::ostream& out)
+void print(const std::vector<BrakedRun>& runs, std::ostream& out)
 {
     Table table({{"eta_r", "{:g}"},
                  {"integrator"},
@@ -277,7 +278,7 @@ void print(const std::vector<Run>& runs, std::ostream& out)
                  {"r [m]", "{:.2e}"},
                  {"iter", "{:.2f}"},
                  {"status"}});
-    for (const Run& run : runs)
+    for (const BrakedRun& run : runs)
         table.add({run.scene->eta_r, run.scheme->name, run.h, run.bound, run.y_at_end(), run.stops(),
                    run.most_friction(), run.error_r, run.statistics.iterations_per_step(), run.status});
     out << "\na ball in a bowl, rolling against resistance; F_f is the most after 0.1 s, r the error over "
@@ -286,20 +287,20 @@ void print(const std::vector<Run>& runs, std::ostream& out)
     table.print(out);
 }
 
-std::vector<const Scene*> chosen_scenes(const StudyOptions& options)
+std::vector<const BrakedVariant*> selected_variants(const StudyOptions& options)
 {
     std::vector<std::string> known;
     known.reserve(scenes.size());
-    for (const Scene& s : scenes) known.push_back(s.name);
+    for (const BrakedVariant& s : scenes) known.push_back(s.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
             throw UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
-    std::vector<const Scene*> chosen;
-    for (const Scene& s : scenes)
+    std::vector<const BrakedVariant*> selected;
+    for (const BrakedVariant& s : scenes)
         if (options.problems.empty() ||
             std::find(options.problems.begin(), options.problems.end(), s.name) != options.problems.end())
-            chosen.push_back(&s);
-    return chosen;
+            selected.push_back(&s);
+    return selected;
 }
 
 int study(const StudyOptions& options)
@@ -308,48 +309,49 @@ int study(const StudyOptions& options)
     check_vtk(kind, options);
     const std::vector<double> steps = steps_or(options, {usual_step});
     const Schemes schemes = fixed_step_schemes(kind, options, {recommended});
-    const std::vector<const Scene*> chosen = chosen_scenes(options);
-    std::vector<Case> cases;
-    for (const Scene* s : chosen) {
+    const std::vector<const BrakedVariant*> selected = selected_variants(options);
+    std::vector<Benchmark> benchmarks;
+    for (const BrakedVariant* s : selected) {
         Problem of = problem("braked_ball_in_bowl");
         of.model =
             dae::read_model(of.model, of.name,
                             std::vector<std::string>{fmt::format("/contacts/0/friction/eta_r={}", s->eta_r)})
                 .text;
         of.name = s->name;
-        cases.push_back(make_case(std::move(of), options, [](const dae::Description&) { return usual_end; }));
-        check_steps(kind, cases.back(), steps);
+        benchmarks.push_back(
+            make_benchmark(std::move(of), options, [](const dae::Description&) { return usual_end; }));
+        check_steps(kind, benchmarks.back(), steps);
     }
 
-    std::vector<Run> runs;
+    std::vector<BrakedRun> runs;
     const auto add = [&](size_t k, const lie::Scheme& scheme, double h, bool for_check) {
-        Run run;
-        run.c = &cases[k], run.scheme = &scheme, run.h = h;
-        run.scene = chosen[k], run.for_check = for_check;
+        BrakedRun run;
+        run.c = &benchmarks[k], run.scheme = &scheme, run.h = h;
+        run.scene = selected[k], run.for_check = for_check;
         runs.push_back(std::move(run));
     };
-    for (size_t k = 0; k < chosen.size(); ++k)
+    for (size_t k = 0; k < selected.size(); ++k)
         for (const lie::Scheme* scheme : schemes)
             for (const double h : steps) {
                 add(k, *scheme, h, false);
-                if (options.check && chosen[k]->eta_r == 0 && h == usual_step) add(k, *scheme, h / 2, true);
+                if (options.check && selected[k]->eta_r == 0 && h == usual_step) add(k, *scheme, h / 2, true);
             }
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
         compute(runs[k], options);
     });
 
-    const double end = cases.front().end;
+    const double end = benchmarks.front().end;
     const bool as_in_text = options.set.empty() && end == usual_end;
     StudyOutput output{.kind = kind, .table = as_table(runs).csv()};
     print(runs, output.text);
-    std::vector<Demand> must;
+    std::vector<Criterion> must;
     std::vector<Measured> came;
-    for (const Run& run : runs) {
+    for (const BrakedRun& run : runs) {
         if (run.for_check) continue;
-        const auto half = std::find_if(runs.begin(), runs.end(), [&](const Run& other) {
+        const auto half = std::find_if(runs.begin(), runs.end(), [&](const BrakedRun& other) {
             return other.for_check && other.scene == run.scene && other.scheme == run.scheme;
         });
-        if (as_in_text) judge_run(run, half == runs.end() ? nullptr : &*half, must);
+        if (as_in_text) evaluate_run(run, half == runs.end() ? nullptr : &*half, must);
         Measured measured{.of = run.name(), .value = {}};
         if (run.scene->eta_r == 0)
             measured.value = {{"r", run.error_r}, {"F_f", run.most_friction()}};
@@ -357,21 +359,22 @@ int study(const StudyOptions& options)
             measured.value = {{"rest", run.y_at_end()}, {"stops", run.stops()}};
         came.push_back(std::move(measured));
     }
-    const bool met = judge(must, output.text, output.json);
+    const bool passed = evaluate(must, output.text, output.json);
     if (!as_in_text) output.text << "--end and --set ask for other runs than those of the text: no demands\n";
     if (as_in_text && !options.check)
         output.text << "--check does a run at half of the step too, and judges by all\n";
     if (options.vtk > 0) output.text << fmt::format("for ParaView: {}/eta-*.pvd\n", options.output);
-    output.files.emplace_back("curves.csv", curves(runs, chosen, end, options.set.empty()));
+    output.files.emplace_back("curves.csv", curves(runs, selected, end, options.set.empty()));
     output.figures = {kind + "-point.png", kind + "-forces.png"};
-    const int code = finish(options, output, members(runs), came);
-    return code == exit_code::done && options.check && !met ? exit_code::expectation_failed : code;
+    const int code = finish(options, output, run_pointers(runs), came);
+    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool enrolled = enrol(Study{.kind = kind,
-                                  .answers = "ball in a bowl that friction brings to rest (Figs. 5.7, 5.8)",
-                                  .also = takes::check | takes::vtk,
-                                  .run = study});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "ball in a bowl that friction brings to rest (Figs. 5.7, 5.8)",
+                         .also = takes::check | takes::vtk,
+                         .run = study});
 
 }  // namespace
 

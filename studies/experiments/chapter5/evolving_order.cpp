@@ -33,14 +33,14 @@ const std::string kind = "evolving-order";
 constexpr double asymptotic_step = 5e-3;  // a line is fitted through steps up to this [s]
 constexpr double rounding = 1e-9;  // errors below it say nothing of the order: F_N has a noise of ε m/h²
 
-struct Run : Member {
+struct OrderRun : Run {
     std::array<double, norm::count> error{}, order{};
     double constraint_norm = 0;
 };
 
-void compute(Run& run, const StudyOptions& options)
+void compute(OrderRun& run, const StudyOptions& options)
 {
-    AgainstTruth against(*run.c, run.h);
+    ReferenceErrors against(*run.c, run.h);
     lie::Observer* observers[] = {&against};
     lie::Settings settings = options.settings;
     settings.tolerance = std::min(settings.tolerance, 1e-13);  // forces are judged: lengths times m/h²
@@ -50,12 +50,12 @@ void compute(Run& run, const StudyOptions& options)
     if (run.failed()) run.error.fill(std::nan(""));
 }
 
-using Series = std::vector<const Run*>;
+using Series = std::vector<const OrderRun*>;
 
 double fit(const Series& series, int n)
 {
     std::vector<double> h, e;
-    for (const Run* run : series)
+    for (const OrderRun* run : series)
         if (!run->failed() && run->error[n] > rounding) h.push_back(run->h), e.push_back(run->error[n]);
     while (h.size() > 2 && h.front() > asymptotic_step * (1 + 1e-9)) h.erase(h.begin()), e.erase(e.begin());
     return fitted_order(h, e);
@@ -63,9 +63,9 @@ double fit(const Series& series, int n)
 
 void print(const Series& series, std::ostream& out)
 {
-    const Run& first = *series.front();
+    const OrderRun& first = *series.front();
     out << fmt::format("\n{}, {}; truth: {}\n", first.c->problem.name, first.scheme->name,
-                       first.c->truth_name);
+                       first.c->reference_name);
     std::vector<Table::Column> columns = {{"h [s]", "{:.2e}"}};
     for (const char* head : {"r [m]", "A", "alpha [m]", "F_N [N]"}) {
         columns.push_back({head, "{:.3e}"});
@@ -73,7 +73,7 @@ void print(const Series& series, std::ostream& out)
     }
     columns.insert(columns.end(), {{"iter", "{:.2f}"}, {"|Phi|", "{:.1e}"}, {"status"}});
     Table table(columns);
-    for (const Run* run : series) {
+    for (const OrderRun* run : series) {
         std::vector<Table::Cell> row = {run->h};
         for (int n = 0; n < norm::count; ++n) row.insert(row.end(), {run->error[n], run->order[n]});
         row.insert(row.end(), {run->statistics.iterations_per_step(), run->constraint_norm, run->status});
@@ -99,7 +99,7 @@ void print_fits(const std::vector<Series>& all, std::ostream& out)
     table.print(out);
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<OrderRun>& runs)
 {
     std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"}};
     for (const char* name : norm::names) columns.push_back({std::string("error_") + name});
@@ -107,7 +107,7 @@ Table as_table(const std::vector<Run>& runs)
     for (const char* name : {"steps", "iterations_per_step", "constraint_norm", "cpu_seconds", "status"})
         columns.push_back({name});
     Table table(columns);
-    for (const Run& run : runs) {
+    for (const OrderRun& run : runs) {
         std::vector<Table::Cell> row = {run.c->problem.name, run.scheme->name, run.h};
         for (const double e : run.error) row.emplace_back(e);
         for (const double p : run.order) row.emplace_back(p);
@@ -123,17 +123,17 @@ ordered_json as_json(const std::vector<Series>& all)
 {
     ordered_json out = ordered_json::array();
     for (const Series& series : all) {
-        const Run& first = *series.front();
+        const OrderRun& first = *series.front();
         ordered_json fits = ordered_json::object(), rows = ordered_json::array();
         for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
-        for (const Run* run : series) {
+        for (const OrderRun* run : series) {
             ordered_json row = {{"h", run->h}, {"status", run->status}};
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->error[n]);
             rows.push_back(row);
         }
         out.push_back({{"problem", first.c->problem.name},
                        {"integrator", first.scheme->name},
-                       {"truth", first.c->truth_name},
+                       {"truth", first.c->reference_name},
                        {"fitted_order", fits},
                        {"rows", rows}});
     }
@@ -141,17 +141,17 @@ ordered_json as_json(const std::vector<Series>& all)
 }
 
 /// What must come out
-std::vector<Demand> demands(const std::vector<Series>& all)
+std::vector<Criterion> criteria(const std::vector<Series>& all)
 {
-    std::vector<Demand> must;
+    std::vector<Criterion> must;
     for (const Series& series : all) {
         const lie::Scheme& scheme = *series.front()->scheme;
         const bool ball = series.front()->c->problem.name.find("ball") != std::string::npos;
         for (const int n : {norm::r, norm::alpha, norm::F_N}) {
             const double order = n == norm::F_N ? scheme.order_lambda : scheme.order;
-            must.push_back(demand(fmt::format("order of {}, {} by {}", norm::names[n],
-                                              series.front()->c->problem.name, scheme.name),
-                                  fit(series, n), order, ball ? 0.03 : 0.05));
+            must.push_back(criterion(fmt::format("order of {}, {} by {}", norm::names[n],
+                                                 series.front()->c->problem.name, scheme.name),
+                                     fit(series, n), order, ball ? 0.03 : 0.05));
         }
     }
     return must;
@@ -176,9 +176,9 @@ Measured measured(const Series& series)
 }
 
 /// The cases, each with the rows for the normals that were asked for
-std::vector<Case> chosen_cases(const StudyOptions& options)
+std::vector<Benchmark> selected_benchmarks(const StudyOptions& options)
 {
-    std::vector<Case> all;
+    std::vector<Benchmark> all;
     const std::vector<std::string> otherwise = {"ball_in_bowl", "ball_in_bowl_xy", "rolling_ball_in_bowl",
                                                 "rolling_ball_in_bowl_xy", "wobbling_ellipsoid"};
     for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
@@ -186,7 +186,7 @@ std::vector<Case> chosen_cases(const StudyOptions& options)
         if (!options.normal_rows.empty())
             p.model =
                 dae::read_model(p.model, p.name, normal_rows(name, options.set, options.normal_rows)).text;
-        all.push_back(make_case(std::move(p), options));
+        all.push_back(make_benchmark(std::move(p), options));
         if (evolving_contacts(*all.back().started->model).empty())
             throw UsageError("study " + kind + ": " + name + " has no contact that is a constraint");
     }
@@ -199,18 +199,19 @@ int study(const StudyOptions& options)
     const std::vector<double> steps = steps_or(options, {1e-2, 5e-3, 2.5e-3, 1.25e-3});
     const Schemes schemes =
         fixed_step_schemes(kind, options, {"rA-half-1", "rA-half-1-kick", "rA-half-1-momentum"});
-    Judged judged{.smallest_step = steps.back()};
-    for (const lie::Scheme* s : schemes) judged.highest_order = std::max(judged.highest_order, s->order);
-    const Reference reference(kind, options, judged);
-    std::vector<Case> cases = chosen_cases(options);
-    for (const Case& c : cases) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.judge(cases);
+    Evaluated evaluated{.smallest_step = steps.back()};
+    for (const lie::Scheme* s : schemes)
+        evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    const Reference reference(kind, options, evaluated);
+    std::vector<Benchmark> benchmarks = selected_benchmarks(options);
+    for (const Benchmark& c : benchmarks) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
+    reference.evaluate(benchmarks);
 
-    std::vector<Run> runs;
-    for (const Case& c : cases)
+    std::vector<OrderRun> runs;
+    for (const Benchmark& c : benchmarks)
         for (const lie::Scheme* s : schemes)
             for (const double h : steps) {
-                Run run;
+                OrderRun run;
                 run.c = &c, run.scheme = s, run.h = h;
                 run.order.fill(std::nan(""));
                 runs.push_back(run);
@@ -234,19 +235,19 @@ int study(const StudyOptions& options)
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(all)}}};
     for (const Series& series : all) print(series, output.text);
     print_fits(all, output.text);
-    for (const Case& c : cases) output.figures.push_back(kind + '-' + c.problem.name + ".png");
+    for (const Benchmark& c : benchmarks) output.figures.push_back(kind + '-' + c.problem.name + ".png");
     std::vector<Measured> came;
     for (const Series& series : all) came.push_back(measured(series));
-    const bool met = !options.check || judge(demands(all), output.text, output.json);
-    const int code = finish(options, output, members(runs), came);
-    return code == exit_code::done && !met ? exit_code::expectation_failed : code;
+    const bool passed = !options.check || evaluate(criteria(all), output.text, output.json);
+    const int code = finish(options, output, run_pointers(runs), came);
+    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "order of the schemes on contacts that are constraints (Fang 2022, Ch. 5)",
-                .also = takes::reference | takes::check | takes::normal_rows,
-                .run = study});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "order of the schemes on contacts that are constraints (Fang 2022, Ch. 5)",
+          .also = takes::reference | takes::check | takes::normal_rows,
+          .run = study});
 
 }  // namespace
 

@@ -65,7 +65,7 @@ std::vector<ContactInstant> ball_in_bowl(const dae::Description& d, const Evolvi
                                         .J = J_bar(0, 0),
                                         .g = -d.model->gravity.z()};
     const Vec3 p = Vec3::Map(d.x.alpha.data() + 3);
-    const reference::BallInBowl::Start from{
+    const reference::BallInBowl::InitialState from{
         .p = p, .rdot = start.rdot, .spin = problem.normal(p).dot(start.A * start.omega_bar), .A = start.A};
     return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
                                                             : problem.slide(from, instants);
@@ -82,12 +82,12 @@ std::vector<ContactInstant> ellipsoid_on_plane(const dae::Description& d, const 
                                               .m = d.model->mass().m[0],
                                               .J_bar = d.model->mass().J_bar[0],
                                               .g = -d.model->gravity.z()};
-    const reference::EllipsoidOnPlane::Start from{.A = start.A,
-                                                  .omega_bar = start.omega_bar,
-                                                  .x = start.r.x(),
-                                                  .y = start.r.y(),
-                                                  .xdot = start.rdot.x(),
-                                                  .ydot = start.rdot.y()};
+    const reference::EllipsoidOnPlane::InitialState from{.A = start.A,
+                                                         .omega_bar = start.omega_bar,
+                                                         .x = start.r.x(),
+                                                         .y = start.r.y(),
+                                                         .xdot = start.rdot.x(),
+                                                         .ydot = start.rdot.y()};
     return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
                                                             : problem.slide(from, instants);
 }
@@ -112,7 +112,7 @@ std::vector<ContactInstant> by_minimal_coordinates(const dae::Description& d, st
 
 }  // namespace
 
-lie::Trajectory evolving_truth(dae::Description& d, const std::vector<double>& instants)
+lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double>& instants)
 {
     const std::vector<ContactInstant> known = by_minimal_coordinates(d, instants);
     if (known.empty()) return run_with_small_steps(d, instants, lie::scheme("rA-rkmk-4"), fine);
@@ -123,7 +123,7 @@ lie::Trajectory evolving_truth(dae::Description& d, const std::vector<double>& i
         x.t = at.t;
         x.body[0] = at.body;
         x.alpha << at.a_bar, at.p;
-        d.model->remember_start(x);
+        d.model->set_internal_state_at_start(x);
         dae::solve_accelerations(*d.model, K, x);  // for the multipliers
         run.row.push_back(std::move(x));
     }

@@ -10,7 +10,7 @@ namespace hilda::studies {
 /// Complete states at these instants: of a ball in a fixed ellipsoidal bowl and of an ellipsoid on a fixed plane, without
 /// friction or rolling, from the equations in minimal coordinates, which know neither constraint nor multiplier; of
 /// anything else, such as a model that has been changed, from rA-rkmk-4 with small steps.
-lie::Trajectory evolving_truth(dae::Description& d, const std::vector<double>& instants);
+lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double>& instants);
 
 /// What the truth is, for tables
 constexpr const char* evolving_truth_name =

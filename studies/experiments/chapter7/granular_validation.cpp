@@ -102,13 +102,13 @@ int study(const Validation& validation, const StudyOptions& options)
         output.text << '\n' << (first ? "" : t.name + '\n');
         table.print(output.text);
     }
-    std::vector<Demand> demands;
+    std::vector<Criterion> criteria;
     for (const granular::ValidationCheck& c : result.checks)
-        demands.push_back(between(c.what, c.measured, c.least, c.most));
-    const bool met = judge(demands, output.text, output.json);
+        criteria.push_back(between(c.what, c.measured, c.least, c.most));
+    const bool passed = evaluate(criteria, output.text, output.json);
     output.figures = {output.kind + ".png"};
     const int code = finish(options, output, {}, {});
-    return code == exit_code::done && options.check && !met ? exit_code::expectation_failed : code;
+    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
 }
 
 std::vector<Study> all()
@@ -122,7 +122,7 @@ std::vector<Study> all()
     return studies;
 }
 
-const bool enrolled = enrol_later(all);
+const bool registered = register_studies(all);
 
 }  // namespace
 

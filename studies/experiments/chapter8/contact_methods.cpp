@@ -40,7 +40,7 @@ const std::string kind = "contact-methods";
 const std::vector<std::string> parts = {"bowl", "many", "chain", "pile"};
 
 /// One method on one scene at one step
-struct Run {
+struct MethodRun {
     std::string part, method;
     double h = 0, end = 0;
     double stiffness = std::nan("");  ///< of springs [N/m]
@@ -67,13 +67,13 @@ ContactScene bowl_with(const std::vector<Vec3>& touched)
 {
     ContactScene of;
     of.R = bowl.R, of.m = bowl.m;
-    contact::Kind hollow;
+    contact::BodyType hollow;
     hollow.shape = {std::make_shared<contact::Ellipsoid>(bowl.semi_axes, true)};
     of.kind = {hollow,
                {.inertia = {bowl.m, bowl.J * lie::Mat3::Identity()},
                 .shape = {std::make_shared<contact::Sphere>(bowl.R)},
                 .reach = bowl.R}};
-    of.meeting = {{"ball-bowl", 1, 0, 0}};
+    of.interaction = {{"ball-bowl", 1, 0, 0}};
     of.body = {{0, {}}};
     for (const Vec3& p : touched) {
         lie::Motion start;
@@ -98,22 +98,22 @@ struct Stiffness {
 /// A tenth of what the period of the contact allows
 const std::vector<Stiffness> stiffnesses = {{1e5, 5e-3}, {1e6, 1e-3}, {1e7, 2e-4}, {1e8, 5e-5}};
 
-void add_bowl(std::vector<Run>& runs)
+void add_bowl(std::vector<MethodRun>& runs)
 {
     constexpr double end = 2, every = 0.1;
     std::vector<double> instants;
     for (int k = 0; k <= std::lround(end / every); ++k) instants.push_back(every * k);
-    const auto truth = std::make_shared<const std::vector<reference::ContactInstant>>(
+    const auto reference_solution = std::make_shared<const std::vector<reference::ContactInstant>>(
         bowl.slide({.p = bowl.point(1, 1.5)}, instants));
-    const auto off = [truth](const Method& m, double t) {
+    const auto off = [reference_solution](const Method& m, double t) {
         const double k = t / every;
         if (std::abs(k - std::round(k)) > 1e-6) return 0.;
-        return (m.body(1).r - (*truth)[std::lround(k)].body.r).norm();
+        return (m.body(1).r - (*reference_solution)[std::lround(k)].body.r).norm();
     };
     const ContactScene of = bowl_with({bowl.point(1, 1.5)});
     const auto add = [&](const std::string& method, double h, double k,
                          std::function<std::unique_ptr<Method>()> make) {
-        Run run{.part = "bowl", .method = method, .h = h, .end = end, .stiffness = k};
+        MethodRun run{.part = "bowl", .method = method, .h = h, .end = end, .stiffness = k};
         run.make = std::move(make), run.error = off;
         runs.push_back(run);
     };
@@ -127,14 +127,14 @@ void add_bowl(std::vector<Run>& runs)
         add("DVI, text", h, std::nan(""), [=] { return methods::rigid(of, {.half_kick = false}); });
     }
     for (const Stiffness& s : stiffnesses)
-        add("DEM", s.h, s.k, [=, at_rest = truth->front()] {
+        add("DEM", s.h, s.k, [=, at_rest = reference_solution->front()] {
             return methods::springs(leaning(of, at_rest, s.k, s.h), {.stiffness = s.k, .restitution = 1});
         });
 }
 
 // ---- many contacts that do not know of each other ----------------------------------------------------------------------
 
-void add_many(std::vector<Run>& runs)
+void add_many(std::vector<MethodRun>& runs)
 {
     for (const int balls : {1, 10, 100, 1000, 10000}) {
         std::vector<Vec3> touched;
@@ -146,7 +146,7 @@ void add_many(std::vector<Run>& runs)
         const double steps = std::clamp(2e4 / balls, 20., 2000.);
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
-            Run run{
+            MethodRun run{
                 .part = "many", .method = method, .h = h, .end = h * steps, .stiffness = k, .bodies = balls};
             run.make = std::move(make);
             runs.push_back(run);
@@ -163,22 +163,23 @@ void add_many(std::vector<Run>& runs)
 
 /// Balls in a row that touch each other in a groove down a slope, held by one that is fixed: at rest, each pressed by all
 /// that are above it. Down the slope is -x.
-void add_chain(std::vector<Run>& runs)
+void add_chain(std::vector<MethodRun>& runs)
 {
     for (const int balls : {1, 10, 100, 1000, 3333}) {
         RollingChain chain;
         chain.balls = balls, chain.speed = 0, chain.mu_wall = 0;
         ContactScene of = scene(chain);
-        contact::Kind stop = of.kind.back();
+        contact::BodyType stop = of.kind.back();
         stop.inertia = {};
         of.kind.push_back(stop);
-        of.meeting.push_back({"stop", of.body.back().kind, static_cast<int>(of.kind.size()) - 1, 0});
+        of.interaction.push_back({"stop", of.body.back().kind, static_cast<int>(of.kind.size()) - 1, 0});
         lie::Motion before_the_first = of.body[2].start;
         before_the_first.r.x() -= 2 * chain.R;
         of.body.push_back({static_cast<int>(of.kind.size()) - 1, before_the_first});
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
-            Run run{.part = "chain", .method = method, .h = h, .end = 0.05, .stiffness = k, .bodies = balls};
+            MethodRun run{
+                .part = "chain", .method = method, .h = h, .end = 0.05, .stiffness = k, .bodies = balls};
             run.make = std::move(make);
             run.error = [at = of.body, balls](const Method& m, double) {
                 double largest = 0;
@@ -197,7 +198,7 @@ void add_chain(std::vector<Run>& runs)
 
 // ---- a pile ---------------------------------------------------------------------------------------------------------------
 
-void add_pile(std::vector<Run>& runs)
+void add_pile(std::vector<MethodRun>& runs)
 {
     for (const int balls : {2, 4, 8, 16, 32}) {
         Pile pile;
@@ -205,13 +206,14 @@ void add_pile(std::vector<Run>& runs)
         const ContactScene of = scene(pile);
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
-            Run run{.part = "pile", .method = method, .h = h, .end = 1, .stiffness = k, .bodies = balls};
+            MethodRun run{
+                .part = "pile", .method = method, .h = h, .end = 1, .stiffness = k, .bodies = balls};
             run.make = std::move(make);
             runs.push_back(run);
         };
         if (balls <= 4)  // with more, contacts that bear nothing open and close without end
             add("evolving", 2e-3, std::nan(""),
-                [=] { return methods::evolving(of, {.reach = 100, .opens = true}); });
+                [=] { return methods::evolving(of, {.reach = 100, .unilateral = true}); });
         add("DVI", 1e-3, std::nan(""),
             [=] { return methods::rigid(of, {.tolerance = 1e-5, .most_iterations = 2000}); });
         add("DEM", 2e-4, 1e6, [=] { return methods::springs(of, {.stiffness = 1e6}); });
@@ -219,7 +221,7 @@ void add_pile(std::vector<Run>& runs)
 }
 
 /// Runs it from the start to the end; the clock stands still while it is judged, and in the first step, which sets up.
-void compute(Run& run)
+void compute(MethodRun& run)
 {
     run.steps = std::lround(run.end / run.h);
     try {
@@ -243,7 +245,7 @@ void compute(Run& run)
     }
 }
 
-Table as_table(const std::vector<Run>& runs)
+Table as_table(const std::vector<MethodRun>& runs)
 {
     std::vector<Table::Column> columns;
     for (const char* name :
@@ -251,7 +253,7 @@ Table as_table(const std::vector<Run>& runs)
           "error", "cpu_seconds", "us_per_step", "us_per_step_and_contact", "status"})
         columns.push_back({name});
     Table table(columns);
-    for (const Run& run : runs)
+    for (const MethodRun& run : runs)
         table.add({run.part, run.method, run.h, run.stiffness, static_cast<double>(run.bodies), run.end,
                    static_cast<double>(run.steps), static_cast<double>(run.contacts),
                    static_cast<double>(run.iterations), static_cast<double>(run.events), run.largest_error,
@@ -259,7 +261,7 @@ Table as_table(const std::vector<Run>& runs)
     return table;
 }
 
-void print(const std::vector<Run>& runs, std::ostream& out)
+void print(const std::vector<MethodRun>& runs, std::ostream& out)
 {
     static const std::map<std::string, std::string> title = {
         {"bowl", "A ball slides in a bowl for 2 s: largest error of its position"},
@@ -278,7 +280,7 @@ void print(const std::vector<Run>& runs, std::ostream& out)
                      {"CPU [ms]", "{:.2f}"},
                      {"us/step/contact", "{:.2f}"},
                      {"status"}});
-        for (const Run& run : runs)
+        for (const MethodRun& run : runs)
             if (run.part == part)
                 table.add({run.method, run.h, run.stiffness, static_cast<double>(run.bodies),
                            static_cast<double>(run.contacts), static_cast<double>(run.events),
@@ -300,7 +302,7 @@ int contact_methods(const StudyOptions& options)
         return options.problems.empty() ||
                std::find(options.problems.begin(), options.problems.end(), part) != options.problems.end();
     };
-    std::vector<Run> runs;
+    std::vector<MethodRun> runs;
     if (wanted("bowl")) add_bowl(runs);
     if (wanted("many")) add_many(runs);
     if (wanted("chain")) add_chain(runs);
@@ -310,7 +312,7 @@ int contact_methods(const StudyOptions& options)
 
     StudyOutput output{.kind = kind};
     print(runs, output.text);
-    for (const Run& run : runs)
+    for (const MethodRun& run : runs)
         if (run.status != "ok")
             output.text << fmt::format("{}, {}, {} bodies: {}\n", run.part, run.method, run.bodies,
                                        run.message);
@@ -319,18 +321,18 @@ int contact_methods(const StudyOptions& options)
     for (const std::string& part : parts)
         if (wanted(part)) output.figures.push_back("contact-methods-" + part + ".png");
     std::vector<Measured> came;
-    for (const Run& run : runs)
+    for (const MethodRun& run : runs)
         if (!std::isnan(run.largest_error))
             came.push_back({fmt::format("{} of {} at h = {:g} s", run.method, run.part, run.h),
                             {{"error", run.largest_error}}});
     return finish(options, output, {}, came);
 }
 
-const bool enrolled =
-    enrol(Study{.kind = kind,
-                .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
-                           "number of contacts (Sec. 8.2)",
-                .run = contact_methods});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
+                                    "number of contacts (Sec. 8.2)",
+                         .run = contact_methods});
 
 }  // namespace
 

@@ -9,8 +9,8 @@ namespace hilda::studies {
 
 namespace {
 
+using contact::BodyType;
 using contact::Inertia;
-using contact::Kind;
 using contact::Shape;
 using lie::Mat3;
 using lie::Motion;
@@ -23,16 +23,16 @@ void check(const char* where, int balls, double R, double m)
     if (!(m > 0) || !std::isfinite(m)) lie::reject(where, "a mass must be positive", m);
 }
 
-Kind ball(double m, double R)
+BodyType ball(double m, double R)
 {
     return {.inertia = {m, 0.4 * m * R * R * Mat3::Identity()},
             .shape = {std::make_shared<contact::Sphere>(R)},
             .reach = R};
 }
 
-Kind fixed(const Shape& shape)
+BodyType fixed(const Shape& shape)
 {
-    Kind k;
+    BodyType k;
     k.shape = shape;
     return k;
 }
@@ -52,7 +52,7 @@ ContactScene scene(const Pile& pile)
     of.m = pile.m;
     of.kind = {fixed({bowl}), ball(pile.m, R)};
     enum { in_bowl, a_ball };
-    of.meeting = {{"ball-bowl", a_ball, in_bowl, pile.mu}, {"ball-ball", a_ball, a_ball, pile.mu}};
+    of.interaction = {{"ball-bowl", a_ball, in_bowl, pile.mu}, {"ball-ball", a_ball, a_ball, pile.mu}};
     of.body.push_back({in_bowl, {}});
 
     // Layers of squares, each over the gaps of the one below, a little apart
@@ -99,9 +99,9 @@ ContactScene scene(const RollingChain& chain)
         return fixed({std::make_shared<contact::Plane>(), Vec3::Zero(), lie::exp(Vec3(angle, 0, 0))});
     };
     of.kind = {wall(RollingChain::wall), wall(-RollingChain::wall), ball(chain.m, R)};
-    of.meeting = {{"ball-left", rolling, left, chain.mu_wall},
-                  {"ball-right", rolling, right, chain.mu_wall},
-                  {"ball-ball", rolling, rolling, chain.mu_between}};
+    of.interaction = {{"ball-left", rolling, left, chain.mu_wall},
+                      {"ball-right", rolling, right, chain.mu_wall},
+                      {"ball-ball", rolling, rolling, chain.mu_between}};
     of.body = {{left, {}}, {right, {}}};
     Motion start;
     start.r = {0, 0, R / std::cos(RollingChain::wall)};
@@ -112,10 +112,10 @@ ContactScene scene(const RollingChain& chain)
         start.r.x() += 2 * R;
     }
     if (chain.speed > 0) {
-        Kind k = ball(chain.m, R);
+        BodyType k = ball(chain.m, R);
         k.inertia = {};
         of.kind.push_back(k);
-        of.meeting.push_back({"push", rolling, pushing, chain.mu_between});
+        of.interaction.push_back({"push", rolling, pushing, chain.mu_between});
         start.r.x() = -2 * R;
         start.omega_bar.setZero();
         of.body.push_back({pushing, start});
@@ -136,7 +136,7 @@ std::vector<contact::Candidate> touching(const ContactScene& of, double gap)
     for (const contact::Candidate& c : cells.find(centre, reach, gap)) {
         const auto &i = of.body[c.i], &j = of.body[c.j];
         bool meet = false;
-        for (const auto& m : of.meeting)
+        for (const auto& m : of.interaction)
             meet = meet || (m.kind_i == i.kind && m.kind_j == j.kind) ||
                    (m.kind_i == j.kind && m.kind_j == i.kind);
         if (!meet) continue;
@@ -150,9 +150,9 @@ contact::DviScene rigid(const ContactScene& of)
 {
     contact::DviScene scene;
     scene.gravity = of.gravity;
-    scene.crowd.margin = 0.2 * of.R;
-    for (const Kind& k : of.kind) scene.add(k);
-    for (const auto& m : of.meeting) scene.between(m.name, m.kind_i, m.kind_j, {.mu = m.mu});
+    scene.neighbors.margin = 0.2 * of.R;
+    for (const BodyType& k : of.kind) scene.add(k);
+    for (const auto& m : of.interaction) scene.between(m.name, m.kind_i, m.kind_j, {.mu = m.mu});
     for (const auto& b : of.body) scene.enter(b.kind, b.start);
     return scene;
 }
@@ -161,10 +161,10 @@ contact::Scene compliant(const ContactScene& of, const Compliance& how)
 {
     contact::Scene scene;
     scene.gravity = of.gravity;
-    for (const Kind& k : of.kind) scene.add(k);
+    for (const BodyType& k : of.kind) scene.add(k);
     const auto law =
         std::make_shared<contact::Hooke>(contact::Hooke::rebounding(how.stiffness, how.restitution, of.m));
-    for (const auto& m : of.meeting) {
+    for (const auto& m : of.interaction) {
         const auto friction = m.mu > 0 ? contact::friction_law("slide-roll-spin")
                                              .make({.mu_s = m.mu, .mu_k = m.mu, .K_E = how.stiffness})
                                        : contact::frictionless();

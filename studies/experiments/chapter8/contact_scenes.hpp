@@ -15,16 +15,16 @@ struct ContactScene {
         lie::Motion start;
     };
     /// Two kinds that touch each other
-    struct Meeting {
+    struct Interaction {
         std::string name;
         int kind_i, kind_j;
         double mu;
     };
 
     lie::Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
-    std::vector<contact::Kind> kind;
+    std::vector<contact::BodyType> kind;
     std::vector<Body> body;
-    std::vector<Meeting> meeting;
+    std::vector<Interaction> interaction;
     double R = 0;  ///< of a ball [m]
     double m = 0;  ///< of a ball [kg]
 };

@@ -18,14 +18,14 @@ class ByConstraints final : public Method {
 public:
     ByConstraints(const ContactScene& of, const Evolving& how)
     {
-        for (const ContactScene::Meeting& meeting : of.meeting)
-            if (meeting.mu > 0)
+        for (const ContactScene::Interaction& interaction : of.interaction)
+            if (interaction.mu > 0)
                 lie::reject("studies::methods::evolving", "contacts must be without friction, mu",
-                            meeting.mu);
+                            interaction.mu);
         model.gravity = of.gravity;
         lie::State x;
         for (size_t b = 0; b < of.body.size(); ++b) {
-            const contact::Kind& kind = of.kind[of.body[b].kind];
+            const contact::BodyType& kind = of.kind[of.body[b].kind];
             number.push_back(dae::ground);
             if (!moves(of, static_cast<int>(b))) continue;
             number.back() = model.add({"body " + std::to_string(b), kind.inertia.m, kind.inertia.J_bar});
@@ -51,7 +51,7 @@ public:
     {
         int closed = 0;
         const lie::State& x = march ? march->node() : start;
-        for (const auto& c : model.evolving()) closed += !dae::Model::idle(*c, x);
+        for (const auto& c : model.evolving()) closed += !dae::Model::inactive(*c, x);
         return closed;
     }
     long iterations() const override { return integrator->statistics().iterations; }
@@ -66,9 +66,10 @@ private:
     {
         if (!moves(of, i) && !moves(of, j)) return;
         model.constrain("contact " + std::to_string(i) + "-" + std::to_string(j),
-                        std::make_unique<EvolvingContact>(
-                            number[i], shape(of, i), number[j], shape(of, j), EvolvingContact::Friction::none,
-                            EvolvingContact::NormalRows::tangent, contact::Unilateral{.opens = how.opens}));
+                        std::make_unique<EvolvingContact>(number[i], shape(of, i), number[j], shape(of, j),
+                                                          EvolvingContact::Friction::none,
+                                                          EvolvingContact::NormalRows::tangent,
+                                                          contact::Unilateral{.enabled = how.unilateral}));
     }
 
     /// Of the body, or of the ground where it is part of that
@@ -126,7 +127,7 @@ public:
     int contacts() const override
     {
         int touching = 0;
-        for (const auto& p : scene.crowd.pair()) touching += p.state.meeting.N > 0;
+        for (const auto& p : scene.neighbors.pair()) touching += p.state.contact_state.N > 0;
         return touching;
     }
     long iterations() const override { return steps; }

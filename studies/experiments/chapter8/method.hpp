@@ -28,7 +28,7 @@ struct Evolving {
     lie::LinearSolver solver = lie::LinearSolver::automatic;
     double tolerance = 1e-12;  ///< of Newton's method
     double reach = 0;          ///< pairs that are nearer than this at the start are contacts [m]
-    bool opens = false;        ///< whether contacts come and go, without rebound
+    bool unilateral = false;        ///< whether contacts come and go, without rebound
 };
 /// Without friction. Bodies without a finite mass are the ground; InvalidInput where one of those moves, and for a scene
 /// with friction.

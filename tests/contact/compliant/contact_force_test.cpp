@@ -90,7 +90,7 @@ lie::Loads loads(const dae::Model& model, const State& x)
 
 bool same(const State& a, const State& b)
 {
-    bool all = a.t == b.t && a.memory == b.memory && a.remembered == b.remembered;
+    bool all = a.t == b.t && a.discrete_state == b.discrete_state && a.internal_state == b.internal_state;
     for (size_t n = 0; n < a.body.size(); ++n)
         all = all && a.body[n].r == b.body[n].r && a.body[n].A == b.body[n].A &&
               a.body[n].rdot == b.body[n].rdot && a.body[n].omega_bar == b.body[n].omega_bar;
@@ -152,9 +152,9 @@ TEST_CASE("a contact that slips slips on where nothing moves", "[contact][force]
 {
     const OneBall one(thrown(2));
     State x = one.after("rA-half-1", 0.05, 1e-4);
-    const Memory memory = one.contact().recall(x);
-    REQUIRE(memory.history.slide.slipping);
-    const double pressed = one.contact().at(x).meeting.N, most = rubber().mu_k * pressed;
+    const ContactHistory history = one.contact().recall(x);
+    REQUIRE(history.deflections.slide.slipping);
+    const double pressed = one.contact().at(x).contact_state.N, most = rubber().mu_k * pressed;
     CHECK(one.contact().friction(x).F.norm() == Approx(most).epsilon(1e-12));
 
     // through Euler parameters and back
@@ -164,10 +164,10 @@ TEST_CASE("a contact that slips slips on where nothing moves", "[contact][force]
     CHECK(one.contact().friction(x).F.norm() == Approx(most).epsilon(1e-9));
     State kept = x;
     one.model.accepted(x, kept);
-    CHECK(one.contact().recall(kept).history.slide.slipping);
+    CHECK(one.contact().recall(kept).deflections.slide.slipping);
     // but a way back, however short, is one
     x.body[0].r -= 1e-9 * x.body[0].rdot;
-    CHECK(!one.contact().at(x).memory.history.slide.slipping);
+    CHECK(!one.contact().at(x).history.deflections.slide.slipping);
 }
 
 TEST_CASE("two free bodies in contact keep their momentum", "[contact][force]")
@@ -242,7 +242,7 @@ TEST_CASE("a contact allocates nothing", "[contact][force][allocation]")
             x.t += 1e-4;
             x.body[0].r += 1e-4 * x.body[0].rdot;
             one.contact().add(x, out);
-            one.contact().remember(x);
+            one.contact().update_internal_state(x);
             one.contact().potential_energy(x);
         }
     });
@@ -308,8 +308,8 @@ TEST_CASE("what needs curvature is refused where there is none", "[contact][forc
 {
     const auto why = [](std::shared_ptr<const NormalLaw> law,
                         std::shared_ptr<const FrictionModel> law_of_friction, Shape shape) {
-        const Contact c("c", std::move(shape), floor(), ball(), {}, std::move(law),
-                        std::move(law_of_friction));
+        const CompliantContact c("c", std::move(shape), floor(), ball(), {}, std::move(law),
+                                 std::move(law_of_friction));
         Motion on;
         on.r.z() = R;
         return c.objection(on, {});

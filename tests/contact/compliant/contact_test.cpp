@@ -54,16 +54,16 @@ Motion at(const Vec3& r)
     return m;
 }
 
-contact::Contact rolling_ball(const FrictionParameters& p, double N = 5 * 9.8)
+contact::CompliantContact rolling_ball(const FrictionParameters& p, double N = 5 * 9.8)
 {
     return {"ball",     sphere(0.2), plane, ball(5, 0.2), {}, std::make_shared<contact::GivenForce>(N),
             friction(p)};
 }
 
-double bound(const contact::Contact& c)
+double bound(const contact::CompliantContact& c)
 {
     const Motion up = at({0, 0, 0.2}), ground;
-    return c.stable_step(c.meet(up, ground, {}), up, ground);
+    return c.stable_step(c.evaluate(up, ground, {}), up, ground);
 }
 
 /// Largest speed of the material at the contact over the last tenth of two thousand steps of h, when the ball is
@@ -157,8 +157,8 @@ TEST_CASE("a light ball under a heavy one needs the step of both its contacts", 
 TEST_CASE("the bound of bodies that do not touch yet is that of the impact to come", "[contact][stability]")
 {
     const auto bound_at = [](double gap) {
-        const contact::Contact c("ball", sphere(0.2), plane, ball(5, 0.2), {},
-                                 std::make_shared<contact::Hertz>(1e8), contact::frictionless());
+        const contact::CompliantContact c("ball", sphere(0.2), plane, ball(5, 0.2), {},
+                                          std::make_shared<contact::Hertz>(1e8), contact::frictionless());
         const Motion up = at({0, 0, 0.2 + gap}), ground;
         return c.stable_step(c.hardest(up, ground, {}, 5 * 9.81), up, ground);
     };
@@ -169,8 +169,8 @@ TEST_CASE("the bound of bodies that do not touch yet is that of the impact to co
 TEST_CASE("a start that no contact can have is refused", "[contact]")
 {
     const auto objection = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {
-        const contact::Contact c("c", i, j, ball(1, 0.1), {}, std::make_shared<contact::Hooke>(1e5, 0),
-                                 friction(p));
+        const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
+                                          std::make_shared<contact::Hooke>(1e5, 0), friction(p));
         return c.objection(at(r), Motion());
     };
     const FrictionParameters slides{.K_E = 1}, rolls{.K_E = 1, .eta_r = 0.1};
@@ -195,8 +195,9 @@ TEST_CASE("a start that no contact can have is refused", "[contact]")
 TEST_CASE("the overlap of a start is measured by the sharpest curvature and the size", "[contact]")
 {
     const auto objection = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
-        const contact::Contact c("c", i, j, ball(1, 0.1), {}, std::make_shared<contact::Hooke>(1e5, 0),
-                                 friction({.K_E = 1, .eta_r = eta_r}));
+        const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
+                                          std::make_shared<contact::Hooke>(1e5, 0),
+                                          friction({.K_E = 1, .eta_r = eta_r}));
         return c.objection(bi, Motion());
     };
     const std::string deep = "the surfaces must not overlap by more than a tenth of ";
@@ -226,8 +227,8 @@ TEST_CASE("a search that fails at the start is a failure of the numerics", "[con
         Mat3 hessian(const Vec3&) const override { return 2 * Mat3::Identity(); }
         double size() const override { return 1; }
     };
-    const contact::Contact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
-                             std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
+    const contact::CompliantContact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
+                                      std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
     try {
         c.objection(at({1, 0.2, 0}), Motion());
         FAIL("accepted");
@@ -258,7 +259,7 @@ TEST_CASE("a micro-deflection sticks to its static bound and slips at its kineti
     contact::Regime regime;
     const auto grow = [&](double by) {
         H += by;
-        contact::give_way(H, regime, 1.25, 1.0);
+        contact::return_to_bound(H, regime, 1.25, 1.0);
     };
     grow(-1.2);  // sticks beyond the kinetic bound
     CHECK((H == -1.2 && !regime.slipping && regime.damped));

@@ -16,9 +16,9 @@
 #include <set>
 
 using namespace hilda;
+using contact::BodyType;
 using contact::BroadPhase;
 using contact::Candidate;
-using contact::Kind;
 using lie::Motion;
 using lie::Vec3;
 
@@ -143,9 +143,9 @@ struct Law {
 struct Counted {
     int steps = 0;
 };
-using Balls = contact::Crowd<Law, Counted>;
+using Balls = contact::NeighborList<Law, Counted>;
 
-Kind ball(double R) { return {{1, lie::Mat3::Identity()}, {std::make_shared<contact::Sphere>(R)}, R}; }
+BodyType ball(double R) { return {{1, lie::Mat3::Identity()}, {std::make_shared<contact::Sphere>(R)}, R}; }
 
 }  // namespace
 
@@ -153,14 +153,14 @@ TEST_CASE("a crowd finds every pair within its margin at every step and remember
           "[contact][broad]")
 {
     tests::Random random(6);
-    Balls crowd;
-    crowd.margin = 0.02;
-    const int small = crowd.add(ball(0.1)), large = crowd.add(ball(0.15));
-    const int floor = crowd.add({{}, {std::make_shared<contact::Plane>()}});
-    crowd.set(small, small, std::make_unique<Law>(Law{1}));
-    crowd.set(large, small, std::make_unique<Law>(Law{2}));
-    crowd.set(large, large, std::make_unique<Law>(Law{3}));
-    crowd.set(large, floor, std::make_unique<Law>(Law{4}));  // the small ones fall through
+    Balls neighbors;
+    neighbors.margin = 0.02;
+    const int small = neighbors.add(ball(0.1)), large = neighbors.add(ball(0.15));
+    const int floor = neighbors.add({{}, {std::make_shared<contact::Plane>()}});
+    neighbors.set(small, small, std::make_unique<Law>(Law{1}));
+    neighbors.set(large, small, std::make_unique<Law>(Law{2}));
+    neighbors.set(large, large, std::make_unique<Law>(Law{3}));
+    neighbors.set(large, floor, std::make_unique<Law>(Law{4}));  // the small ones fall through
 
     std::vector<Motion> body;
     std::vector<int> kind;
@@ -169,14 +169,14 @@ TEST_CASE("a crowd finds every pair within its margin at every step and remember
         m.r = random.vector(0.5);
         m.rdot = random.vector(1);
         kind.push_back(b == 30 ? floor : b % 3 == 0 ? large : small);
-        crowd.enter(b, kind.back());
+        neighbors.enter(b, kind.back());
         body.push_back(m);
     }
     std::map<std::pair<int, int>, int> near;  // steps since they came near
     for (int step = 0; step < 200; ++step) {
         for (Motion& m : body) m.r += 1e-3 * m.rdot;
         std::set<std::pair<int, int>> listed;
-        for (auto& p : crowd.find(body)) {
+        for (auto& p : neighbors.find(body)) {
             ++p.state.steps;
             CHECK(listed.insert(std::minmax(p.i, p.j)).second);
             const int ki = kind[p.i], kj = kind[p.j];
@@ -192,7 +192,7 @@ TEST_CASE("a crowd finds every pair within its margin at every step and remember
                 now[{i, j}] = near.count({i, j}) != 0 ? near[{i, j}] + 1 : 1;
             }
         near = now;
-        for (const auto& p : crowd.pair())
+        for (const auto& p : neighbors.pair())
             if (const auto at = near.find(std::minmax(p.i, p.j)); at != near.end())
                 CHECK(p.state.steps >= at->second);
     }
@@ -201,16 +201,17 @@ TEST_CASE("a crowd finds every pair within its margin at every step and remember
 
 TEST_CASE("a crowd says what is wrong with a kind", "[contact][broad]")
 {
-    Balls crowd;
-    const int floor = crowd.add({{}, {std::make_shared<contact::Plane>()}}), small = crowd.add(ball(0.1));
+    Balls neighbors;
+    const int floor = neighbors.add({{}, {std::make_shared<contact::Plane>()}}),
+              small = neighbors.add(ball(0.1));
     const auto law = [] { return std::make_unique<Law>(); };
-    CHECK_THROWS_WITH(crowd.set(floor, floor, law()),
+    CHECK_THROWS_WITH(neighbors.set(floor, floor, law()),
                       "contact::Crowd: one of two kinds that meet must have a finite reach, got inf");
-    CHECK_THROWS_WITH(crowd.set(floor, 2, law()), "contact::Crowd: no kind has this number, got 2");
-    crowd.set(small, floor, law());
-    CHECK_THROWS_WITH(crowd.set(floor, small, law()),
+    CHECK_THROWS_WITH(neighbors.set(floor, 2, law()), "contact::Crowd: no kind has this number, got 2");
+    neighbors.set(small, floor, law());
+    CHECK_THROWS_WITH(neighbors.set(floor, small, law()),
                       "contact::Crowd: two kinds have one law, and these have it already; kind, got 1");
-    CHECK_THROWS_WITH(crowd.add(Kind{{}, {}, 0}),
+    CHECK_THROWS_WITH(neighbors.add(BodyType{{}, {}, 0}),
                       "contact::Crowd: the reach of a kind must be positive, got 0");
 }
 
@@ -237,7 +238,7 @@ TEST_CASE("compliant contacts that come and go are those that were there all the
         for (int j = i + 1; j < 5; ++j) named.add("balls", i, sphere, j, sphere, law, friction);
         named.add("floor", i, sphere, 5, plane, law, friction);
     }
-    const int ball = found.add(Kind{inertia, sphere, R}), floor = found.add(Kind{{}, plane});
+    const int ball = found.add(BodyType{inertia, sphere, R}), floor = found.add(BodyType{{}, plane});
     found.between("balls", ball, ball, law, friction);
     found.between("floor", ball, floor, law, friction);
     for (const Motion& m : start) found.enter(ball, m);
@@ -251,8 +252,8 @@ TEST_CASE("compliant contacts that come and go are those that were there all the
     for (int n = 0; n < 5000; ++n) {
         named.step(h);
         found.step(h);
-        most = std::max(most, found.crowd.pair().size());
-        least = std::min(least, found.crowd.pair().size());
+        most = std::max(most, found.neighbors.pair().size());
+        least = std::min(least, found.neighbors.pair().size());
     }
     CHECK(least < most);  // of the 15 pairs
     for (int b = 0; b < 5; ++b) {

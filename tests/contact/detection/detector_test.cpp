@@ -100,7 +100,7 @@ struct Scene {
                        (Vec3::UnitZ() + random.vector(0.3)).normalized();
         bi.r = bj.r + bj.A * (j.position + pair.distance * random.number(0.8, 1.2) * d) - bi.A * i.position;
     }
-    Touch touch() const { return make_detector(i, j)->detect(bi, bj, nullptr); }
+    ContactPoint contact_point() const { return make_detector(i, j)->detect(bi, bj, nullptr); }
 };
 
 Motion moved(const Motion& m, const Vec3& r, const Mat3& A)
@@ -120,7 +120,7 @@ TEST_CASE("the contact points lie on their surfaces along opposite normals", "[c
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
         const Scene s(pair, random);
-        const Touch t = s.touch();
+        const ContactPoint t = s.contact_point();
         const Vec3 a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r));
         const Vec3 a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r));
         CHECK(std::abs(s.j.surface->value(a_j)) < 40 * eps);
@@ -151,7 +151,7 @@ TEST_CASE("exchanging the bodies exchanges the points and turns the normal", "[c
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
         const Scene s(pair, random);
-        const Touch t = s.touch(), e = make_detector(s.j, s.i)->detect(s.bj, s.bi, nullptr);
+        const ContactPoint t = s.contact_point(), e = make_detector(s.j, s.i)->detect(s.bj, s.bi, nullptr);
         CHECK(e.gap == t.gap);
         CHECK(e.n == -t.n);
         CHECK(e.C_i == t.C_j);
@@ -169,8 +169,8 @@ TEST_CASE("a touch moves with its bodies", "[contact][detection]")
         const Scene s(pair, random);
         const Vec3 r = random.vector();
         const Mat3 A = random.rotation();
-        const Touch t = s.touch();
-        const Touch m = make_detector(s.i, s.j)->detect(moved(s.bi, r, A), moved(s.bj, r, A), nullptr);
+        const ContactPoint t = s.contact_point();
+        const ContactPoint m = make_detector(s.i, s.j)->detect(moved(s.bi, r, A), moved(s.bj, r, A), nullptr);
         CHECK(std::abs(m.gap - t.gap) < 1e-13);
         CHECK((m.n - A * t.n).norm() < 1e-13);
         CHECK((m.C_i - r - A * t.C_i).norm() < 1e-13);
@@ -187,7 +187,7 @@ TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocat
         INFO(pair.name);
         const Scene s(pair, random);
         const auto detector = make_detector(s.i, s.j);
-        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
         const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
         double gap = 0;
         const long taken = tests::allocations_during([&] {
@@ -204,7 +204,7 @@ TEST_CASE("a ball above a plane and sunk into it", "[contact][detection]")
     Motion ball, ground;
     for (double z : {0.75, 0.5, 0.25}) {
         ball.r = {1, 2, z};
-        const Touch t = detector->detect(ball, ground, nullptr);
+        const ContactPoint t = detector->detect(ball, ground, nullptr);
         CHECK(t.gap == z - 0.5);
         CHECK(t.n == Vec3::UnitZ());
         CHECK(t.C_i == Vec3(1, 2, z - 0.5));
@@ -218,7 +218,7 @@ TEST_CASE("a ball in a bowl touches the nearest wall", "[contact][detection]")
     const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
     Motion ball, ground;
     ball.r = {0, 0, -1.25};
-    const Touch t = detector->detect(ball, ground, nullptr);
+    const ContactPoint t = detector->detect(ball, ground, nullptr);
     CHECK(t.gap == 0.25);
     CHECK(t.n == Vec3::UnitZ());
     CHECK(t.C_i == Vec3(0, 0, -1.75));
@@ -233,7 +233,7 @@ TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[
     const Vec3 D(0.3, 0.2, 0.5);
     const auto detector = make_detector(shape<Ellipsoid>(D), shape<Plane>());
     Motion body = random.motion(), ground;
-    const Touch t = detector->detect(body, ground, nullptr);
+    const ContactPoint t = detector->detect(body, ground, nullptr);
     CHECK(t.gap == Approx(body.r.z() - D.cwiseProduct(body.A.row(2).transpose()).norm()).margin(1e-15));
 }
 
@@ -258,7 +258,8 @@ TEST_CASE("the gap of two ellipsoids is the largest of all distances between par
         if (best == n) step *= 0.5;
         n = best;
     }
-    const Touch t = make_detector(shape<Ellipsoid>(D_i), shape<Ellipsoid>(D_j))->detect(bi, bj, nullptr);
+    const ContactPoint t =
+        make_detector(shape<Ellipsoid>(D_i), shape<Ellipsoid>(D_j))->detect(bi, bj, nullptr);
     CHECK(std::abs(t.gap - distance(n)) < 1e-12);
     CHECK((t.n - n).norm() < 1e-6);
 }
@@ -270,7 +271,7 @@ TEST_CASE("Newton's method on the common normal converges quadratically", "[cont
         if (pair.i.surface->size() == 0 || pair.j.surface->size() == 0) continue;
         INFO(pair.name);
         const Scene s(pair, random);
-        const Touch t = s.touch();
+        const ContactPoint t = s.contact_point();
         const CommonNormal newton(s.i, s.j);
         CommonNormal::Pair p = newton.placed(s.bi, s.bj);
         p.a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r)) + random.vector(0.003);
@@ -292,10 +293,11 @@ TEST_CASE("from a near touch and from nothing the same touch is found", "[contac
         INFO(pair.name);
         Scene s(pair, random);
         const auto detector = make_detector(s.i, s.j);
-        const Touch t = detector->detect(s.bi, s.bj, nullptr);
+        const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
         const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
         s.bi.r += random.vector(1e-3), s.bi.A *= lie::exp(random.vector(1e-2));
-        const Touch cold = detector->detect(s.bi, s.bj, nullptr), warm = detector->detect(s.bi, s.bj, &from);
+        const ContactPoint cold = detector->detect(s.bi, s.bj, nullptr),
+                           warm = detector->detect(s.bi, s.bj, &from);
         CHECK(warm.gap == Approx(cold.gap).margin(1e-14));
         CHECK((warm.C_i - cold.C_i).norm() < 1e-12);
         CHECK((warm.C_j - cold.C_j).norm() < 1e-12);
@@ -311,7 +313,7 @@ TEST_CASE("long and flat ellipsoids find each other from nothing", "[contact][de
     const Shape i = shape<Ellipsoid>(axes()), j = shape<Ellipsoid>(axes());
     Motion bi = random.motion(), bj = random.motion();
     bi.r *= 3;
-    const Touch t = make_detector(i, j)->detect(bi, bj, nullptr);
+    const ContactPoint t = make_detector(i, j)->detect(bi, bj, nullptr);
     CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-14);
 }
 
@@ -326,7 +328,7 @@ TEST_CASE("a ball rolls through a bowl and keeps its touch", "[contact][detectio
         const Vec3 u(std::sin(angle) * 0.6, std::sin(angle) * 0.8, -std::cos(angle));
         const Vec3 C_j = *bowl.support(u);
         ball.r = C_j - (0.2 + 0.01) * u;
-        const Touch t = detector->detect(ball, ground, &from);
+        const ContactPoint t = detector->detect(ball, ground, &from);
         CHECK(t.gap == Approx(0.01).margin(1e-14));
         CHECK((t.n + u).norm() < 1e-13);
         CHECK((t.C_j - C_j).norm() < 1e-13);
@@ -338,10 +340,12 @@ TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest"
 {
     Motion ring, ball, ground;
     ball.r = {1.5, 0, 0.5};
-    const Touch t = make_detector(shape<Torus>(1.0, 0.1), shape<Sphere>(0.2))->detect(ring, ball, nullptr);
+    const ContactPoint t =
+        make_detector(shape<Torus>(1.0, 0.1), shape<Sphere>(0.2))->detect(ring, ball, nullptr);
     CHECK(t.gap == Approx(std::sqrt(0.5) - 0.3));
     ring.A = lie::exp({0.3, 0, 0}), ring.r.z() = 1;
-    const Touch low = make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect(ring, ground, nullptr);
+    const ContactPoint low =
+        make_detector(shape<Torus>(1.0, 0.1), shape<Plane>())->detect(ring, ground, nullptr);
     CHECK(low.gap == Approx(1 - std::sin(0.3) - 0.1));
 }
 
@@ -355,7 +359,7 @@ TEST_CASE("a touch is found from nothing when the centre of a ball is inside the
     const Vec3 C = *torus.support(u);
     Motion ball;
     ball.r = C - depth * u;
-    const Touch t =
+    const ContactPoint t =
         make_detector(shape<Sphere>(0.1), shape<Torus>(0.5, 0.2))->detect(ball, Motion(), nullptr);
     CHECK(t.gap == Approx(-depth - 0.1));
     CHECK((t.n - u).norm() < 1e-13);
@@ -393,7 +397,7 @@ TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "
     for (double lean : {0.0, 0.3, 1.2, -0.7}) {
         disk.A = lie::exp(Vec3(lean + std::acos(0.0), 0, 0));
         disk.r = {0, 0, 1};
-        const Touch t = detector->detect(disk, ground, nullptr);
+        const ContactPoint t = detector->detect(disk, ground, nullptr);
         CHECK(t.gap == Approx(1 - 0.5 * std::cos(lean)));
         CHECK((t.K_i - Vec3(std::cos(lean) / 0.5, std::cos(lean) / 0.5, 0).asDiagonal().toDenseMatrix())
                   .norm() < 1e-15);
@@ -407,7 +411,7 @@ TEST_CASE("from points that lead to no touch the search begins anew", "[contact]
     const auto detector =
         make_detector(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)));
     const Points far{{0, 0, 0.5}, {0, 0, -0.5}};  // the far sides
-    const Touch t = detector->detect(m, ground, &far);
+    const ContactPoint t = detector->detect(m, ground, &far);
     CHECK(t.gap == Approx(0).margin(1e-15));
     CHECK((t.C_j - Vec3(0, 0, 0.5)).norm() < 1e-13);
 }
@@ -423,7 +427,7 @@ TEST_CASE("a ball that flies across a bowl meets the wall that it comes to", "[c
         double last = 0;
         for (int k = -90; k <= 96; ++k) {
             ball.r = {0.01 * k, 0.003, 0};
-            const Touch t = detector->detect(ball, ground, &from);
+            const ContactPoint t = detector->detect(ball, ground, &from);
             INFO(axes.transpose() << ", x = " << ball.r.x());
             CHECK(t.gap == Approx((ball.r - bowl.project(ball.r)).norm() - 0.05).margin(1e-12));
             if (k > -90) CHECK(std::abs(t.gap - last) < 0.0101);  // no faster than the ball
@@ -443,7 +447,7 @@ TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection
     m.A = lie::exp({upright, 0, 0});
     const auto gap = [&](const Shape& i, const Shape& j, const Vec3& r) {
         m.r = r;
-        const Touch t = make_detector(i, j)->detect(m, ground, nullptr);
+        const ContactPoint t = make_detector(i, j)->detect(m, ground, nullptr);
         CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-8);
         CHECK(t.K_i.allFinite());
         CHECK(t.K_j.allFinite());
@@ -473,7 +477,7 @@ TEST_CASE("bodies that touch in many points are refused", "[contact][detection]"
         m.r = r;
         try {
             make_detector(i, j)->detect(m, {}, nullptr);
-        } catch (const NoSingleTouch& e) {
+        } catch (const NoUniqueContactPoint& e) {
             CHECK(e.status == "contact_not_converged");
             return std::string(e.what());
         }
@@ -509,8 +513,8 @@ TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
         }
         if (least < 0.002) break;
         INFO("distance " << distance);
-        const Touch cold = detector->detect(m, ground, nullptr);
-        const Touch t = detector->detect(m, ground, from ? &*from : nullptr);
+        const ContactPoint cold = detector->detect(m, ground, nullptr);
+        const ContactPoint t = detector->detect(m, ground, from ? &*from : nullptr);
         CHECK(cold.gap > 0);
         CHECK(t.gap == Approx(least).margin(1e-4));
         from = {m.A.transpose() * (t.C_i - m.r), t.C_j};
@@ -525,7 +529,7 @@ TEST_CASE("the principal curvatures of a touch", "[contact][detection]")
         principal_curvatures(A * Vec3(3, -2, 0).asDiagonal() * A.transpose(), A.col(2));
     CHECK(least == Approx(-2));
     CHECK(most == Approx(3));
-    Touch t;
+    ContactPoint t;
     t.n = A.col(2);
     t.K_i = A * Vec3(3, 5, 0).asDiagonal() * A.transpose();
     t.K_j = A * Vec3(-1, -4, 0).asDiagonal() * A.transpose();

@@ -39,14 +39,14 @@ Touching after(const EvolvingContact& c, const Touching& x, double tau)
 {
     Touching y = x;
     y.bi = pose_after(x.bi, tau), y.bj = pose_after(x.bj, tau);
-    for (int k = 0; k < 2; ++k) c.track(y.at(), false, y.alpha.data());
-    const Touch at = c.touch(y.at());
+    for (int k = 0; k < 2; ++k) c.update_alpha(y.at(), false, y.alpha.data());
+    const ContactPoint at = c.contact_point(y.at());
     y.bi.r -= at.gap * at.n;
     return y;
 }
 
 /// ᾱ̇ of both points in global axes: Montana's equations without charts
-std::pair<Vec3, Vec3> rolling_rates(const Touch& at, const Vec3& omega, const Vec3& s)
+std::pair<Vec3, Vec3> rolling_rates(const ContactPoint& at, const Vec3& omega, const Vec3& s)
 {
     const Vec3 n = -at.n;
     const Eigen::Matrix<double, 3, 2> T = tangent_basis(n);
@@ -114,13 +114,14 @@ TEST_CASE("contact points move as the bodies roll and slide over each other", "[
         const EvolvingContact c(0, pair.i, 1, pair.j);
         Touching x = touching(pair, random);
         x.bi.omega_bar *= 0.3, x.bj.omega_bar *= 0.3, x.bi.rdot *= 0.3, x.bj.rdot *= 0.3;
-        INFO(pair.name << ", least curvature " << least_curvature(c.touch(x.at())));
-        REQUIRE(least_curvature(c.touch(x.at())) > 0.05);
+        INFO(pair.name << ", least curvature " << least_curvature(c.contact_point(x.at())));
+        REQUIRE(least_curvature(c.contact_point(x.at())) > 0.05);
         const Vec6 alphadot = derivative([&](double tau) { return after(c, x, tau).alpha; });
         const Vec3 rdot = derivative([&](double tau) { return after(c, x, tau).bi.r; });
         x.bi.rdot = rdot;
-        const auto [adot_i, adot_j] = rolling_rates(
-            c.touch(x.at()), x.bi.A * x.bi.omega_bar - x.bj.A * x.bj.omega_bar, slip(x.bi, x.bj, x.alpha));
+        const auto [adot_i, adot_j] =
+            rolling_rates(c.contact_point(x.at()), x.bi.A * x.bi.omega_bar - x.bj.A * x.bj.omega_bar,
+                          slip(x.bi, x.bj, x.alpha));
         CHECK((x.bi.A * alphadot.head<3>() - adot_i).norm() < 1e-8 * (1 + adot_i.norm()));
         CHECK((x.bj.A * alphadot.tail<3>() - adot_j).norm() < 1e-8 * (1 + adot_j.norm()));
         CHECK(c.velocity_error(x.at()) < 1e-8);
@@ -184,14 +185,17 @@ struct TwoBodies {
         x.body = {at.bi, at.bj};
         dae::start(model, x, {.fix_initial = true});
     }
-    Touch touch() const { return contact_of(model).touch(model.at(contact_of(model), x)); }
+    ContactPoint contact_point() const
+    {
+        return contact_of(model).contact_point(model.at(contact_of(model), x));
+    }
 };
 
 /// Force on body i that keeps the contact, without constraints or multipliers: from the acceleration of one material
 /// point with respect to the other, which the force changes by W f.
 Vec3 force_on_i(const TwoBodies& two, Friction friction)
 {
-    const Touch at = two.touch();
+    const ContactPoint at = two.contact_point();
     const Vec3 n = -at.n;
     const lie::State& x = two.x;
     const Vec3 s = slip(x.body[0], x.body[1], x.alpha);
@@ -228,7 +232,7 @@ TEST_CASE("the contact force at a start is that of the accelerations of material
         for (const Pair& pair : pairs(random)) {
             const TwoBodies two(pair, random, friction);
             const auto lambda = multipliers(two.model, two.x);
-            const Vec3 f = force_on_i(two, friction), n = -two.touch().n;
+            const Vec3 f = force_on_i(two, friction), n = -two.contact_point().n;
             INFO(pair.name << (friction == Friction::rolling ? ", rolling" : "") << ", F_N " << lambda.F_N);
             const double scale = f.norm() + two.model.gravity.norm();
             CHECK(std::abs(lambda.F_N + f.dot(n)) < 1e-12 * scale);
@@ -246,13 +250,13 @@ TEST_CASE("the multipliers of an evolving contact are forces along the normal", 
         const EvolvingContact& c = contact_of(two.model);
         INFO(pair.name << ", F_N " << lambda.F_N);
         const double scale = std::abs(lambda.F_N) + 1,
-                     condition = 1 + 1 / (c.L * least_curvature(two.touch()));
+                     condition = 1 + 1 / (c.L * least_curvature(two.contact_point()));
         CHECK(lambda.N.norm() < 1e-12 * scale);
         CHECK(lambda.tangential.norm() < 1e-12 * scale * condition);
         CHECK(std::abs(lambda.G[0] + lambda.F_N * pair.i.surface->sigma()) < 1e-12 * scale * condition);
         CHECK(std::abs(lambda.G[1] + lambda.F_N * pair.j.surface->sigma()) < 1e-12 * scale * condition);
         const auto reactions = dae::reactions(two.model, two.x);
-        const Vec3 n = -two.touch().n;
+        const Vec3 n = -two.contact_point().n;
         CHECK((reactions[0].F + lambda.F_N * n).norm() < 1e-11 * scale);
         CHECK((reactions[1].F - lambda.F_N * n).norm() < 1e-11 * scale);
         const Vec3 arm = two.x.alpha.head<3>();
@@ -379,15 +383,15 @@ TEST_CASE("a contact whose normals are no longer opposite or whose surfaces fit 
     const Pair pair = pairs(random)[2];
     const EvolvingContact c(0, pair.i, 1, pair.j);
     Touching x = touching(pair, random);
-    Eigen::VectorXd remembered(c.remembered());
-    c.remember(x.at(), true, remembered.data());
-    const Vec3 n = -c.touch(x.at()).n;
-    const auto T = Eigen::Matrix<double, 3, 2>::Map(remembered.data());
+    Eigen::VectorXd internal_state(c.internal_states());
+    c.update_internal_state(x.at(), true, internal_state.data());
+    const Vec3 n = -c.contact_point(x.at()).n;
+    const auto T = Eigen::Matrix<double, 3, 2>::Map(internal_state.data());
     CHECK((T.transpose() * T - Eigen::Matrix2d::Identity()).norm() < 1e-15);
     CHECK((T.transpose() * n).norm() < 1e-14);
     const auto status = [&](const EvolvingContact& contact, const Touching& at) {
         try {
-            contact.remember(at.at(), false, remembered.data());
+            contact.update_internal_state(at.at(), false, internal_state.data());
         } catch (const lie::NumericalFailure& e) {
             return e.status;
         }

@@ -76,9 +76,9 @@ Result sliding(const Words& w, double h = 2e-3, double t_end = 0.2)
     bowl.position = w.shift, bowl.orientation = w.turn;
     const auto add = [&](const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j) {
         if (w.swapped)
-            scene.touch(name, j, shape_j, i, shape_i);
+            scene.contact_point(name, j, shape_j, i, shape_i);
         else
-            scene.touch(name, i, shape_i, j, shape_j);
+            scene.contact_point(name, i, shape_i, j, shape_j);
     };
     const std::array<std::function<void()>, 3> contacts{
         [&] { add("egg in bowl", 0, of_egg, dae::ground, bowl); },
@@ -89,7 +89,7 @@ Result sliding(const Words& w, double h = 2e-3, double t_end = 0.2)
     const auto integrator = lie::scheme("rA-half-1-momentum")
                                 .make(scene.model, {.tolerance = 1e-15 * l, .linear_solver = w.solver});
     const lie::State x =
-        lie::march(scene.x, *integrator, lie::Grid::over(t_end * w.time, h * w.time, t_end * w.time))
+        lie::march(scene.x, *integrator, lie::TimeGrid::over(t_end * w.time, h * w.time, t_end * w.time))
             .row.back();
     Result result;
     result.egg = w.turn.transpose() * (x.body[0].r - w.shift) / l;
@@ -170,9 +170,9 @@ TEST_CASE("both linear solvers take the same steps with contacts that evolve",
           "[contact][evolving][condensed]")
 {
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.massless) continue;
+        if (!s.algebraic) continue;
         for (const Friction friction : {Friction::none, Friction::rolling}) {
-            if (friction == Friction::rolling && !s.velocities) continue;
+            if (friction == Friction::rolling && !s.nonholonomic) continue;
             const auto at_end = [&](lie::LinearSolver solver) {
                 BallInBowl scene(Vec3(0.93073643551905849, 1.3152971613841562, -1.1988698851259592),
                                  friction);
@@ -197,7 +197,7 @@ TEST_CASE("a step with contacts that evolve takes nothing from the heap", "[cont
     for (const lie::Scheme& s : lie::schemes())
         for (const lie::LinearSolver solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed})
             for (const Friction friction : {Friction::none, Friction::rolling}) {
-                if (!s.massless || (friction == Friction::rolling && !s.velocities)) continue;
+                if (!s.algebraic || (friction == Friction::rolling && !s.nonholonomic)) continue;
                 BallInBowl scene(Vec3(0.93073643551905849, 1.3152971613841562, -1.1988698851259592),
                                  friction);
                 const auto integrator = s.make(scene.model, {.linear_solver = solver});

@@ -119,13 +119,13 @@ TEST_CASE("a contact that may open is read with its restitution and may start op
 {
     const std::string opens = R"({"type": "constraint", "unilateral": true, "restitution": 0.5})";
     dae::Description d = dae::read_model(model(ball, flat, opens, "", "0, 0, 0.6", "0, 0, -2"), "m.json");
-    CHECK(first(d).unilateral.opens);
+    CHECK(first(d).unilateral.enabled);
     CHECK(first(d).unilateral.restitution == 0.5);
     CHECK_THAT(d.text, Catch::Contains(R"("restitution": 0.5)"));
     CHECK(dae::read_model(d.text, "again.json").text == d.text);
     const dae::StartReport report = dae::start(d);
     CHECK(report.degrees_of_freedom == 6);
-    CHECK(dae::Model::idle(first(d), d.x));
+    CHECK(dae::Model::inactive(first(d), d.x));
     CHECK(d.x.body[0].rdot.z() == -2);
 }
 
@@ -154,8 +154,8 @@ TEST_CASE("tracked friction of a model file is that of the contact it stands in"
         CHECK(friction.held_by() == &of(contact));
     }
     CHECK_FALSE(of(0).fallback);
-    CHECK_FALSE(of(0).unilateral.opens);
-    CHECK(of(1).unilateral.opens);
+    CHECK_FALSE(of(0).unilateral.enabled);
+    CHECK(of(1).unilateral.enabled);
     CHECK(of(1).unilateral.restitution == 0.4);
     CHECK(of(1).unilateral.impact == contact::Unilateral::Impact::poisson);
     CHECK_THAT(d.text, Catch::Contains(R"("impact": "poisson")") && Catch::Contains(R"("fallback": {)") &&
@@ -174,7 +174,7 @@ TEST_CASE("tracked friction of a model file is that of the contact it stands in"
     lie::Loads out(3);
     standing_by.add(d.x, out);
     CHECK(out.F[1].norm() + out.n_bar[1].norm() == 0);
-    dae::Model::set_mode(of(1), d.x, dae::Constraint::handed_over);
+    dae::Model::set_mode(of(1), d.x, dae::Constraint::fallback_active);
     CHECK(standing_by.works(d.x));
     CHECK(force[1]->stable_step(d.x) == std::numeric_limits<double>::infinity());
 }

@@ -123,9 +123,9 @@ TEST_CASE("a ball in a bowl starts where its closed form says", "[contact][evolv
     // contact at (0, 1.5) on the bowl (4, 3, 2)
     BallInBowl planar(planar_start);
     const EvolvingContact& c = contact_of(planar.model);
-    const Touch touch = c.touch(planar.model.at(c, planar.x));
-    CHECK((touch.C_j - Vec3(0, 1.5, -1.7320508075688773)).norm() < 1e-14);
-    CHECK((touch.n - Vec3(0, -0.3592106040535498, 0.9332565252573827)).norm() < 1e-14);
+    const ContactPoint contact_point = c.contact_point(planar.model.at(c, planar.x));
+    CHECK((contact_point.C_j - Vec3(0, 1.5, -1.7320508075688773)).norm() < 1e-14);
+    CHECK((contact_point.n - Vec3(0, -0.3592106040535498, 0.9332565252573827)).norm() < 1e-14);
     CHECK(multipliers(planar.model, planar.x).F_N == Approx(9.155246512774925).epsilon(1e-13));
     CHECK(multipliers(planar.model, planar.x).friction.norm() == 0);
 
@@ -239,7 +239,8 @@ TEST_CASE("a ball falls and rolls along the wall of an upright cylinder (long)",
         ball.rdot = Vec3(0, Omega * (rho - R), 0);
         if (friction == Friction::rolling) ball.omega_bar = Vec3(0, 0, -Omega * (rho - R) / R);
         s.add("ball", 1, 0.4 * R * R * Mat3::Identity(), ball);
-        s.touch("wall", 0, shape<Sphere>(R), dae::ground, shape<Cylinder>(rho, true), friction, normal_rows);
+        s.contact_point("wall", 0, shape<Sphere>(R), dae::ground, shape<Cylinder>(rho, true), friction,
+                        normal_rows);
         s.start();
     };
     struct Errors {
@@ -329,7 +330,7 @@ struct EllipsoidOnPlane : Scene {
         body.r.z() = -(A * lowest).z();
         body.rdot = rdot, body.omega_bar = omega_bar;
         add("egg", 2, inertia(2, egg), body);
-        touch("floor", 0, shape<Ellipsoid>(egg), dae::ground, shape<Plane>(), friction);
+        contact_point("floor", 0, shape<Ellipsoid>(egg), dae::ground, shape<Plane>(), friction);
         start(true);
     }
 };
@@ -455,7 +456,7 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
     // its axes of inertia are turned by 0.1 rad against those of its shape
     const Vec3 axes(0.2, 0.05, 0.04);
     const Mat3 turn = lie::exp(Vec3(0, 0, 0.1));
-    struct Run {
+    struct RattlebackRun {
         Vec3 r;
         double spin;
     };
@@ -468,12 +469,13 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
         const Vec3 contact(0.009987743917568315, -0.00031211699742400985, -0.03994931103241496);
         body.rdot = -body.A * body.omega_bar.cross(contact);
         scene.add("stone", 1, turn * inertia(1, axes) * turn.transpose(), body);
-        scene.touch("table", 0, shape<Ellipsoid>(axes), dae::ground, shape<Plane>(), Friction::rolling);
+        scene.contact_point("table", 0, shape<Ellipsoid>(axes), dae::ground, shape<Plane>(),
+                            Friction::rolling);
         scene.start(true);
         const lie::State x = run(scene, "rA-half-1-momentum", h, t_end);
-        return Run{x.body[0].r, x.body[0].omega_bar.z()};
+        return RattlebackRun{x.body[0].r, x.body[0].omega_bar.z()};
     };
-    const Run reverses = rattle(-3, 2e-3, 4), goes_on = rattle(3, 2e-3, 4);
+    const RattlebackRun reverses = rattle(-3, 2e-3, 4), goes_on = rattle(3, 2e-3, 4);
     CHECK(reverses.spin > 2.5);
     CHECK(goes_on.spin > 2.5);
     // an independent integration of the same motion in minimal coordinates
@@ -496,13 +498,14 @@ TEST_CASE("two free ellipsoids in contact keep their momenta (long)", "[contact]
         Motion i, j;
         j.A = lie::exp(Vec3(0.3, -0.2, 0.5));
         const Ellipsoid surface_i(axes_i), surface_j(axes_j);
-        tests::touch(shape<Ellipsoid>(axes_i), *surface_i.support(Vec3(1, 2, 2).normalized()), i,
-                     shape<Ellipsoid>(axes_j), *surface_j.support(Vec3(1, -1, 1).normalized()), j, 0.4);
+        tests::contact_point(shape<Ellipsoid>(axes_i), *surface_i.support(Vec3(1, 2, 2).normalized()), i,
+                             shape<Ellipsoid>(axes_j), *surface_j.support(Vec3(1, -1, 1).normalized()), j,
+                             0.4);
         i.omega_bar = Vec3(0.8, -0.5, 1.0), j.omega_bar = Vec3(-0.4, 0.9, 0.3);
         i.rdot = Vec3(0.2, 0.1, -0.1);
         scene.add("i", 1, inertia(1, axes_i), i);
         scene.add("j", 1.5, inertia(1.5, axes_j), j);
-        scene.touch("touch", 0, shape<Ellipsoid>(axes_i), 1, shape<Ellipsoid>(axes_j));
+        scene.contact_point("touch", 0, shape<Ellipsoid>(axes_i), 1, shape<Ellipsoid>(axes_j));
         scene.start(true);
         Drift worst;
         Vec3 P_0, L_0;
@@ -547,7 +550,7 @@ TEST_CASE("a ball in a V-groove presses on both walls alike", "[contact][evolvin
             Shape wall = shape<Plane>();
             wall.orientation = lie::exp(Vec3(side * half_angle, 0, 0));
             wall.position = Vec3(0, 0, R) - R * (wall.orientation * Vec3::UnitZ());
-            scene.touch(side < 0 ? "left" : "right", 0, shape<Sphere>(R), dae::ground, wall);
+            scene.contact_point(side < 0 ? "left" : "right", 0, shape<Sphere>(R), dae::ground, wall);
         }
         scene.start();
         double worst = 0;
@@ -577,7 +580,7 @@ TEST_CASE("a ball circles in a toroidal groove at the height of its speed", "[co
         ball.r = Vec3(rho, 0, -q * std::cos(beta));
         ball.rdot = Vec3(0, Omega * rho, 0);
         scene.add("ball", 1, 0.016 * Mat3::Identity(), ball);
-        scene.touch("groove", 0, shape<Sphere>(0.2), dae::ground, shape<Torus>(R_t, 0.6, true));
+        scene.contact_point("groove", 0, shape<Sphere>(0.2), dae::ground, shape<Torus>(R_t, 0.6, true));
         scene.start();
         Errors worst;
         run(scene, "rA-half-1-momentum", h, 2, [&](const lie::State& x, long) {

@@ -41,7 +41,7 @@ Slide slide(const std::shared_ptr<const contact::Surface>& bowl, double R, const
     const auto& c = static_cast<const EvolvingContact&>(*model.evolving()[0]);
     const auto step = lie::scheme("rA-half-1-momentum").make(model, {.tolerance = 1e-13});
     Slide out;
-    for (const lie::State& s : lie::march(x, *step, lie::Grid::over(end, h)).row) {
+    for (const lie::State& s : lie::march(x, *step, lie::TimeGrid::over(end, h)).row) {
         const EvolvingContact::Multipliers m = c.multipliers(model.at(c, s), s.lambda);
         out.r.push_back(s.body[0].r);
         out.F_N.push_back(m.F_N);

@@ -20,7 +20,7 @@ using contact::FrictionParameters;
 using contact::Inertia;
 using contact::Motion;
 using contact::Shape;
-using contact::Slip;
+using contact::SlidingDisplacement;
 using contact::Wrench;
 using lie::Mat3;
 using lie::Vec3;
@@ -65,15 +65,15 @@ const FrictionParameters all_kinds{.mu_s = 0.5, .mu_k = 0.3, .K_E = 1e4, .eta_r 
 using Two = std::function<std::pair<Motion, Motion>(double)>;
 
 /// Loads on i and j, and n N, at each of the steps of a prescribed motion of two bodies
-std::vector<Wrench> loads(const contact::Contact& c, const Two& motion, double h, int steps)
+std::vector<Wrench> loads(const contact::CompliantContact& c, const Two& motion, double h, int steps)
 {
-    contact::Memory memory;
+    contact::ContactHistory history;
     std::vector<Wrench> all;
     for (int k = 0; k <= steps; ++k) {
         const auto [bi, bj] = motion(k * h);
-        const contact::Meeting now = c.meet(bi, bj, memory);
-        c.advance(now, bi, bj, memory);
-        all.push_back(c.load(now, contact::mean_rates(now.slip, h), memory));
+        const contact::ContactState now = c.evaluate(bi, bj, history);
+        c.advance(now, bi, bj, history);
+        all.push_back(c.load(now, contact::mean_rates(now.slip, h), history));
     }
     return all;
 }
@@ -93,7 +93,7 @@ std::pair<Motion, Motion> ball_on_ellipsoid(double t)
     return {on, under};
 }
 
-contact::Contact ball_and_ellipsoid(const FrictionParameters& p, bool exchanged = false)
+contact::CompliantContact ball_and_ellipsoid(const FrictionParameters& p, bool exchanged = false)
 {
     const Shape on = shape<contact::Sphere>(0.1), under = shape<contact::Ellipsoid>(Vec3(0.2, 0.3, 0.4));
     const Inertia light = ball(1, 0.1), heavy{3, Vec3(0.2, 0.15, 0.1).asDiagonal()};
@@ -118,7 +118,7 @@ TEST_CASE("friction does not see a rotation of both bodies", "[contact][friction
     FrictionParameters p = all_kinds;
     const bool dissertation = GENERATE(false, true);
     if (dissertation) p = p.as_in_dissertation();
-    const contact::Contact c = ball_and_ellipsoid(p);
+    const contact::CompliantContact c = ball_and_ellipsoid(p);
     const Vec3 omega = speed * Vec3(0.48, -0.6, 0.64);
     const auto still = loads(c, ball_on_ellipsoid, h, 200);
     const auto turned = loads(
@@ -176,20 +176,20 @@ TEST_CASE("friction does not see which tangent vector its frame began with", "[c
     const double h = 1e-3;
     FrictionParameters p = all_kinds;
     if (GENERATE(false, true)) p = p.as_in_dissertation();
-    const contact::Contact c = ball_and_ellipsoid(p);
-    contact::Memory one, other;
+    const contact::CompliantContact c = ball_and_ellipsoid(p);
+    contact::ContactHistory one, other;
     double off = 0, size = 0;
     for (int k = 0; k <= 200; ++k) {
         const auto [bi, bj] = ball_on_ellipsoid(k * h);
         Wrench w[2];
         for (const int m : {0, 1}) {
-            contact::Memory& memory = m == 0 ? one : other;
-            const contact::Meeting now = c.meet(bi, bj, memory);
-            c.advance(now, bi, bj, memory);
-            w[m] = c.load(now, contact::mean_rates(now.slip, h), memory);
+            contact::ContactHistory& history = m == 0 ? one : other;
+            const contact::ContactState now = c.evaluate(bi, bj, history);
+            c.advance(now, bi, bj, history);
+            w[m] = c.load(now, contact::mean_rates(now.slip, h), history);
             if (m == 0 || k > 0) continue;
             const Vec3 u = contact::turned(now.slip.u, now.slip.n, std::cos(angle), std::sin(angle));
-            memory.track = contact::track(now.touch, u, bi, bj);
+            history.contact_frame = contact::contact_frame(now.contact_point, u, bi, bj);
         }
         off = std::max({off, (w[0].F - w[1].F).norm(), (w[0].T_i - w[1].T_i).norm() / 0.1});
         size = std::max(size, w[0].F.norm());
@@ -204,14 +204,15 @@ TEST_CASE("a ball that rolls and pivots slips by nothing to second order with ha
     const Vec3 omega(0, 2, 3);
     const auto slip_rate = [&](double beta, Carrier carrier, double h) {
         const Steady rolling{.r = Vec3(0, 0, R), .v = omega.cross(Vec3(0, 0, R)), .omega = omega};
-        const contact::Contact c("", shape<contact::Sphere>(R), shape<contact::Plane>(), ball(1, R), {},
-                                 std::make_shared<contact::GivenForce>(1), friction({.K_E = 1}));
-        contact::Memory memory;
+        const contact::CompliantContact c("", shape<contact::Sphere>(R), shape<contact::Plane>(), ball(1, R),
+                                          {}, std::make_shared<contact::GivenForce>(1), friction({.K_E = 1}));
+        contact::ContactHistory history;
         const Motion ground;
-        c.advance(c.meet(rolling.at(0), ground, memory), rolling.at(0), ground, memory);
-        const contact::Touch touch = c.meet(rolling.at(h), ground, memory).touch;
-        const Slip s = contact::follow(memory.track, touch, c.i, c.j, rolling.at(h), ground,
-                                       {.beta = beta, .carrier = carrier});
+        c.advance(c.evaluate(rolling.at(0), ground, history), rolling.at(0), ground, history);
+        const contact::ContactPoint contact_point = c.evaluate(rolling.at(h), ground, history).contact_point;
+        const SlidingDisplacement s =
+            contact::follow(history.contact_frame, contact_point, c.i, c.j, rolling.at(h), ground,
+                            {.beta = beta, .carrier = carrier});
         return s.ds.norm() / h;
     };
     const Carrier carrier = GENERATE(Carrier::mid, Carrier::i);
@@ -266,15 +267,15 @@ TEST_CASE("displacements of the contact point tend to what the velocities say", 
     for (const Bodies& bodies : all) {
         INFO(bodies.name);
         const auto off = [&](double h) {
-            const contact::Contact c("", bodies.i, bodies.j, ball(1, 0.1), ball(3, 0.3),
-                                     std::make_shared<contact::GivenForce>(1), friction(all_kinds));
-            contact::Memory memory;
-            c.advance(c.meet(bodies.on.at(0), bodies.under.at(0), memory), bodies.on.at(0),
-                      bodies.under.at(0), memory);
-            const contact::Meeting now = c.meet(bodies.on.at(h), bodies.under.at(h), memory);
+            const contact::CompliantContact c("", bodies.i, bodies.j, ball(1, 0.1), ball(3, 0.3),
+                                              std::make_shared<contact::GivenForce>(1), friction(all_kinds));
+            contact::ContactHistory history;
+            c.advance(c.evaluate(bodies.on.at(0), bodies.under.at(0), history), bodies.on.at(0),
+                      bodies.under.at(0), history);
+            const contact::ContactState now = c.evaluate(bodies.on.at(h), bodies.under.at(h), history);
             const contact::Rates mean = contact::mean_rates(now.slip, h),
-                                 exact =
-                                     contact::rates(now.touch, now.slip, bodies.on.at(h), bodies.under.at(h));
+                                 exact = contact::rates(now.contact_point, now.slip, bodies.on.at(h),
+                                                        bodies.under.at(h));
             CHECK(exact.s.norm() > 0.1);
             CHECK(exact.p_i.norm() + exact.p_j.norm() > 0.01);
             return std::max({(mean.s - exact.s).norm(), (mean.p_i - exact.p_i).norm(),
@@ -290,16 +291,16 @@ TEST_CASE("the rolling spring gives back what is put into it on any way round", 
 {
     // Two curvatures: out along the one, round and back along the other
     const auto model = friction({.mu_s = 1e6, .mu_k = 1e6, .K_E = 1e5, .zeta = 0, .eta_r = 0.2});
-    contact::Meeting now;
-    now.touch.n = now.slip.n = Vec3::UnitZ();
+    contact::ContactState now;
+    now.contact_point.n = now.slip.n = Vec3::UnitZ();
     now.slip.u = now.slip.u_i = now.slip.u_j = Vec3::UnitX();
-    now.touch.K_i = Vec3(8, 50, 0).asDiagonal();
-    now.touch.K_j.setZero();
+    now.contact_point.K_i = Vec3(8, 50, 0).asDiagonal();
+    now.contact_point.K_j.setZero();
     now.slip.ds.setZero();
     now.slip.q_j = now.slip.p_j = Vec3::Zero();
     now.N = 1;
     const contact::Rates still{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0};
-    contact::History h;
+    contact::Deflections h;
     double work = 0, put_in = 0;
     const int steps = 2000;
     // Θ goes out to r along x, on a quarter circle to y, and home
@@ -349,7 +350,7 @@ TEST_CASE("a free pair keeps its momentum and its angular momentum", "[contact][
         double touched = 0, friction_work = 0;
         for (int k = 0; k < 2000; ++k) {
             scene.step(1e-4);
-            touched += scene.pair[0].meeting.N > 0 ? 1 : 0;
+            touched += scene.pair[0].contact_state.N > 0 ? 1 : 0;
             friction_work = std::max(friction_work, scene.pair[0].wrench.T_i.norm());
         }
         CHECK(touched > 300);

@@ -206,11 +206,11 @@ TEST_CASE("a ball touches a mesh where it touches what was meshed", "[contact][m
     lie::Motion b_i = random.motion(), b_j = random.motion();
     const Vec3 a = *Ellipsoid(D).support(random.unit());
     b_i.r = b_j.r + b_j.A * (a + (R - 1e-3) * Ellipsoid(D).normal(a));
-    const Touch exact = make_detector(ball, egg)->detect(b_i, b_j, nullptr);
-    const Touch touch = make_detector(ball, {meshed})->detect(b_i, b_j, nullptr);
-    CHECK(touch.gap == Approx(exact.gap).margin(1e-3));
-    CHECK((touch.n - exact.n).norm() < 5e-3);
-    CHECK((touch.K_j - exact.K_j).norm() < 0.2);
+    const ContactPoint exact = make_detector(ball, egg)->detect(b_i, b_j, nullptr);
+    const ContactPoint contact_point = make_detector(ball, {meshed})->detect(b_i, b_j, nullptr);
+    CHECK(contact_point.gap == Approx(exact.gap).margin(1e-3));
+    CHECK((contact_point.n - exact.n).norm() < 5e-3);
+    CHECK((contact_point.K_j - exact.K_j).norm() < 0.2);
 }
 
 TEST_CASE("a hollow mesh looks inward", "[contact][mesh]")

@@ -31,7 +31,7 @@ double rebound(const std::shared_ptr<const contact::NormalLaw>& law, double v, d
               Shape{std::make_shared<contact::Plane>()}, law,
               contact::friction_law("slide-roll-spin").make({.K_E = 1}));
     do scene.step(h);
-    while (scene.body[0].rdot.z() < 0 || scene.pair[0].meeting.N > 0);
+    while (scene.body[0].rdot.z() < 0 || scene.pair[0].contact_state.N > 0);
     return scene.body[0].rdot.z() / v;
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("a Hertzian ball is pressed in by the textbook depth", "[contact][norm
     const double E = 1e8, R = 0.1, m = 2, v = 1;
     const double deepest = std::pow(15 * m * v * v / (16 * E * std::sqrt(R)), 0.4);
     const contact::Hertz law(E);
-    const contact::Pressing p{.overlap = deepest, .overlap_rate = 0, .curvature = 1 / R, .m = m};
+    const contact::NormalInput p{.overlap = deepest, .overlap_rate = 0, .curvature = 1 / R, .m = m};
     CHECK(0.4 * law.force(p) * deepest == Approx(0.5 * m * v * v));  // energy of k δ^(3/2) is 2/5 F δ
     CHECK(law.stiffness(p) == Approx(1.5 * law.force(p) / deepest));
 }

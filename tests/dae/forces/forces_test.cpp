@@ -68,7 +68,7 @@ struct Twisted {
     explicit Twisted(Random& random) : axis_i(random.unit()), axis_j(random.unit())
     {
         x = random.state(2);
-        x.memory.assign(1, 0);
+        x.discrete_state.assign(1, 0);
         const Vec3 axis = x.body[0].A * axis_i;
         A_j0 =
             Eigen::Quaterniond::FromTwoVectors(x.body[1].A * axis_j, axis).toRotationMatrix() * x.body[1].A;
@@ -217,7 +217,7 @@ TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
         const double angle = step * (k <= n ? k : 2 * n - k);
         twisted.twist(angle);
         CHECK(spring.angle(x) == Approx(angle).margin(1e-13));
-        CHECK(x.memory == before.memory);  // a step that is thrown away leaves no trace
+        CHECK(x.discrete_state == before.discrete_state);  // a step that is thrown away leaves no trace
         model.accepted(before, x);
         CHECK(spring.angle(x) == Approx(angle).margin(1e-13));
         CHECK(spring.potential_energy(x) == Approx(std::pow(angle - 0.5, 2)).margin(1e-12));
@@ -226,7 +226,7 @@ TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
         const Vec3 n_j = x.body[1].A * loads(spring, x).n_bar[1];
         CHECK((n_j + 2 * (angle - 0.5) * axis).norm() < 1e-12);
     }
-    CHECK(x.memory[0] == 0);
+    CHECK(x.discrete_state[0] == 0);
 }
 
 TEST_CASE("a torsion spring refuses axes that are none or not parallel", "[dae][forces]")
@@ -296,7 +296,7 @@ TEST_CASE("a force written by a user carries a body round a circle", "[dae][forc
     CHECK(energy == Approx(-1));  // -k/2r
     const auto scheme = lie::scheme("rA-half-2").make(model, {});
     const lie::Trajectory orbit =
-        lie::march(x, *scheme, lie::Grid{.h = pi / 4000, .steps = 4000, .every = 1000});
+        lie::march(x, *scheme, lie::TimeGrid{.h = pi / 4000, .steps = 4000, .interval = 1000});
     const State& end = orbit.row.back();
     CHECK((end.body[0].r - x.body[0].r).norm() <
           1e-4);  // the scheme is of second order: (2 pi / 4000)² of 2 pi rad

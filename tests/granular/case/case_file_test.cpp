@@ -40,10 +40,10 @@ std::string with(const std::string& pointer, const ordered_json& value)
 }
 
 /// What read_case says of a case, without line and column
-std::string refusal(const std::string& text, const granular::Surroundings& surroundings = {})
+std::string refusal(const std::string& text, const granular::Environment& environment = {})
 {
     try {
-        read_case(text, "file", surroundings);
+        read_case(text, "file", environment);
         return "nothing";
     } catch (const granular::InvalidCase& e) {
         static const std::regex place(R"(^file:\d+:\d+ \((/[^)]*)\))");
@@ -354,7 +354,7 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
                                   {"radius", 0.1},     {"jitter", 1},        {"material", "glass"}};
     c["fill"] = {filling, filling};
     const auto set = [&](const std::string& pointer, const std::string& value) {
-        return granular::Surroundings{.settings = {{pointer, value, "--set " + pointer}}};
+        return granular::Environment{.settings = {{pointer, value, "--set " + pointer}}};
     };
     const granular::Case plain = read_case(c.dump(), "file");
     CHECK(plain.source.text() == c.dump());  // as it stands there
@@ -396,7 +396,7 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
     CHECK_THROWS_WITH(read_case(c.dump(), "file", set("/end", "1e400")), Catch::Contains("--set /end: "));
 
     // of fills that are alike each is another
-    granular::Surroundings seeded{.seed = 7};
+    granular::Environment seeded{.seed = 7};
     const granular::Case sown = read_case(c.dump(), "file", seeded);
     CHECK(sown.source.json()["fill"][0]["seed"] == 7);
     CHECK(sown.source.json()["fill"][1]["seed"] == 8);

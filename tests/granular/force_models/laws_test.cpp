@@ -17,17 +17,17 @@ constexpr double exact = 1e-12;  // sums of some hundred roundings; parameters a
 const Vec3 n = {2. / 3, -1. / 3, 2. / 3}, across = {1 / std::sqrt(5.), 2 / std::sqrt(5.), 0};
 
 /// A sphere that rests on a wall, pressed in by delta
-Touch<double> resting(double delta)
+ContactPoint<double> resting(double delta)
 {
-    Touch<double> t{};
+    ContactPoint<double> t{};
     t.delta = delta, t.R_i = t.R_eff = R, t.R_j = 0, t.m_eff = m, t.n = n, t.h = h;
     t.v_n = 0, t.v_t = t.omega = {0, 0, 0};
     return t;
 }
 
-Touch<double> of_two(double delta, double R_j)
+ContactPoint<double> of_two(double delta, double R_j)
 {
-    Touch<double> t = resting(delta);
+    ContactPoint<double> t = resting(delta);
     t.R_j = R_j, t.R_eff = R * R_j / (R + R_j), t.m_eff = m / 2;
     return t;
 }
@@ -42,10 +42,10 @@ PairLaw springs(float gamma_t = 0)
 }
 constexpr double delta = 1. / 128, N = 8, k_t = 512;
 
-double pressing(const PairLaw& law, const Touch<double>& t)
+double pressing(const PairLaw& law, const ContactPoint<double>& t)
 {
     History<double> none{};
-    const Vec3 F = answer(law, t, none, false).F;
+    const Vec3 F = evaluate(law, t, none, false).F;
     CHECK((F - F.dot(n) * n).norm() <= exact * F.norm());
     return F.dot(n);
 }
@@ -90,7 +90,7 @@ TEST_CASE("damping resists approach and pulls in retreat, but for a clamped law"
         PairLaw law, clamped;
         law.normal = of.law, clamped.normal = of.clamped;
         for (const double rate : {-v, 0., v}) {
-            Touch<double> t = resting(d);
+            ContactPoint<double> t = resting(d);
             t.v_n = rate;
             const double F = of.at_rest + of.gain * rate / v;
             CHECK(pressing(law, t) == Approx(F).epsilon(exact));
@@ -124,14 +124,14 @@ TEST_CASE("friction without a history is viscous and bounded", "[granular][laws]
     PairLaw law = springs();
     law.tangential = Coulomb{.spring = {.k_t = 0, .c = 0, .gamma_t = 16}, .mu_k = 0.25};
     History<double> history{};
-    Touch<double> t = resting(delta);
+    ContactPoint<double> t = resting(delta);
     for (const double v : {0., 0.01, 0.06}) {  // up to μ N/(γ m) = 1/16 m/s
         t.v_t = v * across;
-        CHECK(same(answer(law, t, history, false).F_t, (-16 * m * v) * across));
+        CHECK(same(evaluate(law, t, history, false).F_t, (-16 * m * v) * across));
     }
     for (const double v : {0.065, 3.}) {
         t.v_t = v * across;
-        CHECK(same(answer(law, t, history, false).F_t, (-0.25 * N) * across));
+        CHECK(same(evaluate(law, t, history, false).F_t, (-0.25 * N) * across));
     }
     CHECK(history.u == Vec3{0, 0, 0});
 }
@@ -139,11 +139,11 @@ TEST_CASE("friction without a history is viscous and bounded", "[granular][laws]
 TEST_CASE("the constant torque is against the turning, however fast", "[granular][laws]")
 {
     PairLaw law = springs();
-    Touch<double> wall = resting(delta), two = of_two(delta, 3 * R);
-    const auto torque = [&](Touch<double> t, const Vec3& omega, double age, double step = 1e-6) {
+    ContactPoint<double> wall = resting(delta), two = of_two(delta, 3 * R);
+    const auto torque = [&](ContactPoint<double> t, const Vec3& omega, double age, double step = 1e-6) {
         History<double> history{};
         history.age = age, t.omega = omega, t.h = step;
-        return answer(law, t, history, true).T;
+        return evaluate(law, t, history, true).T;
     };
     law.rolling = ConstantTorque{.mu_r = 0.5, .slow = 0.25};
     for (const double omega : {0.25, 7.}) {
@@ -183,13 +183,13 @@ TEST_CASE("rolling is resisted by a spring up to a bound and turns back from the
         PairLaw law = springs();
         law.rolling = s.law;
         History<double> history{};
-        Touch<double> t = resting(delta);
+        ContactPoint<double> t = resting(delta);
         const double omega = 0.0625;
         t.omega = omega * across + 3. * n;  // what is along n is not rolling
         double psi = 0;
         const auto turn = [&](double way) {
             t.omega = way * across + 3. * n, psi += h * way;
-            return answer(law, t, history, true).T;
+            return evaluate(law, t, history, true).T;
         };
         for (int k = 0; k < 20; ++k) {
             const Vec3 T = turn(omega);
@@ -216,11 +216,11 @@ TEST_CASE("the torques of rolling follow the normal", "[granular][laws]")
         PairLaw law = springs();
         law.rolling = of;
         History<double> history{};
-        Touch<double> t = resting(delta);
+        ContactPoint<double> t = resting(delta);
         t.omega = 0.5 * across;
-        const double wound = answer(law, t, history, true).T.norm();
+        const double wound = evaluate(law, t, history, true).T.norm();
         t.omega = {0, 0, 0}, t.n = std::cos(0.3) * n + std::sin(0.3) * across;
-        const Vec3 T = answer(law, t, history, true).T;
+        const Vec3 T = evaluate(law, t, history, true).T;
         CHECK(std::abs(T.dot(t.n)) < exact * wound);
         CHECK(T.norm() == Approx(wound).epsilon(exact));
         CHECK(std::abs(T.dot(other)) < exact * wound);
@@ -234,11 +234,11 @@ TEST_CASE("spin about the normal is resisted by a spring up to a bound", "[granu
     const double a = std::sqrt(R * delta), K = k_t * a * a / 2, D = 16 * m * a * a / 2,
                  bound = 2. / 3 * 0.375 * N * a;
     History<double> history{};
-    Touch<double> t = resting(delta);
+    ContactPoint<double> t = resting(delta);
     double angle = 0;
     const auto spin = [&](double way) {
         t.omega = way * n + 3. * across, angle += h * way;  // what is across n is no spin
-        return answer(law, t, history, true).T;
+        return evaluate(law, t, history, true).T;
     };
     const double omega = 0.5;
     for (int k = 0; k < 8; ++k) {
@@ -270,13 +270,13 @@ TEST_CASE("what resists turning takes energy over every cycle", "[granular][laws
             PairLaw law = springs(16);
             law.rolling = of.rolling, law.spin = of.spin;
             History<double> history{};
-            Touch<double> t = resting(delta);
+            ContactPoint<double> t = resting(delta);
             t.h = 1e-3;
             double work = 0;
             for (int k = 0; k < 2000; ++k) {  // two cycles of 1 s
                 t.omega = amplitude * 2 * std::numbers::pi *
                           std::cos(2 * std::numbers::pi * 1e-3 * (k + 0.5)) * (across + n);
-                work += t.h * answer(law, t, history, true).T.dot(t.omega);
+                work += t.h * evaluate(law, t, history, true).T.dot(t.omega);
             }
             CHECK(work < 0);
             CHECK(work > -10 * amplitude * 0.25 * R * N * 2);  // no more than the bounds over the way

@@ -64,7 +64,7 @@ TEST_CASE("a column that bears itself has the stress of its weight at half its h
     // contacts hand on what is above: R (N + 2 (N - 1) + ... + 2) w = R N² w, less what they are pressed together
     const auto sigma = stress(world, world.contacts(), A * 2 * high * R);
     double overlaps = 0;
-    for (const Contact& c : world.contacts()) overlaps += c.delta * c.F.norm();
+    for (const ContactRecord& c : world.contacts()) overlaps += c.delta * c.F.norm();
     CHECK(sigma[8] == Approx((high * R * weight - overlaps) / (A * 2 * high * R)).epsilon(1e-4));
     CHECK(overlaps < 0.05 * high * R * weight);
     only_upright(sigma, 1e-4 * weight / A);

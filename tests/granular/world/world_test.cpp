@@ -15,7 +15,7 @@
 using namespace hilda;
 using namespace hilda::tests;
 using granular::Boundary;
-using granular::Contact;
+using granular::ContactRecord;
 
 namespace {
 
@@ -91,7 +91,7 @@ TEST_CASE("the contacts of the neighbour list are those of all pairs (long)", "[
                 const double overlap = before[i].radius + before[j].radius - d.norm();
                 if (overlap > 1e-10) all.insert({i, j});
             }
-        for (const Contact& c : world.contacts())
+        for (const ContactRecord& c : world.contacts())
             if (!c.boundary) found.insert({c.i, c.j});
         for (const auto& pair : all) CHECK(found.count(pair) == 1);
         seen += static_cast<int>(all.size());
@@ -125,7 +125,7 @@ TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][n
         world.step(3);
         const auto grains = world.particles();
         std::set<unsigned> found;
-        for (const Contact& c : world.contacts())
+        for (const ContactRecord& c : world.contacts())
             if (c.boundary) found.insert(c.i);
         for (unsigned i = 0; i < grains.size(); ++i) {
             if (R - nearest(world.boundary(0), grains[i].r).distance > 1e-10) met.insert(i);
@@ -163,9 +163,10 @@ TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deter
     const World::Totals three = world.totals();
     omp_set_num_threads(threads);
     const auto contacts = world.contacts();
-    CHECK(std::is_sorted(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
-        return std::tuple(a.boundary, a.i, a.j) < std::tuple(b.boundary, b.i, b.j);
-    }));
+    CHECK(
+        std::is_sorted(contacts.begin(), contacts.end(), [](const ContactRecord& a, const ContactRecord& b) {
+            return std::tuple(a.boundary, a.i, a.j) < std::tuple(b.boundary, b.i, b.j);
+        }));
     REQUIRE(contacts.size() > 2500);
     CHECK(one.contacts == contacts.size());
     CHECK(one.stress == three.stress);
@@ -244,7 +245,7 @@ TEST_CASE("friction is never beyond its bound", "[granular][invariant]")
     world.step(8000);
     for (int k = 0; k < 500; ++k) {
         world.step();
-        for (const Contact& c : world.contacts()) {
+        for (const ContactRecord& c : world.contacts()) {
             const double F_n = c.F.dot(c.n), F_t = (c.F - F_n * c.n).norm();
             REQUIRE(F_t <= mu * std::abs(F_n) + 1e-5 * c.F.norm());  // spring and dashpot may cancel
             slid += F_t > 0.99 * mu * std::abs(F_n);
@@ -299,7 +300,7 @@ TEST_CASE("an elastic gas keeps its energy", "[granular][invariant]")
     const auto energy = [&] {
         const auto all = world.particles();
         double E = world.kinetic_energy();
-        for (const Contact& c : world.contacts()) {
+        for (const ContactRecord& c : world.contacts()) {
             const double R_eff = all[c.i].radius * all[c.j].radius / (all[c.i].radius + all[c.j].radius);
             E += 8. / 15 * E_eff * std::sqrt(R_eff) * std::pow(c.delta, 2.5);
         }

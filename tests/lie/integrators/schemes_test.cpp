@@ -16,7 +16,7 @@ lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const li
                   double t_end)
 {
     const auto integrator = scheme.make(system, {.tolerance = 1e-13, .max_iterations = 30});
-    return lie::march(start, *integrator, lie::Grid::over(t_end, h, t_end)).row.back();
+    return lie::march(start, *integrator, lie::TimeGrid::over(t_end, h, t_end)).row.back();
 }
 
 /// Everything of order `order`: r, A, ṙ, ω̄
@@ -143,7 +143,7 @@ TEST_CASE("constraints hold and A stays a rotation", "[lie][invariants]")
         } worst(top);
         lie::Observer* observers[] = {&worst};
         const auto integrator = s.make(top, {});
-        lie::march(top.start(), *integrator, lie::Grid::over(2, 1e-3, 2), observers);
+        lie::march(top.start(), *integrator, lie::TimeGrid::over(2, 1e-3, 2), observers);
         INFO(s.name << " residual " << worst.phi << ", orthogonality " << worst.orthogonality);
         CHECK(worst.phi < 1e-12);
         CHECK(worst.orthogonality < 1e-14);
@@ -173,7 +173,7 @@ TEST_CASE("a variational scheme keeps the energy of a top", "[lie][invariants]")
     const auto drift = [&](const char* scheme, double t_end) {
         const auto integrator = lie::scheme(scheme).make(top, {.tolerance = 1e-12});
         const lie::State x = top.start();
-        const lie::Trajectory run = lie::march(x, *integrator, lie::Grid::over(t_end, 2e-3, 0.1));
+        const lie::Trajectory run = lie::march(x, *integrator, lie::TimeGrid::over(t_end, 2e-3, 0.1));
         double largest = 0;
         for (const lie::State& y : run.row)
             largest = std::max(largest, std::abs(lie::energy(top, y) - lie::energy(top, x)));
@@ -288,7 +288,7 @@ TEST_CASE("rho at infinity sets the damping of generalised alpha (long)", "[lie]
         const auto at = [&](double h) {
             const auto integrator =
                 lie::scheme("rA-genalpha").make(top, {.tolerance = 1e-13, .rho_infinity = rho});
-            return lie::march(top.start(), *integrator, lie::Grid::over(0.4, h, 0.4)).row.back();
+            return lie::march(top.start(), *integrator, lie::TimeGrid::over(0.4, h, 0.4)).row.back();
         };
         const lie::State a = at(4e-4), b = at(2e-4), c = at(1e-4);
         INFO("rho " << rho);
@@ -319,11 +319,12 @@ TEST_CASE("rows lie on multiples of the output interval, and time does not drift
 {
     const tests::SpinningTop top(true);
     const auto integrator = lie::scheme("rA-half-1").make(top, {});
-    const lie::Trajectory trajectory = lie::march(top.start(), *integrator, lie::Grid::over(1, 1e-3, 0.1));
+    const lie::Trajectory trajectory =
+        lie::march(top.start(), *integrator, lie::TimeGrid::over(1, 1e-3, 0.1));
     REQUIRE(trajectory.row.size() == 11);
     for (int k = 0; k <= 10; ++k) CHECK(trajectory.row[k].t == Approx(0.1 * k).epsilon(1e-15));
-    CHECK_THROWS_AS(lie::Grid::over(1, 0), lie::InvalidInput);
-    CHECK_THROWS_AS(lie::Grid::over(1, std::nan("")), lie::InvalidInput);
-    CHECK_THROWS_AS(lie::Grid::over(-1, 1e-3), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::TimeGrid::over(1, 0), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::TimeGrid::over(1, std::nan("")), lie::InvalidInput);
+    CHECK_THROWS_AS(lie::TimeGrid::over(-1, 1e-3), lie::InvalidInput);
     CHECK_THROWS_AS(lie::scheme("rA-half-9"), lie::InvalidInput);
 }

@@ -37,8 +37,8 @@ public:
         int alpha = 0;
         for (const Patch& patch : patches) {
             if (patch.unknowns > 0) {
-                values.massless.push_back({values.rows(), patch.rows, alpha, patch.unknowns, {}});
-                lie::Rows::Massless& group = values.massless.back();
+                values.algebraic.push_back({values.rows(), patch.rows, alpha, patch.unknowns, {}});
+                lie::Rows::AlgebraicGroup& group = values.algebraic.back();
                 group.D.resize(patch.rows, patch.unknowns);
                 for (int k = 0; k < patch.rows; ++k)
                     for (int c = 0; c < patch.unknowns; ++c) group.D(k, c) = random.number();
@@ -155,7 +155,7 @@ TEST_CASE("the rows that are left are those in which massless unknowns cannot he
         };
         const Eigen::MatrixXd B = dense(system.values), reduced = dense(left);
         Eigen::MatrixXd D = Eigen::MatrixXd::Zero(system.rows(), system.pattern().unknowns());
-        for (const lie::Rows::Massless& g : system.values.massless)
+        for (const lie::Rows::AlgebraicGroup& g : system.values.algebraic)
             D.block(g.first, g.first_alpha, g.rows, g.count) = g.D;
         // P projects on the null space of Dᵀ: with Zᵀ Z = 1 both roads give P B
         const Eigen::MatrixXd P = Eigen::MatrixXd::Identity(system.rows(), system.rows()) -
@@ -172,7 +172,7 @@ TEST_CASE("unknowns that their rows do not determine are refused", "[lie][massle
         Patchwork system(1, {{0, -1, 7, 6, 2}}, 6);
         lie::Elimination elimination(system.pattern(), std::vector<char>(system.rows(), 0));
         CHECK_NOTHROW(elimination.factor(system.values));
-        auto& D = system.values.massless[0].D;
+        auto& D = system.values.algebraic[0].D;
         D.col(dependent) = D.col((dependent + 1) % 6) - 2 * D.col((dependent + 2) % 6);
         INFO("column " << dependent);
         CHECK_THROWS_AS(elimination.factor(system.values), lie::SingularMatrix);
@@ -201,7 +201,7 @@ public:
             rows_pattern.entry.push_back({.nonzero = 0b000111});
             rows_pattern.start.push_back(k + 1);
         }
-        rows_pattern.massless.push_back({0, 3, 0, 1, Vec3::Zero()});
+        rows_pattern.algebraic.push_back({0, 3, 0, 1, Vec3::Zero()});
     }
     Vec3 in_plane(double along, double up) const { return along * direction + up * Vec3::UnitZ(); }
     Vec3 c(double alpha) const { return a * in_plane(alpha + std::sin(alpha), 1 - std::cos(alpha)); }
@@ -222,7 +222,7 @@ public:
     void variation(const lie::State& x, lie::Rows& out) const override
     {
         for (int k = 0; k < 3; ++k) out.entry[k].r = Vec3::Unit(k);
-        out.massless[0].D = -c_1(x.alpha[0]);
+        out.algebraic[0].D = -c_1(x.alpha[0]);
     }
     void nu(const lie::State&, Eigen::Ref<Eigen::VectorXd> out) const override { out.setZero(); }
     void gamma(const lie::State& x, Eigen::Ref<Eigen::VectorXd> out) const override
@@ -231,7 +231,7 @@ public:
         const double alphadot = tangent.dot(x.body[0].rdot) / tangent.squaredNorm();
         out = alphadot * alphadot * c_2(x.alpha[0]);
     }
-    void track(lie::State& x) const override
+    void update_alpha(lie::State& x) const override
     {
         for (int k = 0; k < 20; ++k) {
             const Vec3 off = x.body[0].r - c(x.alpha[0]), tangent = c_1(x.alpha[0]);
@@ -291,7 +291,7 @@ Errors errors(const lie::Scheme& scheme, const Cycloid& bead, double h)
     Errors worst(bead);
     lie::Observer* observers[] = {&worst};
     const auto integrator = scheme.make(bead, {.tolerance = 1e-14});
-    lie::march(bead.exact(0), *integrator, lie::Grid::over(1.2, h, 1.2), observers);
+    lie::march(bead.exact(0), *integrator, lie::TimeGrid::over(1.2, h, 1.2), observers);
     return worst;
 }
 
@@ -303,7 +303,7 @@ TEST_CASE("a bead on a cycloid moves as Huygens found with the declared order (l
     const Cycloid bead;
     int schemes = 0;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.massless) continue;
+        if (!s.algebraic) continue;
         ++schemes;
         const double h = s.order > 2 ? 2e-2 : 1e-3;
         const Errors coarse = errors(s, bead, h), fine = errors(s, bead, h / 2);
@@ -324,7 +324,7 @@ TEST_CASE("a step with massless unknowns is the same by both linear solvers", "[
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.massless) continue;
+        if (!s.algebraic) continue;
         lie::State x = bead.exact(0), y = x;
         const auto klu = s.make(bead, {.linear_solver = lie::LinearSolver::klu}),
                    condensed = s.make(bead, {.linear_solver = lie::LinearSolver::condensed});
@@ -345,7 +345,7 @@ TEST_CASE("a step with massless unknowns takes nothing from the heap", "[lie][al
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes())
         for (const lie::LinearSolver solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed}) {
-            if (!s.massless) continue;
+            if (!s.algebraic) continue;
             const auto integrator = s.make(bead, {.linear_solver = solver});
             lie::State x = bead.exact(0);
             for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);
@@ -361,7 +361,7 @@ TEST_CASE("a scheme that does not take massless unknowns says which do", "[lie][
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (s.massless) {
+        if (s.algebraic) {
             CHECK_NOTHROW(s.make(bead, {}));
             continue;
         }
@@ -371,7 +371,7 @@ TEST_CASE("a scheme that does not take massless unknowns says which do", "[lie][
                                                 Catch::Contains("takes no contacts that evolve") &&
                                                 Catch::Contains("rA-half-1-momentum"));
     }
-    CHECK_FALSE(lie::scheme("rA-full-1-exact").massless);
+    CHECK_FALSE(lie::scheme("rA-full-1-exact").algebraic);
 }
 
 TEST_CASE("a free body keeps its angular momentum to rounding with rA-half-1-momentum", "[lie][invariants]")
@@ -393,7 +393,7 @@ TEST_CASE("a free body keeps its angular momentum to rounding with rA-half-1-mom
         Momentum momentum(top.mass().J_bar[0]);
         lie::Observer* observers[] = {&momentum};
         const auto integrator = lie::scheme(scheme).make(top, {.tolerance = 1e-17});
-        lie::march(top.start(), *integrator, lie::Grid::over(2e-3 * double(steps), 2e-3, 1e3), observers);
+        lie::march(top.start(), *integrator, lie::TimeGrid::over(2e-3 * double(steps), 2e-3, 1e3), observers);
         return momentum.drift;
     };
     // a random walk of rounding, three parts in 1e16 a step

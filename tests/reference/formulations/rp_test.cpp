@@ -199,7 +199,7 @@ TEST_CASE("the full Newton matrix converges quadratically, stiff springs include
     tests::two_spinning_bars(model, x);
     for (const char* name : {"rp-full-1", "rp-bdf2"}) {
         const auto integrator = lie::scheme(name).make(model, {});
-        lie::march(x, *integrator, lie::Grid::over(0.5, 1e-2));
+        lie::march(x, *integrator, lie::TimeGrid::over(0.5, 1e-2));
         CHECK(integrator->statistics().iterations_per_step() < 3.3);
     }
 
@@ -211,7 +211,7 @@ TEST_CASE("the full Newton matrix converges quadratically, stiff springs include
     dae::start(stiff, y);
     for (const char* name : {"rp-full-1", "rp-bdf2"}) {
         const auto integrator = lie::scheme(name).make(stiff, {});
-        lie::march(y, *integrator, lie::Grid::over(0.2, 1e-2));  // k h²/m = 1e4
+        lie::march(y, *integrator, lie::TimeGrid::over(0.2, 1e-2));  // k h²/m = 1e4
         CHECK(integrator->statistics().iterations_per_step() < 7);
     }
 }

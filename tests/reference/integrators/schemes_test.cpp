@@ -26,7 +26,7 @@ std::vector<const lie::Scheme*> classical()
 lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const lie::State& start, double h)
 {
     const auto integrator = scheme.make(system, {.tolerance = 1e-13});
-    return lie::march(start, *integrator, lie::Grid::over(0.4, h, 0.4)).row.back();
+    return lie::march(start, *integrator, lie::TimeGrid::over(0.4, h, 0.4)).row.back();
 }
 
 /// Everything of order `order`: r, A, ṙ, ω̄

@@ -173,7 +173,8 @@ TEST_CASE("a ball in a groove keeps its steady orbit", "[reference][groove][acce
 TEST_CASE("a ball in a groove keeps energy and angular momentum off the steady orbit", "[reference][groove]")
 {
     const BallInGroove groove{.m = 1.3};
-    const BallInGroove::Start start{.beta = 0.4, .betadot = -1, .phidot = 2.5, .omega = Vec3(1, 2, -3)};
+    const BallInGroove::InitialState start{
+        .beta = 0.4, .betadot = -1, .phidot = 2.5, .omega = Vec3(1, 2, -3)};
     const double rate = 10, h = 4e-3 / rate;
     tests::check_motion(groove.slide(start, tests::five(0.7, h)), h, 1.3, groove.J * Mat3::Identity(), 9.81,
                         rate);

@@ -166,7 +166,7 @@ TEST_CASE("one angle and two coordinates give one motion", "[reference][bowl]")
     const std::vector<double> instants{0, 0.3, 1, 2, 4};
     const Vec3 p = bowl.point(0, 1.5), forward(0, bowl.normal(p).z(), -bowl.normal(p).y());
     for (const double v : {0.0, -1.5}) {
-        const BallInBowl::Start start{.p = p, .rdot = v * forward};
+        const BallInBowl::InitialState start{.p = p, .rdot = v * forward};
         CHECK(furthest(plane.slide({.v = v}, instants), bowl.slide(start, instants)) < 1e-11);
         CHECK(furthest(plane.roll({.v = v}, instants), bowl.roll(start, instants)) < 1e-11);
     }
@@ -200,7 +200,7 @@ TEST_CASE("the motions in the bowl are motions under their forces", "[reference]
     const Mat3 A = tests::Random(3).rotation(), J_bar = bowl.J * Mat3::Identity();
     const double rate = 8, h = 4e-3 / rate;
     const auto instants = tests::five(0.8, h);
-    const BallInBowl::Start start{.p = p, .rdot = rdot, .spin = 4, .A = A};
+    const BallInBowl::InitialState start{.p = p, .rdot = rdot, .spin = 4, .A = A};
     const auto slide = bowl.slide(start, instants), roll = bowl.roll(start, instants);
     for (const auto& run : {slide, roll, plane.slide({}, instants), plane.roll({}, instants),
                             plane.resist({}, {.eta = 0.2}, instants).instant})

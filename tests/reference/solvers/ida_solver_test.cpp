@@ -177,7 +177,7 @@ TEST_CASE("IDA passes the singular points of a driver, whatever the nodes", "[re
     const tests::Deviation d = tests::deviation(run.row, truth.row);
     INFO(d);
     CHECK(d.largest() < 1e-6);
-    CHECK(run.row[0].memory != run.row[2].memory);
+    CHECK(run.row[0].discrete_state != run.row[2].discrete_state);
 
     // at a loose tolerance too, where the drift is larger than what a swap accepts
     const tests::Deviation loose = tests::deviation(ida(model, x, instants, 1e-4).row, truth.row);
@@ -186,7 +186,7 @@ TEST_CASE("IDA passes the singular points of a driver, whatever the nodes", "[re
 
     // a march swaps drivers by itself, at its nodes
     const auto integrator = lie::scheme("ida-rp").make(model, {.rtol = 1e-10});
-    const lie::Trajectory marched = lie::march(x, *integrator, lie::Grid::over(1, 0.05, 0.25));
+    const lie::Trajectory marched = lie::march(x, *integrator, lie::TimeGrid::over(1, 0.05, 0.25));
     CHECK((marched.row.back().body[1].r - truth.row.back().body[1].r).norm() < 1e-6);
     for (size_t b = 0; b < 2; ++b)
         CHECK((dae::reactions(model, marched.row[1])[b].F - dae::reactions(model, truth.row[0])[b].F).norm() <
@@ -204,7 +204,7 @@ TEST_CASE("turns are counted within the steps of IDA, which go on", "[reference]
     const double angle = 30 / 2.0 * std::sin(2.0), rate = 30 * std::cos(2.0);
     CHECK((y.body[0].A - lie::exp(Vec3(angle, 0, 0))).norm() < 1e-7);
     CHECK(y.body[0].omega_bar.x() == Approx(rate).epsilon(1e-8));
-    CHECK(y.memory[0] == std::lround(angle / 1.57079632679489662));
+    CHECK(y.discrete_state[0] == std::lround(angle / 1.57079632679489662));
     INFO(solver.statistics().steps);
     CHECK(solver.statistics().steps < 5000);
 }

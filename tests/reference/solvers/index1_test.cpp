@@ -183,7 +183,7 @@ TEST_CASE("index 1 goes through the singular points of a driver", "[reference][i
         check_on_constraints(model, run[by_hinge]);
     }
     check(tests::deviation(run[0].row, run[1].row), 1e-9);
-    CHECK(run[0].row[0].memory != run[0].row[1].memory);
+    CHECK(run[0].row[0].discrete_state != run[0].row[1].discrete_state);
     for (size_t k = 0; k < instants.size(); ++k)
         for (size_t b = 0; b < 2; ++b) {
             CHECK((load[0][k][b].F - load[1][k][b].F).norm() < 1e-9);

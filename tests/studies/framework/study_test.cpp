@@ -23,9 +23,9 @@ Ended study(const Scratch& in, const std::vector<std::string>& more)
 TEST_CASE("a study writes its table, and exits with 6 when an expectation fails", "[studies][study]")
 {
     const Scratch in;
-    const Ended met = study(in, {"--expect", "order=2+-0.2"});
-    CAPTURE(met.err);
-    CHECK(met.code == 0);
+    const Ended passed = study(in, {"--expect", "order=2+-0.2"});
+    CAPTURE(passed.err);
+    CHECK(passed.code == 0);
     CHECK(fs::exists(in / "out/convergence/study.csv"));
     CHECK(fs::exists(in / "out/convergence/study.json"));
 

@@ -60,14 +60,15 @@ double newton_euler_residual(const dae::Model& model, const lie::State& x)
     return lack / size;
 }
 
-double watched(const Problem& p, const dae::Description& d)
+double observable(const Problem& p, const dae::Description& d)
 {
-    const std::string body = p.watched.body.empty() ? d.model->all_bodies().back().name : p.watched.body;
+    const std::string body =
+        p.observable.body.empty() ? d.model->all_bodies().back().name : p.observable.body;
     const lie::Motion& m = d.x.body[d.model->find(body)];
-    const lie::Vec3& v = p.watched.component[0] == 'r'   ? m.r
-                         : p.watched.component[0] == 'v' ? m.rdot
-                                                         : m.omega_bar;
-    return v[p.watched.component[1] - 'x'];
+    const lie::Vec3& v = p.observable.component[0] == 'r'   ? m.r
+                         : p.observable.component[0] == 'v' ? m.rdot
+                                                            : m.omega_bar;
+    return v[p.observable.component[1] - 'x'];
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ TEST_CASE("every built-in problem starts on its constraints", "[studies][problem
         const Problem p = studies::problem(name);
         CHECK(p.name == name);
         CHECK_FALSE(p.what.empty());
-        CHECK_FALSE(p.truth_name.empty());
+        CHECK_FALSE(p.reference_name.empty());
         dae::Description d = dae::read_model(p.model, p.name);
         CHECK(d.name == name);
         CHECK(d.warnings.empty());
@@ -87,7 +88,7 @@ TEST_CASE("every built-in problem starts on its constraints", "[studies][problem
         const dae::StartReport report = dae::start(*d.model, d.x);
         CHECK(report.position_residual < 1e-9);
         CHECK(report.velocity_residual < 1e-9);
-        CHECK(std::isfinite(watched(p, d)));  // body and component are there
+        CHECK(std::isfinite(observable(p, d)));  // body and component are there
     }
 }
 
@@ -128,11 +129,11 @@ TEST_CASE("the truth of every built-in problem obeys its constraints and Newton'
         const Problem p = studies::problem(name);
         dae::Description d = started(p);
         const std::vector<double> instants = {0, 0.02 * d.end};
-        const lie::Trajectory truth = p.truth(d, instants);
-        REQUIRE(truth.row.size() == instants.size());
-        CHECK(distance(truth.row[0], d.x) < 1e-12);
+        const lie::Trajectory reference_solution = p.reference_solution(d, instants);
+        REQUIRE(reference_solution.row.size() == instants.size());
+        CHECK(distance(reference_solution.row[0], d.x) < 1e-12);
         for (size_t k = 0; k < instants.size(); ++k) {
-            const lie::State& x = truth.row[k];
+            const lie::State& x = reference_solution.row[k];
             INFO(name << " at " << instants[k]);
             CHECK(x.t == instants[k]);
             CHECK(d.model->largest_residual(x).value < 1e-12);
@@ -141,13 +142,13 @@ TEST_CASE("the truth of every built-in problem obeys its constraints and Newton'
             CHECK(newton_euler_residual(*d.model, x) < 1e-11);
             for (const lie::Motion& body : x.body) CHECK(lie::orthogonality_error(body.A) < 1e-13);
         }
-        CHECK(distance(truth.row[0], truth.row[1]) > 1e-3);  // it moves
+        CHECK(distance(reference_solution.row[0], reference_solution.row[1]) > 1e-3);  // it moves
     }
 }
 
 TEST_CASE("a truth is where the integrated equations lead, also of a changed model", "[studies][problems]")
 {
-    const std::pair<const char*, std::vector<std::string>> cases[] = {
+    const std::pair<const char*, std::vector<std::string>> benchmarks[] = {
         {"double_pendulum", {}},
         {"double_pendulum", {"/bodies/0/mass=200", "/gravity=[1, 2, -5]"}},
         {"double_pendulum", {"/bodies/0/inertia=[300, 400, 500]", "/constraints/9/s_bar_q_j=[-1, 0, 0]"}},
@@ -156,15 +157,17 @@ TEST_CASE("a truth is where the integrated equations lead, also of a changed mod
         {"heavy_top", {}},
         {"heavy_top", {"/bodies/0/omega=[0, 1.2, 20]"}},
     };
-    for (const auto& [name, set] : cases) {
+    for (const auto& [name, set] : benchmarks) {
         INFO(name << (set.empty() ? "" : ", " + set[0]));
         const Problem p = studies::problem(name);
         dae::Description d = started(p, set);
         const std::vector<double> instants = {0.1};
-        const lie::Trajectory truth = p.truth(d, instants), road = reference::index1(*d.model, d.x, instants);
+        const lie::Trajectory reference_solution = p.reference_solution(d, instants),
+                              road = reference::index1(*d.model, d.x, instants);
         for (size_t k = 0; k < instants.size(); ++k) {
-            CHECK(distance(truth.row[k], road.row[k]) < 1e-9);
-            CHECK((truth.row[k].lambda - road.row[k].lambda).norm() <= 1e-9 * road.row[k].lambda.norm());
+            CHECK(distance(reference_solution.row[k], road.row[k]) < 1e-9);
+            CHECK((reference_solution.row[k].lambda - road.row[k].lambda).norm() <=
+                  1e-9 * road.row[k].lambda.norm());
         }
     }
 }
@@ -174,8 +177,9 @@ TEST_CASE("the driven problems move as kinematic analysis says", "[studies][prob
     for (const char* name : {"single_pendulum", "slider_crank", "four_link"}) {
         const Problem p = studies::problem(name);
         dae::Description d = started(p);
-        const lie::Trajectory truth = p.truth(d, {0.05}), run = dae::Kinematics(*d.model).run(d.x, 0.05, 1);
-        CHECK(distance(truth.row[0], run.row[1]) < 1e-11);
+        const lie::Trajectory reference_solution = p.reference_solution(d, {0.05}),
+                              run = dae::Kinematics(*d.model).run(d.x, 0.05, 1);
+        CHECK(distance(reference_solution.row[0], run.row[1]) < 1e-11);
     }
 }
 
@@ -193,8 +197,8 @@ TEST_CASE("problems are found by name, and a slip is answered with the name that
     CHECK_THROWS_WITH(studies::problem("n_pendulum_99999999999999999999"),
                       Catch::Contains("from 1 to 100000"));
     CHECK_THROWS_WITH(studies::problem("n_pendulum_x"), Catch::Contains("no built-in model"));
-    CHECK(studies::problem("n_pendulum").truth);
-    CHECK_THROWS_AS(studies::enrol(studies::problem("n_pendulum")), std::logic_error);
+    CHECK(studies::problem("n_pendulum").reference_solution);
+    CHECK_THROWS_AS(studies::register_problem(studies::problem("n_pendulum")), std::logic_error);
 }
 
 TEST_CASE("Andrews' squeezer ends where Hairer and Wanner have it", "[studies][problems]")
@@ -203,7 +207,7 @@ TEST_CASE("Andrews' squeezer ends where Hairer and Wanner have it", "[studies][p
     // of its frame.
     dae::Description d = started(studies::problem("andrews_squeezer"));
     CHECK(d.model->dropped_rows().size() == 9);  // three loops of revolute joints in space
-    const lie::State x = studies::problem("andrews_squeezer").truth(d, {0.0, 0.03}).row.back();
+    const lie::State x = studies::problem("andrews_squeezer").reference_solution(d, {0.0, 0.03}).row.back();
     const auto angle = [&](const char* body) {
         const lie::Mat3& A = x.body[d.model->find(body)].A;
         return std::atan2(A(1, 0), A(0, 0));

@@ -16,7 +16,7 @@ TEST_CASE("a scheme that chooses its own steps runs from row to row", "[studies]
     studies::RunOptions options;
     options.model = "double_pendulum";
     options.end = 0.1;
-    options.every = 0.02;
+    options.interval = 0.02;
     options.quiet = true;
     options.settings.rtol = 1e-6;
     studies::SingleRun run(options, inner_steps, in / "out");

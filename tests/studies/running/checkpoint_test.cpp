@@ -20,8 +20,8 @@ Checkpoint some_checkpoint()
     c.node.body[1].r = {1, 2, 3};
     c.node.alpha = Eigen::VectorXd::LinSpaced(6, -1, 2);
     c.node.lambda = Eigen::VectorXd::LinSpaced(5, 0, 1);
-    c.node.memory = {1, -2};
-    c.node.remembered = {0.1, -1e-300, 7};
+    c.node.discrete_state = {1, -2};
+    c.node.internal_state = {0.1, -1e-300, 7};
     c.number = 100;
     c.iterations = 3;
     c.pivots = c.node;
@@ -45,8 +45,8 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.node.body[1].r == c.node.body[1].r);
     CHECK(back.node.alpha == c.node.alpha);
     CHECK(back.node.lambda == c.node.lambda);
-    CHECK(back.node.memory == c.node.memory);
-    CHECK(back.node.remembered == c.node.remembered);
+    CHECK(back.node.discrete_state == c.node.discrete_state);
+    CHECK(back.node.internal_state == c.node.internal_state);
     CHECK(back.number == c.number);
     CHECK(back.statistics.refactorizations == c.statistics.refactorizations);
     CHECK(back.invariants.energy_drift == c.invariants.energy_drift);

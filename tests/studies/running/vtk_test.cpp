@@ -202,12 +202,12 @@ TEST_CASE("the polygons of a surface lie on it and look out of the body", "[stud
     const auto waves = [](auto x, auto, auto z) { return z - 0.1 * x * x; };
     const auto waves_of = [](double x, double y) { return 0.1 * std::sin(x) * std::cos(y); };
     const auto as_it_is = [](const Vec3& a) { return a; };
-    struct Case {
+    struct Benchmark {
         std::string name;
         std::shared_ptr<const Surface> surface;
         bool closed;
     };
-    const std::vector<Case> cases = {
+    const std::vector<Benchmark> benchmarks = {
         {"sphere", std::make_shared<Sphere>(0.2), true},
         {"bowl", std::make_shared<Sphere>(0.2, true), true},
         {"ellipsoid", std::make_shared<Ellipsoid>(Vec3(0.2, 0.3, 0.5)), true},
@@ -223,7 +223,7 @@ TEST_CASE("the polygons of a surface lie on it and look out of the body", "[stud
         {"foot", std::make_shared<Foot>(), false},
         {"disk", std::make_shared<Disk>(0.1), false}};
     const studies::Reach reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .motion = 4};
-    for (const Case& c : cases) {
+    for (const Benchmark& c : benchmarks) {
         CAPTURE(c.name);
         const Mesh mesh = studies::tessellated(*c.surface, reach);
         CHECK(mesh.point.size() > 10);

@@ -29,11 +29,11 @@ Series slide(double alpha, double zeta, double end, Frames* frames)
             const contact::Scene::Pair& pair = scene.pair[0];
             const double Ef = -pair.wrench.F_E.x();
             s.add({scene.t, body[brick].r.x(), body[brick].rdot.x(), Ef, -pair.wrench.F.x() - Ef, Ef / K_E,
-                   -pair.meeting.slip.ds.x(), pair.memory.history.slide.slipping ? 1. : 0.});
+                   -pair.contact_state.slip.ds.x(), pair.history.deflections.slide.slipping ? 1. : 0.});
         });
 }
 
-std::vector<Run> dashpot()
+std::vector<ExperimentRun> dashpot()
 {
     return {{.name = "damped", .go = [](Frames* frames) { return slide(0.18, 1, 0.1, frames); }},
             {.name = "undamped", .go = [](Frames* frames) { return slide(0.18, 0, 0.1, frames); }}};
@@ -50,13 +50,13 @@ void check_dashpot(const Results& runs, std::vector<Check>& out)
                    0, 0, "sticks"});
 }
 
-const bool brick = enrol({.name = "brick",
-                          .figure = "4.6",
-                          .what = "brick on a slope of 0.18 rad, with and without dashpot",
-                          .runs = dashpot,
-                          .checks = check_dashpot});
+const bool brick = register_experiment({.name = "brick",
+                                        .figure = "4.6",
+                                        .what = "brick on a slope of 0.18 rad, with and without dashpot",
+                                        .runs = dashpot,
+                                        .checks = check_dashpot});
 
-std::vector<Run> angles()
+std::vector<ExperimentRun> angles()
 {
     return {
         {.name = "atan_muk", .go = [](Frames* frames) { return slide(std::atan(mu_k), 1, 0.04, frames); }},
@@ -82,11 +82,12 @@ void check_angles(const Results& runs, std::vector<Check>& out)
     }
 }
 
-const bool brick_angles = enrol({.name = "brick-angles",
-                                 .figure = "4.7",
-                                 .what = "brick on slopes of arctan mu_k, arctan mu_s and 0.25 rad",
-                                 .runs = angles,
-                                 .checks = check_angles});
+const bool brick_angles =
+    register_experiment({.name = "brick-angles",
+                         .figure = "4.7",
+                         .what = "brick on slopes of arctan mu_k, arctan mu_s and 0.25 rad",
+                         .runs = angles,
+                         .checks = check_angles});
 
 }  // namespace
 

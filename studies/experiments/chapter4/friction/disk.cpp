@@ -51,8 +51,8 @@ Series roll(const Setting& set, Frames* frames)
                       contact::Scene::Pair& pair = scene.pair[0];
                       if (set.saturated &&
                           !begun) {  // springs a hair beyond their kinetic bounds before the first motion
-                          const lie::Vec3 &n = pair.meeting.slip.n, &u = pair.meeting.slip.u;
-                          contact::History& history = pair.memory.history;
+                          const lie::Vec3 &n = pair.contact_state.slip.n, &u = pair.contact_state.slip.u;
+                          contact::Deflections& history = pair.history.deflections;
                           const double S = (1 + 1e-9) * mu_k * N / set.p.K_E;
                           history.S = contact::components({-S, 0, 0}, n, u);
                           history.Theta_i = contact::components({S / (2 * R), 0, 0}, n, u);
@@ -62,8 +62,8 @@ Series roll(const Setting& set, Frames* frames)
                       const contact::Motion& b = body[disk];
                       const lie::Vec3 omega_now = b.A * b.omega_bar;
                       const contact::Wrench& w = pair.wrench;
-                      const contact::History& history = pair.memory.history;
-                      const contact::Slip& frame = pair.meeting.slip;
+                      const contact::Deflections& history = pair.history.deflections;
+                      const contact::SlidingDisplacement& frame = pair.contact_state.slip;
                       const auto along_x = [&](const contact::Vec2& of) {
                           return contact::tangent(of, frame.n, frame.u).x();
                       };
@@ -84,7 +84,7 @@ Setting stick()
     return set;
 }
 
-std::vector<Run> runs()
+std::vector<ExperimentRun> runs()
 {
     return {
         {.name = "dissertation", .go = [](Frames* frames) { return roll(stick(), frames); }},
@@ -150,16 +150,16 @@ void checks(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool disk = enrol({.name = "disk",
-                         .figure = "4.9",
-                         .what = "disk thrown without spin: slips, rolls, stops",
-                         .runs = runs,
-                         .checks = checks,
-                         .in_space = true});
+const bool disk = register_experiment({.name = "disk",
+                                       .figure = "4.9",
+                                       .what = "disk thrown without spin: slips, rolls, stops",
+                                       .runs = runs,
+                                       .checks = checks,
+                                       .in_space = true});
 
-std::vector<Run> dampings()
+std::vector<ExperimentRun> dampings()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const double part : {0.5, 1., 1.5, 2.})
         for (const std::string& name : presets) {
             Setting set{.p = usual(name)};
@@ -177,15 +177,15 @@ std::vector<Run> dampings()
 void no_checks(const Results&, std::vector<Check>&) {}
 
 const bool disk_damping =
-    enrol({.name = "disk-damping",
-           .figure = "4.10",
-           .what = "how the disk comes to rest with 0.5, 1, 1.5 and 2 of the critical dampings",
-           .runs = dampings,
-           .checks = no_checks});
+    register_experiment({.name = "disk-damping",
+                         .figure = "4.10",
+                         .what = "how the disk comes to rest with 0.5, 1, 1.5 and 2 of the critical dampings",
+                         .runs = dampings,
+                         .checks = no_checks});
 
-std::vector<Run> models()
+std::vector<ExperimentRun> models()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const std::string law : {"slide-roll-spin", "constant-torque", "epsd"}) {
         Setting set{.p = usual("balanced"), .law = law, .end = 2};
         if (law != "slide-roll-spin") set.p.mu_r = 2 * eta_r * mu_k;  // the same torque while rolling
@@ -217,11 +217,11 @@ void check_models(const Results& results, std::vector<Check>& out)
 }
 
 const bool rolling_models =
-    enrol({.name = "rolling-models",
-           .figure = "4.11",
-           .what = "rolling torque with and without history: only one with it comes to rest",
-           .runs = models,
-           .checks = check_models});
+    register_experiment({.name = "rolling-models",
+                         .figure = "4.11",
+                         .what = "rolling torque with and without history: only one with it comes to rest",
+                         .runs = models,
+                         .checks = check_models});
 
 }  // namespace
 

@@ -38,10 +38,10 @@ Series fall(const Setting& set, Frames* frames)
         [&](Series& s, const std::vector<contact::Motion>& b) {
             const lie::Vec3 axis = b[body].A.col(2);
             const contact::Scene::Pair& pair = scene.pair[0];
-            const contact::History& history = pair.memory.history;
+            const contact::Deflections& history = pair.history.deflections;
             s.add({scene.t, b[body].r.y(), b[body].r.z(), std::atan2(axis.y(), axis.z()) * 180 / pi,
-                   -(b[body].A * b[body].omega_bar).x(), std::max(0., pair.meeting.N), pair.wrench.F.y(),
-                   history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 1. : 0.});
+                   -(b[body].A * b[body].omega_bar).x(), std::max(0., pair.contact_state.N),
+                   pair.wrench.F.y(), history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 1. : 0.});
         });
 }
 
@@ -56,9 +56,9 @@ Setting rolling(double K_E, double h)
     return {.p = {.mu_s = 20, .mu_k = 20, .K_E = K_E}, .v_0 = 0.3, .omega_0 = 0.6, .h = h, .end = 0.85};
 }
 
-std::vector<Run> runs()
+std::vector<ExperimentRun> runs()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         all.push_back({.name = name, .go = [name](Frames* frames) { return fall(falling(name), frames); }});
     all.push_back(
@@ -100,12 +100,12 @@ void checks(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool ellipsoid = enrol({.name = "ellipsoid",
-                              .figure = "4.17",
-                              .what = "ellipsoid that rolls over and comes to rest on its side",
-                              .runs = runs,
-                              .checks = checks,
-                              .in_space = true});
+const bool ellipsoid = register_experiment({.name = "ellipsoid",
+                                            .figure = "4.17",
+                                            .what = "ellipsoid that rolls over and comes to rest on its side",
+                                            .runs = runs,
+                                            .checks = checks,
+                                            .in_space = true});
 
 }  // namespace
 

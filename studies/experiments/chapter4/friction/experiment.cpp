@@ -16,12 +16,12 @@ std::vector<Experiment>& list()
 
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
-    std::vector<Snapshots::Touch> touches;
+    std::vector<Snapshots::ContactPoint> touches;
     for (size_t k = 0; k < scene.pair.size(); ++k) {
         const contact::Scene::Pair& p = scene.pair[k];
-        if (p.meeting.N > 0)
-            touches.push_back(
-                Snapshots::touch(static_cast<int>(k), p.i, p.meeting, p.wrench, p.memory.history));
+        if (p.contact_state.N > 0)
+            touches.push_back(Snapshots::contact_point(static_cast<int>(k), p.i, p.contact_state, p.wrench,
+                                                       p.history.deflections));
     }
     to.add(scene.t, bodies, std::move(touches));
 }
@@ -82,7 +82,7 @@ const Series* Results::find(const std::string& run) const
 
 const std::vector<Experiment>& experiments() { return list(); }
 
-bool enrol(Experiment experiment)
+bool register_experiment(Experiment experiment)
 {
     std::vector<Experiment>& all = list();
     const auto at =

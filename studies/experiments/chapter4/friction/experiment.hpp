@@ -45,7 +45,7 @@ struct Frames {
 Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
               const std::function<void(Series&, const std::vector<contact::Motion>& before)>& row);
 
-struct Run {
+struct ExperimentRun {
     std::string name;
     std::function<Series(Frames*)> go;
     bool for_check = false;  ///< only its numbers are wanted, with --check
@@ -54,33 +54,35 @@ struct Run {
 /// What came out, and what should have
 struct Check {
     std::string what;
-    double measured = 0, demanded = 0, tolerance = 0;
+    double measured = 0, required = 0, tolerance = 0;
     std::string by;  ///< closed form, published run, ...
 
-    bool met() const { return std::abs(measured - demanded) <= tolerance; }
+    bool passed() const { return std::abs(measured - required) <= tolerance; }
 };
 
 /// The series of an experiment, by the names of their runs
 class Results {
 public:
-    Results(const std::vector<Run>& runs, const std::vector<Series>& series) : runs(runs), series(series) {}
+    Results(const std::vector<ExperimentRun>& runs, const std::vector<Series>& series)
+        : runs(runs), series(series)
+    {}
     /// nullptr for a run that was left out or failed
     const Series* find(const std::string& run) const;
 
 private:
-    const std::vector<Run>& runs;
+    const std::vector<ExperimentRun>& runs;
     const std::vector<Series>& series;
 };
 
 struct Experiment {
     std::string name, figure, what;
-    std::vector<Run> (*runs)() = nullptr;
+    std::vector<ExperimentRun> (*runs)() = nullptr;
     void (*checks)(const Results&, std::vector<Check>& out) = nullptr;
     bool in_space = false;  ///< its bodies are worth being looked at
 };
 
 const std::vector<Experiment>& experiments();
-bool enrol(Experiment experiment);
+bool register_experiment(Experiment experiment);
 
 /// Friction of a preset from the same parameters: "dissertation" or "balanced"
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p);

@@ -30,7 +30,7 @@ Series roll(const std::string& preset_name, double alpha, double v_0, double end
         scene, h, end, frames, {"t", "v_cm", "omega_x", "F_E", "T_E", "slips", "rolls"},
         [&](Series& s, const std::vector<contact::Motion>& body) {
             const contact::Wrench& w = scene.pair[0].wrench;
-            const contact::History& history = scene.pair[0].memory.history;
+            const contact::Deflections& history = scene.pair[0].history.deflections;
             s.add({scene.t, body[ball].rdot.y(), (body[ball].A * body[ball].omega_bar).x(), w.F_E.y(),
                    w.T_roll_E.x(), history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 1. : 0.});
         });
@@ -51,14 +51,14 @@ Series tilt(double rate, double end, Frames* frames)
     return sample(
         scene, h, end, frames, {"t", "alpha", "rolls"}, [&](Series& s, const std::vector<contact::Motion>&) {
             const double alpha = rate * scene.t;
-            s.add({scene.t, alpha / degree, scene.pair[0].memory.history.roll_i.slipping ? 1. : 0.});
+            s.add({scene.t, alpha / degree, scene.pair[0].history.deflections.roll_i.slipping ? 1. : 0.});
             scene.gravity = {0, -g * std::sin(alpha), -g * std::cos(alpha)};
         });
 }
 
-std::vector<Run> runs()
+std::vector<ExperimentRun> runs()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         all.push_back({.name = name,
                        .go = [name](Frames* frames) { return roll(name, 35 * degree, 0.5, 0.3, frames); }});
@@ -118,12 +118,12 @@ void checks(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool incline = enrol({.name = "incline",
-                            .figure = "4.12",
-                            .what = "sphere thrown up a slope of 35 degrees",
-                            .runs = runs,
-                            .checks = checks,
-                            .in_space = true});
+const bool incline = register_experiment({.name = "incline",
+                                          .figure = "4.12",
+                                          .what = "sphere thrown up a slope of 35 degrees",
+                                          .runs = runs,
+                                          .checks = checks,
+                                          .in_space = true});
 
 }  // namespace
 

@@ -46,8 +46,8 @@ Series spin(const Spinner& body, const contact::FrictionParameters& p, double en
                       const contact::Scene::Pair& pair = scene.pair[0];
                       const double omega = (bodies[b].A * bodies[b].omega_bar).z();
                       if (s.rows() > 0) angle += h * omega;
-                      s.add({scene.t, omega, pair.memory.history.Psi, pair.wrench.T_spin,
-                             pair.wrench.T_spin_E, angle, pair.memory.history.spin.slipping ? 1. : 0.});
+                      s.add({scene.t, omega, pair.history.deflections.Psi, pair.wrench.T_spin,
+                             pair.wrench.T_spin_E, angle, pair.history.deflections.spin.slipping ? 1. : 0.});
                   });
 }
 
@@ -80,9 +80,9 @@ Spinner big_sphere()
         .inertia = solid_sphere(m, R), .shape = shape<contact::Sphere>(R), .height = R, .I = 0.4 * m * R * R};
 }
 
-std::vector<Run> empirical()
+std::vector<ExperimentRun> empirical()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         for (const double eta : etas)
             all.push_back({.name = fmt::format("{}-eta{:.3f}", name, eta), .go = [=](Frames* frames) {
@@ -112,12 +112,13 @@ void check_empirical(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool spinning = enrol({.name = "spin",
-                             .figure = "4.15",
-                             .what = "sphere that spins in place, empirical spinning resistance",
-                             .runs = empirical,
-                             .checks = check_empirical,
-                             .in_space = true});
+const bool spinning =
+    register_experiment({.name = "spin",
+                         .figure = "4.15",
+                         .what = "sphere that spins in place, empirical spinning resistance",
+                         .runs = empirical,
+                         .checks = check_empirical,
+                         .in_space = true});
 
 // Fig. 4.16
 
@@ -144,9 +145,9 @@ contact::FrictionParameters hertzian(const std::string& preset_name, double E, d
     return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .E_star = E / (1 - nu * nu)});
 }
 
-std::vector<Run> hertz()
+std::vector<ExperimentRun> hertz()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         for (const Material& of : balls)
             for (const double K_E : {5e5, 1e6, 5e6, 1e7})
@@ -170,11 +171,12 @@ void check_hertz(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool spinning_hertz = enrol({.name = "spin-hertz",
-                                   .figure = "4.16",
-                                   .what = "steel and glass balls that spin in place on a Hertzian patch",
-                                   .runs = hertz,
-                                   .checks = check_hertz});
+const bool spinning_hertz =
+    register_experiment({.name = "spin-hertz",
+                         .figure = "4.16",
+                         .what = "steel and glass balls that spin in place on a Hertzian patch",
+                         .runs = hertz,
+                         .checks = check_hertz});
 
 // Fig. 4.18, Table 4.7
 
@@ -193,9 +195,9 @@ Spinner ellipsoid(bool upright, bool published)
     return e;
 }
 
-std::vector<Run> ellipsoids()
+std::vector<ExperimentRun> ellipsoids()
 {
-    std::vector<Run> all;
+    std::vector<ExperimentRun> all;
     for (const bool published : {false, true})
         for (const bool upright : {true, false})
             for (const double K_E : {5e6, 1e7, 5e7, 1e8}) {
@@ -232,22 +234,22 @@ void check_ellipsoids(const Results& results, std::vector<Check>& out)
           std::pair(Row{"flat", 29, 2.10546e-2, 3.5785e-3, 7.53438e-5}, surface.mean_curvature({a, 0, 0})),
           std::pair(Row{"upright", 125, 7.94947e-3, 5.82379e-3, 4.6296e-5},
                     surface.mean_curvature({0, 0, c}))}) {
-        contact::Meeting now;
-        now.touch.n = now.slip.n = lie::Vec3::UnitZ();
+        contact::ContactState now;
+        now.contact_point.n = now.slip.n = lie::Vec3::UnitZ();
         now.slip.u = lie::Vec3::UnitX();
-        now.touch.K_i = lie::Vec3(kappa, kappa, 0).asDiagonal();
-        now.touch.K_j.setZero();
+        now.contact_point.K_i = lie::Vec3(kappa, kappa, 0).asDiagonal();
+        now.contact_point.K_j.setZero();
         now.N = N;
         now.I_spin = 1;
         const auto model = law(hertzian("balanced", 2e11, 0.3, K_E));
         const double K_psi = model->springs(now).K_spin;
-        contact::History history;
+        contact::Deflections history;
         now.slip.ds = now.slip.q_i = now.slip.q_j = now.slip.p_i = now.slip.p_j = lie::Vec3::Zero();
         now.slip.psi = 1;  // far beyond
         model->advance(now, history);
-        const auto check = [&](const char* what, double measured, double demanded) {
-            out.push_back({fmt::format("Table 4.7, {}: {}", row.of, what), measured, demanded,
-                           5e-4 * demanded, "published table"});
+        const auto check = [&](const char* what, double measured, double required) {
+            out.push_back({fmt::format("Table 4.7, {}: {}", row.of, what), measured, required,
+                           5e-4 * required, "published table"});
         };
         check("K [1/m]", kappa, row.K);
         check("K_psi [N m/rad]", K_psi, row.K_psi);
@@ -256,12 +258,13 @@ void check_ellipsoids(const Results& results, std::vector<Check>& out)
     }
 }
 
-const bool spinning_ellipsoid = enrol({.name = "spin-ellipsoid",
-                                       .figure = "4.18",
-                                       .what = "steel ellipsoid that spins upright and flat; Table 4.7",
-                                       .runs = ellipsoids,
-                                       .checks = check_ellipsoids,
-                                       .in_space = true});
+const bool spinning_ellipsoid =
+    register_experiment({.name = "spin-ellipsoid",
+                         .figure = "4.18",
+                         .what = "steel ellipsoid that spins upright and flat; Table 4.7",
+                         .runs = ellipsoids,
+                         .checks = check_ellipsoids,
+                         .in_space = true});
 
 }  // namespace
 

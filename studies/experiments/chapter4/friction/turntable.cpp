@@ -43,7 +43,7 @@ Series orbit(double beta, double K_E, double h, Frames* frames)
         });
 }
 
-std::vector<Run> runs()
+std::vector<ExperimentRun> runs()
 {
     return {{.name = "beta=0.5", .go = [](Frames* frames) { return orbit(0.5, 1e5, 1e-3, frames); }},
             {.name = "beta=1", .go = [](Frames* frames) { return orbit(1, 1e5, 1e-3, frames); }},
@@ -59,10 +59,10 @@ std::vector<Run> runs()
 
 void checks(const Results& results, std::vector<Check>& out)
 {
-    const auto radius = [&](const char* run, double demanded, double tolerance, const char* by) {
+    const auto radius = [&](const char* run, double required, double tolerance, const char* by) {
         if (const Series* s = results.find(run))
             out.push_back(
-                {std::string("radius after 10 orbits, ") + run, s->last("radius"), demanded, tolerance, by});
+                {std::string("radius after 10 orbits, ") + run, s->last("radius"), required, tolerance, by});
     };
     radius("beta=0.5", 1, 2e-4, "exact");
     if (const Series* s = results.find("beta=0.5"))
@@ -77,13 +77,13 @@ void checks(const Results& results, std::vector<Check>& out)
     radius("beta=-1", 0.667, 2e-2, "independent code");
 }
 
-const bool turntable =
-    enrol({.name = "turntable",
-           .figure = "",
-           .what = "ball on a turntable, ten orbits: only half of the counter-spin keeps the circle",
-           .runs = runs,
-           .checks = checks,
-           .in_space = true});
+const bool turntable = register_experiment(
+    {.name = "turntable",
+     .figure = "",
+     .what = "ball on a turntable, ten orbits: only half of the counter-spin keeps the circle",
+     .runs = runs,
+     .checks = checks,
+     .in_space = true});
 
 }  // namespace
 

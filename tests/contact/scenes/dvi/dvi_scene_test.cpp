@@ -209,7 +209,7 @@ struct InBowl {
         for (int k = 1; k <= 20; ++k) {
             for (int n = 0; n < sampled; ++n) {
                 scene.step(h);
-                gap = std::max(gap, std::abs(scene.pair[0].state.touch.gap));
+                gap = std::max(gap, std::abs(scene.pair[0].state.contact_point.gap));
                 iterations += scene.solved.iterations;
             }
             error = std::max(error, (scene.body[0].r - slides[k]).norm());
@@ -315,9 +315,9 @@ TEST_CASE("a row of balls passes on one impulse and a crowd finds the contacts t
     scene.solver.tolerance = 1e-12;
     const double R = 0.1;
     if (found) {
-        const int kind = scene.add(contact::Kind{ball(1, R), sphere(R), R});
-        const int floor = scene.add(contact::Kind{{}, plane});
-        scene.crowd.margin = 0.02;
+        const int kind = scene.add(contact::BodyType{ball(1, R), sphere(R), R});
+        const int floor = scene.add(contact::BodyType{{}, plane});
+        scene.neighbors.margin = 0.02;
         scene.between("balls", kind, kind, {.mu = 0});
         scene.between("floor", floor, kind, {.mu = 0.3});
         for (int b = 0; b < 5; ++b) scene.enter(kind, at({2 * R * b, 0, R}, {b == 0 ? 1. : 0., 0, 0}));
@@ -384,9 +384,9 @@ TEST_CASE("a step of rigid bodies takes nothing from the heap", "[contact][dvi][
     }
     DviScene scene;
     scene.options.sliding = DviOptions::coulomb;
-    const int kind = scene.add(contact::Kind{ball(1, 0.1), sphere(0.1), 0.1});
-    const int floor = scene.add(contact::Kind{{}, plane});
-    scene.crowd.margin = 0.02;
+    const int kind = scene.add(contact::BodyType{ball(1, 0.1), sphere(0.1), 0.1});
+    const int floor = scene.add(contact::BodyType{{}, plane});
+    scene.neighbors.margin = 0.02;
     scene.between("balls", kind, kind, {.mu = 0.3});
     scene.between("floor", kind, floor, {.mu = 0.3});
     scene.enter(floor, Motion{});

@@ -38,7 +38,7 @@ TEST_CASE("the energy study has the change of the energy that the states have", 
     dae::Description d = dae::read_model(studies::problem("double_pendulum").model, "double_pendulum");
     dae::start(d);
     const auto integrator = lie::scheme("rA-half-1").make(*d.model, {});
-    const lie::Trajectory run = lie::march(d.x, *integrator, lie::Grid::over(0.2, 1e-3));
+    const lie::Trajectory run = lie::march(d.x, *integrator, lie::TimeGrid::over(0.2, 1e-3));
     double largest = 0;
     const double start = double_pendulum_energy(run.row.front());
     for (const lie::State& x : run.row)

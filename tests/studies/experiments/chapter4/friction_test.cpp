@@ -17,16 +17,16 @@ using Catch::Matchers::Contains;
 TEST_CASE("every experiment on friction gives what it must", "[studies][friction]")
 {
     for (const friction::Experiment& experiment : friction::experiments()) {
-        std::vector<friction::Run> runs = experiment.runs();
-        std::erase_if(runs, [](const friction::Run& run) { return run.for_check; });
+        std::vector<friction::ExperimentRun> runs = experiment.runs();
+        std::erase_if(runs, [](const friction::ExperimentRun& run) { return run.for_check; });
         std::vector<friction::Series> series;
-        for (const friction::Run& run : runs) series.push_back(run.go(nullptr));
+        for (const friction::ExperimentRun& run : runs) series.push_back(run.go(nullptr));
         std::vector<friction::Check> checks;
         experiment.checks(friction::Results(runs, series), checks);
         for (const friction::Check& check : checks) {
-            INFO(experiment.name << ": " << check.what << ": " << check.measured << " for " << check.demanded
+            INFO(experiment.name << ": " << check.what << ": " << check.measured << " for " << check.required
                                  << " +- " << check.tolerance);
-            CHECK(check.met());
+            CHECK(check.passed());
         }
         CHECK((experiment.name == "disk-damping" || !checks.empty()));
     }

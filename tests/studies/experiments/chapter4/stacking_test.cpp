@@ -23,14 +23,14 @@ TEST_CASE("friction and rolling torques on a lower sphere at rest balance about 
     REQUIRE(of.kinetic_energy() < 1e-14);
     const contact::Scene::Pair &above = of.pair[stacked::top_right], &below = of.pair[stacked::right_ground];
     const lie::Vec3 r = of.body[stacked::right].r;
-    const double lever_s = (above.meeting.touch.C() - r).norm(),
-                 lever_g = (below.meeting.touch.C() - r).norm();
+    const double lever_s = (above.contact_state.contact_point.C() - r).norm(),
+                 lever_g = (below.contact_state.contact_point.C() - r).norm();
     const double F_s = above.wrench.F.norm(), F_g = below.wrench.F.norm();
     const double T_s = above.wrench.T_j.norm(), T_g = below.wrench.T_i.norm();
     CAPTURE(dissertation, lever_s, lever_g, F_s, F_g, T_s, T_g);
     CHECK(lever_g * F_g - lever_s * F_s == Approx(T_g + T_s).margin(1e-6));
     CHECK(std::abs(Stack::R * (F_g - F_s) - (T_g + T_s)) > 1e-5);  // the overlaps shorten the levers
-    CHECK(2 * below.meeting.N == Approx((2 + 1.2) * 9.81).margin(1e-5));
+    CHECK(2 * below.contact_state.N == Approx((2 + 1.2) * 9.81).margin(1e-5));
 }
 
 TEST_CASE("the ground's load on the published stack of 1.7 kg, eta_r = 0.22, is the published one",
@@ -40,7 +40,7 @@ TEST_CASE("the ground's load on the published stack of 1.7 kg, eta_r = 0.22, is 
     const auto at = [&](double t) {
         while (of.t < t + 0.5e-4) of.step(1e-4);  // the loads are those of the node before
         const contact::Scene::Pair& below = of.pair[stacked::right_ground];
-        return std::pair(below.wrench.F.norm(), below.meeting.N);
+        return std::pair(below.wrench.F.norm(), below.contact_state.N);
     };
     CHECK(at(0.005).first == Approx(0.386).margin(0.005));
     CHECK(at(0.010).first == Approx(1.525).margin(0.005));

@@ -103,8 +103,8 @@ TEST_CASE("integrators say what contacts they take and refuse the others", "[stu
     for (const ordered_json& s : all) {
         INFO(s["name"]);
         const lie::Scheme& scheme = lie::scheme(s["name"]);
-        CHECK(s["evolving_contacts"] == scheme.massless);
-        CHECK(s["rolling_contacts"] == (scheme.massless && scheme.velocities));
+        CHECK(s["evolving_contacts"] == scheme.algebraic);
+        CHECK(s["rolling_contacts"] == (scheme.algebraic && scheme.nonholonomic));
     }
     CHECK_THAT(call(in, {"integrators"}).out, Contains("evolve, roll") && Contains("recommended"));
     const Ended refused = call(in, {"run", "ball_in_bowl", "--integrator", "rp-half-1"});
@@ -198,7 +198,7 @@ TEST_CASE("the truth of a contact is that of minimal coordinates or of small ste
         dae::Description d = dae::read_model(p.model, name);
         dae::start(d);
         const std::vector<double> at = {0.02};
-        const lie::State by_truth = studies::evolving_truth(d, at).row[0],
+        const lie::State by_truth = studies::evolving_reference(d, at).row[0],
                          by_steps =
                              studies::run_with_small_steps(d, at, lie::scheme("rA-rkmk-4"), 1e-3).row[0];
         CHECK((by_truth.body[0].r - by_steps.body[0].r).norm() < 1e-10);

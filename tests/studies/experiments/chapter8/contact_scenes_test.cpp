@@ -19,7 +19,8 @@ void run(Scene& scene, double h, double end)
 Vec3 force_on_i(const contact::DviScene::Encounter& e) { return e.F; }
 Vec3 force_on_i(const contact::Scene::Encounter& e)
 {
-    return e.meeting.N > 0 ? Vec3(e.meeting.N * e.meeting.touch.n + e.wrench.F) : Vec3(Vec3::Zero());
+    return e.contact_state.N > 0 ? Vec3(e.contact_state.N * e.contact_state.contact_point.n + e.wrench.F)
+                                 : Vec3(Vec3::Zero());
 }
 
 /// What a body that does not move carries [N]
@@ -27,7 +28,7 @@ template <class Scene>
 Vec3 load_on(const Scene& scene, int body)
 {
     Vec3 F = Vec3::Zero();
-    for (const auto& p : scene.crowd.pair())
+    for (const auto& p : scene.neighbors.pair())
         if (p.j == body) F -= force_on_i(p.state);
     return F;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# KLU, the sparse LU of SuiteSparse. Written by hand because SuiteSparse 5 ships no CMake package.
-# Gives the target KLU::KLU and KLU_VERSION.
+# KLU, the sparse LU factorisation of SuiteSparse. SuiteSparse 5 has no CMake package.
+# Defines the target KLU::KLU and KLU_VERSION.
 include(FindPackageHandleStandardArgs)
 
 find_path(KLU_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)

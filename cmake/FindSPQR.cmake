@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# SuiteSparseQR, the sparse rank-revealing QR of SuiteSparse. Written by hand for the same reason as FindKLU.cmake.
-# Gives the target SPQR::SPQR and SPQR_VERSION.
+# SuiteSparseQR, the sparse rank-revealing QR factorisation of SuiteSparse. SuiteSparse 5 has no CMake
+# package. Defines the target SPQR::SPQR and SPQR_VERSION.
 include(FindPackageHandleStandardArgs)
 
 find_path(SPQR_INCLUDE_DIR SuiteSparseQR.hpp PATH_SUFFIXES suitesparse)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Shows that a new file in lie/integrators/ is found by the next build, with no line changed anywhere. Works on a copy
-# of the source tree.
+# Tests that the next build compiles a new file in lie/integrators/ without a change of any other file. Works
+# on a copy of the source tree.
 file(REMOVE_RECURSE "${work}")
 
 set(files "")
@@ -28,7 +28,7 @@ endforeach()
 function(do what)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
     if(NOT result EQUAL 0)
-        message(FATAL_ERROR "cannot ${what} (${result}):\n${output}")
+        message(FATAL_ERROR "check_glob: cannot ${what} (exit code ${result}):\n${output}")
     endif()
 endfunction()
 
@@ -37,11 +37,11 @@ do("configure the copy" ${CMAKE_COMMAND} -S "${work}/source" -B "${work}/build" 
 
 get_filename_component(name "${file}" NAME)
 file(COPY "${file}" DESTINATION "${work}/source/lie/integrators")
-# The smallest target there is: every build looks for new files first.
+# The smallest target. Every build searches for new files first.
 do("build the copy" ${CMAKE_COMMAND} --build "${work}/build" --target hilda_version)
 
 file(READ "${work}/build/compile_commands.json" commands)
 string(FIND "${commands}" "/lie/integrators/${name}" place)
 if(place EQUAL -1)
-    message(FATAL_ERROR "the build did not find lie/integrators/${name}")
+    message(FATAL_ERROR "check_glob: the build did not find the new file lie/integrators/${name}")
 endif()

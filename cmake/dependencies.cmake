@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What we need from the system. All of it is looked for before we stop, so that one message names all that is missing.
+# Required libraries. All of them are searched before an error, so that one message lists all missing ones.
 
 set(hilda_missing "")
 set(hilda_missing_debian "")
@@ -38,15 +38,16 @@ if(hilda_missing)
     list(REMOVE_DUPLICATES hilda_missing_debian)
     list(JOIN hilda_missing ", " hilda_missing)
     list(JOIN hilda_missing_debian " " hilda_missing_debian)
-    # NOTICE, because FATAL_ERROR would break the line.
+    # NOTICE keeps the message on one line; FATAL_ERROR would wrap it.
     message(NOTICE "hilda: missing: ${hilda_missing} (Debian: apt-get install ${hilda_missing_debian})")
     message(FATAL_ERROR "Libraries are missing: see the line above.")
 endif()
 
-# Optional: only studies/benchmarks asks for it.
+# Optional: used by studies/benchmarks only.
 find_package(benchmark CONFIG QUIET)
 
-# Figures are drawn by the system's Python, where Debian puts matplotlib; another python3 may come first in PATH.
+# Figures need a Python with matplotlib. On Debian this is /usr/bin/python3; another python3 may be first in
+# PATH.
 if(EXISTS /usr/bin/python3)
     set(hilda_python_default /usr/bin/python3)
 else()

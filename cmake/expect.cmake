@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cmake -D expect=TEXT -P expect.cmake -- COMMAND...: passes when COMMAND ends with 0 and its output contains TEXT.
-# (ctest's PASS_REGULAR_EXPRESSION would forget the exit code.)
+# cmake -D expect=TEXT -P expect.cmake -- COMMAND...: passes if COMMAND exits with 0 and its output contains
+# TEXT. (PASS_REGULAR_EXPRESSION of ctest ignores the exit code.)
 set(command "")
 set(after_dashes FALSE)
 math(EXPR last "${CMAKE_ARGC} - 1")
@@ -15,9 +15,9 @@ endforeach()
 execute_process(COMMAND ${command} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
 message("${output}${errors}")
 if(NOT result EQUAL 0)
-    message(FATAL_ERROR "exit code ${result}")
+    message(FATAL_ERROR "the command failed with exit code ${result}")
 endif()
 string(FIND "${output}" "${expect}" place)
 if(place EQUAL -1)
-    message(FATAL_ERROR "\"${expect}\" is not in the output")
+    message(FATAL_ERROR "the output does not contain \"${expect}\"")
 endif()

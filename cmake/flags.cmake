@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Compiler flags of all our targets. hilda_flags is also what `hilda info` shows.
+# Compiler flags of all targets. `hilda info` prints hilda_flags.
 
-# No contraction to fused multiply-add: the same source gives the same digits on every x86-64. We read no errno and
-# unmask no floating-point traps, so the two -fno- flags change no result; -ffast-math would, and is never used.
+# -ffp-contract=off: no fused multiply-add, so that results are bit-identical on every x86-64. The program
+# does not read errno and does not enable floating-point traps; -fno-math-errno and -fno-trapping-math
+# therefore do not change results. -ffast-math changes results and is not used.
 set(hilda_flags -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-semantic-interposition)
 
 if(HILDA_NATIVE)
@@ -16,7 +17,7 @@ elseif(HILDA_SANITIZE STREQUAL "thread")
 elseif(HILDA_SANITIZE STREQUAL "")
     set(hilda_sanitize "")
 else()
-    message(FATAL_ERROR "HILDA_SANITIZE is \"${HILDA_SANITIZE}\"; allowed are: empty, address, thread")
+    message(FATAL_ERROR "HILDA_SANITIZE must be empty, address or thread, got \"${HILDA_SANITIZE}\"")
 endif()
 list(APPEND hilda_flags ${hilda_sanitize})
 add_link_options(${hilda_sanitize})
@@ -25,14 +26,14 @@ set(hilda_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND hilda_warnings -Wshadow=local)
 else()
-    list(APPEND hilda_warnings -Wshadow) # Clang's -Wshadow is what GCC calls -Wshadow=local
+    list(APPEND hilda_warnings -Wshadow) # equal to -Wshadow=local of GCC
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # In C++20 the optimiser of GCC 12 warns of its own std::string: s + "a" is enough (GCC bug 105329). The address
-    # sanitizer of the debug build finds what these three would.
+    # GCC 12 reports false positives in its own std::string in C++20, e.g. for s + "a" (GCC bug 105329). The
+    # address sanitizer of the debug build covers these three warnings.
     list(APPEND hilda_warnings -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
     if(HILDA_NATIVE)
-        # and of its own AVX-512 intrinsics, whose undefined operand is meant (GCC bug 105593)
+        # false positives in the AVX-512 intrinsics of GCC (GCC bug 105593)
         list(APPEND hilda_warnings -Wno-maybe-uninitialized -Wno-uninitialized)
     endif()
 endif()
@@ -42,8 +43,9 @@ endif()
 
 add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${hilda_flags};${hilda_warnings}>")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC looks for memory to give back after every 128 MB; at 512 MB it hardly ever does, and compiles an eighth faster.
+    # The garbage collector of GCC then starts at 512 MB in the place of 128 MB. Compilation takes an eighth
+    # less time.
     add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=524288>")
 endif()
-# An element of a matrix that was never written shows itself as NaN.
+# Debug builds initialise matrices with NaN, which reveals elements that are never set.
 add_compile_definitions($<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS> $<$<CONFIG:Debug>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs at every build: fills the git state into version.hpp. configure_file leaves an unchanged file untouched, so
-# nothing is compiled again.
+# Writes the git state into version.hpp at every build. configure_file does not touch an unchanged file, so
+# nothing is recompiled.
 set(hilda_git "")
-# Only our own repository counts: an unpacked release inside some other checkout has no git state.
+# An unpacked release inside the checkout of another project has no git state.
 if(git AND EXISTS "${source}/.git")
     execute_process(
         COMMAND "${git}" --no-optional-locks describe --tags --always --dirty

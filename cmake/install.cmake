@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# libhilda.so (the rooms lie, dae and contact), their headers, the program, and a package for find_package(hilda CONFIG).
-# GSL is in none of the library.
+# Installs libhilda.so (the rooms lie, dae and contact), its headers, the programs, and a package for
+# find_package(hilda CONFIG). The library does not use GSL.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
 
-# Not named `hilda`: that would clash with the program's file in the build folder.
+# The target is not named `hilda`, the name of the program in the build folder.
 add_library(hilda_library SHARED
     $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
 add_library(hilda::hilda ALIAS hilda_library)
@@ -21,11 +21,12 @@ target_include_directories(hilda_library PUBLIC
 target_link_libraries(hilda_library PUBLIC
     Eigen3::Eigen KLU::KLU SPQR::SPQR nlohmann_json::nlohmann_json fmt::fmt)
 if(NOT HILDA_SANITIZE)
-    # Nothing may be left to whoever links us: this is also the proof that these rooms do without GSL.
+    # No undefined symbols. This also verifies that these rooms do not use GSL.
     target_link_options(hilda_library PRIVATE LINKER:--no-undefined)
 endif()
 if(HILDA_NATIVE)
-    # The instruction set decides how Eigen aligns its types, so both sides must agree on it.
+    # The alignment of Eigen types depends on the instruction set: the library and its user need the same
+    # flag.
     target_compile_options(hilda_library INTERFACE -march=native)
 endif()
 
@@ -45,7 +46,7 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDI
 
 configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"
     INSTALL_DESTINATION "${hilda_package_dir}")
-# Before 1.0 every minor version may break.
+# Before 1.0 a minor version may be incompatible.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(EXPORT hilda_targets FILE hildaTargets.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
 install(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The header <hilda/version.hpp>, in two stages: what is known now, and the git state at every build (git_state.cmake).
+# The header <hilda/version.hpp>. Configuration sets all values except the git state; each build sets the git
+# state (git_state.cmake).
 
 string(TOUPPER "${CMAKE_BUILD_TYPE}" hilda_build_type)
 list(JOIN hilda_flags " " hilda_version_flags)
@@ -7,7 +8,7 @@ string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${hilda_build_type}}" hilda_v
 string(PREPEND hilda_version_flags "${hilda_version_base} ")
 
 set(hilda_generated "${PROJECT_BINARY_DIR}/generated")
-set(hilda_git "@hilda_git@") # survives the first stage
+set(hilda_git "@hilda_git@") # replaced at each build
 configure_file(cmake/version.hpp.in "${hilda_generated}/version.hpp.in" @ONLY)
 
 find_package(Git QUIET)
@@ -19,7 +20,7 @@ add_custom_target(hilda_version ALL
     COMMENT "Git state"
     VERBATIM)
 
-# Brings <hilda/version.hpp> to a target.
+# Makes <hilda/version.hpp> available to a target.
 function(hilda_use_version target)
     target_include_directories(${target} PRIVATE "${hilda_generated}")
     add_dependencies(${target} hilda_version)

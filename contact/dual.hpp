@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Arithmetic on a function of three variables with its first and second derivatives: product, quotient and
-/// chain rule.
+/// Forward automatic differentiation of second order for functions of three variables (hyper-dual
+/// arithmetic).
 
 #pragma once
 
@@ -12,21 +12,22 @@
 
 namespace hilda::contact {
 
-/// A function of (x, y, z) at one point: f, ∇f and the upper half of ∇²f, xx, xy, xz, yy, yz, zz.
+/// Value and derivatives of a function of (x, y, z) at one point: f, ∇f, and the upper triangle of ∇²f in the
+/// order xx, xy, xz, yy, yz, zz. The operators apply the product, quotient and chain rules.
 struct Dual {
     using Gradient = Eigen::Vector3d;
-    using Half = Eigen::Matrix<double, 6, 1>;
+    using UpperTriangle = Eigen::Matrix<double, 6, 1>;
 
     double f = 0;
     Gradient g = Gradient::Zero();
-    Half h = Half::Zero();
+    UpperTriangle h = UpperTriangle::Zero();
 
     Dual() = default;
-    Dual(double f) : f(f) {}  // NOLINT: a number is a constant function
-    Dual(double f, const Gradient& g, const Half& h) : f(f), g(g), h(h) {}
+    Dual(double f) : f(f) {}  // NOLINT: implicit, a number is a constant function
+    Dual(double f, const Gradient& g, const UpperTriangle& h) : f(f), g(g), h(h) {}
 
-    /// The coordinate k = 0, 1, 2 at the value x
-    static Dual variable(double x, int k) { return {x, Gradient::Unit(k), Half::Zero()}; }
+    /// The coordinate k = 0, 1, 2 at the value x: ∂/∂x_k = 1
+    static Dual variable(double x, int k) { return {x, Gradient::Unit(k), UpperTriangle::Zero()}; }
 
     Eigen::Matrix3d hessian() const
     {
@@ -47,55 +48,55 @@ struct Dual {
 
     friend Dual operator*(const Dual& a, const Dual& b)
     {
-        return {a.f * b.f, a.f * b.g + b.f * a.g, a.f * b.h + b.f * a.h + both(a.g, b.g)};
+        return {a.f * b.f, a.f * b.g + b.f * a.g, a.f * b.h + b.f * a.h + symmetric_product(a.g, b.g)};
     }
     friend Dual operator*(double a, const Dual& b) { return {a * b.f, a * b.g, a * b.h}; }
     friend Dual operator*(const Dual& a, double b) { return b * a; }
 
     friend Dual operator/(const Dual& a, const Dual& b)
     {
-        // q b = a, differentiated twice
+        // from q b = a: q' = (a' - q b')/b, q'' = (a'' - q b'' - q' b' - b' q')/b
         const double q = a.f / b.f;
         const Gradient dq = (a.g - q * b.g) / b.f;
-        return {q, dq, (a.h - q * b.h - both(dq, b.g)) / b.f};
+        return {q, dq, (a.h - q * b.h - symmetric_product(dq, b.g)) / b.f};
     }
     friend Dual operator/(const Dual& a, double b) { return {a.f / b, a.g / b, a.h / b}; }
 
-    // by value, for formulas with branches
+    // comparisons use the value only, so that formulas may have branches
     friend bool operator<(const Dual& a, const Dual& b) { return a.f < b.f; }
     friend bool operator>(const Dual& a, const Dual& b) { return a.f > b.f; }
     friend bool operator<=(const Dual& a, const Dual& b) { return a.f <= b.f; }
     friend bool operator>=(const Dual& a, const Dual& b) { return a.f >= b.f; }
 
-    /// a bᵀ + b aᵀ
-    static Half both(const Gradient& a, const Gradient& b)
+    /// Upper triangle of a bᵀ + b aᵀ
+    static UpperTriangle symmetric_product(const Gradient& a, const Gradient& b)
     {
-        Half ab;
+        UpperTriangle ab;
         ab << 2 * a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0], 2 * a[1] * b[1],
             a[1] * b[2] + a[2] * b[1], 2 * a[2] * b[2];
         return ab;
     }
 };
 
-/// u(x) from u, u' and u'' at x.
+/// Chain rule: the function u of x, from u, u' and u'' at the value of x.
 inline Dual chain(const Dual& x, double u, double u1, double u2)
 {
-    return {u, u1 * x.g, u1 * x.h + 0.5 * u2 * Dual::both(x.g, x.g)};
+    return {u, u1 * x.g, u1 * x.h + 0.5 * u2 * Dual::symmetric_product(x.g, x.g)};
 }
 
 using dae::acos, dae::asin, dae::atan, dae::cos, dae::cosh, dae::exp, dae::log, dae::pow, dae::sin, dae::sinh;
 using dae::sqrt, dae::tan, dae::tanh;
 
-/// The angle of (x, y); both may not be zero
+/// Polar angle of the point (x, y) [rad]. Not defined for x = y = 0.
 inline Dual atan2(const Dual& y, const Dual& x)
 {
-    // of the two quotients, the one that is finite
+    // atan(y/x) and -atan(x/y) have the same derivatives; the divisor is the larger of x and y
     Dual angle = std::abs(x.f) >= std::abs(y.f) ? atan(y / x) : -atan(x / y);
     angle.f = std::atan2(y.f, x.f);
     return angle;
 }
 
-/// -x where x < 0; at 0 the derivatives are those on the right.
+/// |x|. At x = 0 the derivatives are the right-hand derivatives.
 inline Dual abs(const Dual& x) { return x.f < 0 ? -x : x; }
 
 }  // namespace hilda::contact

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A surface from one formula, differentiated without being asked.
+/// A surface defined by one formula G(x, y, z) = 0. The derivatives are computed by automatic differentiation
+/// (Dual).
 
 #pragma once
 
@@ -9,17 +10,18 @@
 
 namespace hilda::contact {
 
-/// G(x, y, z) = 0 for any formula that can be written for numbers and Duals alike:
+/// The surface G(x, y, z) = 0 of a generic callable G that accepts double and Dual arguments:
 ///
-///     const ImplicitSurface egg([](auto x, auto y, auto z) { return x*x + y*y + z*z*(1 + 0.3*z) - 1.0; }, 1.0);
+///     const auto G = [](auto x, auto y, auto z) { return x*x + y*y + z*z*(1 + 0.3*z) - 1.0; };
+///     const ImplicitSurface egg(G, 1.0);
 ///
-/// G should grow by about 1 per metre near the surface, and have second derivatives there. Its origin should
-/// lie inside the surface: the search for a first touch starts there.
+/// G must have second derivatives near the surface, and |∇G| should be about 1 there. The origin of the frame
+/// should lie inside the surface, because the search for the first contact point starts there.
 template <class F>
 class ImplicitSurface final : public Surface {
 public:
-    /// G < 0 inside; a hollow, touched from inside, where concave. `size` [m] as Surface::size().
-    /// InvalidInput unless it is positive.
+    /// G < 0 inside. With `concave` contact is on the inside, and the body is where G > 0. `size` [m]: see
+    /// Surface::size(). InvalidInput unless the size is positive.
     ImplicitSurface(F G, double size, bool concave = false)
         : G(std::move(G)), length(positive("contact::ImplicitSurface", "the size of a surface", size)),
           concave(concave)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The contacts of a model file: an element of "contacts" becomes a ContactForce, or, where its normal is a constraint,
-/// an EvolvingContact.
+/// Reader of the contacts of a model file. An element of "contacts" becomes a ContactForce or, if "normal" is
+/// of type "constraint", an EvolvingContact.
 ///
 ///     {"name": "ball-floor", "body_i": "ball", "body_j": "ground",
 ///      "surface_i": {"type": "sphere", "radius": 0.2}, "surface_j": {"type": "plane"},
@@ -11,17 +11,20 @@
 ///                "rows": "tangent", "fallback": {"type": "hooke", "stiffness": 1e5}},
 ///     "friction": {"law": "rolling"}
 ///
-/// There friction is ideal rolling, or an EvolvingFriction of one of the laws, and "fallback" a ContactForce with the same
-/// law that stands by.
+/// For a constraint, "friction" is ideal rolling, friction in the equations of the constraint ("implicit"),
+/// or an EvolvingFriction with one of the registered laws. "fallback" adds a ContactForce with the same law,
+/// which replaces the constraint while the contact point is not unique.
 ///
-/// Only what is given enters the canonical text where a default depends on other keys.
+/// A key whose default depends on other keys enters the canonical text only if it is given.
 
 #include "contact/compliant/contact_force.hpp"
 #include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
+#include "dae/model.hpp"
 #include "dae/model_file_types.hpp"
+#include "lie/settings.hpp"
 
 namespace hilda::contact {
 
@@ -65,7 +68,8 @@ std::shared_ptr<const NormalLaw> read_hooke(ObjectReader& o)
     o.exclude("damping", "restitution");
     const double stiffness = o.positive("stiffness");
     if (o.has("restitution"))
-        return std::make_shared<Hooke>(Hooke::rebounding(stiffness, from_zero_to_one(o, "restitution", 1)));
+        return std::make_shared<Hooke>(
+            Hooke::with_restitution(stiffness, from_zero_to_one(o, "restitution", 1)));
     return std::make_shared<Hooke>(stiffness, o.not_negative("damping", 0));
 }
 
@@ -76,7 +80,7 @@ std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string&
     return std::make_shared<GivenForce>(o.not_negative("force"));
 }
 
-/// The law of "friction" and its keys; `law` is its name, which has been read.
+/// Reads the keys of a friction law. `law` is its name, which has been read before.
 std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string& law,
                                               const NormalLaw& normal)
 {
@@ -93,13 +97,13 @@ std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string
     p.zeta = o.not_negative("zeta", p.zeta);
     for (const auto& [key, D] :
          {std::pair("D_slide", &p.D_slide), std::pair("D_roll", &p.D_roll), std::pair("D_spin", &p.D_spin)})
-        if (o.look(key) != nullptr) *D = o.not_negative(key);
+        if (o.find(key) != nullptr) *D = o.not_negative(key);
     p.tracking.beta = o.number("beta", p.tracking.beta);
-    const FrictionLaw& kind = friction_law(law);
-    return kind.read != nullptr ? kind.read(o, p, normal) : kind.make(p);
+    const FrictionLaw& entry = friction_law(law);
+    return entry.read != nullptr ? entry.read(o, p, normal) : entry.make(p);
 }
 
-std::vector<std::string> names_of_laws()
+std::vector<std::string> law_names()
 {
     std::vector<std::string> names;
     for (const FrictionLaw& law : friction_laws()) names.push_back(law.name);
@@ -110,55 +114,56 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
 {
     if (!contact.has("friction")) return frictionless();
     ObjectReader o = contact.object("friction");
-    if (const dae::Json* law = o.look("law");
+    if (const dae::Json* law = o.find("law");
         law != nullptr && law->string() != nullptr && *law->string() == rolling)
-        o.fail("law", "ideal rolling is of a contact whose normal is a constraint, got \"rolling\"");
-    const std::string law = o.one_of("law", names_of_laws(), slide_roll_spin);
+        o.fail("law",
+               "law \"rolling\" needs \"normal\": {\"type\": \"constraint\"}, got a compliant contact");
+    const std::string law = o.one_of("law", law_names(), slide_roll_spin);
     std::shared_ptr<const FrictionModel> model = read_law(o, law, normal);
-    contact.keep("friction", o.finish());
+    contact.record("friction", o.finish());
     return model;
 }
 
-/// What "normal" says of a contact that is a constraint
-struct HeldNormal {
+/// Keys of "normal" of type "constraint"
+struct ConstraintNormal {
     Unilateral unilateral;
     EvolvingContact::NormalRows rows = EvolvingContact::NormalRows::tangent;
-    std::shared_ptr<const NormalLaw> fallback;  ///< none: nullptr
+    std::shared_ptr<const NormalLaw> fallback;  ///< nullptr if there is none
 };
 
-HeldNormal read_held_normal(ObjectReader& o)
+ConstraintNormal read_constraint_normal(ObjectReader& o)
 {
-    HeldNormal held;
-    Unilateral& how = held.unilateral;
-    how.enabled = o.flag("unilateral", false);
-    const auto of_one_that_opens = [&](const char* key) {
-        const bool given = o.look(key) != nullptr;
-        return how.enabled || given;
+    ConstraintNormal settings;
+    Unilateral& unilateral = settings.unilateral;
+    unilateral.enabled = o.flag("unilateral", false);
+    const auto is_unilateral_or_given = [&](const char* key) {
+        const bool given = o.find(key) != nullptr;
+        return unilateral.enabled || given;
     };
-    if (of_one_that_opens("restitution")) how.restitution = from_zero_to_one(o, "restitution", 0);
-    if (!how.enabled && o.has("restitution"))
-        o.fail("restitution", "restitution is of a contact that may open, \"unilateral\": true; got " +
-                                  dae::shortest(how.restitution) + " of one that never does");
-    if (of_one_that_opens("impact") && o.one_of("impact", {"newton", "poisson"}, "newton") == "poisson")
-        how.impact = Unilateral::Impact::poisson;
-    if (!how.enabled && o.has("impact"))
-        o.fail("impact",
-               "impact is of a contact that may open, \"unilateral\": true; got one that never does");
+    if (is_unilateral_or_given("restitution")) unilateral.restitution = from_zero_to_one(o, "restitution", 0);
+    if (!unilateral.enabled && o.has("restitution"))
+        o.fail("restitution",
+               "restitution needs \"unilateral\": true, got a bilateral contact with restitution " +
+                   dae::shortest(unilateral.restitution));
+    if (is_unilateral_or_given("impact") && o.one_of("impact", {"newton", "poisson"}, "newton") == "poisson")
+        unilateral.impact = Unilateral::Impact::poisson;
+    if (!unilateral.enabled && o.has("impact"))
+        o.fail("impact", "impact needs \"unilateral\": true, got a bilateral contact");
     if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
-        held.rows = EvolvingContact::NormalRows::fixed_xy;
+        settings.rows = EvolvingContact::NormalRows::fixed_xy;
     if (o.has("fallback")) {
         ObjectReader law = o.object("fallback");
-        held.fallback = read_normal(law, law.one_of("type", {"hertz", "hooke"}));
-        o.keep("fallback", law.finish());
+        settings.fallback = read_normal(law, law.one_of("type", {"hertz", "hooke"}));
+        o.record("fallback", law.finish());
     }
-    return held;
+    return settings;
 }
 
-/// What "friction" says of it: neither rolling nor a law is none
-struct HeldFriction {
-    bool rolls = false;
+/// Keys of "friction" of a constraint contact. If no member is set there is no friction.
+struct ConstraintFriction {
+    bool ideal_rolling = false;
     std::shared_ptr<const FrictionModel> law;
-    std::optional<ImplicitFriction> within_step;  ///< rows of the constraint
+    std::optional<ImplicitFriction> within_step;  ///< friction rows of the constraint
 };
 
 ImplicitFriction read_implicit(ObjectReader& o)
@@ -176,61 +181,64 @@ ImplicitFriction read_implicit(ObjectReader& o)
     return f;
 }
 
-HeldFriction read_held_friction(ObjectReader& contact, const HeldNormal& normal)
+ConstraintFriction read_constraint_friction(ObjectReader& contact, const ConstraintNormal& normal)
 {
     if (!contact.has("friction")) return {};
     ObjectReader o = contact.object("friction");
-    std::vector<std::string> laws = names_of_laws();
+    std::vector<std::string> laws = law_names();
     laws.insert(laws.begin(), {rolling, implicit});
     const std::string law = o.one_of("law", laws, slide_roll_spin);
-    HeldFriction held{.rolls = law == rolling, .law = nullptr, .within_step = {}};
-    if ((held.rolls || law == implicit) && normal.fallback != nullptr)
+    ConstraintFriction settings{.ideal_rolling = law == rolling, .law = nullptr, .within_step = {}};
+    if ((settings.ideal_rolling || law == implicit) && normal.fallback != nullptr)
         o.fail("law",
-               "a contact with a fallback needs a law that the fallback can have too, such as "
-               "slide-roll-spin; got "
-               "\"" +
-                   law + "\", which would end where it hands over");
+               "a contact with a fallback needs a friction law that the fallback supports, such as "
+               "slide-roll-spin; "
+               "got \"" +
+                   law + "\", which is defined for the constraint only");
     if (law == implicit)
-        held.within_step = read_implicit(o);
-    else if (!held.rolls)  // the constraint has no modulus, and the friction of the fallback is the same
-        held.law = read_law(o, law, GivenForce(0));
-    contact.keep("friction", o.finish());
-    return held;
+        settings.within_step = read_implicit(o);
+    else if (!settings.ideal_rolling)
+        // A constraint has no elastic modulus for "spin": "hertz". The fallback uses the same law.
+        settings.law = read_law(o, law, GivenForce(0));
+    contact.record("friction", o.finish());
+    return settings;
 }
 
-/// A contact point that wanders over a surface needs one without edges.
+/// Rejects surfaces with an edge or a fixed contact point: an evolving contact point needs a smooth surface.
 void check_smooth(const ObjectReader& o, std::string_view key, const Shape& shape)
 {
     if (dynamic_cast<const Disk*>(shape.surface.get()) != nullptr ||
         dynamic_cast<const Foot*>(shape.surface.get()) != nullptr)
-        o.fail(key, "a contact that is a constraint needs a smooth surface, got a " + shape.surface->name());
+        o.fail(key,
+               "a contact of type \"constraint\" needs a smooth surface, got a " + shape.surface->name());
 }
 
 void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& pair, const Shape& i,
                   const Shape& j)
 {
-    const HeldNormal held = read_held_normal(normal);
-    o.keep("normal", normal.finish());
-    const HeldFriction friction = read_held_friction(o, held);
+    const ConstraintNormal settings = read_constraint_normal(normal);
+    o.record("normal", normal.finish());
+    const ConstraintFriction friction = read_constraint_friction(o, settings);
     check_smooth(o, "surface_i", i);
     check_smooth(o, "surface_j", j);
     auto constraint =
         friction.within_step
-            ? std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, *friction.within_step, held.rows,
-                                                held.unilateral)
-            : std::make_unique<EvolvingContact>(
-                  pair.i, i, pair.j, j,
-                  friction.rolls ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none,
-                  held.rows, held.unilateral);
+            ? std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, *friction.within_step, settings.rows,
+                                                settings.unilateral)
+            : std::make_unique<EvolvingContact>(pair.i, i, pair.j, j,
+                                                friction.ideal_rolling ? EvolvingContact::Friction::rolling
+                                                                       : EvolvingContact::Friction::none,
+                                                settings.rows, settings.unilateral);
     const EvolvingContact& contact = *constraint;
-    constraint->fallback = held.fallback != nullptr;
+    constraint->fallback = settings.fallback != nullptr;
     pair.model.constrain(pair.name, std::move(constraint));
     if (friction.law != nullptr)
         pair.model.load(std::make_unique<EvolvingFriction>(pair.model, contact, friction.law));
-    if (held.fallback == nullptr) return;
-    auto force = std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, held.fallback,
-                                                friction.law != nullptr ? friction.law : frictionless());
-    force->stand_by(contact);
+    if (settings.fallback == nullptr) return;
+    auto force =
+        std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, settings.fallback,
+                                       friction.law != nullptr ? friction.law : frictionless());
+    force->set_fallback_of(contact);
     pair.model.load(std::move(force));
 }
 
@@ -241,7 +249,7 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
     const std::string type = normal.one_of("type", {"hertz", "hooke", "given", "constraint"});
     if (type == "constraint") return add_evolving(o, std::move(normal), pair, i, j);
     const std::shared_ptr<const NormalLaw> law = read_normal(normal, type);
-    o.keep("normal", normal.finish());
+    o.record("normal", normal.finish());
     pair.model.load(std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law,
                                                    read_friction(o, *law)));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A surface on a body.
+/// A surface fixed to a body.
 
 #pragma once
 
@@ -9,11 +9,12 @@
 
 namespace hilda::contact {
 
-/// A surface with its pose in the body: ᾱ of the surface is the point position + orientation ᾱ of the body frame.
+/// A surface and its pose in the body frame: s̄ = position + orientation ᾱ, where ᾱ are the coordinates of a
+/// point in the frame of the surface and s̄ those in the body frame [m].
 struct Shape {
     std::shared_ptr<const Surface> surface;
-    Vec3 position = Vec3::Zero();         ///< of its origin, body frame [m]
-    Mat3 orientation = Mat3::Identity();  ///< from its frame to the body frame
+    Vec3 position = Vec3::Zero();         ///< origin of the surface frame, in the body frame [m]
+    Mat3 orientation = Mat3::Identity();  ///< rotation matrix from the surface frame to the body frame
 
     Vec3 to_surface(const Vec3& s_bar) const { return orientation.transpose() * (s_bar - position); }
     Vec3 to_body(const Vec3& a) const { return position + orientation * a; }

@@ -12,17 +12,18 @@ namespace hilda::contact {
 
 namespace {
 
-// ∇G of this size, over that of ∇²G times the size of the surface, is none
+// |∇G| below this fraction of |∇²G| times the size of the surface is treated as zero
 constexpr double vanishing = 1e-12;
 
-/// g = |∇G|. NumericalFailure where it vanishes
+/// g = |∇G|. NumericalFailure if it vanishes.
 double checked_norm(const Surface& surface, const Vec3& a, const Vec3& gradient, const Mat3& hessian)
 {
     const double g = gradient.norm();
     if (!(g > vanishing * hessian.norm() * surface.size())) {
         std::ostringstream what;
         what.precision(6);
-        what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z() << ")";
+        what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z()
+             << "): the gradient of G vanishes";
         throw lie::NumericalFailure("nonfinite", what.str());
     }
     return g;
@@ -55,33 +56,33 @@ Mat3 Surface::shape_operator(const Vec3& a) const
 
 Vec3 Surface::project(const Vec3& a) const
 {
-    // x(y) = x + T y - (G/g) u, with y from  Tᵀ(I + s ∇²G)(T y - (G/g) u) = Tᵀ(a - x),  s = (a - x)·u / g
-    constexpr int most = 100;
-    constexpr double converged = 1e-9;  // of the size; the error that is left is its square
+    // update x ← x + T y - (G/g) u, with y from  Tᵀ(I + s ∇²G)(T y - (G/g) u) = Tᵀ(a - x),  s = (a - x)·u / g
+    constexpr int max_iterations = 100;
+    constexpr double tolerance = 1e-9;  // relative to the size; the remaining error is about its square
     Vec3 x = a;
     double correction = 0;
-    for (int k = 0; k < most; ++k) {
+    for (int k = 0; k < max_iterations; ++k) {
         const auto [G, gradient, H] = derivatives(x);
         const double g = checked_norm(*this, x, gradient, H);
         const Vec3 u = gradient / g;
-        // far from the surface the linearised G is no guide to the distance: bounded by the size
-        const double down = std::clamp(-G / g, -size() - a.norm(), size() + a.norm());
+        // far from the surface the linearised distance G/g is inaccurate: bound it by the size
+        const double normal_step = std::clamp(-G / g, -size() - a.norm(), size() + a.norm());
         const Eigen::Matrix<double, 3, 2> T = tangent_basis(u);
         const double s = (a - x).dot(u) / g;
         Eigen::Matrix2d M = s * T.transpose() * H * T;
         M.diagonal().array() += 1;
-        Eigen::Vector2d y = T.transpose() * (a - x - s * down * (H * u));
+        Eigen::Vector2d y = T.transpose() * (a - x - s * normal_step * (H * u));
         if (M.determinant() > 0 && M.trace() > 0)
-            y = M.inverse() * y;  // else not near a minimum: steepest way
-        const double length = y.norm(), most_length = 0.5 * size();
-        if (length > most_length) y *= most_length / length;
-        x += T * y + down * u;
-        correction = std::hypot(y.norm(), down);
-        if (correction <= converged * size()) return x;
+            y = M.inverse() * y;  // otherwise steepest descent: M is not positive definite
+        const double length = y.norm(), max_length = 0.5 * size();
+        if (length > max_length) y *= max_length / length;
+        x += T * y + normal_step * u;
+        correction = std::hypot(y.norm(), normal_step);
+        if (correction <= tolerance * size()) return x;
     }
     std::ostringstream what;
-    what << "no nearest point on a surface: correction " << correction << " m after " << most
-         << " iterations";
+    what << "the projection onto a surface did not converge: correction " << correction << " m after "
+         << max_iterations << " iterations";
     throw lie::NumericalFailure("contact_not_converged", what.str());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A smooth surface G(ᾱ) = 0: three formulas, and the geometry that follows from them.
+/// Implicit surfaces G(ᾱ) = 0: normal, curvature, support function and projection.
 
 #pragma once
 
@@ -13,20 +13,22 @@ namespace hilda::contact {
 using lie::Mat3;
 using lie::Vec3;
 
-/// The boundary of a body, in a frame of its own [m]. Derive with G, ∇G and ∇²G; they must be good in a
-/// neighbourhood of the surface. Everything else follows:
+/// The surface of a body, in its own frame [m]. A derived class implements G, ∇G and ∇²G, which must be
+/// defined in a neighbourhood of the surface. The geometry follows from them:
 ///
-///     g = |∇G|,  u = ∇G / g,  n = σ u            unit normal, out of the body
+///     g = |∇G|,  u = ∇G / g,  n = σ u            outward unit normal of the body
 ///     ∂n/∂ᾱ = σ (I - u uᵀ) ∇²G / g               not symmetric
 ///     K = (I - n nᵀ) (σ ∇²G / g) (I - n nᵀ)      shape operator, symmetric, K n = 0
 ///
-/// A curvature is positive where the body is convex: 1/R on a ball, 0 on a plane, -1/R in a bowl. Principal
-/// directions are not used: they are undefined at umbilics, and Fang (2022), A.4 has them only where a = b.
+/// Curvature is positive where the body is convex: 1/R for a sphere, 0 for a plane, -1/R for a concave
+/// sphere. Principal directions are not used: they are undefined at umbilic points. The (θ, φ) directions of
+/// Fang (2022), Sec. A.4, are principal only on the symmetry planes of an ellipsoid or where a = b.
 class Surface {
 public:
     virtual ~Surface() = default;
 
-    virtual std::string name() const { return "surface"; }  ///< in messages and in the model file
+    /// Name in messages and, for registered types, in model files
+    virtual std::string name() const { return "surface"; }
 
     virtual double value(const Vec3& a) const = 0;   ///< G
     virtual Vec3 gradient(const Vec3& a) const = 0;  ///< ∇G
@@ -36,37 +38,40 @@ public:
         Vec3 gradient;
         Mat3 hessian;
     };
-    /// All three at once, for who can compute them together
+    /// G, ∇G and ∇²G together. Override it if they share work.
     virtual Derivatives derivatives(const Vec3& a) const { return {value(a), gradient(a), hessian(a)}; }
-    /// σ: 1 where ∇G points out of the body, -1 for a hollow such as a bowl
+    /// σ: 1 if ∇G points out of the body, -1 for a concave surface (contact on the inside, such as a bowl)
     virtual double sigma() const { return 1; }
 
-    /// n. lie::NumericalFailure where ∇G vanishes: an apex, a centre.
+    /// n at ᾱ = a. lie::NumericalFailure "nonfinite" where ∇G vanishes, such as an apex or a centre; the same
+    /// holds for the derivative and the curvatures below.
     Vec3 normal(const Vec3& a) const;
     /// ∂n/∂ᾱ [1/m]
     Mat3 normal_derivative(const Vec3& a) const;
     /// K [1/m]
     Mat3 shape_operator(const Vec3& a) const;
-    /// tᵀ K t of a unit tangent t [1/m]: Euler's formula
+    /// Normal curvature tᵀ K t along the unit tangent t [1/m] (Euler's formula)
     double normal_curvature(const Vec3& a, const Vec3& t) const { return t.dot(shape_operator(a) * t); }
-    /// Half the trace of K [1/m]
+    /// Mean curvature, half the trace of K [1/m]
     double mean_curvature(const Vec3& a) const { return 0.5 * shape_operator(a).trace(); }
 
-    /// Whether G < 0 is a convex set, and support() knows its boundary
+    /// True if G < 0 is a convex set and support() is implemented
     virtual bool convex() const { return false; }
-    /// The point with ∇G along the unit vector u, where that is a closed form: of all points the furthest along
-    /// u. Nothing where it is not; lie::NumericalFailure where the furthest points are many.
+    /// Support point: the point of the surface that is farthest along the unit vector u, where ∇G is parallel
+    /// to u. Empty if there is no closed form. lie::NumericalFailure if the farthest point is not unique.
     virtual std::optional<Vec3> support(const Vec3&) const { return {}; }
 
-    /// The point of the surface nearest to a: Newton's method on |ᾱ - a|² over the tangent plane, started down
-    /// the gradient. lie::NumericalFailure "contact_not_converged" where it finds none.
+    /// The point of the surface closest to a, by Newton's method for min |ᾱ - a|² in the tangent plane,
+    /// combined with a correction along ∇G onto the surface. lie::NumericalFailure "contact_not_converged" if
+    /// it does not converge.
     virtual Vec3 project(const Vec3& a) const;
 
-    /// A length that tells the size of the surface [m], by which tolerances are scaled; 0 for a plane, which has none
+    /// Characteristic length of the surface [m], used to scale tolerances. 0 if the surface has none, such as
+    /// a plane.
     virtual double size() const = 0;
 
-    /// Length along the surface between two of its points that are `chord` apart, where that is a function of
-    /// the chord; else the chord, which is shorter by a part (chord κ)²/24.
+    /// Geodesic distance between two points at the straight distance `chord` [m], if it is a function of the
+    /// chord alone. Otherwise the chord itself, which is shorter by the fraction (chord κ)²/24.
     virtual double arc(double chord) const { return chord; }
 };
 

@@ -10,7 +10,7 @@ namespace hilda::contact {
 
 namespace {
 
-// Built on first use: files enrol their surfaces before main, in an order nobody fixes.
+// A function-local static: types are registered during static initialisation, whose order is unspecified.
 std::vector<SurfaceType>& list()
 {
     static std::vector<SurfaceType> types;
@@ -26,13 +26,13 @@ std::vector<std::string> names()
 
 Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
 {
-    if (z.empty() || o.look(z) == nullptr) return dae::read_orientation(o);
+    if (z.empty() || o.find(z) == nullptr) return dae::read_orientation(o);
     for (const char* other : {"A", "p", "axis_angle"})
         if (o.has(other)) o.fail(other, "the orientation must be given once, got " + z + " and " + other);
     const Vec3 n = o.direction(z).normalized();
     Mat3 axes;
     axes << tangent_basis(n), n;
-    return axes + Mat3::Zero();  // no -0, which would look odd in the canonical text
+    return axes + Mat3::Zero();  // turns -0 into 0 for the canonical text
 }
 
 }  // namespace
@@ -46,7 +46,8 @@ bool register_surface(SurfaceType type)
         std::lower_bound(all.begin(), all.end(), type,
                          [](const SurfaceType& a, const SurfaceType& b) { return a.name < b.name; });
     if (at != all.end() && at->name == type.name)
-        throw std::logic_error("two kinds of surface are called " + type.name);
+        throw std::logic_error(
+            "contact::register_surface: a surface type is already registered under the name " + type.name);
     all.insert(at, std::move(type));
     return true;
 }
@@ -61,13 +62,13 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key)
     shape.surface = type.read(o);
     shape.position = o.vec3("position", Vec3::Zero());
     shape.orientation = read_axes(o, type.z);
-    o.keep("A", dae::json(shape.orientation));
+    o.record("A", dae::json(shape.orientation));
 
-    dae::Json kept = o.finish();
-    std::erase_if(std::get<dae::Json::Object>(kept.value), [&](const dae::Json::Member& k) {
+    dae::Json canonical = o.finish();
+    std::erase_if(std::get<dae::Json::Object>(canonical.value), [&](const dae::Json::Member& k) {
         return k.key == "p" || k.key == "axis_angle" || (k.key == type.z && !type.z.empty());
     });
-    parent.keep(key, std::move(kept));
+    parent.record(key, std::move(canonical));
     return shape;
 }
 
@@ -75,7 +76,7 @@ Vec3 read_semi_axes(dae::ObjectReader& o)
 {
     const Vec3 semi_axes = o.vec3("semi_axes");
     if (!(semi_axes.minCoeff() > 0))
-        o.fail("semi_axes", "semi_axes must be positive, got " + dae::described(*o.look("semi_axes")));
+        o.fail("semi_axes", "semi_axes must be positive, got " + dae::described(*o.find("semi_axes")));
     return semi_axes;
 }
 
@@ -99,7 +100,7 @@ Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optio
             all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *x;
         }
     }
-    o.keep(key, {.value = rows});
+    o.record(key, {.value = rows});
     return all;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The surfaces that a model file knows by name.
+/// The registry of surface types and the reader of shapes in model files.
 
 #pragma once
 
@@ -10,35 +10,37 @@
 
 namespace hilda::contact {
 
-/// A kind of surface as it stands in the list
+/// A registered surface type
 struct SurfaceType {
     std::string name;
-    /// Reads the keys of this kind, lengths in m. Throws dae::PlacedError.
+    /// Reads the keys of this type, lengths in m. Throws dae::PlacedError.
     std::shared_ptr<const Surface> (*read)(dae::ObjectReader& o);
-    /// The key that gives the direction of z of its frame, such as "normal", where z has a name
+    /// Key for the direction of the z axis of the surface frame, such as "normal" or "axis". Empty if there
+    /// is none.
     std::string z = {};
 };
 
-/// By name
+/// All registered types, sorted by name
 const std::vector<SurfaceType>& surface_types();
 
-/// Puts a kind of surface into the list: the last line of its file.
+/// Registers a surface type. Call it in the initialiser of a constant at namespace scope in the file of the
+/// surface. std::logic_error if the name is already registered.
 bool register_surface(SurfaceType type);
 
-/// The shape under a key, such as
+/// Reads the shape under a key, such as
 ///
 ///     {"type": "sphere", "radius": 0.2, "concave": false, "position": [x, y, z], "A": [[...], [...], [...]]}
 ///
-/// with its pose in the body: position, by default its origin; orientation as one of A, p, axis_angle and the key of
-/// its kind for z, in the body frame, with x and y then anywhere; by default that of the body. The canonical text
-/// has A. Throws dae::PlacedError.
+/// The pose is given in the body frame. `position` defaults to the origin of the body frame. The orientation
+/// is one of A, p, axis_angle and the key SurfaceType::z, and defaults to the identity. If only z is given, x
+/// and y are chosen by tangent_basis(). The canonical text has A. Throws dae::PlacedError.
 Shape read_shape(dae::ObjectReader& parent, std::string_view key);
 
-/// Three positive lengths, for who reads an ellipsoid
+/// Reads the key "semi_axes": three positive lengths [m]
 Vec3 read_semi_axes(dae::ObjectReader& o);
 
-/// A list of lists of numbers, all of one length, as the rows of a matrix; for who reads samples or a mesh. `width` is
-/// that length, where it must be a certain one.
+/// Reads a list of rows of numbers, all of the same length, as a matrix. `width` is the required length of a
+/// row; without it the first row sets the length. Throws dae::PlacedError.
 Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width = {});
 
 }  // namespace hilda::contact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Two directions across a third.
+/// An orthonormal basis of the plane perpendicular to a unit vector.
 
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace hilda::contact {
 
-/// T (3x2) with TᵀT = I and Tᵀn = 0 for a unit vector n, (T_1, T_2, n) right-handed: Duff et al. (2017), without
-/// branches but for the sign of n_z, and exact to round-off for every n.
+/// T (3x2) with TᵀT = I and Tᵀn = 0 for a unit vector n; (T_1, T_2, n) is right-handed. Method of Duff et al.
+/// (2017). It is accurate to round-off for every n and discontinuous where n_z changes its sign.
 inline Eigen::Matrix<double, 3, 2> tangent_basis(const lie::Vec3& n)
 {
     const double sign = std::copysign(1.0, n.z());

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Variations of a block by central differences, for blocks that do not give theirs in closed form.
+/// Default variations of a block by central differences.
 #include "dae/block.hpp"
 
 namespace hilda::dae {
 
 namespace {
 
-constexpr double h = 6e-6;  // truncation h² and rounding 1e-16/h balance here
+constexpr double h = 6e-6;  // balances the truncation error h² and the rounding error 1e-16/h
 
-/// Component c of (δr_i, δθ_i, δr_j, δθ_j), then of (δṙ_i, δω̄_i, δṙ_j, δω̄_j)
-void move(Motion& bi, Motion& bj, int c, double by)
+/// Adds `by` to component c of (δr_i, δθ_i, δr_j, δθ_j, δṙ_i, δω̄_i, δṙ_j, δω̄_j).
+void displace(Motion& bi, Motion& bj, int c, double by)
 {
     Motion& body = c % 12 < 6 ? bi : bj;
     const int k = c % 6, axis = k % 3;
@@ -22,12 +22,12 @@ void move(Motion& bi, Motion& bj, int c, double by)
 }
 
 template <class F>
-auto difference(F f, const Motion& bi, const Motion& bj, int c)
+auto central_difference(F f, const Motion& bi, const Motion& bj, int c)
 {
-    Motion pi = bi, pj = bj, mi = bi, mj = bj;
-    move(pi, pj, c, h);
-    move(mi, mj, c, -h);
-    return ((f(pi, pj) - f(mi, mj)) / (2 * h));
+    Motion plus_i = bi, plus_j = bj, minus_i = bi, minus_j = bj;
+    displace(plus_i, plus_j, c, h);
+    displace(minus_i, minus_j, c, -h);
+    return ((f(plus_i, plus_j) - f(minus_i, minus_j)) / (2 * h));
 }
 
 }  // namespace
@@ -43,10 +43,10 @@ Mat12 Block::second_variation(const Motion& bi, const Motion& bj, double t) cons
     };
     Mat12 out;
     for (int c = 0; c < 12; ++c) {
-        Motion pi = bi, pj = bj, mi = bi, mj = bj;
-        move(pi, pj, c, h);
-        move(mi, mj, c, -h);
-        out.col(c) = (stacked(pi, pj) - stacked(mi, mj)) / (2 * h);
+        Motion plus_i = bi, plus_j = bj, minus_i = bi, minus_j = bj;
+        displace(plus_i, plus_j, c, h);
+        displace(minus_i, minus_j, c, -h);
+        out.col(c) = (stacked(plus_i, plus_j) - stacked(minus_i, minus_j)) / (2 * h);
     }
     return out;
 }
@@ -56,17 +56,17 @@ Variation Block::nu_variation(const Motion& bi, const Motion& bj, double t) cons
     const auto f = [&](const Motion& a, const Motion& b) { return nu(a, b, t); };
     Variation out;
     Vec3* const part[] = {&out.r_i, &out.pi_i, &out.r_j, &out.pi_j};
-    for (int c = 0; c < 12; ++c) (*part[c / 3])[c % 3] = difference(f, bi, bj, c);
+    for (int c = 0; c < 12; ++c) (*part[c / 3])[c % 3] = central_difference(f, bi, bj, c);
     return out;
 }
 
-GammaChange Block::gamma_variation(const Motion& bi, const Motion& bj, double t) const
+GammaDerivatives Block::gamma_variation(const Motion& bi, const Motion& bj, double t) const
 {
     const auto f = [&](const Motion& a, const Motion& b) { return gamma(a, b, t); };
-    GammaChange out;
+    GammaDerivatives out;
     Vec3* const part[] = {&out.i.r,    &out.i.theta, &out.j.r,    &out.j.theta,
                           &out.i.rdot, &out.i.omega, &out.j.rdot, &out.j.omega};
-    for (int c = 0; c < 24; ++c) (*part[c / 3])[c % 3] = difference(f, bi, bj, c);
+    for (int c = 0; c < 24; ++c) (*part[c / 3])[c % 3] = central_difference(f, bi, bj, c);
     return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A rigid body: what does not change while it moves.
+/// Constant properties of a rigid body.
 
 #pragma once
 
@@ -15,16 +15,16 @@ using lie::State;
 using lie::tilde;
 using lie::Vec3;
 
-/// The fixed body at the origin. Constraints and forces may name it; it has no equations.
+/// Number of the fixed body at the origin. Constraints and forces may refer to it. It has no equations.
 inline constexpr int ground = -1;
 
 struct Body {
     std::string name;
-    double m = 1;                   ///< [kg], positive
-    Mat3 J_bar = Mat3::Identity();  ///< [kg m²], body frame, about the centre of mass
+    double m = 1;                   ///< mass [kg]
+    Mat3 J_bar = Mat3::Identity();  ///< inertia about the centre of mass [kg m²], body frame
 
-    /// Throws InvalidInput unless m > 0, and J̄ is symmetric, positive definite, and a possible distribution
-    /// of mass: no principal moment larger than the sum of the other two.
+    /// Throws lie::InvalidInput unless m is positive and finite and J̄ is symmetric, positive definite and
+    /// physical: no principal moment exceeds the sum of the other two.
     void validate() const;
 };
 

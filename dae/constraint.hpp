@@ -1,87 +1,130 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Several constraint rows between two bodies that bring unknowns of their own.
+/// A general constraint between two bodies: position rows with algebraic variables, and velocity rows.
 
 #pragma once
 
 #include "dae/body.hpp"
-#include "lie/system.hpp"
+#include "lie/rows.hpp"
 
 namespace hilda::dae {
 
-/// Φ(r, A, α) = 0 with massless unknowns α, fewer than the rows; and after these rows some that hold velocities alone.
-/// Derive for what two bodies do that no fixed row can say: a contact point that wanders over both of them.
+/// Position rows Φ(r, A, α) = 0 of two bodies with algebraic variables α, and velocity rows C v = 0.
+///
+///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α) = 0                      Fang (2022), Eqs. 5.31 to 5.36
+///
+/// C = (Φ_r, Π̄) holds the derivatives of all rows and v = (ṙ, ω̄) the velocities. The constraint has fewer
+/// algebraic variables than position rows. Its velocity rows are nonholonomic constraints such as rolling.
+/// They have no Φ and may be regularised, as friction rows are. No row depends explicitly on time: ν = 0.
+///
+/// Use this class for a constraint that needs variables of its own, such as the contact points of two bodies
+/// in contact. A single scalar row without such variables is a Block.
+///
+/// A constraint is constant during a run. Everything that changes is in State: the algebraic variables, the
+/// internal states, the mode and the multipliers.
 class Constraint {
 public:
+    /// i and j are different bodies; one of them may be `ground`.
     Constraint(int i, int j) : i(i), j(j) {}
     virtual ~Constraint() = default;
 
-    static constexpr int most_rows = 8;  ///< of positions
-    virtual int rows() const = 0;        ///< of positions
+    static constexpr int max_position_rows = 8;
+    static constexpr int max_velocity_rows = 4;
+    /// 12 = 8 position rows + 4 velocity rows
+    static constexpr int max_rows = max_position_rows + max_velocity_rows;
+
+    /// Number of position rows, at most max_position_rows. In every function that takes a row number the
+    /// position rows come first and the velocity rows follow.
+    virtual int position_rows() const = 0;
+    /// Number of velocity rows, at most max_velocity_rows
     virtual int velocity_rows() const { return 0; }
-    /// Whether those give way in pairs, as lie::Rows::Compliant says; compliance() has K, D, S, μ, n of each pair.
+    /// Number of algebraic variables α, smaller than position_rows()
+    virtual int algebraic_variables() const = 0;
+
+    /// Whether the velocity rows are regularised in pairs, see lie::Rows::Regularised. The normal force of
+    /// each pair is N = n · λ, where λ are the multipliers of the first three position rows.
     virtual bool is_regularised() const { return false; }
-    int pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
+    int regularised_pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
+    /// Whether this pair is brought within its bound before the pairs for which the function returns false
     virtual bool solved_first(int /*pair*/) const { return false; }
-    virtual int unknowns() const = 0;
-    /// Numbers that it keeps in State::remembered; Φ may depend on them in how it is written, not in what it says
+
+    /// Number of internal states in State::internal_state. Φ may use them to select one of several equivalent
+    /// forms of its equations, such as a tangent basis. The solutions of Φ = 0 must not depend on them.
     virtual int internal_states() const { return 0; }
-    /// What it does, as State::memory has it
+
+    /// Mode of the constraint, stored in State::discrete_state. If the constraint is not active its rows and
+    /// multipliers are zero, and a step does not change its algebraic variables.
     enum Mode {
-        active = 0,
-        inactive = 1,        ///< holds nothing for a while
-        fallback_active = 2  ///< holds nothing: a force does what it cannot do any more
+        active = 0,          ///< its rows are part of the equations
+        inactive = 1,        ///< an open unilateral constraint; it may become active again
+        fallback_active = 2  ///< replaced by a force until the end of the run
     };
-    /// Whether it is ever in another mode than the first
+    /// Whether the mode can differ from `active`. If not, no mode is stored.
     virtual bool may_be_inactive() const { return false; }
-    /// Whether a force stands by for it, so that it hands over instead of failing
+    /// Whether a force can replace the constraint. Without a fallback the constraint throws where it fails.
     virtual bool has_fallback() const { return false; }
 
-    /// Where it is evaluated: its bodies, its own unknowns, what it remembers
-    struct At {
+    /// Arguments of an evaluation: the motions of the two bodies, and the constraint's own part of the state
+    struct Arguments {
         const Motion &bi, &bj;
-        double t;
-        const double *alpha, *internal_state;
-        bool inactive;                            ///< not in the mode `holds`
-        const Eigen::VectorXd* lambda = nullptr;  ///< of the whole system
+        double t;                                 ///< [s]
+        const double *alpha, *internal_state;     ///< algebraic_variables() and internal_states() numbers
+        bool inactive;                            ///< whether the mode differs from `active`
+        const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or none
     };
-    virtual void phi(const At& x, double* out) const = 0;
-    /// Derivatives of all rows: (r, π̄) of each body, and Φ_α of the rows of positions
+
+    /// Φ: position_rows() numbers
+    virtual void phi(const Arguments& x, double* out) const = 0;
+
     struct Derivatives {
-        Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, 12, 6> of_i, of_j;
-        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, most_rows> of_alpha;
+        using BodyRows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, max_rows, 6>;
+        using AlgebraicColumns =
+            Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_position_rows, max_position_rows>;
+
+        BodyRows C_i, C_j;           ///< (Φ_r, Π̄) of all rows for each body
+        AlgebraicColumns Phi_alpha;  ///< Φ_α, position_rows() × algebraic_variables()
     };
-    /// Into matrices of their full size, all of whose entries are zero or of an earlier call
-    virtual void variation(const At& x, Derivatives& out) const = 0;
-    /// γ of all rows, with Φ_α α̈ on the left for rows of positions
-    virtual void gamma(const At& x, double* out) const = 0;
-    /// Into the pairs that give way, in the order of their rows
-    virtual void compliance(const At& /*x*/, lie::Rows::Regularised* /*out*/) const {}
-    /// Bit c of the first twelve is clear where derivative c of this row, (r, pi) of body i and then of j, is always zero.
+    /// Derivatives of all rows. On entry the matrices have their full size and every entry is zero, or is the
+    /// result of an earlier call; entries that are always zero need not be written.
+    virtual void variation(const Arguments& x, Derivatives& out) const = 0;
+    /// γ of all rows: C v̇ + Φ_α α̈ = γ for a position row, C v̇ = γ for a velocity row
+    virtual void gamma(const Arguments& x, double* out) const = 0;
+    /// K, D, mu, S and n of the regularised pairs, in the order of their rows
+    virtual void regularisation(const Arguments& /*x*/, lie::Rows::Regularised* /*out*/) const {}
+    /// Sparsity pattern of a row: bit c (0 to 11) is clear if derivative c by (r_i, π̄_i, r_j, π̄_j) is zero in
+    /// every state.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
 
-    /// α that belongs to the poses of the bodies, from what is there; `afresh`: from nothing
-    virtual void update_alpha(const At& x, bool afresh, double* alpha) const = 0;
-    /// What is remembered, at a start and once per accepted step. Where the constraint cannot go on from here it throws
-    /// lie::NumericalFailure, or returns false if it hands over.
-    virtual bool update_internal_state(const At& x, bool start, double* internal_state) const = 0;
+    /// Computes α for the poses of the bodies. The initial guess is x.alpha. With `afresh` x.alpha is not
+    /// used, and α is found from the poses alone.
+    virtual void update_alpha(const Arguments& x, bool afresh, double* alpha) const = 0;
+    /// Updates the internal states, at a start and once per accepted step. If the constraint cannot continue
+    /// from x it returns false where it has a fallback, and throws lie::NumericalFailure otherwise.
+    virtual bool update_internal_state(const Arguments& x, bool start, double* internal_state) const = 0;
 
-    /// Distance of the two bodies where the rows are not quite satisfied, negative for overlap, α being that of track()
-    /// [m]
-    virtual double gap(const At& x) const = 0;
-    /// Rate of the gap [m/s]; and whether it may open by itself, so that at a start it need not be zero
-    virtual double separation_speed(const At& x) const = 0;
+    /// Signed distance of the two bodies at the points α [m], negative for an overlap
+    virtual double gap(const Arguments& x) const = 0;
+    /// Time derivative of the gap [m/s]
+    virtual double separation_speed(const Arguments& x) const = 0;
+    /// Whether the constraint can open. A unilateral constraint may start with a positive gap.
     virtual bool is_unilateral() const { return false; }
-    virtual double velocity_error(const At& x) const = 0;
-    /// What a position may be off at a start [m]
-    virtual double allowance() const = 0;
-    /// Why it cannot be used from here, as "what is wrong, got value"; empty when it can
-    virtual std::string objection(const At& /*x*/) const { return {}; }
+    /// Velocity that violates the active constraint [m/s]
+    virtual double velocity_error(const Arguments& x) const = 0;
+    /// Largest |gap| of an active constraint at a start [m]
+    virtual double position_tolerance() const = 0;
+    /// Reason why the constraint cannot be used from a start x, in the form "what is wrong, got value". An
+    /// empty string if it can.
+    virtual std::string start_error(const Arguments& /*x*/) const { return {}; }
+    /// Name of a row for messages
     virtual std::string row_name(int row) const { return "row " + std::to_string(row + 1); }
 
-    int i, j;  ///< body numbers, or ground
+    int i, j;  ///< body numbers, or `ground`
     std::string name;
-    int first_row = 0, first_velocity_row = 0;  ///< in the equations; these are set by the model
-    int first_alpha = 0, first_discrete_state = 0, first_internal_state = 0;  ///< in the state
+
+    // set by the model
+    int first_row = 0, first_velocity_row = 0;  ///< numbers of the first position row and velocity row
+    int first_alpha = 0;                        ///< index into State::alpha
+    int first_discrete_state = 0;               ///< index into State::discrete_state
+    int first_internal_state = 0;               ///< index into State::internal_state
 };
 
 }  // namespace hilda::dae

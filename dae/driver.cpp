@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Driver from a constant, and its complement.
+/// Construction of a driver and of its complement.
 
 #include "dae/driver.hpp"
 
@@ -8,7 +8,7 @@
 namespace hilda::dae {
 namespace {
 
-/// The shortest text that reads back as the same number.
+/// The shortest decimal text that is read as the same number
 std::string shortest(double c)
 {
     char digits[32];
@@ -29,10 +29,10 @@ std::optional<Driver> Driver::complement() const
 {
     const std::string_view outer = expression->outermost();
     if (outer != "cos" && outer != "sin") return std::nullopt;
-    // Only blanks, '(' and '+' can stand before the outermost function.
-    std::string swapped = text();
-    swapped.replace(swapped.find(outer), outer.size(), outer == "cos" ? "sin" : "cos");
-    return Driver(swapped);
+    // Only blanks, '(' and '+' can precede the outermost function in the text.
+    std::string complement_text = text();
+    complement_text.replace(complement_text.find(outer), outer.size(), outer == "cos" ? "sin" : "cos");
+    return Driver(complement_text);
 }
 
 }  // namespace hilda::dae

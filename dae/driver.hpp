@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// f(t) of a driving constraint, with its first two derivatives.                   Fang (2022), Eqs. 2.5a-d
+/// The prescribed function f(t) of a constraint and its first two derivatives.    Fang (2022), Eqs. 2.5a-d
 
 #pragma once
 
@@ -12,9 +12,9 @@
 
 namespace hilda::dae {
 
-/// A prescribed function of time: a constant (by default 0), or an Expression in t.
+/// A prescribed function of time: a constant, by default 0, or an Expression in t.
 ///
-/// Throws ExpressionError for a text that is none, and for a constant that is not finite.
+/// The constructors throw ExpressionError for an invalid expression and for a constant that is not finite.
 class Driver {
 public:
     Driver(double constant = 0);
@@ -23,19 +23,20 @@ public:
     double f(double t) const { return constant ? value : expression->value(t); }
     double fdot(double t) const { return constant ? 0 : expression->jet(t).fdot; }
     double fddot(double t) const { return constant ? 0 : expression->jet(t).fddot; }
+    /// f, ḟ and f̈ together
     Jet jet(double t) const { return expression->jet(t); }
 
     bool is_constant() const { return constant; }
     const std::string& text() const { return expression->text(); }
 
-    /// sin(g) for f = cos(g), and cos(g) for f = sin(g), where g is not constant; otherwise nothing.
+    /// sin(g) for f = cos(g) and cos(g) for f = sin(g), if g is not constant. Otherwise empty.
     ///
-    /// A DP1 driver f = cos(angle) loses rank at f = +-1, twice per turn. There the complement drives
-    /// instead, against a reference turned by 90 degrees.
+    /// A DP1 driver f = cos(angle) loses rank at f = ±1, twice per revolution. Near these instants the model
+    /// uses the complement, with a reference vector rotated by 90 degrees. See DP1::complement.
     std::optional<Driver> complement() const;
 
 private:
-    // Most drivers are constant, and are asked for at every iteration: then the expression is not looked at.
+    // Most drivers are constant and are evaluated in every iteration. The value is stored for them.
     bool constant;
     double value = 0;
     std::shared_ptr<const Expression> expression;

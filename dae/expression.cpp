@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Expression: recursive descent into a postfix program, and its evaluation on numbers or on jets.
+/// Parser of expressions (recursive descent) and evaluation of the postfix program for numbers and jets.
 
 #include "dae/expression.hpp"
 
@@ -35,7 +35,7 @@ constexpr Function functions[] = {
 
 // --- evaluation ---
 
-// These are for double; argument-dependent lookup adds those for Jet.
+// The functions for double. Those for Jet are found by argument-dependent lookup.
 using std::abs, std::exp, std::log, std::pow, std::sqrt;
 using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh;
 
@@ -48,7 +48,7 @@ T constant(double c)
         return c;
 }
 
-/// xⁿ by repeated multiplication: where x = 0, n x^(n-1) x' has no 0·inf in it.
+/// xⁿ by repeated squaring. At x = 0 the derivative n xⁿ⁻¹ ẋ then contains no product 0·inf.
 template <class T>
 T power(T x, int n)
 {
@@ -61,7 +61,8 @@ T power(T x, int n)
     return y;
 }
 
-/// Runs the program on T = double or Jet. x[0] is the top of the value stack, whose first place stays empty.
+/// Evaluates the program for T = double or Jet. x[0] is the top of the value stack; its first element is not
+/// used.
 template <class T>
 T evaluate(std::span<const Instruction> program, std::span<const T> variables) noexcept
 {
@@ -102,12 +103,12 @@ T evaluate(std::span<const Instruction> program, std::span<const T> variables) n
     return x[0];
 }
 
-// --- reading ---
+// --- parser ---
 
 bool is_digit(char c) { return '0' <= c && c <= '9'; }
 bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
 
-/// One line of at most 60 characters around the given place, for messages.
+/// Part of the text for messages: one line of at most 60 characters around the given position
 std::string excerpt(std::string_view text, std::size_t place)
 {
     constexpr std::size_t width = 60;
@@ -139,7 +140,7 @@ public:
         skip_blanks();
         if (at_end()) fail("empty expression", place);
         sum();
-        if (!at_end()) misplaced();
+        if (!at_end()) fail_misplaced();
         return program;
     }
 
@@ -180,7 +181,7 @@ private:
 
     void signed_power()
     {
-        // Every recursion comes through here, so this bounds the machine's stack as well.
+        // Every recursion passes through this function, so that the call stack is bounded as well.
         if (++nesting > Expression::max_depth) fail_too_deep(place);
         const std::size_t at = place;
         if (accept("-")) {
@@ -196,7 +197,7 @@ private:
 
     void power()
     {
-        constexpr int max_multiplied = 64;  // beyond, pow() is exact enough and not slower
+        constexpr int max_multiplied = 64;  // for larger exponents pow() is accurate and not slower
         operand();
         const std::size_t at = place;
         if (!accept("**") && !accept("^")) return;
@@ -238,7 +239,7 @@ private:
         const std::string_view digits = text.substr(at, end - begin);
         if (error == std::errc::result_out_of_range)
             fail("the number '" + excerpt(digits, 0) + "' is out of range", at);
-        if (error != std::errc()) fail("'.' without digits is no number", at);
+        if (error != std::errc()) fail("'.' without digits is not a number", at);
         place += digits.size();
         skip_blanks();
         push({.op = Op::constant, .c = c}, at);
@@ -289,7 +290,7 @@ private:
     void close(std::size_t open)
     {
         if (at_end()) fail("'(' is never closed", open);
-        if (!accept(")")) misplaced();
+        if (!accept(")")) fail_misplaced();
     }
 
     // characters
@@ -309,15 +310,17 @@ private:
         return true;
     }
 
-    // the program
+    // program
 
+    /// Appends an instruction that puts one value on the stack.
     void push(const Instruction& operand, std::size_t at)
     {
         if (++height > Expression::max_depth) fail_too_deep(at);
         append(operand, at);
     }
 
-    /// Appends an operation on the last n values; computes it at once where they are constants.
+    /// Appends an operation on the last n values. If these are constants, the operation is replaced by its
+    /// result.
     void apply(const Instruction& operation, int n, std::size_t at)
     {
         append(operation, at);
@@ -361,8 +364,8 @@ private:
         fail(std::string("unexpected '") + text[place] + "'", place);
     }
 
-    /// A complete value is followed by what cannot follow it.
-    [[noreturn]] void misplaced() const
+    /// Error: the text continues after a complete value without an operator.
+    [[noreturn]] void fail_misplaced() const
     {
         const char c = text[place];
         if (c == ')') fail("')' was never opened", place);
@@ -394,9 +397,9 @@ private:
     std::string_view text;
     const std::vector<std::string>& variables;
     std::vector<Instruction> program;
-    std::size_t place = 0;  // the next character to read
-    int nesting = 0;        // of signed_power
-    int height = 0;         // of the value stack after the program so far
+    std::size_t place = 0;  // position of the next character
+    int nesting = 0;        // recursion depth of signed_power
+    int height = 0;         // number of values on the stack after the last instruction
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Formulas of the model file, such as "pi/4*cos(2*t)": compiled once, evaluated with exact derivatives.
+/// Arithmetic expressions of the model file, such as "pi/4*cos(2*t)". They are compiled once and evaluated
+/// with exact derivatives.
 
 #pragma once
 
@@ -13,52 +14,54 @@
 
 namespace hilda::dae {
 
-/// A text that is no expression. The message quotes it, e.g.
+/// An invalid expression. The message quotes its text, for example
 ///     unknown function 'sine' in "sine(2*t)" at column 1; did you mean 'sin'?
 class ExpressionError : public std::runtime_error {
 public:
     ExpressionError(const std::string& message, int column) : std::runtime_error(message), column(column) {}
 
-    int column;  ///< of the first character that is wrong, counted from 1
+    int column;  ///< column of the error, counted from 1
 };
 
-/// An arithmetic expression in named variables, held as a flat postfix program.
+/// An arithmetic expression in named variables, compiled to a postfix program.
 ///
-///     numbers     1  .5  1.  2e-3; the same in every locale
-///     names       the variables, pi, e; a variable may hide the other two
-///     operators   + - * /, and ^ (also **), which is right associative and binds more tightly than a
-///                 sign on its left: -t^2 = -(t^2), 2^-3 = 1/8. The exponent is constant; with an integer
-///                 one 0^2 and (-2)^3 are exact, and x^0 = 1.
+///     numbers     1  .5  1.  2e-3, independent of the locale
+///     names       the variables, pi, e. A variable may have the name pi or e.
+///     operators   + - * / and ^ (also **). ^ is right associative and binds more tightly than a sign on its
+///                 left: -t^2 = -(t^2), 2^-3 = 1/8. The exponent is constant. Integer exponents up to 64 are
+///                 evaluated by multiplication, so that 0^2 and (-2)^3 are exact. x^0 = 1.
 ///     functions   sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs
 ///                 min(a,b)  max(a,b)
 ///                 step(x)      0 for x < 0, else 1
-///                 if(c,a,b)    a for c > 0, else b; the other one may be inf or nan
+///                 if(c,a,b)    a for c > 0, else b; the other value may be inf or nan
 ///
-/// Derivatives are exact. abs, min, max and if have kinks; there fdot and fddot are those of the branch that
-/// holds just after t, found from the first two derivatives of what is compared. f itself is always value():
-/// where if or step jumps, no derivative tells of the jump. Where a derivative does not exist (sqrt at 0,
-/// asin at 1), it is inf or nan; nan in c of if(c,a,b) gives nan.
+/// Derivatives are exact. At a kink of abs, min, max and if, fdot and fddot are those of the branch that is
+/// valid immediately after t. The branch is determined from the first two derivatives of the compared
+/// expressions. f always equals value(). A jump of if or step does not appear in the derivatives. A
+/// derivative that does not exist (sqrt at 0, asin at 1) is inf or nan. If c in if(c,a,b) is nan, the result
+/// is nan.
 ///
-/// Parts without variables are computed when the text is read, and refused if not finite. Reading throws
-/// ExpressionError; evaluation neither throws nor allocates.
+/// Constant parts are evaluated when the text is read; they must be finite. The constructor throws
+/// ExpressionError. The evaluation does not throw and does not allocate memory.
 class Expression {
 public:
     static constexpr int max_characters = 4096;
     static constexpr int max_instructions = 1024;
-    static constexpr int max_depth = 64;  ///< of nested parentheses, signs and powers, and of the value stack
+    static constexpr int max_depth = 64;  ///< of parentheses, signs and powers; size of the value stack
 
+    /// Compiles the text. `variables` gives the names and the order of the variables.
     explicit Expression(std::string_view text, const std::vector<std::string>& variables = {"t"});
 
-    /// The value for these variables, in the order of the constructor.
+    /// Value for these variables, in the order of the constructor
     double value(std::span<const double> x) const noexcept;
     double value(double t) const noexcept { return value({&t, 1}); }
 
-    /// Value and time derivatives of an expression in t alone.
+    /// Value, first and second derivative of an expression in one variable
     Jet jet(double t) const noexcept;
 
     bool is_constant() const { return program.size() == 1 && program[0].op == Op::constant; }
 
-    /// The function applied last: "cos" for cos(2*t), "" for 2*cos(t) or a constant.
+    /// Name of the outermost function: "cos" for cos(2*t), "" for 2*cos(t) or a constant
     std::string_view outermost() const;
 
     const std::string& text() const { return source; }
@@ -72,8 +75,8 @@ public:
 
     struct Instruction {
         Op op;
-        int n = 0;     ///< which variable, or the integer exponent
-        double c = 0;  ///< the constant, or the real exponent
+        int n = 0;     ///< number of the variable, or integer exponent
+        double c = 0;  ///< constant, or real exponent
     };
 
 private:

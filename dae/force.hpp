@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What acts on the bodies besides constraints. Derive from Force for a law of your own.
+/// Applied forces and torques.
 
 #pragma once
 
 #include "dae/body.hpp"
-#include "lie/system.hpp"
+#include "lie/loads.hpp"
 
 #include <array>
 #include <limits>
@@ -12,55 +12,63 @@
 
 namespace hilda::dae {
 
+/// An applied load on one or more bodies. Derive from Force to add a force law.
+///
+/// A force is constant during a run. Everything that changes is in the state.
 class Force {
 public:
     virtual ~Force() = default;
 
-    /// Adds to F [N, global, at the centre of mass] and n̄ [N m, body frame] of the bodies it acts on. Must
-    /// depend on the state alone, and allocate nothing.
+    /// Adds the loads in the state x to F [N, global frame, at the centre of mass] and n̄ [N m, body frame] of
+    /// the bodies. The result may depend on x only. The function must not allocate memory.
     virtual void add(const State& x, lie::Loads& out) const = 0;
-    /// Potential energy [J] where the force has one
+    /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
 
-    /// Why the force cannot be used from the start x; empty when it can. Asked before anything else, when x
-    /// does not have its memory yet, and before positions and velocities are put on the constraints.
-    virtual std::string objection(const State& /*x*/) const { return {}; }
+    /// Reason why the force cannot be used from the start x, in the form "what is wrong, got value". An empty
+    /// string if it can. It is called first at a start: x has no internal states yet, and its positions and
+    /// velocities are not yet projected onto the constraints.
+    virtual std::string start_error(const State& /*x*/) const { return {}; }
 
-    /// How many whole numbers this force keeps in State::memory from step to step (turns of a torsion spring),
-    /// and how many real ones in State::remembered (a contact point, the stretch of a bristle).
+    /// Number of discrete states in State::discrete_state, such as the revolutions of a torsion spring, and
+    /// of internal states in State::internal_state, such as the elastic displacement of a friction law
     virtual int discrete_states() const { return 0; }
     virtual int internal_states() const { return 0; }
-    /// Brings both up to date: at a start, where all are zero, and once per accepted step, for the state after
-    /// it, which comes with what was remembered in the state before. Allocates nothing.
+    /// Updates both kinds of states in x. It is called at a start, where all are zero, and once per accepted
+    /// step: x is then the state after the step, with the discrete and internal states of the state before
+    /// it. The function must not allocate memory.
     virtual void update_internal_state(State& /*x*/) const {}
-    /// Whether remember() reads the multipliers of x. A start then repeats itself until they and the loads agree.
+    /// Whether update_internal_state() reads x.lambda. A start then iterates until the loads and the
+    /// multipliers are consistent.
     virtual bool internal_state_uses_multipliers() const { return false; }
-    int first_discrete_state = 0, first_internal_state = 0;  ///< where they begin; set by the model
+    int first_discrete_state = 0, first_internal_state = 0;  ///< indices into the state, set by the model
 
-    /// The largest step [s] with which a scheme that takes this force as it is at the beginning of the step is
-    /// stable
+    /// Stability limit of the step [s] for schemes that evaluate this force explicitly, at the beginning of a
+    /// step
     virtual double stable_step(const State& /*x*/) const { return std::numeric_limits<double>::infinity(); }
 
-    /// The bodies whose motion it depends on, and on which alone it acts; `ground` for none. A force that says
-    /// so is differentiated where a scheme wants its stiffness.
+    /// The bodies on which the force acts, if it depends on the motion of these bodies only; `ground` fills
+    /// an unused place. Schemes with an exact Newton matrix differentiate the force by the motions of these
+    /// bodies. With the default, two times `ground`, the force does not contribute to the Newton matrix.
     virtual std::array<int, 2> bodies() const { return {ground, ground}; }
 
-    /// Highest body number it acts on, and a name for messages
+    /// Highest number of the bodies on which the force acts
     virtual int last_body() const = 0;
     std::string name;
-    /// What messages call it
-    virtual std::string in_words() const { return "force '" + name + "'"; }
+    /// Type and name for messages
+    virtual std::string label() const { return "force '" + name + "'"; }
 
 protected:
-    /// The ground stands still at the origin.
+    /// Motion of body b. The ground is at rest at the origin.
     static const Motion& motion(const State& x, int b)
     {
         static const Motion at_rest;
         return b == ground ? at_rest : x.body[b];
     }
 
-    /// A force F [N, global] at the point s_bar of body b
-    static void push(int b, const Vec3& F, const Vec3& s_bar, const State& x, lie::Loads& out)
+    /// Adds a force F [N, global frame] that acts at the point s_bar [m, body frame] of body b, and its
+    /// moment about the centre of mass. Does nothing for the ground.
+    static void apply_force(int b, const Vec3& F, const Vec3& s_bar, const State& x, lie::Loads& out)
     {
         if (b == ground) return;
         out.F[b] += F;

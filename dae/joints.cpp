@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// The rows of the joints.
 #include "dae/joints.hpp"
 
 #include "dae/constraints/cd.hpp"
@@ -6,6 +7,11 @@
 #include "dae/constraints/dp1.hpp"
 #include "dae/constraints/dp2.hpp"
 #include "dae/constraints/driven_hinge.hpp"
+#include "lie/check.hpp"
+
+#include <cmath>
+#include <memory>
+#include <utility>
 
 namespace hilda::dae {
 
@@ -25,7 +31,7 @@ Vec3 unit(const Vec3& axis)
     return axis / length;
 }
 
-/// Two vectors that make a right-handed orthonormal triad with the axis: (first, second, axis).
+/// Two unit vectors that form a right-handed orthonormal triad (first, second, axis) with the axis
 struct Perpendicular {
     Vec3 first, second;
     explicit Perpendicular(const Vec3& axis)
@@ -41,11 +47,13 @@ struct Perpendicular {
 Mat3 orientation(const State& x, int b) { return b == ground ? Mat3::Identity() : x.body[b].A; }
 Vec3 position(const State& x, int b) { return b == ground ? Vec3::Zero() : x.body[b].r; }
 
+/// Adds the rows of coinciding points.
 void coincide(Blocks& blocks, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j)
 {
     for (int k = 0; k < 3; ++k) add<CD>(blocks, Vec3::Unit(k), i, s_bar_i, j, s_bar_j);
 }
 
+/// Adds the rows of parallel axes.
 void parallel(Blocks& blocks, int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j)
 {
     const Perpendicular p(axis_bar_i);
@@ -53,7 +61,7 @@ void parallel(Blocks& blocks, int i, const Vec3& axis_bar_i, int j, const Vec3& 
     add<DP1>(blocks, i, p.second, j, unit(axis_bar_j));
 }
 
-/// Point Q of body j stays on the line through P of body i.
+/// Adds the rows of a point Q of body j on the axis through P of body i.
 void on_axis(Blocks& blocks, int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, const Vec3& s_bar_j)
 {
     const Perpendicular p(axis_bar_i);
@@ -141,10 +149,12 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
     const Vec3 axis = orientation(x, i) * unit(axis_bar_i);
     const double c = std::cos(g.f(x.t)), s = std::sin(g.f(x.t));
     const Vec3 towards = orientation(x, i) * (c * p.first + s * p.second);
-    // w is to turn with body j: perpendicular to its own axis, also where the start is not exact
+    // w is perpendicular to the axis of body j, also if the initial data are not exact
     const Vec3 axis_j = orientation(x, j) * unit(axis_bar_j);
     if (axis.dot(axis_j) < 0.9)
-        lie::reject("hinge driver", "the two axes must be parallel at the start, the same way; their cosine",
+        lie::reject("hinge driver",
+                    "the two axes must be parallel at the start and point in the same direction; "
+                    "cosine of their angle",
                     axis.dot(axis_j));
     const Vec3 w = (towards - axis_j * axis_j.dot(towards)).normalized();
     Blocks blocks;

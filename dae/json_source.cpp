@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// JSON parser with locations, built on the event interface (SAX) of nlohmann::json; changes by --set;
+/// output.
 #include "dae/json_source.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,9 +17,10 @@ namespace hilda::dae {
 
 namespace {
 
-constexpr double largest_exact_integer = 9007199254740991;  // 2^53 - 1; 2^53 may have been 2^53 + 1
+// 2^53 - 1. The value 2^53 may result from rounding 2^53 + 1.
+constexpr double largest_exact_integer = 9007199254740991;
 
-/// Walks over the text and tells how far the parser has read. nlohmann's events come without a place.
+/// Iterator that counts the bytes read by the parser. The events of nlohmann::json have no position.
 class CountingIterator {
 public:
     using iterator_category = std::input_iterator_tag;
@@ -49,28 +52,28 @@ bool is_word(char c)
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // UTF-8
 
-/// At most 60 bytes of a text, whole characters.
+/// The first characters of a text, at most 60 bytes
 std::string excerpt(std::string_view s)
 {
-    constexpr std::size_t most = 60;
-    if (s.size() <= most) return std::string(s);
-    std::size_t end = most;
+    constexpr std::size_t max_length = 60;
+    if (s.size() <= max_length) return std::string(s);
+    std::size_t end = max_length;
     while (end > 0 && continues_character(s[end])) --end;
     return std::string(s.substr(0, end)) + "...";
 }
 
-/// An excerpt in double quotes, escaped as in JSON
+/// An excerpt in double quotes, with the escapes of JSON
 std::string in_quotes(std::string_view s)
 {
     return nlohmann::json(excerpt(s)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Builds the tree from nlohmann's events; they come in the order of the text.
+/// Builds the tree from the events of nlohmann::json, which have the order of the text.
 class Builder {
 public:
     Builder(std::string_view text, const JsonSource& source) : text(text), source(source)
     {
-        // nlohmann skips a byte order mark
+        // nlohmann::json skips a byte order mark.
         if (text.starts_with("\xEF\xBB\xBF")) token_end = 3;
     }
 
@@ -104,7 +107,7 @@ public:
     bool end_array() { return close_container(); }
     bool end_object()
     {
-        refuse_duplicates(std::get<Json::Object>(open.back()->value));
+        check_duplicates(std::get<Json::Object>(open.back()->value));
         return close_container();
     }
     bool key(std::string& k)
@@ -121,10 +124,10 @@ public:
     }
 
 private:
-    // places
+    // locations
 
-    /// Where the token begins that ends where the parser is: after blanks and the separators before it, which
-    /// are no events.
+    /// Position of the first byte of the current token. Blanks and separators before it are skipped, because
+    /// they cause no events.
     std::uint32_t token_start() const
     {
         std::size_t at = token_end;
@@ -134,7 +137,7 @@ private:
         return static_cast<std::uint32_t>(at);
     }
 
-    /// Of the value that is being read
+    /// JSON pointer of the value that is being read
     std::string pointer() const
     {
         std::string p;
@@ -155,11 +158,11 @@ private:
 
     // values
 
-    /// Puts a value where it belongs and returns it there.
+    /// Inserts a value into the innermost open container and returns a reference to it.
     Json& put(Json&& v)
     {
         if (++values > JsonSource::max_values)
-            fail(v.offset, "more than " + std::to_string(JsonSource::max_values) + " values");
+            fail(v.offset, "the text has more than " + std::to_string(JsonSource::max_values) + " values");
         if (open.empty()) return root = std::move(v);
         if (auto* list = std::get_if<Json::List>(&open.back()->value))
             return list->emplace_back(std::move(v));
@@ -180,10 +183,11 @@ private:
         double x = 0;
         const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), x);
         const std::string_view digits(text.data() + at, static_cast<std::size_t>(end - (text.data() + at)));
-        if (error != std::errc()) fail(at, "a number beyond the range of double precision, got " + word(at));
+        if (error != std::errc())
+            fail(at, "the number is outside the range of double precision, got " + word(at));
         if (digits.find_first_of(".eE") == std::string_view::npos && std::abs(x) > largest_exact_integer)
-            fail(at, "an integer too large to be exact, got " + word(at) +
-                         "; at most 2^53 - 1, or write it with an exponent");
+            fail(at, "the integer is too large to be exact, got " + word(at) +
+                         "; at most 2^53 - 1 is allowed, or write it with an exponent");
         return add(x);
     }
 
@@ -209,10 +213,10 @@ private:
     {
         if (s.size() > JsonSource::max_string)
             fail(token_start(), "a string of " + std::to_string(s.size()) + " bytes, got " + in_quotes(s) +
-                                    "; at most " + std::to_string(JsonSource::max_string));
+                                    "; at most " + std::to_string(JsonSource::max_string) + " are allowed");
     }
 
-    void refuse_duplicates(const Json::Object& object)
+    void check_duplicates(const Json::Object& object)
     {
         std::vector<std::size_t> order(object.size());
         std::iota(order.begin(), order.end(), 0);
@@ -224,12 +228,13 @@ private:
             open.pop_back();
             const std::string parent = open.empty() ? "" : pointer_in_parent();
             throw PlacedError(source.place(second.offset, pointer_to(parent, second.key)) + ": the key " +
-                              in_quotes(second.key) + " is there twice; first at " +
+                              in_quotes(second.key) + " is given twice; first at " +
                               source.place(first.offset, ""));
         }
     }
 
-    /// Of the object that was just taken off the stack; unlike pointer(), it is already in its list.
+    /// JSON pointer of the object that was just removed from the stack. In contrast to pointer(), it is
+    /// already an element of its list.
     std::string pointer_in_parent() const
     {
         std::string p = pointer();
@@ -240,24 +245,25 @@ private:
 
     // syntax
 
-    /// What stands at a place: a string, a word, or one character.
+    /// The string, word or character at a position, for messages
     std::string word(std::size_t at) const
     {
-        constexpr std::size_t most = 30;
+        constexpr std::size_t max_length = 30;
         if (text[at] == '"')
-            if (const std::size_t quote = text.find('"', at + 1); quote < at + most)
+            if (const std::size_t quote = text.find('"', at + 1); quote < at + max_length)
                 return in_quotes(text.substr(at + 1, quote - at - 1));
         std::size_t end = at;
-        while (end < text.size() && end - at < most && is_word(text[end])) ++end;
+        while (end < text.size() && end - at < max_length && is_word(text[end])) ++end;
         if (end > at)
-            return "'" + std::string(text.substr(at, end - at)) + (end - at == most ? "..." : "") + "'";
+            return "'" + std::string(text.substr(at, end - at)) + (end - at == max_length ? "..." : "") + "'";
         const auto code = static_cast<unsigned char>(text[at]);
         if (code > ' ' && code < 127) return std::string("'") + text[at] + "'";
         return "byte " + std::to_string(code);
     }
 
-    /// nlohmann says "[...] parse error at line 1, column 5: syntax error while parsing value - invalid
-    /// literal; last read: 'nan'; expected ...". Kept are the reason and what is expected.
+    /// Converts a message of nlohmann::json such as "[...] parse error at line 1, column 5: syntax error
+    /// while parsing value - invalid literal; last read: 'nan'; expected ...". The reason and the expected
+    /// token are used.
     [[noreturn]] void syntax_error(const std::string& what) const
     {
         std::size_t at = token_start();
@@ -267,24 +273,24 @@ private:
             dash == std::string::npos ? "" : what.substr(dash + 3, std::min(read, expected) - dash - 3);
         std::string allowed = expected == std::string::npos || expected < dash ? "" : what.substr(expected);
         if (what.find("number overflow") != std::string::npos)
-            fail(at, "a number beyond the range of double precision, got " + word(at));
-        if (at >= text.size()) fail(text.size(), "not JSON: the text ends too early" + allowed);
+            fail(at, "the number is outside the range of double precision, got " + word(at));
+        if (at >= text.size()) fail(text.size(), "not JSON: unexpected end of the text" + allowed);
 
         const char last = text[consumed - 1];
         if (reason.starts_with("invalid string") && (last == '\n' || last == '\r'))
-            fail(at, "not JSON: a string that is not closed on its line, got " +
+            fail(at, "not JSON: a string must be closed on its line, got " +
                          in_quotes(text.substr(at + 1, consumed - at - 2)));
         if (reason.starts_with("invalid string") && reason.find("missing closing quote") == std::string::npos)
-            at = consumed - 1;  // the character in the string that is wrong
+            at = consumed - 1;  // the invalid character in the string
         std::size_t before = at;
         while (before > 0 && is_blank(text[before - 1])) --before;
         const std::string got = word(at);
         if ((text[at] == '}' || text[at] == ']') && before > 0 && text[before - 1] == ',')
-            fail(before - 1, "not JSON: a comma that nothing follows, before " + got);
-        if (text[at] == '/' || text[at] == '#') allowed = "; JSON has no comments, use the key \"note\"";
-        if (text[at] == '\'') allowed = "; strings are written in double quotes";
+            fail(before - 1, "not JSON: a comma without a following value, before " + got);
+        if (text[at] == '/' || text[at] == '#') allowed = "; JSON has no comments; use the key \"note\"";
+        if (text[at] == '\'') allowed = "; strings must be in double quotes";
         if (got.find("nan") == 1 || got.find("NaN") == 1 || got.find("inf") < 3 || got.find("Inf") < 3)
-            allowed = "; numbers are finite";
+            allowed = "; numbers must be finite";
         if (reason.empty()) reason = "syntax error";
         fail(at,
              "not JSON: " + reason + (reason.find(got) == std::string::npos ? ", got " + got : "") + allowed);
@@ -292,13 +298,14 @@ private:
 
     std::string_view text;
     const JsonSource& source;
-    std::size_t consumed = 0;   // by the parser, which may have looked one character ahead after a number
-    std::size_t token_end = 0;  // consumed when the token before was complete
+    std::size_t consumed = 0;   // bytes read by the parser; one more after a number (look-ahead)
+    std::size_t token_end = 0;  // value of `consumed` at the end of the preceding token
     std::size_t values = 0;
     Json root;
-    std::vector<Json*> open;  // containers not closed yet; only the innermost one changes
+    std::vector<Json*> open;  // open containers; only the innermost one changes
 };
 
+/// Positions of the first bytes of the lines
 std::vector<std::uint32_t> line_starts(std::string_view text)
 {
     std::vector<std::uint32_t> starts = {0};
@@ -307,7 +314,7 @@ std::vector<std::uint32_t> line_starts(std::string_view text)
     return starts;
 }
 
-/// The member or element `key` of a value; nullptr where there is none.
+/// The member or element `key` of a value, or nullptr
 Json* child(Json& v, const std::string& key)
 {
     if (auto* object = std::get_if<Json::Object>(&v.value)) {
@@ -322,15 +329,15 @@ Json* child(Json& v, const std::string& key)
     return nullptr;
 }
 
-/// Gives a value that has no place in the file the one of what it stands for.
-void place_at(Json& v, std::uint32_t offset, std::int32_t change)
+/// Gives a value from --set, and all its elements, the location of the value that it replaces.
+void set_location(Json& v, std::uint32_t offset, std::int32_t change)
 {
     v.offset = offset;
     v.change = change;
     if (auto* list = std::get_if<Json::List>(&v.value))
-        for (Json& element : *list) place_at(element, offset, change);
+        for (Json& element : *list) set_location(element, offset, change);
     if (auto* object = std::get_if<Json::Object>(&v.value))
-        for (Json::Member& m : *object) m.offset = offset, place_at(m.value, offset, change);
+        for (Json::Member& m : *object) m.offset = offset, set_location(m.value, offset, change);
 }
 
 Json value_of_change(const std::string& text)
@@ -406,7 +413,7 @@ void JsonSource::set(const std::string& change)
     std::string pointer;
     for (std::size_t from = 1; from <= equals;) {
         const std::size_t to = std::min(change.find('/', from), equals);
-        std::string key;  // with the escapes of RFC 6901 undone
+        std::string key;  // without the escapes of RFC 6901
         for (std::size_t k = from; k < to; ++k) {
             const bool escape = change[k] == '~';
             if (escape && (k + 1 == to || (change[k + 1] != '0' && change[k + 1] != '1')))
@@ -427,7 +434,7 @@ void JsonSource::set(const std::string& change)
     }
     const std::uint32_t offset = at->offset;
     *at = value_of_change(change.substr(equals + 1));
-    place_at(*at, offset, number);
+    set_location(*at, offset, number);
 }
 
 std::string JsonSource::place(std::size_t offset, const std::string& pointer) const

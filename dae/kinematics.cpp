@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Kinematic analysis and inverse dynamics with the saddle matrix.
 #include "dae/kinematics.hpp"
+
+#include "dae/start.hpp"
 
 namespace hilda::dae {
 
 namespace {
 
-const Model& without_freedom(const Model& model)
+const Model& require_no_freedom(const Model& model)
 {
-    const int freedom = 6 * model.bodies() - model.rows();
-    if (freedom != 0)
-        lie::reject("dae::Kinematics", "kinematic analysis needs a mechanism with 0 degrees of freedom",
-                    freedom);
+    const int degrees_of_freedom = 6 * model.bodies() - model.rows();
+    if (degrees_of_freedom != 0)
+        lie::reject("dae::Kinematics", "the model must have 0 degrees of freedom", degrees_of_freedom);
     return model;
 }
 
 }  // namespace
 
-Kinematics::Kinematics(const Model& model) : model(without_freedom(model)), K(model) {}
+Kinematics::Kinematics(const Model& model) : model(require_no_freedom(model)), K(model) {}
 
 void Kinematics::move_to(State& x, double t, double substep)
 {
@@ -49,9 +51,9 @@ lie::Trajectory Kinematics::run(State x, double dt, long n)
     return trajectory;
 }
 
-Eigen::VectorXd inverse_dynamics(const Model& model, const State& x, std::vector<Reaction>* missing)
+Eigen::VectorXd inverse_dynamics(const Model& model, const State& x, std::vector<Reaction>* unbalanced)
 {
-    lie::Saddle K(model, lie::Metric::unit);  // [1 Cᵀ; C 0] (rest, λ) = (load - M a, 0): the normal equations
+    lie::Saddle K(model, lie::Metric::unit);  // [1 Cᵀ; C 0] (residual, λ) = (loads - M a, 0)
     K.assemble(x);
     lie::Loads loads(model.bodies());
     model.loads(x, loads);
@@ -65,10 +67,10 @@ Eigen::VectorXd inverse_dynamics(const Model& model, const State& x, std::vector
     }
     K.constraint_part(b).setZero();
     K.solve_refined(b);
-    if (missing != nullptr) {
-        missing->assign(x.body.size(), {});
+    if (unbalanced != nullptr) {
+        unbalanced->assign(x.body.size(), {});
         for (int i = 0; i < model.bodies(); ++i)
-            (*missing)[i] = {-b.segment<3>(6 * i), -b.segment<3>(6 * i + 3)};
+            (*unbalanced)[i] = {-b.segment<3>(6 * i), -b.segment<3>(6 * i + 3)};
     }
     return K.constraint_part(b);
 }

@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Kinematic analysis of driven mechanisms, and inverse dynamics.                         Fang (2022),
-/// Sec. 2.1.3
+/// Kinematic analysis of driven mechanisms, and inverse dynamics.                Fang (2022), Sec. 2.1.3
 
 #pragma once
 
-#include "dae/start.hpp"
+#include "dae/model.hpp"
+#include "lie/solver/saddle.hpp"
 #include "lie/trajectory.hpp"
 
 namespace hilda::dae {
 
-/// Position, velocity and acceleration of a mechanism without degrees of freedom, at one time after another.
+/// Kinematic analysis: positions, velocities and accelerations of a mechanism without degrees of freedom.
 class Kinematics {
 public:
-    /// The model must be started (dae::start) and have as many independent rows as coordinates:
-    /// lie::InvalidInput otherwise, with the number of degrees of freedom.
+    /// dae::start() must have been called for the model, and the model must outlive the object. Throws
+    /// lie::InvalidInput if the model has degrees of freedom.
     explicit Kinematics(const Model& model);
 
-    /// Moves x to the time t: positions by Newton to 1e-13 (Eq. 2.2), velocities (2.8), accelerations (2.9)
-    /// and with them the multipliers that the motion needs, which is inverse dynamics. Goes there in substeps
-    /// no longer than `substep` [s], each guessed by Taylor from the one before, so that it stays on its
-    /// branch.
+    /// Computes the state x at the time t [s] from the state x at its own time.
+    ///
+    /// Positions follow from Newton's method to 1e-13 m or rad (Eq. 2.2), velocities from (2.8),
+    /// accelerations and multipliers from (2.9, 2.17). The multipliers include those of the drivers. The
+    /// interval is divided into substeps of at most `substep` [s]. A Taylor expansion of second order gives
+    /// the initial guess of each substep, so that the solution stays on its branch. t may be earlier than
+    /// x.t.
     void move_to(State& x, double t, double substep = 5e-3);
 
-    /// The states at t_0 + k dt, k = 0 … n
+    /// The states at x.t + k dt, k = 0, ..., n
     lie::Trajectory run(State x, double dt, long n);
 
 private:
@@ -30,11 +33,12 @@ private:
     lie::Saddle K;
 };
 
-/// Multipliers that make x's accelerations happen under the loads of the model: the λ of least length with
-/// Φ_rᵀ λ = F - M r̈ and Π̄ᵀ λ = τ̄ - J̄ ω̄̇ in the sense of least squares. `missing` receives what no multiplier
-/// can supply, as force [N] and torque [N m, body frame] on each body: the actuation the motion needs besides
-/// its constraints.
+/// Inverse dynamics: the multipliers that produce the accelerations of x under the loads of the model.
+///
+/// λ is the least-squares solution of Φ_rᵀ λ = F - M r̈, Π̄ᵀ λ = τ̄ - J̄ ω̄̇. `unbalanced` receives the negative
+/// residual of each body: the force [N, global frame] and the torque [N m, body frame] that must be applied
+/// in addition to the constraint loads. The rows must be independent.
 Eigen::VectorXd inverse_dynamics(const Model& model, const State& x,
-                                 std::vector<Reaction>* missing = nullptr);
+                                 std::vector<Reaction>* unbalanced = nullptr);
 
 }  // namespace hilda::dae

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Construction of a model, preparation of a run, names, residuals and reactions.
 #include "dae/model.hpp"
 
 #include "dae/constraints/dp1.hpp"
@@ -10,11 +11,11 @@ namespace hilda::dae {
 
 namespace {
 
-// Digits left out of an orientation are mended at the start; beyond this ‖AᵀA - I‖ it is no orientation at
-// all.
-constexpr double not_a_rotation = 1e-3;
+// Largest ‖AᵀA - I‖ of an orientation. Smaller errors, such as rounded digits, are admitted.
+constexpr double max_orthogonality_error = 1e-3;
 
-double length(const Variation& v, const Block& block)
+/// Length of the first variation of a row, without the ground
+double row_length(const Variation& v, const Block& block)
 {
     double sum = 0;
     if (block.i != ground) sum += v.r_i.squaredNorm() + v.pi_i.squaredNorm();
@@ -26,9 +27,9 @@ double length(const Variation& v, const Block& block)
 
 int Model::add(Body b)
 {
-    if (b.name.empty()) lie::reject("dae::Model::add", "a body needs a name", "''");
+    if (b.name.empty()) lie::reject("dae::Model::add", "the name of a body must not be empty", "''");
     if (b.name == "ground")
-        lie::reject("dae::Model::add", "the name of the fixed body cannot be given", "'ground'");
+        lie::reject("dae::Model::add", "the name 'ground' is reserved for the fixed body", "'ground'");
     for (const Body& other : body)
         if (other.name == b.name)
             lie::reject("dae::Model::add", "two bodies have the same name", "'" + b.name + "'");
@@ -55,10 +56,10 @@ void Model::constrain(const std::string& name, Blocks rows)
             if (b < ground || b >= bodies)
                 lie::reject("constraint '" + name + "'", "no body has this number", b);
         if (block->i == block->j)
-            lie::reject("constraint '" + name + "'", "a constraint needs two different bodies",
+            lie::reject("constraint '" + name + "'", "the two bodies of a constraint must be different",
                         "'" + body_name(block->i) + "' twice");
     }
-    if (!names_taken.insert(name).second)
+    if (!used_names.insert(name).second)
         lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
     int number = 0;
     for (auto& block : rows) {
@@ -68,9 +69,9 @@ void Model::constrain(const std::string& name, Blocks rows)
                        .branch = -1,
                        .constraint = constraints(),
                        .number = ++number});
-        if (with_unknowns.empty()) add_to_pattern(row.back());
+        if (general_constraint.empty()) add_to_pattern(row.back());
     }
-    if (!with_unknowns.empty()) set_pattern();  // whose rows stay last
+    if (!general_constraint.empty()) set_pattern();  // the rows of general constraints remain the last ones
     constraint_names.push_back(name);
 }
 
@@ -80,98 +81,101 @@ void Model::constrain(const std::string& name, std::unique_ptr<Constraint> c)
     for (const int b : {c->i, c->j})
         if (b < ground || b >= bodies) lie::reject("constraint '" + name + "'", "no body has this number", b);
     if (c->i == c->j)
-        lie::reject("constraint '" + name + "'", "a constraint needs two different bodies",
+        lie::reject("constraint '" + name + "'", "the two bodies of a constraint must be different",
                     "'" + body_name(c->i) + "' twice");
-    if (!names_taken.insert(name).second)
+    if (!used_names.insert(name).second)
         lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
     c->name = name;
-    with_unknowns.push_back(std::move(c));
+    general_constraint.push_back(std::move(c));
     set_pattern();
 }
 
 void Model::load(std::unique_ptr<Force> f)
 {
     if (f->last_body() >= static_cast<int>(body.size()))
-        lie::reject(f->in_words(), "no body has this number", f->last_body());
+        lie::reject(f->label(), "no body has this number", f->last_body());
     force.push_back(std::move(f));
 }
 
 void Model::prepare(State& x)
 {
     if (x.body.size() != body.size())
-        lie::reject("dae::Model::prepare", "the state must have a motion for each of the bodies",
-                    x.body.size());
+        lie::reject(
+            "dae::Model::prepare",
+            "the state must have one motion for each of the " + std::to_string(body.size()) + " bodies",
+            x.body.size());
     for (size_t b = 0; b < x.body.size(); ++b) {
         const Mat3& A = x.body[b].A;
-        if (!(lie::orthogonality_error(A) < not_a_rotation) || A.determinant() < 0)
+        if (!(lie::orthogonality_error(A) < max_orthogonality_error) || A.determinant() < 0)
             lie::reject("body '" + body[b].name + "'", "the orientation must be a rotation matrix", A);
     }
     for (size_t k = 0; k < force.size(); ++k)
-        if (const std::string why = force[k]->objection(x); !why.empty())
-            throw ForceError(force[k]->in_words() + ": " + why, static_cast<int>(k));
-    discrete_state = internal_state = 0;
+        if (const std::string reason = force[k]->start_error(x); !reason.empty())
+            throw ForceError(force[k]->label() + ": " + reason, static_cast<int>(k));
+    discrete_states = internal_states = 0;
     for (Row& r : row) {
         const Motion &bi = motion(x, r.block->i), &bj = motion(x, r.block->j);
-        if (const std::string why = r.block->objection(bi, bj, x.t); !why.empty())
-            throw ConstraintError(name_of(r) + ": " + why, r.constraint);
+        if (const std::string reason = r.block->start_error(bi, bj, x.t); !reason.empty())
+            throw ConstraintError(name_of(r) + ": " + reason, r.constraint);
         r.complement.reset();
         r.branch = -1;
         if (const auto* dp1 = dynamic_cast<const DP1*>(r.block.get()); dp1 != nullptr)
             r.complement = dp1->complement(bi, bj, x.t);
-        if (r.complement) r.branch = discrete_state++;
+        if (r.complement) r.branch = discrete_states++;
     }
     dropped.clear();
     active.resize(row.size());
     std::iota(active.begin(), active.end(), 0);
-    set_pattern();  // the complements may enter where their blocks do not
+    set_pattern();  // a complement may have other nonzero derivatives than its block
     int alphas = 0;
-    for (const auto& c : with_unknowns) {
+    for (const auto& c : general_constraint) {
         c->first_alpha = alphas;
-        alphas += c->unknowns();
-        c->first_discrete_state = discrete_state;
-        discrete_state += c->may_be_inactive();
-        c->first_internal_state = internal_state;
-        internal_state += c->internal_states();
+        alphas += c->algebraic_variables();
+        c->first_discrete_state = discrete_states;
+        discrete_states += c->may_be_inactive();
+        c->first_internal_state = internal_states;
+        internal_states += c->internal_states();
     }
-    x.discrete_state.assign(discrete_state, 0);
+    x.discrete_state.assign(discrete_states, 0);
     x.alpha = Eigen::VectorXd::Zero(alphas);
-    x.internal_state.assign(internal_state, 0);
-    for (size_t k = 0; k < with_unknowns.size(); ++k) {
-        const Constraint& c = *with_unknowns[k];
-        const auto refuse = [&](const std::string& why) {
-            throw ContactError(name_of(c) + ": " + why, static_cast<int>(k));
+    x.internal_state.assign(internal_states, 0);
+    for (size_t k = 0; k < general_constraint.size(); ++k) {
+        const Constraint& c = *general_constraint[k];
+        const auto fail = [&](const std::string& reason) {
+            throw ContactError(name_of(c) + ": " + reason, static_cast<int>(k));
         };
         try {
-            if (const std::string why = c.objection(at(c, x)); !why.empty()) {
-                if (!c.has_fallback()) refuse(why);
+            if (const std::string reason = c.start_error(arguments(c, x)); !reason.empty()) {
+                if (!c.has_fallback()) fail(reason);
                 x.discrete_state[c.first_discrete_state] = Constraint::fallback_active;
                 try {
-                    c.update_alpha(at(c, x), true, x.alpha.data() + c.first_alpha);  // for who looks at it
+                    c.update_alpha(arguments(c, x), true, x.alpha.data() + c.first_alpha);  // for output only
                 } catch (const lie::NumericalFailure&) {
                 }
                 continue;
             }
-            c.update_alpha(at(c, x), true, x.alpha.data() + c.first_alpha);
-        } catch (const lie::NumericalFailure& e) {  // of a start, that it is a wrong one
-            refuse(e.what());
+            c.update_alpha(arguments(c, x), true, x.alpha.data() + c.first_alpha);
+        } catch (const lie::NumericalFailure& e) {  // at a start this is invalid input
+            fail(e.what());
         }
-        // one that may open starts open where there is a gap, or where it leaves or meets at once
-        constexpr double still = 1e-9;  // [m/s]
-        const Constraint::At there = at(c, x);
-        const double gap = c.gap(there);
+        // A unilateral constraint starts inactive if it has a gap, or if its gap is zero and changes.
+        constexpr double max_rest_speed = 1e-9;  // [m/s], above the rounding error of a speed of zero
+        const Constraint::Arguments x_c = arguments(c, x);
+        const double gap = c.gap(x_c);
         if (c.is_unilateral() &&
-            (gap > c.allowance() || (gap > -c.allowance() && std::abs(c.separation_speed(there)) > still)))
+            (gap > c.position_tolerance() ||
+             (gap > -c.position_tolerance() && std::abs(c.separation_speed(x_c)) > max_rest_speed)))
             x.discrete_state[c.first_discrete_state] = Constraint::inactive;
     }
     for (const auto& f : force) {
-        f->first_discrete_state = discrete_state;
-        discrete_state += f->discrete_states();
-        f->first_internal_state = internal_state;
-        internal_state += f->internal_states();
+        f->first_discrete_state = discrete_states;
+        discrete_states += f->discrete_states();
+        f->first_internal_state = internal_states;
+        internal_states += f->internal_states();
     }
-    x.discrete_state.resize(discrete_state, 0);
+    x.discrete_state.resize(discrete_states, 0);
     x.lambda = Eigen::VectorXd::Zero(rows());
-    swap_drivers(x);  // one may start near its singular point
+    swap_drivers(x);  // a driver may start near its singularity
     set_internal_state_at_start(x);
 }
 
@@ -179,7 +183,7 @@ void Model::set_internal_state_at_start(State& x) const
 {
     for (const auto& f : force)
         std::fill_n(x.discrete_state.begin() + f->first_discrete_state, f->discrete_states(), 0);
-    x.internal_state.assign(internal_state, 0);
+    x.internal_state.assign(internal_states, 0);
     update_contact_states(x, true);
     for (const auto& f : force) f->update_internal_state(x);
 }
@@ -219,16 +223,18 @@ std::string Model::name_of(const Constraint& c, int k) const
 std::string Model::name_of(const Residual& residual) const
 {
     if (residual.row < 0) return {};
-    return residual.of != nullptr ? name_of(*residual.of, residual.row) : name_of(row[residual.row]);
+    return residual.constraint != nullptr ? name_of(*residual.constraint, residual.row)
+                                          : name_of(row[residual.row]);
 }
 
 std::string Model::row_name(int k) const
 {
     if (k < static_cast<int>(active.size())) return name_of(row[active[k]]);
-    for (const auto& c : with_unknowns) {
-        const int on_position = k - c->first_row, on_velocity = k - c->first_velocity_row;
-        if (on_position >= 0 && on_position < c->rows()) return name_of(*c, on_position);
-        if (on_velocity >= 0 && on_velocity < c->velocity_rows()) return name_of(*c, c->rows() + on_velocity);
+    for (const auto& c : general_constraint) {
+        const int position_row = k - c->first_row, velocity_row = k - c->first_velocity_row;
+        if (position_row >= 0 && position_row < c->position_rows()) return name_of(*c, position_row);
+        if (velocity_row >= 0 && velocity_row < c->velocity_rows())
+            return name_of(*c, c->position_rows() + velocity_row);
     }
     return System::row_name(k);
 }
@@ -238,19 +244,20 @@ void Model::set_pattern()
     rows_pattern = {};
     for (const int k : active) add_to_pattern(row[k]);
     int alphas = 0;
-    for (const auto& c : with_unknowns) {
+    for (const auto& c : general_constraint) {
         c->first_row = rows_pattern.rows();
-        add_to_pattern(*c, 0, c->rows());
-        rows_pattern.algebraic.push_back({c->first_row, c->rows(), alphas, c->unknowns(), {}});
-        rows_pattern.algebraic.back().D.setZero(c->rows(), c->unknowns());
-        if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->first_row + c->rows() - 1);
-        alphas += c->unknowns();
+        add_to_pattern(*c, 0, c->position_rows());
+        rows_pattern.algebraic.push_back(
+            {c->first_row, c->position_rows(), alphas, c->algebraic_variables(), {}});
+        rows_pattern.algebraic.back().D.setZero(c->position_rows(), c->algebraic_variables());
+        if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->first_row + c->position_rows() - 1);
+        alphas += c->algebraic_variables();
     }
-    for (const auto& c : with_unknowns) {
+    for (const auto& c : general_constraint) {
         c->first_velocity_row = rows_pattern.rows();
-        add_to_pattern(*c, c->rows(), c->velocity_rows());
+        add_to_pattern(*c, c->position_rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
-        for (int n = 0; n < c->pairs(); ++n) {
+        for (int n = 0; n < c->regularised_pairs(); ++n) {
             lie::Rows::Regularised pair;
             pair.first = c->first_velocity_row + 2 * n;
             pair.normal_row = c->first_row;
@@ -289,63 +296,62 @@ void Model::add_to_pattern(const Row& r)
 
 double Model::scaled_residual(const Row& r, const State& x) const
 {
-    const Block& block = r.in_force(x);
+    const Block& block = r.active_block(x);
     const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
-    const double size = length(block.variation(bi, bj, x.t), block);
-    return block.phi(bi, bj, x.t) / (size > 0 ? size : 1);
+    const double length = row_length(block.variation(bi, bj, x.t), block);
+    return block.phi(bi, bj, x.t) / (length > 0 ? length : 1);
 }
 
-void Model::Residual::consider(double error, int in_row, const Constraint* of_constraint)
+void Model::Residual::include(double error, int in_row, const Constraint* in_constraint)
 {
     if (row >= 0 && (std::abs(error) <= value || std::isnan(value))) return;
-    *this = {.value = std::abs(error), .row = in_row, .of = of_constraint};
+    *this = {.value = std::abs(error), .row = in_row, .constraint = in_constraint};
 }
 
-Model::Residual Model::largest_residual(const State& x, Over over) const
+Model::Residual Model::largest_residual(const State& x, RowSet over) const
 {
     Residual largest;
-    if (over == Over::in_equations)
-        for (const int k : active) largest.consider(scaled_residual(row[k], x), k);
+    if (over == RowSet::in_equations)
+        for (const int k : active) largest.include(scaled_residual(row[k], x), k);
     else
-        for (int k = 0; k < static_cast<int>(row.size()); ++k)
-            largest.consider(scaled_residual(row[k], x), k);
-    if (over == Over::blocks) return largest;
-    double Phi[Constraint::most_rows];
-    for (const auto& c : with_unknowns) {
+        for (int k = 0; k < static_cast<int>(row.size()); ++k) largest.include(scaled_residual(row[k], x), k);
+    if (over == RowSet::blocks) return largest;
+    double Phi[Constraint::max_position_rows];
+    for (const auto& c : general_constraint) {
         if (inactive(*c, x)) continue;
-        c->phi(at(*c, x), Phi);
-        for (int k = 0; k < c->rows(); ++k) largest.consider(Phi[k], k, c.get());
+        c->phi(arguments(*c, x), Phi);
+        for (int k = 0; k < c->position_rows(); ++k) largest.include(Phi[k], k, c.get());
     }
     return largest;
 }
 
 double Model::scaled_velocity_residual(const Row& r, const State& x) const
 {
-    const Block& block = r.in_force(x);
+    const Block& block = r.active_block(x);
     const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
     const Variation v = block.variation(bi, bj, x.t);
-    const double size = length(v, block);
+    const double length = row_length(v, block);
     return (v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) + v.pi_j.dot(bj.omega_bar) -
             block.nu(bi, bj, x.t)) /
-           (size > 0 ? size : 1);
+           (length > 0 ? length : 1);
 }
 
 double Model::scaled_acceleration_residual(const Row& r, const State& x) const
 {
-    const Block& block = r.in_force(x);
+    const Block& block = r.active_block(x);
     const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
     const Variation v = block.variation(bi, bj, x.t);
-    const double size = length(v, block);
+    const double length = row_length(v, block);
     return (v.r_i.dot(bi.rddot) + v.pi_i.dot(bi.omegadot_bar) + v.r_j.dot(bj.rddot) +
             v.pi_j.dot(bj.omegadot_bar) - block.gamma(bi, bj, x.t)) /
-           (size > 0 ? size : 1);
+           (length > 0 ? length : 1);
 }
 
 Model::Residual Model::largest_velocity_residual(const State& x) const
 {
     Residual largest;
     for (int k = 0; k < static_cast<int>(row.size()); ++k)
-        largest.consider(scaled_velocity_residual(row[k], x), k);
+        largest.include(scaled_velocity_residual(row[k], x), k);
     return largest;
 }
 

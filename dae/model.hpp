@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A multibody model: bodies, constraints, forces. Constant while a run lasts; it is a lie::System.
+/// A multibody model of bodies, constraints and forces. It implements lie::System and is constant during a
+/// run.
 
 #pragma once
 
@@ -7,50 +8,56 @@
 #include "dae/constraint.hpp"
 #include "dae/force.hpp"
 #include "lie/check.hpp"
+#include "lie/system.hpp"
 
 #include <memory>
 #include <unordered_set>
 
 namespace hilda::dae {
 
-using Blocks = std::vector<std::unique_ptr<Block>>;
-
-/// Input that one constraint cannot work with. what() names its row and bodies.
+/// Invalid input of one constraint. what() gives the name of the row and of its bodies.
 class ConstraintError : public lie::InvalidInput {
 public:
     ConstraintError(const std::string& what, int constraint) : InvalidInput(what), constraint(constraint) {}
 
-    int constraint;  ///< its number in the model, from 0
+    int constraint;  ///< its number in the model, counted from 0
 };
 
-/// Input that one force cannot work with. what() names it.
+/// Invalid input of one force. what() gives its name.
 class ForceError : public lie::InvalidInput {
 public:
     ForceError(const std::string& what, int force) : InvalidInput(what), force(force) {}
 
-    int force;  ///< its number in the model, from 0
+    int force;  ///< its index in Model::forces()
 };
 
-/// Input that one constraint with unknowns, a contact that evolves, cannot work with. what() names it.
+/// Invalid input of one general constraint, such as an evolving contact. what() gives its name.
 class ContactError : public lie::InvalidInput {
 public:
     ContactError(const std::string& what, int contact) : InvalidInput(what), contact(contact) {}
 
-    int contact;  ///< its number in Model::evolving(), from 0
+    int contact;  ///< its index in Model::general_constraints()
 };
 
+/// A multibody model.
+///
+/// Build it with add(), constrain() and load(), then call dae::start() to obtain a consistent state. The
+/// number of a body is its index; `ground` is the fixed body. The rows of the equations are the rows of the
+/// blocks, in the order in which they were added and without redundant ones, then the position rows of the
+/// general constraints, then their velocity rows.
 class Model final : public lie::System {
 public:
-    Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global
+    Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global frame
 
-    /// Adds a body and returns its number. InvalidInput for a name already taken (also "ground") or inertia
-    /// that is none.
+    /// Adds a body and returns its number. Throws lie::InvalidInput for a name that is empty, "ground" or
+    /// already used, and for invalid mass properties (Body::validate).
     int add(Body body);
-    /// The number of a body, `ground` for "ground". InvalidInput for a name that is not there.
+    /// Number of a body, `ground` for "ground". Throws lie::InvalidInput for an unknown name.
     int find(const std::string& name) const;
     const std::vector<Body>& all_bodies() const { return body; }
 
-    /// Adds a named constraint made of these rows: one block, or a joint from joints.hpp.
+    /// Adds a constraint that consists of these rows: one block, or a joint of joints.hpp. Throws
+    /// lie::InvalidInput for a name that is already used, an unknown body number, and equal bodies i and j.
     void constrain(const std::string& name, Blocks rows);
     template <class B>
     requires std::derived_from<B, Block>
@@ -61,11 +68,11 @@ public:
         constrain(name, std::move(rows));
     }
 
-    /// Adds a constraint with unknowns of its own; its rows come after those of all blocks.
+    /// Adds a general constraint. Its rows follow those of all blocks.
     void constrain(const std::string& name, std::unique_ptr<Constraint> constraint);
-    const std::vector<std::unique_ptr<Constraint>>& evolving() const { return with_unknowns; }
-    /// Where one of them stands in a state
-    Constraint::At at(const Constraint& c, const State& x) const
+    const std::vector<std::unique_ptr<Constraint>>& general_constraints() const { return general_constraint; }
+    /// Arguments of a general constraint in the state x. They refer to x.
+    Constraint::Arguments arguments(const Constraint& c, const State& x) const
     {
         return {motion(x, c.i),
                 motion(x, c.j),
@@ -75,79 +82,87 @@ public:
                 inactive(c, x),
                 &x.lambda};
     }
-    /// Whether it holds nothing at present, being open or handed over. Its rows are then empty.
+    /// Whether a general constraint is inactive or replaced by its fallback. Its rows are then zero.
     static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
+    /// Constraint::Mode of a general constraint
     static int mode(const Constraint& c, const State& x)
     {
         return c.may_be_inactive() ? x.discrete_state[c.first_discrete_state] : Constraint::active;
     }
-    /// Takes its multipliers out of the state, too.
+    /// Sets the mode in x, and the multipliers of the constraint to zero.
     static void set_mode(const Constraint& c, State& x, Constraint::Mode mode);
     std::string name_of(const Constraint& c) const;
 
+    /// Adds a force. Throws lie::InvalidInput for an unknown body number.
     void load(std::unique_ptr<Force> force);
     template <class F>
     requires std::derived_from<F, Force>
     void load(F force) { load(std::make_unique<F>(std::move(force))); }
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
 
-    /// Readies the model for a run from x: puts dropped rows back, asks every body whether its orientation is
-    /// one and every block, every force and every contact whether it can be used there (ConstraintError, ForceError,
-    /// ContactError), gives DP1 drivers their complement, and sets x.memory, x.remembered, x.alpha and the size of x.lambda. Called
-    /// by start().
+    /// Prepares the model and the state for a run from x. Called by dae::start().
+    ///
+    /// - All rows become part of the equations again, also those removed by drop().
+    /// - Orientations, blocks, forces and general constraints are checked. Throws lie::InvalidInput,
+    ///   ConstraintError, ForceError or ContactError.
+    /// - DP1 drivers receive their complement.
+    /// - x.discrete_state, x.internal_state and x.alpha are set, and x.lambda is resized and set to zero.
     void prepare(State& x);
-    /// Lets the forces remember a start in x, whatever they remembered before. Called by prepare(), and by
-    /// start() once x is on the constraints.
+    /// Sets the internal states of forces and general constraints to those of a start in x. Called by
+    /// prepare(), and by dae::start() when x satisfies the constraints.
     void set_internal_state_at_start(State& x) const;
 
-    /// Smallest stable_step() of the forces, and the force that has it; -1 where any step is stable.
+    /// Smallest Force::stable_step() of the forces
     struct StableStep {
         double h = std::numeric_limits<double>::infinity();  ///< [s]
-        int force = -1;
+        int force = -1;  ///< index of the force, -1 if no force has a limit
     };
     StableStep stable_step(const State& x) const;
 
-    /// A row of a constraint, in the equations or dropped from them.
+    /// A scalar row of a constraint. It is part of the equations, or removed from them as redundant.
     struct Row {
         std::unique_ptr<Block> block;
-        std::unique_ptr<Block> complement;  ///< of a DP1 driver: in force while memory[branch] is 1
-        int branch = -1;                    ///< index into State::memory
-        int constraint = 0;
-        int number = 0;  ///< within its constraint, from 1
+        std::unique_ptr<Block> complement;  ///< of a DP1 driver, else empty
+        int branch = -1;     ///< index into State::discrete_state: 1 while the complement is active
+        int constraint = 0;  ///< number of its constraint, counted from 0
+        int number = 0;      ///< row number within its constraint, counted from 1
 
-        const Block& in_force(const State& x) const
+        /// The block, or its complement while that is active
+        const Block& active_block(const State& x) const
         {
             return complement && x.discrete_state[branch] == 1 ? *complement : *block;
         }
     };
     const std::vector<Row>& all_rows() const { return row; }
-    const std::vector<int>& active_rows() const { return active; }  ///< numbers of the rows in the equations
+    /// Numbers of the rows that are part of the equations, and of those removed as redundant; ascending
+    const std::vector<int>& active_rows() const { return active; }
     const std::vector<int>& dropped_rows() const { return dropped; }
-    void drop(int row);  ///< takes a row out of the equations
+    void drop(int row);  ///< removes a row from the equations
     const std::string& constraint_name(int constraint) const { return constraint_names[constraint]; }
     int constraints() const { return static_cast<int>(constraint_names.size()); }
     std::string name_of(const Row& row) const;
 
-    /// Φ of one row, also a dropped one, over the length of its variation: an error in m or rad.
+    /// Residual of one row divided by the length of its first variation |(Φ_r, Π̄)|, an error in m or rad: Φ,
+    /// then Φ_r ṙ + Π̄ ω̄ - ν per second, then Φ_r r̈ + Π̄ ω̄̇ - γ per second². Defined for removed rows as well.
     double scaled_residual(const Row& row, const State& x) const;
-    /// The same of Φ_r ṙ + Π̄ ω̄ - ν and of Φ_r r̈ + Π̄ ω̄̇ - γ
     double scaled_velocity_residual(const Row& row, const State& x) const;
     double scaled_acceleration_residual(const Row& row, const State& x) const;
-    /// A scaled residual and the row that has it: of all_rows(), or, where there is one, of this constraint with unknowns
+    /// A largest scaled residual and its row
     struct Residual {
         double value = 0;
-        int row = -1;  ///< none without rows
-        const Constraint* of = nullptr;
+        int row = -1;  ///< in all_rows(), or in `constraint` if it is set; -1 if there are no rows
+        const Constraint* constraint = nullptr;
 
-        /// Takes this error if it is larger. What is not a number is the largest.
-        void consider(double error, int row, const Constraint* of = nullptr);
+        /// Takes |error| if it is larger. NaN counts as larger than any number, so that it is not lost.
+        void include(double error, int row, const Constraint* constraint = nullptr);
     };
-    /// The largest in magnitude, over all rows including the dropped ones, over those in the equations, or over those of
-    /// blocks alone; rows of constraints with unknowns count as they are, where these hold.
-    enum class Over { all, in_equations, blocks };
-    Residual largest_residual(const State& x, Over over = Over::all) const;
-    Residual largest_velocity_residual(const State& x) const;  ///< of the blocks
-    std::string name_of(const Residual& residual) const;       ///< of its row; empty without one
+    /// Set of rows: all, including removed ones; those in the equations; those of blocks, including removed
+    /// ones
+    enum class RowSet { all, in_equations, blocks };
+    /// Largest residual of Φ in magnitude. The rows of active general constraints are not scaled.
+    Residual largest_residual(const State& x, RowSet over = RowSet::all) const;
+    Residual largest_velocity_residual(const State& x) const;  ///< over the rows of blocks
+    std::string name_of(const Residual& residual) const;       ///< name of its row, or an empty string
 
     const lie::Mass& mass() const override { return inertia; }
     const lie::Rows& pattern() const override { return rows_pattern; }
@@ -160,12 +175,12 @@ public:
     void second_variation(const State& x, lie::SecondVariation& out) const override;
     void nu_variation(const State& x, lie::Rows& out) const override;
     void gamma_variation(const State& x, lie::GammaVariation& out) const override;
-    /// Of the forces that say which bodies they act on; by differences
+    /// Derivatives of the forces whose bodies() are known, by central differences
     lie::LoadVariation load_pattern() const override;
     void load_variation(const State& x, lie::LoadVariation& out) const override;
     double potential_energy(const State& x) const override;
-    /// Swaps DP1 drivers that come near |f| = 1 for their complement, with the multiplier that gives the same
-    /// torque, and lets forces remember.
+    /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
+    /// same torque, and updates the internal states of forces and general constraints.
     void accepted(const State& before, State& after) const override;
     std::string row_name(int k) const override;
     std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
@@ -176,31 +191,32 @@ private:
     void set_pattern();
     void add_to_pattern(const Row& row);
     void add_to_pattern(const Constraint& c, int first, int rows);
-    std::string name_of(const Constraint& c, int k) const;  ///< of its row k
+    std::string name_of(const Constraint& c, int k) const;  ///< name of its row k
 
     const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
 
     std::vector<Body> body;
     std::vector<std::string> constraint_names;
-    std::unordered_set<std::string> names_taken;  ///< of constraints
+    std::unordered_set<std::string> used_names;  ///< names of all constraints
     std::vector<Row> row;
     std::vector<int> active, dropped;  ///< ascending
-    std::vector<std::unique_ptr<Constraint>> with_unknowns;
+    std::vector<std::unique_ptr<Constraint>> general_constraint;
     std::vector<std::unique_ptr<Force>> force;
-    int discrete_state = 0, internal_state = 0;  ///< numbers in the state
+    int discrete_states = 0, internal_states = 0;  ///< sizes in the state
 
     lie::Mass inertia;
     lie::Rows rows_pattern;
     const Motion ground_motion{};
 };
 
-/// Resultant constraint force [N, global] and torque [N m, body frame] on one body: -Φ_rᵀ λ and -Π̄ᵀ λ. They
-/// do not depend on how the constraints are scaled, ordered or swapped.
+/// Resultant constraint force F = -Φ_rᵀ λ [N, global frame] and torque T = -Π̄ᵀ λ [N m, body frame] on one
+/// body. They do not depend on the scaling and order of the rows, nor on the choice between a driver and its
+/// complement.
 struct Reaction {
     Vec3 F = Vec3::Zero(), T = Vec3::Zero();
 };
 std::vector<Reaction> reactions(const lie::System& system, const State& x);
-/// The same with rows evaluated into C, a copy of system.pattern(): allocates nothing.
+/// The same without memory allocation. C is a copy of system.pattern() and receives the rows.
 void reactions(const lie::System& system, const State& x, lie::Rows& C, std::vector<Reaction>& out);
 
 }  // namespace hilda::dae

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a model is to a stepper: its equations in a state, and what changes when a step is accepted.
+/// The lie::System interface of a model: its equations, their variations, and the update after an accepted
+/// step.
 #include "dae/constraints/dp1.hpp"
 #include "dae/model.hpp"
 
@@ -7,11 +8,12 @@ namespace hilda::dae {
 
 namespace {
 
-// A driver is swapped for its complement above this |f| / (|a_i||a_j|); the complement is then below 0.44.
-constexpr double swap_above = 0.9;
-// The complement must hold where it takes over; it does not when the driven vectors leave the plane of the
-// turn.
-constexpr double swap_mismatch = 1e-6;
+// A DP1 driver is replaced by its complement if |f|/(|a_i||a_j|) exceeds this value. The complement then has
+// |f|/(|a_i||a_j|) < 0.44.
+constexpr double swap_threshold = 0.9;
+// The complement must satisfy |Φ| ≤ swap_tolerance where it replaces the driver. It does not if the driven
+// vectors have left their common plane of rotation.
+constexpr double swap_tolerance = 1e-6;
 
 }  // namespace
 
@@ -28,14 +30,14 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
     Eigen::Index n = 0;
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
+        const Block& block = row[k].active_block(x);
         out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
     }
-    for (const auto& c : with_unknowns)
+    for (const auto& c : general_constraint)
         if (inactive(*c, x))
-            out.segment(c->first_row, c->rows()).setZero();
+            out.segment(c->first_row, c->position_rows()).setZero();
         else
-            c->phi(at(*c, x), out.data() + c->first_row);
+            c->phi(arguments(*c, x), out.data() + c->first_row);
     out.tail(rows_pattern.velocity_rows).setZero();
 }
 
@@ -43,36 +45,36 @@ void Model::variation(const State& x, lie::Rows& out) const
 {
     lie::Rows::Entry* entry = out.entry.data();
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
+        const Block& block = row[k].active_block(x);
         const Variation v = block.variation(motion(x, block.i), motion(x, block.j), x.t);
         if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
         if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
     }
     Constraint::Derivatives d;
-    const auto fill = [&](const Constraint& c, int of_c, int row, int rows) {
+    const auto fill = [&](const Constraint& c, int first, int row, int rows) {
         for (int k = 0; k < rows; ++k)
             for (int e = out.start[row + k]; e < out.start[row + k + 1]; ++e) {
-                const auto& of_body = out.entry[e].body == c.i ? d.of_i : d.of_j;
-                out.entry[e].r = of_body.row(of_c + k).head<3>();
-                out.entry[e].pi = of_body.row(of_c + k).tail<3>();
+                const auto& C_body = out.entry[e].body == c.i ? d.C_i : d.C_j;
+                out.entry[e].r = C_body.row(first + k).head<3>();
+                out.entry[e].pi = C_body.row(first + k).tail<3>();
             }
     };
     lie::Rows::Regularised* pair = out.regularised.data();
-    for (size_t n = 0; n < with_unknowns.size(); ++n) {
-        const Constraint& c = *with_unknowns[n];
-        for (int p = 0; p < c.pairs(); ++p) pair[p].K = 0;
-        if (!inactive(c, x)) c.compliance(at(c, x), pair);
-        pair += c.pairs();
-        d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
-        d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
-        d.of_alpha.setZero(c.rows(), c.unknowns());
+    for (size_t n = 0; n < general_constraint.size(); ++n) {
+        const Constraint& c = *general_constraint[n];
+        for (int p = 0; p < c.regularised_pairs(); ++p) pair[p].K = 0;
+        if (!inactive(c, x)) c.regularisation(arguments(c, x), pair);
+        pair += c.regularised_pairs();
+        d.C_i.setZero(c.position_rows() + c.velocity_rows(), 6);
+        d.C_j.setZero(c.position_rows() + c.velocity_rows(), 6);
+        d.Phi_alpha.setZero(c.position_rows(), c.algebraic_variables());
         if (inactive(c, x))
-            d.of_alpha.setIdentity();  // its unknowns stay as they are
+            d.Phi_alpha.setIdentity();  // regular, so that the corrections of α are zero
         else
-            c.variation(at(c, x), d);
-        fill(c, 0, c.first_row, c.rows());
-        fill(c, c.rows(), c.first_velocity_row, c.velocity_rows());
-        out.algebraic[n].D = d.of_alpha;
+            c.variation(arguments(c, x), d);
+        fill(c, 0, c.first_row, c.position_rows());
+        fill(c, c.position_rows(), c.first_velocity_row, c.velocity_rows());
+        out.algebraic[n].D = d.Phi_alpha;
     }
 }
 
@@ -80,7 +82,7 @@ void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
     Eigen::Index n = 0;
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
+        const Block& block = row[k].active_block(x);
         out[n++] = block.nu(motion(x, block.i), motion(x, block.j), x.t);
     }
     out.tail(out.size() - n).setZero();
@@ -90,30 +92,30 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
     Eigen::Index n = 0;
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
+        const Block& block = row[k].active_block(x);
         out[n++] = block.gamma(motion(x, block.i), motion(x, block.j), x.t);
     }
-    double of_c[12];
-    for (const auto& c : with_unknowns) {
-        std::fill(of_c, of_c + 12, 0.0);
-        if (!inactive(*c, x)) c->gamma(at(*c, x), of_c);
-        std::copy_n(of_c, c->rows(), out.data() + c->first_row);
-        std::copy_n(of_c + c->rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
+    double gamma_c[Constraint::max_rows];
+    for (const auto& c : general_constraint) {
+        std::fill(gamma_c, gamma_c + Constraint::max_rows, 0.0);
+        if (!inactive(*c, x)) c->gamma(arguments(*c, x), gamma_c);
+        std::copy_n(gamma_c, c->position_rows(), out.data() + c->first_row);
+        std::copy_n(gamma_c + c->position_rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
     }
 }
 
 void Model::update_alpha(State& x) const
 {
-    for (const auto& c : with_unknowns)
-        if (!inactive(*c, x)) c->update_alpha(at(*c, x), false, x.alpha.data() + c->first_alpha);
+    for (const auto& c : general_constraint)
+        if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
 void Model::second_variation(const State& x, lie::SecondVariation& out) const
 {
     for (size_t n = 0; n < active.size(); ++n) {
-        const Block& block = row[active[n]].in_force(x);
+        const Block& block = row[active[n]].active_block(x);
         const Mat12 H = block.second_variation(motion(x, block.i), motion(x, block.j), x.t);
-        const int k = static_cast<int>(n), i = 0, j = block.i != ground ? 1 : 0;  // entries of the row
+        const int k = static_cast<int>(n), i = 0, j = block.i != ground ? 1 : 0;  // entry numbers
         if (block.i != ground) out.at(k, i, i) = H.topLeftCorner<6, 6>();
         if (block.j != ground) out.at(k, j, j) = H.bottomRightCorner<6, 6>();
         if (block.i == ground || block.j == ground) continue;
@@ -126,7 +128,7 @@ void Model::nu_variation(const State& x, lie::Rows& out) const
 {
     lie::Rows::Entry* entry = out.entry.data();
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
+        const Block& block = row[k].active_block(x);
         const Variation v = block.nu_variation(motion(x, block.i), motion(x, block.j), x.t);
         if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
         if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
@@ -137,8 +139,8 @@ void Model::gamma_variation(const State& x, lie::GammaVariation& out) const
 {
     lie::GammaVariation::Entry* entry = out.entry.data();
     for (const int k : active) {
-        const Block& block = row[k].in_force(x);
-        const GammaChange g = block.gamma_variation(motion(x, block.i), motion(x, block.j), x.t);
+        const Block& block = row[k].active_block(x);
+        const GammaDerivatives g = block.gamma_variation(motion(x, block.i), motion(x, block.j), x.t);
         if (block.i != ground) *entry++ = {g.i.r, g.i.theta, g.i.rdot, g.i.omega};
         if (block.j != ground) *entry++ = {g.j.r, g.j.theta, g.j.rdot, g.j.omega};
     }
@@ -158,7 +160,7 @@ lie::LoadVariation Model::load_pattern() const
 void Model::load_variation(const State& x, lie::LoadVariation& out) const
 {
     if (out.block.empty()) return;
-    constexpr double h = 6e-6;  // truncation h² and rounding 1e-16/h balance here
+    constexpr double h = 6e-6;  // balances the truncation error h² and the rounding error 1e-16/h
     out.x = x;
     size_t first = 0;
     for (const auto& f : force) {
@@ -208,16 +210,17 @@ void Model::accepted(const State&, State& after) const
 
 void Model::update_contact_states(State& x, bool start) const
 {
-    for (const auto& c : with_unknowns)
+    for (const auto& c : general_constraint)
         if (mode(*c, x) != Constraint::fallback_active &&
-            !c->update_internal_state(at(*c, x), start, x.internal_state.data() + c->first_internal_state))
+            !c->update_internal_state(arguments(*c, x), start,
+                                      x.internal_state.data() + c->first_internal_state))
             set_mode(*c, x, Constraint::fallback_active);
 }
 
 void Model::set_mode(const Constraint& c, State& x, Constraint::Mode mode)
 {
     x.discrete_state[c.first_discrete_state] = mode;
-    x.lambda.segment(c.first_row, c.rows()).setZero();
+    x.lambda.segment(c.first_row, c.position_rows()).setZero();
     x.lambda.segment(c.first_velocity_row, c.velocity_rows()).setZero();
 }
 
@@ -226,14 +229,15 @@ void Model::swap_drivers(State& x) const
     for (size_t n = 0; n < active.size(); ++n) {
         const Row& r = row[active[n]];
         if (!r.complement) continue;
-        const auto& in_force = static_cast<const DP1&>(r.in_force(x));
-        if (in_force.alignment(x.t) <= swap_above) continue;
-        const Motion &bi = motion(x, in_force.i), &bj = motion(x, in_force.j);
-        const Block& other = &in_force == r.block.get() ? *r.complement : *r.block;
-        if (std::abs(other.phi(bi, bj, x.t)) > swap_mismatch) continue;
-        const Variation from = in_force.variation(bi, bj, x.t);
+        const auto& current = static_cast<const DP1&>(r.active_block(x));
+        if (current.alignment(x.t) <= swap_threshold) continue;
+        const Motion &bi = motion(x, current.i), &bj = motion(x, current.j);
+        const Block& candidate = &current == r.block.get() ? *r.complement : *r.block;
+        if (std::abs(candidate.phi(bi, bj, x.t)) > swap_tolerance) continue;
+        const Variation from = current.variation(bi, bj, x.t);
+        // λ' = λ (Π·Π')/(Π'·Π'): the parallel rows then exert the same torque.
         x.discrete_state[r.branch] ^= 1;
-        const Variation to = r.in_force(x).variation(bi, bj, x.t);
+        const Variation to = r.active_block(x).variation(bi, bj, x.t);
         x.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
                                                   (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// ModelReader: builds a model from the JSON tree, and writes the canonical form of what it reads.
 #include "dae/model_file.hpp"
 
 #include "dae/forces/prescribed.hpp"
@@ -18,9 +19,10 @@ namespace hilda::dae {
 
 namespace {
 
+/// The inertia of a body, given by three principal moments or by a full matrix
 Mat3 inertia(ObjectReader& o)
 {
-    const Json* v = o.look("inertia");
+    const Json* v = o.find("inertia");
     const bool full =
         v != nullptr && v->list() != nullptr && !v->list()->empty() && v->list()->front().list() != nullptr;
     return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
@@ -37,15 +39,15 @@ public:
         out.name = o.name("name");
         model.gravity = o.vec3("gravity", model.gravity);
         out.end = o.positive("end", out.end);
-        o.keep("bodies",
-               each(o, "bodies", true, [this](const Json& v, const std::string& at) { return body(v, at); }));
+        o.record("bodies", each(o, "bodies", true,
+                                [this](const Json& v, const std::string& at) { return body(v, at); }));
         if (model.all_bodies().empty())
-            o.fail("bodies", "a model needs at least one body with mass, got none");
-        o.keep("constraints", each(o, "constraints", false, [this](const Json& v, const std::string& at) {
-                   return constraint(v, at);
-               }));
-        o.keep("forces", each(o, "forces", false,
-                              [this](const Json& v, const std::string& at) { return load(v, at); }));
+            o.fail("bodies", "a model must have at least one body with mass, got none");
+        o.record("constraints", each(o, "constraints", false, [this](const Json& v, const std::string& at) {
+                     return constraint(v, at);
+                 }));
+        o.record("forces", each(o, "forces", false,
+                                [this](const Json& v, const std::string& at) { return load(v, at); }));
         contacts(o);
         out.text = written(o.finish()) + "\n";
         if (ignored > 0)
@@ -58,26 +60,28 @@ private:
     void version(ObjectReader& o)
     {
         if (!o.has("hilda_model")) {
-            // so that the dissertation's published files can be read
-            o.look("hilda_model");
-            out.warnings.push_back(o.place() + ": no key 'hilda_model', read as version 1");
-            o.keep("hilda_model", {.value = 1.0});
+            // The published model files of the dissertation have no version.
+            o.find("hilda_model");
+            out.warnings.push_back(o.place() +
+                                   ": the key 'hilda_model' is missing; the file is read as version 1");
+            o.record("hilda_model", {.value = 1.0});
         } else if (const double v = o.number("hilda_model"); v != 1) {
             o.fail("hilda_model", "the version of the format must be 1, got " + shortest(v));
         }
     }
 
-    /// Reads the elements of a list and returns what they keep; null for those that need not be kept.
+    /// Reads the elements of a list and returns their canonical forms. Elements with a null result are
+    /// omitted.
     template <class Read>
     Json each(ObjectReader& o, std::string_view key, bool required, Read read)
     {
-        Json::List kept;
+        Json::List recorded;
         const Json::List& list = o.list(key, required);
         for (size_t k = 0; k < list.size(); ++k) {
             Json element = read(list[k], pointer_to(o.pointer(key), std::to_string(k)));
-            if (element.object() != nullptr) kept.push_back(std::move(element));
+            if (element.object() != nullptr) recorded.push_back(std::move(element));
         }
-        return {.value = std::move(kept)};
+        return {.value = std::move(recorded)};
     }
 
     Json body(const Json& v, const std::string& at)
@@ -86,8 +90,8 @@ private:
         const std::string name = o.name("name");
         if (o.has("id") && !o.has("r") && !o.has("mass") && !o.has("inertia")) return ground_body(o, name);
         if (name == "ground")
-            o.fail("name", "'ground' is the fixed body; a body with mass needs another name, got \"ground\"");
-        enter(o, name, model.bodies());
+            o.fail("name", "the name 'ground' is reserved for the fixed body, got \"ground\"");
+        register_body(o, name, model.bodies());
         Body b;
         b.name = name;
         b.m = o.positive("mass");
@@ -96,11 +100,11 @@ private:
         Motion m;
         m.r = o.vec3("r");
         m.A = read_orientation(o);
-        o.keep("A", json(m.A));
+        o.record("A", json(m.A));
         m.rdot = o.vec3("r_dot", Vec3::Zero());
         m.omega_bar = o.vec3("omega", Vec3::Zero());
-        Json kept = o.finish();
-        std::erase_if(std::get<Json::Object>(kept.value),
+        Json recorded = o.finish();
+        std::erase_if(std::get<Json::Object>(recorded.value),
                       [](const Json::Member& k) { return k.key == "p" || k.key == "axis_angle"; });
         try {
             model.add(std::move(b));
@@ -108,39 +112,40 @@ private:
             o.fail("inertia", e.what());
         }
         out.x.body.push_back(m);
-        return kept;
+        return recorded;
     }
 
-    /// The published files list the ground among the bodies, without r. In the canonical text it goes without
-    /// saying.
+    /// The published files list the ground as a body without r. The canonical form omits it.
     Json ground_body(ObjectReader& o, const std::string& name)
     {
         if (ground_listed)
-            o.fail("a second body without r and mass, which is the ground, got '" + name + "'");
+            o.fail("only one body without r and mass, the ground, is allowed; got a second one, '" + name +
+                   "'");
         ground_listed = true;
-        enter(o, name, ground);
+        register_body(o, name, ground);
         o.finish();
         return {};
     }
 
-    /// Makes a body known by its name, and its id where it has one.
-    void enter(ObjectReader& o, const std::string& name, int number)
+    /// Registers the name of a body, and its id if it has one.
+    void register_body(ObjectReader& o, const std::string& name, int number)
     {
         if (name != "ground" && !by_name.emplace(name, number).second)
             o.fail("name", "two bodies have the same name, got " + described({.value = name}));
-        if (o.look("id") != nullptr)
+        if (o.find("id") != nullptr)
             if (const int id = o.integer("id"); !by_id.emplace(id, number).second)
                 o.fail("id", "two bodies have the same id, got " + std::to_string(id));
     }
 
+    /// Number of the body whose name or id is given by a key
     int body_named(ObjectReader& o, std::string_view key)
     {
-        const Json* v = o.look(key);
+        const Json* v = o.find(key);
         if (v != nullptr && v->number() != nullptr) {
             const int id = o.integer(key);
             const auto found = by_id.find(id);
             if (found == by_id.end()) o.fail(key, "no body has this id, got " + std::to_string(id));
-            o.keep(key, {.value = model.body_name(found->second)});
+            o.record(key, {.value = model.body_name(found->second)});
             return found->second;
         }
         if (v != nullptr && v->string() == nullptr)
@@ -155,7 +160,7 @@ private:
                             (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
         }
         const int number = name == "ground" ? ground : found->second;
-        o.keep(key, {.value = model.body_name(number)});
+        o.record(key, {.value = model.body_name(number)});
         return number;
     }
 
@@ -169,9 +174,9 @@ private:
         return {i, j};
     }
 
-    /// Runs `build`, and puts the place of the object in front of what a constructor refuses.
+    /// Calls `build` and adds the location of the object to messages of exceptions that have none.
     template <class Build>
-    auto placed(const ObjectReader& o, Build build)
+    auto with_location(const ObjectReader& o, Build build)
     {
         try {
             return build();
@@ -187,20 +192,22 @@ private:
     struct Heading {
         std::string name, type;
     };
-    /// Name and type of a constraint or force. The name is by default the type and the number in the list.
-    Heading heading(ObjectReader& o, const std::vector<std::string>& types, std::set<std::string>& taken)
+    /// Name and type of a constraint or force. The default name consists of the type and the number in the
+    /// list.
+    Heading heading(ObjectReader& o, const std::vector<std::string>& types, std::set<std::string>& used_names)
     {
-        o.keep("name", {});  // in front of the type
+        o.record("name", {});  // so that the name precedes the type
         const std::string type = o.one_of("type", types);
-        return {name_of_its_own(o, type, taken), type};
+        return {unique_name(o, type, used_names), type};
     }
 
-    /// The name, which must be new, by default the kind and the number in the list
-    static std::string name_of_its_own(ObjectReader& o, const std::string& kind, std::set<std::string>& taken)
+    /// A name that is not used yet. The default consists of the kind and the number in the list.
+    static std::string unique_name(ObjectReader& o, const std::string& kind,
+                                   std::set<std::string>& used_names)
     {
-        std::string name = o.name("name", kind + "-" + std::to_string(taken.size() + 1));
-        if (!taken.insert(name).second)
-            o.fail("name", "this name is taken already, got " + described({.value = name}));
+        std::string name = o.name("name", kind + "-" + std::to_string(used_names.size() + 1));
+        if (!used_names.insert(name).second)
+            o.fail("name", "this name is already used, got " + described({.value = name}));
         return name;
     }
 
@@ -209,20 +216,22 @@ private:
         ObjectReader o(source, v, at);
         const auto [name, type] = heading(o, constraint_types(), constraint_names);
         const auto [i, j] = pair(o);
-        Blocks rows = placed(o, [&, t = type, i = i, j = j] { return read_constraint(t, o, i, j, out.x); });
+        Blocks rows =
+            with_location(o, [&, t = type, i = i, j = j] { return read_constraint(t, o, i, j, out.x); });
         if (type == "DP1" || type == "DP2" || type == "D" || type == "CD") ignore_derivatives(o);
-        Json kept = o.finish();
+        Json recorded = o.finish();
         model.constrain(name, std::move(rows));
         out.constraint_place.push_back(o.place());
-        return kept;
+        return recorded;
     }
 
+    /// The published files give f_dot and f_ddot, which follow from f here.
     void ignore_derivatives(ObjectReader& o)
     {
         const bool given = o.has("f_dot") || o.has("f_ddot");
         if (given && ++ignored == 1) ignored_place = o.place(o.has("f_dot") ? "f_dot" : "f_ddot");
-        o.look("f_dot");
-        o.look("f_ddot");
+        o.find("f_dot");
+        o.find("f_ddot");
     }
 
     Json load(const Json& v, const std::string& at)
@@ -236,45 +245,47 @@ private:
             force = prescribed(o, type);
         } else {
             const auto [i, j] = pair(o);
-            force = placed(o, [&, t = type, i = i, j = j] { return read_pair_force(t, o, i, j, out.x); });
+            force =
+                with_location(o, [&, t = type, i = i, j = j] { return read_pair_force(t, o, i, j, out.x); });
         }
         force->name = name;
-        Json kept = o.finish();
+        Json recorded = o.finish();
         model.load(std::move(force));
         out.force_place.push_back(o.place());
-        return kept;
+        return recorded;
     }
 
-    /// The list is kept where there is one, so that a model without contacts reads as it always did.
+    /// The canonical form has the key only if there are contacts.
     void contacts(ObjectReader& o)
     {
         const Json::List& list = o.list("contacts", false);
         if (list.empty()) return;
         const ReadContact read = contact_reader();
         if (read == nullptr)
-            o.fail("contacts", "contacts are not part of this build; the list must be empty, got " +
+            o.fail("contacts", "this program is built without contacts; the list must be empty, got " +
                                    std::to_string(list.size()));
-        o.keep("contacts", each(o, "contacts", false,
-                                [&](const Json& v, const std::string& at) { return contact(read, v, at); }));
+        o.record("contacts", each(o, "contacts", false, [&](const Json& v, const std::string& at) {
+                     return contact(read, v, at);
+                 }));
     }
 
     Json contact(ReadContact read, const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const std::string name = name_of_its_own(o, "contact", contact_names);
+        const std::string name = unique_name(o, "contact", contact_names);
         const auto [i, j] = pair(o);
-        placed(o, [&, i = i, j = j] {
+        with_location(o, [&, i = i, j = j] {
             read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
         });
         out.force_place.resize(model.forces().size(), o.place());
-        out.contact_place.resize(model.evolving().size(), o.place());
+        out.contact_place.resize(model.general_constraints().size(), o.place());
         return o.finish();
     }
 
     std::unique_ptr<Force> prescribed(ObjectReader& o, const std::string& type)
     {
         const int b = body_named(o, "body");
-        if (b == ground) o.fail("body", "a " + type + " must act on a body that moves, got 'ground'");
+        if (b == ground) o.fail("body", "a " + type + " must act on a movable body, got 'ground'");
         const Vec3 point_bar = type == "force" ? o.vec3("point_bar", Vec3::Zero()) : Vec3::Zero();
         const Frame frame = o.one_of("frame", {"global", "body"}) == "global" ? Frame::global : Frame::body;
         std::array<Expression, 3> in_t = components(o);
@@ -305,7 +316,7 @@ private:
                 source.fail(v, at, e.what());
             }
         };
-        o.keep("components", {.value = list});
+        o.record("components", {.value = list});
         return {component(0), component(1), component(2)};
     }
 
@@ -316,7 +327,7 @@ private:
     std::map<int, int> by_id;
     std::set<std::string> constraint_names, force_names, contact_names;
     bool ground_listed = false;
-    int ignored = 0;  // constraints with f_dot or f_ddot
+    int ignored = 0;  // number of constraints with f_dot or f_ddot
     std::string ignored_place;
 };
 
@@ -337,9 +348,8 @@ Description load_model(const std::string& path, std::span<const std::string> set
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw lie::InvalidInput(path + ": there is no such file");
-    if (!fs::is_regular_file(status))
-        throw lie::InvalidInput(path + ": a model is read from a regular file; this is none");
+    if (!fs::exists(status)) throw lie::InvalidInput(path + ": the file does not exist");
+    if (!fs::is_regular_file(status)) throw lie::InvalidInput(path + ": a model file must be a regular file");
     const auto size = fs::file_size(path, error);
     if (!error && size > JsonSource::max_bytes)
         throw lie::InvalidInput(path + ": the file has " + std::to_string(size) + " bytes; at most " +
@@ -361,11 +371,11 @@ StartReport start(Description& description, const StartOptions& options)
             description.constraint_place[static_cast<size_t>(e.constraint)] + ": " + e.what(), e.constraint);
     } catch (const ContactError& e) {
         const auto k = static_cast<size_t>(e.contact);
-        if (k >= description.contact_place.size()) throw;  // one that is not from the file
+        if (k >= description.contact_place.size()) throw;  // a constraint that is not from the file
         throw ContactError(description.contact_place[k] + ": " + e.what(), e.contact);
     } catch (const ForceError& e) {
         const auto k = static_cast<size_t>(e.force);
-        if (k >= description.force_place.size()) throw;  // one that is not from the file
+        if (k >= description.force_place.size()) throw;  // a constraint that is not from the file
         throw ForceError(description.force_place[k] + ": " + e.what(), e.force);
     }
 }

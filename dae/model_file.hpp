@@ -1,39 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The model file: JSON in and out, with the place of every error.
+/// Reader of model files (JSON). Error messages give the location in the file.
 
 #pragma once
 
+#include "dae/model.hpp"
 #include "dae/start.hpp"
 
 #include <span>
 
 namespace hilda::dae {
 
-/// What a model file says. The model is ready for start(); x is the start as given in the file.
+/// The content of a model file. The model is complete and ready for start(). x holds the initial data as
+/// given in the file.
 struct Description {
     std::string name;
-    double end = 1;  ///< [s], where a run stops unless told otherwise
+    double end = 1;  ///< default end time of a run [s]
     std::unique_ptr<Model> model;
     State x;
-    std::string text;  ///< the model as read, in one form: JSON with defaults filled in and --set applied
-    std::vector<std::string> warnings;          ///< one line each, with the place
-    std::vector<std::string> constraint_place;  ///< "FILE:LINE:COL (/constraints/3)" of each constraint
-    std::vector<std::string> force_place;       ///< the same of each force of the model
-    std::vector<std::string> contact_place;     ///< the same of each of Model::evolving()
+    std::string text;  ///< canonical form of the model: JSON with defaults filled in and --set applied
+    std::vector<std::string> warnings;  ///< one line each, with the location
+    std::vector<std::string>
+        constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint
+    std::vector<std::string> force_place;    ///< location of each element of Model::forces()
+    std::vector<std::string> contact_place;  ///< location of each element of Model::general_constraints()
 };
 
-/// Reads a model file. `file` is its name in messages. Each of `set` is "/json/pointer=VALUE" (VALUE is JSON,
-/// or else taken as a string) and changes one entry, or adds a key, before the model is built.
+/// Reads a model from a text. `file` is the file name used in messages. Each element of `set` has the form
+/// "/json/pointer=VALUE" and changes one value, or adds a key, before the model is built. A VALUE that is not
+/// valid JSON is taken as a string.
 ///
-/// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for everything
-/// that is not a model: syntax, unknown, missing and duplicate keys, types, ranges, names, expressions.
+/// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for invalid
+/// syntax, for unknown, missing and duplicate keys, and for invalid types, ranges, names and expressions.
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {});
 
-/// The same from a regular file of at most 64 MiB. One that cannot be read is InvalidInput too, without a
-/// line.
+/// Reads a model from a regular file of at most 64 MiB. Throws lie::InvalidInput without a line number if the
+/// file cannot be read.
 Description load_model(const std::string& path, std::span<const std::string> set = {});
 
-/// start(), with the place in the file in front of what it refuses.
+/// Calls start() for the model and adds the location in the file to the messages of its exceptions.
 StartReport start(Description& description, const StartOptions& options = {});
 
 }  // namespace hilda::dae

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Readers of the constraint and force types, and the registered reader of contacts.
 #include "dae/model_file_types.hpp"
 
 #include "dae/constraints/cd.hpp"
@@ -17,7 +18,7 @@ namespace hilda::dae {
 
 namespace {
 
-/// A driver of the key, with f, f' and f'' finite at the start
+/// The driver given by a key. f, ḟ and f̈ must be finite at t = 0.
 Driver driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {})
 {
     const std::string text = o.formula(key, fallback);
@@ -25,19 +26,19 @@ Driver driver(ObjectReader& o, std::string_view key, const std::optional<std::st
         Driver f(text);
         const Jet start = f.jet(0);
         if (!std::isfinite(f.f(0)) || !std::isfinite(start.fdot) || !std::isfinite(start.fddot))
-            o.fail(key, std::string(key) + " is singular at t = 0, got " + described({.value = text}) +
-                            " with " + shortest(f.f(0)) + " and derivatives " + shortest(start.fdot) + ", " +
-                            shortest(start.fddot));
+            o.fail(key, std::string(key) + " and its derivatives must be finite at t = 0, got " +
+                            described({.value = text}) + " with the value " + shortest(f.f(0)) +
+                            " and the derivatives " + shortest(start.fdot) + ", " + shortest(start.fddot));
         return f;
     } catch (const ExpressionError& e) {
         o.fail(key, e.what());
     }
 }
 
-/// f(t) of the basic constraints, by default 0
+/// f(t) of a basic constraint, by default 0
 Driver f(ObjectReader& o) { return driver(o, "f", "0"); }
 
-/// The two bodies of a constraint or force and their points, by default the centres of mass
+/// Points P and Q of the two bodies in the body frames [m], by default the centres of mass
 struct Points {
     Vec3 i, j;
     explicit Points(ObjectReader& o)
@@ -45,13 +46,14 @@ struct Points {
     {}
 };
 
+/// Axes of the two bodies in the body frames, not zero
 struct Axes {
     Vec3 i, j;
     explicit Axes(ObjectReader& o) : i(o.direction("axis_bar_i")), j(o.direction("axis_bar_j")) {}
 };
 
 template <class B>
-Blocks one(B block)
+Blocks single_row(B block)
 {
     Blocks rows;
     rows.push_back(std::make_unique<B>(std::move(block)));
@@ -64,29 +66,29 @@ struct Type {
     Reader read;
 };
 
-// Members of a braced list are read in their order, which is the order of the keys in the canonical text.
+// Elements of a braced list are evaluated in order. This is the order of the keys in the canonical form.
 using ReadConstraint = Blocks (*)(ObjectReader& o, int i, int j, const State& x);
 constexpr Type<ReadConstraint> constraints[] = {
     {"DP1",
      [](ObjectReader& o, int i, int j, const State&) {
-         return one(DP1{i, o.direction("a_bar_i"), j, o.direction("a_bar_j"), f(o)});
+         return single_row(DP1{i, o.direction("a_bar_i"), j, o.direction("a_bar_j"), f(o)});
      }},
     {"DP2",
      [](ObjectReader& o, int i, int j, const State&) {
          const Vec3 a_bar_i = o.direction("a_bar_i");
          const Points s(o);
-         return one(DP2(i, a_bar_i, s.i, j, s.j, f(o)));
+         return single_row(DP2(i, a_bar_i, s.i, j, s.j, f(o)));
      }},
     {"D",
      [](ObjectReader& o, int i, int j, const State&) {
          const Points s(o);
-         return one(D(i, s.i, j, s.j, driver(o, "f")));
+         return single_row(D(i, s.i, j, s.j, driver(o, "f")));
      }},
     {"CD",
      [](ObjectReader& o, int i, int j, const State&) {
          const Vec3 c = o.direction("c");
          const Points s(o);
-         return one(CD(c, i, s.i, j, s.j, f(o)));
+         return single_row(CD(c, i, s.i, j, s.j, f(o)));
      }},
     {"spherical",
      [](ObjectReader& o, int i, int j, const State&) {
@@ -143,7 +145,7 @@ constexpr Type<ReadPairForce> pair_forces[] = {
          const Points s(o);
          const double k = o.not_negative("stiffness"), c = o.not_negative("damping", 0);
          SpringDamper spring(i, s.i, j, s.j, k, c, o.not_negative("free_length"));
-         if (o.look("force") != nullptr) {
+         if (o.find("force") != nullptr) {
              const std::string law = o.formula("force");
              try {
                  spring.law.emplace(law, std::vector<std::string>{"l", "ldot", "t"});
@@ -204,7 +206,7 @@ std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o,
 
 namespace {
 
-// in a function, so that it is there for whoever enrols before main()
+// A function-local variable is initialised before its first use, also during static initialisation.
 ReadContact& registered()
 {
     static ReadContact read = nullptr;

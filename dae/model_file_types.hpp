@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The types of constraints and forces of the model file, and the keys of each. A new type is one more entry
-/// in the .cpp. Contacts are read by the room that knows them, above this one, which enrols its reader here.
+/// Types of constraints and forces in the model file, and the keys of each type.
+///
+/// A new type is a new entry in the tables of the .cpp file. Contacts are read by the library `contact`,
+/// which depends on this one and registers its reader here.
 
 #pragma once
 
-#include "dae/model.hpp"
+#include "dae/block.hpp"
 #include "dae/object_reader.hpp"
 
 namespace hilda::dae {
 
-/// "DP1", "revolute", ...
+class Force;
+class Model;
+
+/// Names of the constraint types: "DP1", "revolute", ...
 const std::vector<std::string>& constraint_types();
 
-/// Reads the keys of one of these types between the bodies i and j; x is the start. Throws PlacedError, and
-/// without a place lie::InvalidInput or ExpressionError for what the joint itself refuses.
+/// Reads the keys of a constraint of this type between the bodies i and j. x holds the initial data. Throws
+/// PlacedError, or lie::InvalidInput or ExpressionError without a location from the constructor of the
+/// constraint.
 Blocks read_constraint(const std::string& type, ObjectReader& o, int i, int j, const State& x);
 
-/// The types of forces between two bodies: "spring-damper", ...
+/// Names of the types of forces between two bodies: "spring-damper", ...
 const std::vector<std::string>& pair_force_types();
 
+/// Reads the keys of a force of this type, as read_constraint() does.
 std::unique_ptr<Force> read_pair_force(const std::string& type, ObjectReader& o, int i, int j,
                                        const State& x);
 
-/// Between whom a contact is: its name, two different bodies, the model with all its bodies and joints and the contacts
-/// before this one, and the start
+/// Arguments of the reader of a contact: its name, its two different bodies, the model with all bodies,
+/// joints, forces and the preceding contacts, and the initial data
 struct ContactPair {
     const std::string& name;
     int i, j;
@@ -31,14 +38,15 @@ struct ContactPair {
     const State& start;
 };
 
-/// Reads the keys of an element of "contacts" but for name, body_i and body_j, and adds what it is to the model: forces,
-/// constraints with unknowns, under its name. Throws PlacedError, and without a place lie::InvalidInput or
-/// ExpressionError for what the contact itself refuses.
+/// Reads an element of "contacts", except for the keys name, body_i and body_j, and adds its forces and
+/// general constraints to the model. Throws PlacedError, or lie::InvalidInput or ExpressionError without a
+/// location from the constructor of the contact.
 using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
 
-/// Makes this the reader of contacts; there is one at most, the last, and none after a nullptr. Called while
-/// the program starts: const bool enrolled = enrol_contacts(...);
+/// Registers the reader of contacts and returns true. It replaces the earlier one; nullptr removes it. Called
+/// during static initialisation: const bool registered = register_contact_reader(...);
 bool register_contact_reader(ReadContact read);
+/// The registered reader of contacts, or nullptr
 ReadContact contact_reader();
 
 }  // namespace hilda::dae

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The known word meant by a misspelt one, for messages that end with "did you mean ...?".
+/// Nearest known word to a misspelt one, for messages that end with "did you mean ...?".
 
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace hilda::dae {
 
-/// Letters to insert, delete, replace or swap with their neighbour to turn a into b (optimal string
-/// alignment); capitals count as small letters.
+/// Edit distance of two words (optimal string alignment): the number of insertions, deletions, replacements
+/// and transpositions of adjacent letters that turn a into b. Case is ignored.
 inline std::size_t edit_distance(std::string_view a, std::string_view b)
 {
     const auto same = [](char x, char y) {
         return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
     };
-    // d[i][j] is the distance between the first i letters of a and the first j of b.
+    // d[i][j] is the distance of the first i letters of a from the first j letters of b.
     std::vector d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
     for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
@@ -34,14 +34,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b)
     return d[a.size()][b.size()];
 }
 
-/// The first of the closest known words, at most two edits and at most half of the word away; "" when none
-/// is. The second bound keeps 'x' from suggesting 't', and 'pow' from suggesting 'cos'.
+/// The first of the known words with the smallest edit distance. An empty string if all distances exceed two,
+/// or half of the length of the word. The second bound avoids suggestions such as 't' for 'x' or 'cos' for
+/// 'pow'.
 inline std::string nearest(std::string_view word, std::span<const std::string> known)
 {
     std::string best;
     std::size_t bound = std::min<std::size_t>(2, word.size() / 2) + 1;
     for (const std::string& candidate : known) {
-        // Lengths that differ by more than the bound need no table, however long the word is.
+        // A difference of lengths above the bound needs no table. This keeps long words cheap.
         if (word.size() >= candidate.size() + bound || candidate.size() >= word.size() + bound) continue;
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < bound) {

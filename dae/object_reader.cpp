@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// ObjectReader and the reader of orientations.
 #include "dae/object_reader.hpp"
 
 #include "dae/nearest.hpp"
@@ -12,22 +13,23 @@ namespace hilda::dae {
 
 namespace {
 
-std::string in_words(const std::vector<std::string>& words)
+std::string joined(const std::vector<std::string>& words)
 {
     std::string all;
     for (const std::string& w : words) all += (all.empty() ? "" : ", ") + w;
     return all;
 }
 
+/// Ending of a message about an unknown word
 std::string suggestion(std::string_view word, const std::vector<std::string>& known)
 {
     const std::string meant = nearest(word, known);
-    return meant.empty() ? "; allowed: " + in_words(known) : "; did you mean '" + meant + "'?";
+    return meant.empty() ? "; allowed: " + joined(known) : "; did you mean '" + meant + "'?";
 }
 
-// Orientations are written with few digits; so much is mended, more is a mistake.
+// Largest deviation from a rotation that is corrected. It admits orientations with seven digits.
 constexpr double orientation_tolerance = 1e-6;
-// An A this near to a rotation is left as it is, so that a model written and read again is the same.
+// An A with a smaller error is not changed, so that writing and reading a model leaves it unchanged.
 constexpr double exact_rotation = 1e-14;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
@@ -42,9 +44,9 @@ ObjectReader::ObjectReader(const JsonSource& source, const Json& value, std::str
 
 double ObjectReader::number(std::string_view key, std::optional<double> fallback)
 {
-    const Json* v = asked(key, !fallback);
+    const Json* v = lookup(key, !fallback);
     const double x = v != nullptr ? number_at(*v, pointer(key), key) : *fallback;
-    keep(key, {.value = x});
+    record(key, {.value = x});
     return x;
 }
 
@@ -73,18 +75,18 @@ int ObjectReader::integer(std::string_view key)
 
 bool ObjectReader::flag(std::string_view key, std::optional<bool> fallback)
 {
-    const Json* v = asked(key, !fallback);
+    const Json* v = lookup(key, !fallback);
     const bool* given = v != nullptr ? std::get_if<bool>(&v->value) : nullptr;
     if (v != nullptr && given == nullptr)
         fail(key, std::string(key) + " must be true or false, got " + described(*v));
     const bool x = given != nullptr ? *given : *fallback;
-    keep(key, {.value = x});
+    record(key, {.value = x});
     return x;
 }
 
 std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count)
 {
-    const Json& v = *asked(key, true);
+    const Json& v = *lookup(key, true);
     if (v.list() == nullptr || v.list()->size() != count)
         fail(key, std::string(key) + " must be a list of " + std::to_string(count) + " numbers, got " +
                       described(v));
@@ -94,14 +96,14 @@ std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t coun
         x.push_back(number_at((*v.list())[k], pointer_to(pointer(key), std::to_string(k)), key));
         list.push_back({.value = x.back()});
     }
-    keep(key, {.value = std::move(list)});
+    record(key, {.value = std::move(list)});
     return x;
 }
 
 Vec3 ObjectReader::vec3(std::string_view key, const std::optional<Vec3>& fallback)
 {
-    if (asked(key, !fallback) == nullptr) {
-        keep(key, json(*fallback));
+    if (lookup(key, !fallback) == nullptr) {
+        record(key, json(*fallback));
         return *fallback;
     }
     const std::vector<double> x = numbers(key, 3);
@@ -113,14 +115,14 @@ Vec3 ObjectReader::direction(std::string_view key)
     Vec3 v = vec3(key);
     const double length = v.norm();
     if (!(length > 0) || !std::isfinite(length))
-        fail(key, std::string(key) + " must have a direction, got " + described(*look(key)) + " of length " +
+        fail(key, std::string(key) + " must have a direction, got " + described(*find(key)) + " of length " +
                       shortest(length));
     return v;
 }
 
 Mat3 ObjectReader::matrix(std::string_view key)
 {
-    const Json& v = *asked(key, true);
+    const Json& v = *lookup(key, true);
     Mat3 m;
     const auto is_row = [](const Json& row) { return row.list() != nullptr && row.list()->size() == 3; };
     if (v.list() == nullptr || v.list()->size() != 3 ||
@@ -131,20 +133,20 @@ Mat3 ObjectReader::matrix(std::string_view key)
             m(i, j) =
                 number_at((*(*v.list())[i].list())[j],
                           pointer_to(pointer_to(pointer(key), std::to_string(i)), std::to_string(j)), key);
-    keep(key, json(m));
+    record(key, json(m));
     return m;
 }
 
 std::string ObjectReader::text(std::string_view key, const std::optional<std::string>& fallback)
 {
-    const Json* v = asked(key, !fallback);
+    const Json* v = lookup(key, !fallback);
     if (v != nullptr && v->string() == nullptr)
         fail(key, std::string(key) + " must be a string, got " + described(*v));
     const std::string& s = v != nullptr ? *v->string() : *fallback;
     if (s.size() > JsonSource::max_string)
         fail(key, std::string(key) + " has " + std::to_string(s.size()) + " bytes; at most " +
                       std::to_string(JsonSource::max_string) + " are allowed");
-    keep(key, {.value = s});
+    record(key, {.value = s});
     return s;
 }
 
@@ -168,48 +170,48 @@ std::string ObjectReader::one_of(std::string_view key, const std::vector<std::st
 
 std::string ObjectReader::formula(std::string_view key, const std::optional<std::string>& fallback)
 {
-    const Json* v = asked(key, !fallback);
+    const Json* v = lookup(key, !fallback);
     if (v == nullptr || v->string() != nullptr) return text(key, fallback);
     if (v->number() == nullptr)
         fail(key, std::string(key) + " must be a number or an expression in a string, got " + described(*v));
     return shortest(number(key));
 }
 
-ObjectReader ObjectReader::object(std::string_view key) { return {source, *asked(key, true), pointer(key)}; }
+ObjectReader ObjectReader::object(std::string_view key) { return {source, *lookup(key, true), pointer(key)}; }
 
 const Json::List& ObjectReader::list(std::string_view key, bool required)
 {
     static const Json::List empty;
-    const Json* v = asked(key, required);
+    const Json* v = lookup(key, required);
     if (v == nullptr) return empty;
     if (v->list() == nullptr) fail(key, std::string(key) + " must be a list, got " + described(*v));
     return *v->list();
 }
 
-const Json* ObjectReader::look(std::string_view key) { return asked(key, false); }
+const Json* ObjectReader::find(std::string_view key) { return lookup(key, false); }
 
 void ObjectReader::exclude(std::string_view key, std::string_view other)
 {
-    const bool both = look(key) != nullptr && look(other) != nullptr;  // either is known then
+    const bool both = find(key) != nullptr && find(other) != nullptr;
     if (both) fail(other, "give one of " + std::string(key) + " and " + std::string(other) + ", not both");
 }
 
-void ObjectReader::keep(std::string_view key, Json as)
+void ObjectReader::record(std::string_view key, Json as)
 {
-    for (Json::Member& m : kept)
+    for (Json::Member& m : recorded)
         if (m.key == key) {
             m.value = std::move(as);
             return;
         }
-    kept.push_back({std::string(key), 0, std::move(as)});
+    recorded.push_back({std::string(key), 0, std::move(as)});
 }
 
 Json ObjectReader::finish()
 {
-    if (look("note") != nullptr) text("note");
+    if (find("note") != nullptr) text("note");
     for (const Json::Member& m : *value.object())
-        if (std::find(known.begin(), known.end(), m.key) == known.end()) refuse_unknown(m);
-    return {.value = std::move(kept)};
+        if (std::find(known.begin(), known.end(), m.key) == known.end()) fail_unknown_key(m);
+    return {.value = std::move(recorded)};
 }
 
 std::string ObjectReader::place(std::string_view key) const
@@ -225,11 +227,11 @@ void ObjectReader::fail(std::string_view key, const std::string& what) const
     source.fail(m->value, pointer(key), what);
 }
 
-const Json* ObjectReader::asked(std::string_view key, bool required)
+const Json* ObjectReader::lookup(std::string_view key, bool required)
 {
     if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
     if (const Json::Member* m = value.member(key)) return &m->value;
-    if (required) refuse_missing(key);
+    if (required) fail_missing_key(key);
     return nullptr;
 }
 
@@ -240,21 +242,22 @@ double ObjectReader::number_at(const Json& v, const std::string& at, std::string
     return *v.number();
 }
 
-/// A missing key is often a misspelt one: then that one is named. But body_j is not a misspelt body_i.
-void ObjectReader::refuse_missing(std::string_view key)
+/// Reports a missing key. If an unknown key of the object resembles it, that key is reported instead. Keys
+/// that differ in the last letter only, such as body_i and body_j, do not count as similar.
+void ObjectReader::fail_missing_key(std::string_view key)
 {
-    const std::vector<std::string> only = {std::string(key)};
+    const std::vector<std::string> this_key = {std::string(key)};
     const auto stem = [](std::string_view word) { return word.substr(0, word.size() - 1); };
     for (const Json::Member& m : *value.object())
-        if (std::find(known.begin(), known.end(), m.key) == known.end() && nearest(m.key, only) == key &&
+        if (std::find(known.begin(), known.end(), m.key) == known.end() && nearest(m.key, this_key) == key &&
             stem(m.key) != stem(key)) {
-            known = only;
-            refuse_unknown(m);
+            known = this_key;
+            fail_unknown_key(m);
         }
-    fail("missing key '" + only[0] + "'");
+    fail("missing key '" + this_key[0] + "'");
 }
 
-void ObjectReader::refuse_unknown(const Json::Member& m) const
+void ObjectReader::fail_unknown_key(const Json::Member& m) const
 {
     Json at{.value = nullptr, .offset = m.offset, .change = m.value.change};
     source.fail(at, pointer(m.key), "unknown key " + described({.value = m.key}) + suggestion(m.key, known));
@@ -264,33 +267,33 @@ Mat3 read_orientation(ObjectReader& o)
 {
     const std::vector<std::string> forms = {"A", "p", "axis_angle"};
     const auto given = std::count_if(forms.begin(), forms.end(),
-                                     [&](const std::string& key) { return o.look(key) != nullptr; });
+                                     [&](const std::string& key) { return o.find(key) != nullptr; });
     if (given > 1)
         o.fail("the orientation must be given once, as one of A, p and axis_angle; got " +
                std::to_string(given));
 
-    const auto off = [](const std::string& what, double value) {
-        return what + ", got " + shortest(value) + "; at most " + shortest(orientation_tolerance) +
-               " off is mended";
+    const auto deviation_message = [](const std::string& what, double value) {
+        return what + ", got " + shortest(value) + "; deviations up to " + shortest(orientation_tolerance) +
+               " are corrected";
     };
     Mat3 A = Mat3::Identity();
     if (o.has("A")) {
         A = o.matrix("A");
         if (const double error = lie::orthogonality_error(A); !(error <= orientation_tolerance))
-            o.fail("A", off("A must be a rotation matrix: |A^T A - I| must be 0", error));
-        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection with det A = -1");
+            o.fail("A", deviation_message("A must be a rotation matrix: |A^T A - I| must be 0", error));
+        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection (det A = -1)");
         if (lie::orthogonality_error(A) > exact_rotation) A = lie::nearest_rotation(A);
     } else if (o.has("p")) {
         const std::vector<double> e = o.numbers("p", 4);
         const lie::Vec4 p(e[0], e[1], e[2], e[3]);
         if (!(std::abs(p.norm() - 1) <= orientation_tolerance))
-            o.fail("p", off("p must have length 1", p.norm()));
+            o.fail("p", deviation_message("p must have length 1", p.norm()));
         A = lie::rotation(p.normalized());
     } else if (o.has("axis_angle")) {
         const std::vector<double> a = o.numbers("axis_angle", 4);
         const Vec3 u(a[0], a[1], a[2]);
         if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
-            o.fail("axis_angle", off("the axis of axis_angle must have length 1", u.norm()));
+            o.fail("axis_angle", deviation_message("the axis of axis_angle must have length 1", u.norm()));
         A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
     }
     return A;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Rank of the constraint rows by SuiteSparseQR.
 #include "dae/rank.hpp"
 
+#include "dae/model.hpp"
 #include "lie/solver/elimination.hpp"
 
 #include <SuiteSparseQR.hpp>
@@ -11,38 +13,39 @@ namespace hilda::dae {
 
 namespace {
 
-/// The contact that row k of the reduced rows belongs to, of which those that are open have none
-const Constraint& contact_of(const Model& model, const State& x, int k)
+/// The general constraint to which row k of the reduced system belongs. Inactive constraints have no rows
+/// there.
+const Constraint& general_constraint_of_row(const Model& model, const State& x, int k)
 {
     int row = static_cast<int>(model.active_rows().size());
-    for (const bool of_velocities : {false, true})
-        for (const auto& c : model.evolving()) {
+    for (const bool velocity_level : {false, true})
+        for (const auto& c : model.general_constraints()) {
             if (Model::inactive(*c, x)) continue;
-            const int held = c->is_regularised() ? 0 : c->velocity_rows();
-            row += of_velocities ? held : c->rows() - c->unknowns();
+            const int remaining_velocity_rows = c->is_regularised() ? 0 : c->velocity_rows();
+            row += velocity_level ? remaining_velocity_rows : c->position_rows() - c->algebraic_variables();
             if (k < row) return *c;
         }
-    throw std::logic_error("no contact has this row");
+    throw std::logic_error("no general constraint has this row");
 }
 
 }  // namespace
 
 std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
-    lie::Rows whole = model.pattern();
-    model.variation(x, whole);
-    whole.regularise(0);  // what gives way leaves nothing undetermined
-    std::vector<char> inactive(whole.rows(), 0);
-    for (const int k : whole.unilateral) inactive[k] = whole.is_inactive(k);
-    lie::Elimination contacts(whole, inactive);  // a contact is the one row that is left of it
-    contacts.factor(whole);
-    const lie::Rows& C = contacts.reduced();
+    lie::Rows full_rows = model.pattern();
+    model.variation(x, full_rows);
+    full_rows.regularise(0);  // regularised rows become zero: their multipliers are always determined
+    std::vector<char> inactive(full_rows.rows(), 0);
+    for (const int k : full_rows.unilateral) inactive[k] = full_rows.is_inactive(k);
+    lie::Elimination elimination(full_rows, inactive);  // one row remains of each contact
+    elimination.factor(full_rows);
+    const lie::Rows& C = elimination.reduced();
     const int m = C.rows(), n = 6 * model.bodies();
 
     cholmod_common common;
     cholmod_l_start(&common);
     common.print = 0;
-    // column k of the matrix is row k of the constraints
+    // Column k of the matrix A is row k of the constraints, scaled to length one.
     cholmod_triplet* triplets =
         cholmod_l_allocate_triplet(n, m, 6 * C.entry.size(), 0, CHOLMOD_REAL, &common);
     auto* row = static_cast<SuiteSparse_long*>(triplets->i);
@@ -67,21 +70,21 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     cholmod_sparse* A = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, &common);
     cholmod_l_free_triplet(&triplets, &common);
 
-    // The order is kept, so that of two equal rows the later one is the redundant one. R is then a staircase:
-    // a column that brings something new reaches one row further down than those before it, a dependent one
-    // does not.
+    // The columns are not reordered, so that of two equal rows the later one is redundant. R then has echelon
+    // form: an independent column has an entry in one more row than the columns before it, a dependent column
+    // has not.
     cholmod_sparse* R = nullptr;
     SuiteSparse_long* E = nullptr;
     const SuiteSparse_long rank =
         SuiteSparseQR<double>(SPQR_ORDERING_FIXED, tolerance, 0, A, &R, &E, &common);
     std::vector<int> dependent;
-    SuiteSparse_long steps = 0;
+    SuiteSparse_long independent = 0;
     if (rank >= 0 && E == nullptr) {
         const auto* start = static_cast<const SuiteSparse_long*>(R->p);
         const auto* index = static_cast<const SuiteSparse_long*>(R->i);
         for (int k = 0; k < m; ++k) {
-            if (std::find(index + start[k], index + start[k + 1], steps) != index + start[k + 1])
-                ++steps;
+            if (std::find(index + start[k], index + start[k + 1], independent) != index + start[k + 1])
+                ++independent;
             else
                 dependent.push_back(k);
         }
@@ -91,15 +94,16 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     cholmod_l_free_sparse(&R, &common);
     cholmod_l_free_sparse(&A, &common);
     cholmod_l_finish(&common);
-    if (rank < 0 || rank != steps)
-        throw lie::SingularMatrix("SuiteSparseQR found no rank for the constraints", 0);
-    std::vector<const Constraint*> contacts_too_many;
+    if (rank < 0 || rank != independent)
+        throw lie::SingularMatrix("SuiteSparseQR could not determine the rank of the constraints", 0);
+    std::vector<const Constraint*> dependent_contacts;
     while (!dependent.empty() && dependent.back() >= static_cast<int>(model.active_rows().size())) {
-        contacts_too_many.insert(contacts_too_many.begin(), &contact_of(model, x, dependent.back()));
+        dependent_contacts.insert(dependent_contacts.begin(),
+                                  &general_constraint_of_row(model, x, dependent.back()));
         dependent.pop_back();
     }
     std::string names;
-    for (const Constraint* c : contacts_too_many)
+    for (const Constraint* c : dependent_contacts)
         if (c->has_fallback())
             Model::set_mode(*c, x, Constraint::fallback_active);
         else
@@ -107,8 +111,8 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     if (!names.empty())
         throw lie::NumericalFailure(
             "contact_rank",
-            "contacts press where other constraints hold already, so that their forces "
-            "are not determined: " +
+            "the normal forces of these contacts are not determined, because other constraints "
+            "already prevent the motion along the normal: " +
                 names);
     return dependent;
 }

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Which constraint rows say nothing new.
+/// Rank of the constraint rows: detection of redundant rows.
 
 #pragma once
 
-#include "dae/model.hpp"
+#include "lie/state.hpp"
+
+#include <vector>
 
 namespace hilda::dae {
 
-/// The rows that add less than `tolerance` to those before them, as numbers into model.active_rows(). In the
-/// metric of the mass, so that the answer does not depend on units. A contact among them has a force that is not
-/// determined: it is handed over in x, and lie::NumericalFailure "contact_rank" tells of those that cannot be.
+class Model;
+using lie::State;
+
+/// Redundant rows in the state x, as indices into model.active_rows().
+///
+/// The rows C are scaled to length one in the metric of the mass, C diag(M, J̄)^{-1/2}, and factored by
+/// SuiteSparseQR without reordering. A row is redundant if its component orthogonal to the preceding rows is
+/// shorter than `tolerance`. Of two equal rows the later one is redundant. The scaling makes the result
+/// independent of the units. Of J̄ the diagonal is used.
+///
+/// Algebraic variables are eliminated first, so that one row remains of a contact. If this row is redundant
+/// the contact force is not determined. The contact is then set to Constraint::fallback_active in x. Throws
+/// lie::NumericalFailure "contact_rank" with the names of such contacts without a fallback, and
+/// lie::SingularMatrix if SuiteSparseQR fails.
 std::vector<int> dependent_rows(const Model& model, State& x, double tolerance);
 
 }  // namespace hilda::dae

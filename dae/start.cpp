@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Projections, accelerations and multipliers at a start, and the removal of redundant rows.
 #include "dae/start.hpp"
 
+#include "dae/model.hpp"
 #include "dae/rank.hpp"
 #include "lie/bounded_rows.hpp"
+#include "lie/solver/saddle.hpp"
 
 #include <algorithm>
 
@@ -10,12 +13,12 @@ namespace hilda::dae {
 
 namespace {
 
-// A row is redundant when what it adds to the rows before it is shorter than this, rows having length one.
-// Coordinates written with nine or ten digits must not hide a redundant row, and a driver near its singular
-// point is not one.
+// Tolerance of dependent_rows() for rows of length one. It is above the error of coordinates with nine or ten
+// digits, which must not hide a redundant row, and below the independent part of a driver row near its
+// singularity.
 constexpr double rank_tolerance = 1e-7;
-// A redundant row agrees with the others when it holds to this, scaled, once the others do.
-constexpr double agreement = 1e-6;
+// Largest scaled residual of a redundant row when the other rows are satisfied
+constexpr double redundancy_tolerance = 1e-6;
 
 std::string number(double value)
 {
@@ -25,15 +28,17 @@ std::string number(double value)
     return text.str();
 }
 
-/// KLU, whose digits count at a start, but for many contacts, of which only those that are closed are then factored
-lie::LinearSolver solver_of(const Model& model)
+/// Linear solver of a start. KLU is the most accurate. With general constraints `automatic` is used, which
+/// factors the rows of active constraints only.
+lie::LinearSolver start_solver(const Model& model)
 {
-    return model.evolving().empty() ? lie::LinearSolver::klu : lie::LinearSolver::automatic;
+    return model.general_constraints().empty() ? lie::LinearSolver::klu : lie::LinearSolver::automatic;
 }
 
-/// A row dropped from the equations, in position, velocity and acceleration, each relative to what moves there;
-/// all three vanish when it says nothing new.
-void check_agreement(const Model& model, const Model::Row& row, const State& x)
+/// Throws ConstraintError if a redundant row contradicts the others in position, velocity or acceleration.
+/// Residuals of velocities and accelerations are relative to the largest value of the bodies of the row, at
+/// least 1.
+void check_redundant_row(const Model& model, const Model::Row& row, const State& x)
 {
     double velocity_scale = 1, acceleration_scale = 1;
     for (const int b : {row.block->i, row.block->j}) {
@@ -43,9 +48,10 @@ void check_agreement(const Model& model, const Model::Row& row, const State& x)
         acceleration_scale = std::max({acceleration_scale, body.rddot.norm(), body.omegadot_bar.norm()});
     }
     const auto check = [&](const char* level, double residual, double scale) {
-        if (std::abs(residual) > agreement * scale)
+        if (std::abs(residual) > redundancy_tolerance * scale)
             throw ConstraintError(model.name_of(row) + ": contradicts the constraints before it in " + level +
-                                      ", by " + number(residual),
+                                      ", residual " + number(residual) + ", at most " +
+                                      number(redundancy_tolerance * scale) + " is allowed",
                                   row.constraint);
     };
     check("position", model.scaled_residual(row, x), 1);
@@ -58,44 +64,48 @@ void check_agreement(const Model& model, const Model::Row& row, const State& x)
 int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance)
 {
     Eigen::VectorXd step(K.size());
-    constexpr int most = 50;
-    double farthest = 0;  // from the origin, where rounding is coarser
-    for (const lie::Motion& body : x.body) farthest = std::max(farthest, body.r.norm());
-    tolerance = std::max(tolerance, 8 * std::numeric_limits<double>::epsilon() * farthest);
-    const auto residual = [&] { return model.largest_residual(x, Model::Over::in_equations).value; };
+    constexpr int max_iterations = 50;
+    double largest_distance = 0;  // from the origin: scales the rounding error of a position
+    for (const lie::Motion& body : x.body) largest_distance = std::max(largest_distance, body.r.norm());
+    tolerance = std::max(tolerance, 8 * std::numeric_limits<double>::epsilon() * largest_distance);
+    const auto residual = [&] { return model.largest_residual(x, Model::RowSet::in_equations).value; };
     for (int k = 0;; ++k) {
         const double before = residual();
         if (!std::isfinite(before))
-            throw lie::NonFinite("a constraint has no finite value while positions are projected");
+            throw lie::NonFinite(
+                "the projection of the positions: the residual of a constraint is not finite");
         K.assemble(x);
         step.setZero();
         model.phi(x, K.constraint_part(step));
         step *= -1;
         K.solve_refined(step);
-        // A half-way house for far starts: no body turns by more than half a radian in one step.
-        double turn = 0;
-        for (int b = 0; b < model.bodies(); ++b) turn = std::max(turn, step.segment<3>(6 * b + 3).norm());
-        const double part = turn > 0.5 ? 0.5 / turn : 1;
+        // Damped step: no body rotates by more than 0.5 rad. This makes distant starts converge.
+        double largest_rotation = 0;
+        for (int b = 0; b < model.bodies(); ++b)
+            largest_rotation = std::max(largest_rotation, step.segment<3>(6 * b + 3).norm());
+        const double step_fraction = largest_rotation > 0.5 ? 0.5 / largest_rotation : 1;
         const State from = x;
         for (int b = 0; b < model.bodies(); ++b) {
-            x.body[b].r += part * step.segment<3>(6 * b);
-            x.body[b].A = lie::orthonormalised(x.body[b].A * lie::exp(part * step.segment<3>(6 * b + 3)));
+            x.body[b].r += step_fraction * step.segment<3>(6 * b);
+            x.body[b].A =
+                lie::orthonormalised(x.body[b].A * lie::exp(step_fraction * step.segment<3>(6 * b + 3)));
         }
         if (x.alpha.size() > 0)
-            x.alpha += part * K.algebraic_part(step);  // those of a model are in its order
-        // Goes on below the tolerance for as long as it still gains: the last step is free and gives the last
-        // digits.
+            x.alpha +=
+                step_fraction * K.algebraic_part(step);  // State::alpha has the order of the constraints
+        // Iterate below the tolerance as long as the residual decreases by a factor of ten. The last step
+        // costs little and gives the last digits.
         const double after = residual();
         if (before <= tolerance && after >= 0.1 * before) {
             if (after > before) x = from;
             return k;
         }
-        if (k == most)
+        if (k == max_iterations)
             throw lie::NoConvergence(
-                "no position satisfies the constraints near the one given; largest residual " +
-                    number(after) + " in " +
-                    model.name_of(model.largest_residual(x, Model::Over::in_equations)),
-                after, most);
+                "the projection of the positions onto the constraints did not converge in " +
+                    std::to_string(max_iterations) + " steps; largest residual " + number(after) + " in " +
+                    model.name_of(model.largest_residual(x, Model::RowSet::in_equations)),
+                after, max_iterations);
     }
 }
 
@@ -118,13 +128,13 @@ void project_velocities(const lie::System& system, lie::Saddle& K, State& x)
 
 namespace {
 
-// Friction in the equations of a step is, at a start, as stiff as over a long step, and stops what slips within an instant,
-// if it can [s].
-constexpr double as_stiff_as_in = 1, an_instant = 1e-6;
+// At a start there is no step. Regularised rows have the compliance of a step of this length, and friction
+// opposes a sliding velocity as if to stop it within slip_decay_time [s].
+constexpr double regularisation_step = 1, slip_decay_time = 1e-6;
 
-/// C a = γ - C v/τ for the rows that give way, so that their acceleration is γ where nothing slips and against the slip where
-/// something does
-void stop_within(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd& a)
+/// Replaces γ of the regularised rows by γ - C v/τ. The relative acceleration is γ without sliding, and
+/// opposes the sliding velocity otherwise.
+void oppose_slip(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd& a)
 {
     for (const lie::Rows::Regularised& c : C.regularised)
         for (int k = c.first; k < c.first + 2; ++k) {
@@ -141,9 +151,9 @@ void stop_within(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd
 
 void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
 {
-    lie::BoundedRows within_bounds(system.pattern());
-    within_bounds.all_stick(K);
-    K.assemble(x, as_stiff_as_in);
+    lie::BoundedRows bounded_rows(system.pattern());
+    bounded_rows.all_stick(K);
+    K.assemble(x, regularisation_step);
     lie::Loads loads(system.bodies());
     system.loads(x, loads);
     Eigen::VectorXd a(K.size());
@@ -154,17 +164,19 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
     }
     K.algebraic_part(a).setZero();
     system.gamma(x, K.constraint_part(a));
-    stop_within(an_instant, K.rows(), x, a);
-    if (!a.allFinite()) throw lie::NonFinite("a load or a constraint is not finite");
+    oppose_slip(slip_decay_time, K.rows(), x, a);
+    if (!a.allFinite())
+        throw lie::NonFinite("the accelerations at the start: a load or a constraint is not finite");
     const Eigen::VectorXd right_side = a;
-    constexpr int most = 100;
+    constexpr int max_iterations = 100;
     for (int k = 0;; ++k) {
         K.solve_refined(a);
-        if (within_bounds(K, K.rows(), a, x)) break;
-        if (k == most)
-            throw lie::NumericalFailure(
-                "start_not_converged",
-                "friction and the normal forces that bound it do not settle at the start");
+        if (bounded_rows(K, K.rows(), a, x)) break;
+        if (k == max_iterations)
+            throw lie::NumericalFailure("start_not_converged",
+                                        "the friction forces and the normal forces that bound them did not "
+                                        "converge at the start in " +
+                                            std::to_string(max_iterations) + " iterations");
         a = right_side;
     }
     for (int b = 0; b < system.bodies(); ++b) {
@@ -176,75 +188,79 @@ void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
 
 namespace {
 
-/// Accelerations and multipliers at a start, and what the forces remember of it
-void settle(const Model& model, lie::Saddle& K, State& x)
+/// Computes the internal states, accelerations and multipliers of a start. If internal states depend on
+/// multipliers, they are iterated until they are consistent.
+void solve_with_internal_states(const Model& model, lie::Saddle& K, State& x)
 {
-    const auto once = [&] {
+    const auto solve_once = [&] {
         model.set_internal_state_at_start(x);
         solve_accelerations(model, K, x);
     };
-    once();
+    solve_once();
     const auto& forces = model.forces();
     if (std::none_of(forces.begin(), forces.end(),
                      [](const auto& f) { return f->internal_state_uses_multipliers(); }))
         return;
-    // λ goes by w times what a pass makes of it, with the w of Aitken's extrapolation: passes alone diverge where much
-    // friction has a long lever against the normal force.
-    constexpr int most = 200;
+    // Fixed-point iteration of λ with Aitken's relaxation factor w. Without it the iteration diverges if
+    // friction with a large coefficient has a long lever arm relative to the normal force.
+    constexpr int max_iterations = 200;
     Eigen::VectorXd from, R, before;
     double w = 1;
-    for (int k = 0; k < most && x.lambda.allFinite(); ++k) {
+    for (int k = 0; k < max_iterations && x.lambda.allFinite(); ++k) {
         from = x.lambda;
-        once();
+        solve_once();
         R = x.lambda - from;
-        if (R.norm() <= (k < most / 2 ? 1e-13 : 1e-10) * x.lambda.norm()) return;  // rounding may be more
+        // rounding may prevent 1e-13
+        if (R.norm() <= (k < max_iterations / 2 ? 1e-13 : 1e-10) * x.lambda.norm()) return;
         if (k > 0) w *= -before.dot(R - before) / (R - before).squaredNorm();
         x.lambda = from + w * R;
         before = R;
     }
     throw lie::NumericalFailure(
         "start_not_converged",
-        "friction and the normal forces that it depends on do not settle at the start; "
-        "the multipliers still change by " +
+        "the friction forces and the normal forces on which they depend did not converge at the start in " +
+            std::to_string(max_iterations) + " iterations; last change of the multipliers " +
             number(R.norm()));
 }
 
-/// Readies the model at x without the rows that add less than `tolerance` to those before them, and projects
-/// positions onto the others. Returns the numbers of the rows left out.
+/// Prepares the model at x, removes the rows that are redundant within `tolerance`, and projects the
+/// positions onto the others. Returns the numbers of the removed rows.
 std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
 {
     model.prepare(x);
     const std::vector<int> redundant = dependent_rows(model, x, tolerance);
     for (const int k : redundant) model.drop(k);
     if (model.rows() > 0) {
-        lie::Saddle K(model, lie::Metric::mass, solver_of(model));
+        lie::Saddle K(model, lie::Metric::mass, start_solver(model));
         project_positions(model, K, x);
     }
     return redundant;
 }
 
-/// Puts x on the constraints, and the model into the form without redundant rows it has there.
+/// Removes redundant rows and projects the positions x onto the constraints. Returns the numbers of the
+/// removed rows.
 ///
-/// Off the constraints a redundant row looks independent, by about as much as the data are off. So data to be
-/// mended are first mended with rows counted as redundant up to that, and less and less until the mended
-/// positions satisfy the rows left out as well.
-std::vector<int> drop_and_project(Model& model, State& x, double residual)
+/// If the positions violate the constraints, a redundant row appears independent by about the size of the
+/// violation. The positions are therefore first projected with a rank tolerance of this size. The tolerance
+/// is reduced until the projected positions satisfy the removed rows as well.
+std::vector<int> drop_redundant_and_project(Model& model, State& x, double residual)
 {
     for (double tolerance = std::min(0.1, 10 * residual); tolerance > rank_tolerance; tolerance /= 10) {
-        State mended = x;
+        State candidate = x;
         try {
-            const bool complete = project_without_redundant(model, mended, tolerance).empty();
-            if (!complete && !(model.largest_residual(mended).value < agreement)) continue;
+            const bool complete = project_without_redundant(model, candidate, tolerance).empty();
+            if (!complete && !(model.largest_residual(candidate).value < redundancy_tolerance)) continue;
         } catch (const lie::NumericalFailure&) {
             continue;
         } catch (const ContactError&) {
             continue;
         }
-        x = mended;
+        x = candidate;
         break;
     }
     std::vector<int> redundant = project_without_redundant(model, x, rank_tolerance);
-    // Once more where x is now: there a driver's complement is exact, being made from hinges that are.
+    // Repeat at the projected positions. The complement of a driver is exact there, because the hinge is
+    // exact.
     const auto has_complement = [](const Model::Row& row) { return row.complement != nullptr; };
     if (std::any_of(model.all_rows().begin(), model.all_rows().end(), has_complement))
         redundant = project_without_redundant(model, x, rank_tolerance);
@@ -255,18 +271,19 @@ std::vector<int> drop_and_project(Model& model, State& x, double residual)
 
 namespace {
 
-/// Bodies that are to be in contact and are not, unless they may be moved; and what of it is the largest error
+/// Throws ContactError if the gap of an active constraint exceeds its tolerance, unless positions may be
+/// projected. Records the largest |gap| in the report.
 void check_contact_positions(const Model& model, const State& x, const StartOptions& options,
                              StartReport& report)
 {
-    for (size_t k = 0; k < model.evolving().size(); ++k) {
-        const auto& c = model.evolving()[k];
+    for (size_t k = 0; k < model.general_constraints().size(); ++k) {
+        const auto& c = model.general_constraints()[k];
         if (Model::inactive(*c, x)) continue;
-        const double error = std::abs(c->gap(model.at(*c, x)));
-        if (!options.fix_initial && !(error <= c->allowance()))
-            throw ContactError(model.name_of(*c) + ": not in contact at the start, a gap or overlap of " +
-                                   number(error) + " m, more than " + number(c->allowance()) +
-                                   " m; --fix-initial closes it",
+        const double error = std::abs(c->gap(model.arguments(*c, x)));
+        if (!options.fix_initial && !(error <= c->position_tolerance()))
+            throw ContactError(model.name_of(*c) + ": not in contact at the start, the gap or overlap is " +
+                                   number(error) + " m, at most " + number(c->position_tolerance()) +
+                                   " m is allowed; use --fix-initial to move the bodies into contact",
                                static_cast<int>(k));
         if (error > report.position_residual) {
             report.position_residual = error;
@@ -275,17 +292,18 @@ void check_contact_positions(const Model& model, const State& x, const StartOpti
     }
 }
 
+/// The same for the velocities
 void check_contact_velocities(const Model& model, const State& x, const StartOptions& options,
                               StartReport& report)
 {
-    for (size_t k = 0; k < model.evolving().size(); ++k) {
-        const auto& c = model.evolving()[k];
+    for (size_t k = 0; k < model.general_constraints().size(); ++k) {
+        const auto& c = model.general_constraints()[k];
         if (Model::inactive(*c, x)) continue;
-        const double error = c->velocity_error(model.at(*c, x));
+        const double error = c->velocity_error(model.arguments(*c, x));
         if (!options.fix_initial && !(error <= options.tolerance))
             throw ContactError(model.name_of(*c) + ": the initial velocities violate the contact by " +
                                    number(error) + " m/s, more than " + number(options.tolerance) +
-                                   "; --fix-initial tries to move them",
+                                   " m/s; use --fix-initial to project them onto the constraints",
                                static_cast<int>(k));
         if (error > report.velocity_residual) {
             report.velocity_residual = error;
@@ -302,41 +320,41 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     StartReport report;
     report.rows = static_cast<int>(model.all_rows().size());
     if (report.rows > 0) {
-        const Model::Residual position = model.largest_residual(x, Model::Over::blocks);
+        const Model::Residual position = model.largest_residual(x, Model::RowSet::blocks);
         report.position_residual = position.value;
         report.worst_position = model.name_of(model.all_rows()[position.row]);
         if (!std::isfinite(position.value))
-            throw ConstraintError(
-                report.worst_position + ": has no finite value at the start, got " + number(position.value),
-                model.all_rows()[position.row].constraint);
+            throw ConstraintError(report.worst_position + ": the residual at the start must be finite, got " +
+                                      number(position.value),
+                                  model.all_rows()[position.row].constraint);
         if (!options.fix_initial && position.value > options.tolerance)
             throw ConstraintError("the initial positions violate " + report.worst_position + " by " +
                                       number(position.value) + ", more than " + number(options.tolerance) +
-                                      " m or rad; --fix-initial tries to move them",
+                                      " m or rad; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[position.row].constraint);
     }
 
     check_contact_positions(model, x, options, report);
-    const std::vector<int> dropped = drop_and_project(model, x, report.position_residual);
+    const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
-    report.rank = model.rows() - model.pattern().unknowns();
-    for (const auto& c : model.evolving())
+    report.rank = model.rows() - model.pattern().algebraic_variables();
+    for (const auto& c : model.general_constraints())
         if (Model::inactive(*c, x))
-            report.rank -= c->rows() - c->unknowns() + c->velocity_rows();
+            report.rank -= c->position_rows() - c->algebraic_variables() + c->velocity_rows();
         else if (c->is_regularised())
             report.rank -= c->velocity_rows();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
-    lie::Saddle K(model, lie::Metric::mass, solver_of(model));
+    lie::Saddle K(model, lie::Metric::mass, start_solver(model));
     if (report.rows > 0) {
-        // the velocities given belong to the positions given; they are judged where these are now
+        // The velocities as given are checked at the projected positions.
         const Model::Residual velocity = model.largest_velocity_residual(x);
         report.velocity_residual = velocity.value;
         report.worst_velocity = model.name_of(model.all_rows()[velocity.row]);
         if (!options.fix_initial && !(velocity.value <= options.tolerance))
             throw ConstraintError("the initial velocities violate " + report.worst_velocity + " by " +
                                       number(velocity.value) + ", more than " + number(options.tolerance) +
-                                      " m/s or rad/s; --fix-initial tries to move them",
+                                      " m/s or rad/s; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[velocity.row].constraint);
     }
     check_contact_velocities(model, x, options, report);
@@ -344,8 +362,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
-    settle(model, K, x);  // what prepare() let them remember is of a start not yet on the constraints
-    for (const int k : dropped) check_agreement(model, model.all_rows()[k], x);
+    solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
+    for (const int k : dropped) check_redundant_row(model, model.all_rows()[k], x);
     return report;
 }
 
@@ -354,10 +372,12 @@ void check_dropped_rows(const Model& model, const State& x)
     for (const int k : model.dropped_rows()) {
         const Model::Row& row = model.all_rows()[k];
         const double residual = std::abs(model.scaled_residual(row, x));
-        if (!(residual <= agreement))
-            throw lie::NumericalFailure(
-                "constraint_drift", model.name_of(row) + ", dropped as redundant at the start, is off by " +
-                                        number(residual) + ", more than " + number(agreement) + " m or rad");
+        if (!(residual <= redundancy_tolerance))
+            throw lie::NumericalFailure("constraint_drift",
+                                        model.name_of(row) +
+                                            ": removed as redundant at the start, now violated by " +
+                                            number(residual) + " m or rad, more than " +
+                                            number(redundancy_tolerance) + "; it is no longer redundant");
     }
 }
 

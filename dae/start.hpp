@@ -1,48 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A consistent start: positions and velocities on their constraints, accelerations and multipliers from the
-/// saddle system, and a set of constraint rows that is independent.   Fang (2022), Eqs. 2.2, 2.8, 2.9, 2.17
+/// Consistent initial conditions: independent constraint rows, positions and velocities that satisfy them,
+/// accelerations and multipliers from the saddle system.               Fang (2022), Eqs. 2.2, 2.8, 2.9, 2.17
 
 #pragma once
 
-#include "dae/model.hpp"
-#include "lie/solver/saddle.hpp"
+#include "lie/state.hpp"
+
+#include <string>
+#include <vector>
+
+namespace hilda::lie {
+class Saddle;
+class System;
+}  // namespace hilda::lie
 
 namespace hilda::dae {
 
-/// Moves r and A onto Φ(r, A, t) = 0, by Newton steps that are shortest in the metric of the mass. Returns
-/// the number of steps. Throws lie::NoConvergence when the residual, scaled, does not fall below `tolerance`
-/// [m or rad], or below what rounding makes of it far from the origin.
+class Model;
+using lie::State;
+
+/// Projects r and A onto Φ(r, A, t) = 0 by Newton's method. Each step K (δr, δθ, ·) = (0, -Φ) is the shortest
+/// one in the metric of the mass. Algebraic variables are projected with them.
+///
+/// Returns the number of steps. The tolerance [m or rad] applies to the scaled residual, see
+/// Model::scaled_residual. Far from the origin it is at least 8 eps max |r|, the rounding error of a
+/// position. Throws lie::NoConvergence after 50 steps, and lie::NonFinite if a residual is not finite.
 int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance = 1e-13);
 
-/// Moves ṙ and ω̄ onto Φ_r ṙ + Π̄ ω̄ = ν, shortest in the metric of the mass: as an ideal impact would.
+/// Projects ṙ and ω̄ onto Φ_r ṙ + Π̄ ω̄ = ν by K (v, ·) = (M v, ν). The change is the shortest one in the metric
+/// of the mass, as in an ideal inelastic impact.
 void project_velocities(const lie::System& system, lie::Saddle& K, State& x);
 
-/// r̈, ω̄̇ and λ of a state that is consistent in position and velocity, from K (r̈, ω̄̇, λ) = (F, τ̄, γ).
+/// Computes r̈, ω̄̇ and λ from K (r̈, ω̄̇, λ) = (F, τ̄, γ). Positions and velocities must satisfy the constraints.
+///
+/// Regularised rows have the compliance of a step of 1 s here. Their γ is replaced by γ - C v/τ with
+/// τ = 1e-6 s, so that friction opposes the sliding velocity. Throws lie::NumericalFailure
+/// "start_not_converged" if their bounds and the normal forces do not become consistent, and lie::NonFinite
+/// for a load that is not finite.
 void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x);
 
 struct StartOptions {
-    bool fix_initial = false;  ///< project data that are off the constraints, instead of refusing them
-    double tolerance = 1e-9;   ///< what is off: scaled residual [m or rad, and per second]
+    bool fix_initial = false;  ///< project data that violate the constraints, instead of rejecting them
+    double tolerance = 1e-9;   ///< largest scaled residual of the data as given [m or rad, and per second]
 };
 
 struct StartReport {
-    int rows = 0, rank = 0, degrees_of_freedom = 0;
-    std::vector<std::string> dropped;  ///< names of the redundant rows, taken out of the equations
-    double position_residual = 0, velocity_residual = 0;  ///< scaled, of the data as given
-    std::string worst_position, worst_velocity;           ///< the rows they are in
-    bool projected = false;
+    int rows = 0;  ///< rows of all blocks
+    int rank = 0;  ///< independent active rows minus algebraic variables, without regularised rows
+    int degrees_of_freedom = 0;                           ///< 6 bodies - rank
+    std::vector<std::string> dropped;                     ///< names of the redundant rows that were removed
+    double position_residual = 0, velocity_residual = 0;  ///< largest scaled residuals of the data as given
+    std::string worst_position, worst_velocity;           ///< names of the rows with these residuals
+    bool projected = false;                               ///< whether one of them exceeded the tolerance
 };
 
-/// Readies model and state: finds the rank of the constraints (SuiteSparseQR), drops redundant rows,
-/// projects, and solves for accelerations and multipliers. Data within the tolerance are moved onto the
-/// constraints too, which changes them by less than it. Throws lie::InvalidInput, naming the rows, for data
-/// off the constraints and for rows that contradict the others in position, velocity or acceleration. Where a force
-/// goes by multipliers, as friction goes by the normal force of a contact, both are found together;
-/// lie::NumericalFailure "start_not_converged" where they do not settle.
+/// Prepares the model and the state for a run.
+///
+/// 1. Model::prepare() checks the data and sets the sizes of the state.
+/// 2. dependent_rows() finds the redundant rows, and they are removed from the equations.
+/// 3. Positions and velocities are projected onto the remaining rows. Data within the tolerance are projected
+///    too, which changes them by about the tolerance.
+/// 4. Accelerations and multipliers are computed. If a force depends on multipliers, as friction depends on
+///    the normal force of a contact, both are iterated with Aitken's extrapolation.
+///
+/// Throws lie::InvalidInput with the name of the row if the data violate a constraint by more than the
+/// tolerance and fix_initial is not set, or if a redundant row contradicts the others in position, velocity
+/// or acceleration. Throws lie::NumericalFailure "start_not_converged" if the iteration of step 4 does not
+/// converge.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
 
-/// Throws lie::NumericalFailure "constraint_drift" when a row that was dropped as redundant is off by more than
-/// 1e-6 m or rad in x: then it says something that the others do not, and the motion is not that of the model.
+/// Throws lie::NumericalFailure "constraint_drift" if the scaled residual of a row that was removed as
+/// redundant exceeds 1e-6 m or rad in x. The row has then become independent of the others, and the computed
+/// motion is not that of the model.
 void check_dropped_rows(const Model& model, const State& x);
 
 }  // namespace hilda::dae

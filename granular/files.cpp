@@ -20,7 +20,7 @@ namespace {
     throw FileError(file + ": " + what + ": " + std::strerror(errno));
 }
 
-/// Closes itself, and leaves no half of a file
+/// A file that is being written. The destructor closes it, and deletes it unless `done` is set.
 struct Open {
     int descriptor;
     const std::string& name;
@@ -45,8 +45,8 @@ void write_file(const std::string& file, const std::string& bytes)
         if (n <= 0) fail(next, "cannot be written");
         at += static_cast<std::size_t>(n);
     }
-    if (fsync(out.descriptor) != 0 && errno != EINVAL) fail(next, "cannot be brought to the disk");
-    if (std::rename(next.c_str(), file.c_str()) != 0) fail(file, "cannot be renamed to");
+    if (fsync(out.descriptor) != 0 && errno != EINVAL) fail(next, "cannot be flushed to the disk");
+    if (std::rename(next.c_str(), file.c_str()) != 0) fail(file, "cannot be replaced by " + next);
     out.done = true;
     const std::string parent = std::filesystem::path(file).parent_path().string();
     const int folder = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -59,9 +59,10 @@ void write_file(const std::string& file, const std::string& bytes)
 std::string read_file(const std::string& file, std::size_t most)
 {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) throw FileError(file + ": is not there, or no file");
+    if (!std::filesystem::is_regular_file(file, error))
+        throw FileError(file + ": does not exist or is not a regular file");
     if (const auto size = std::filesystem::file_size(file, error); error || size > most)
-        throw FileError(file + ": is larger than " + std::to_string(most) + " bytes");
+        throw FileError(file + ": must not be larger than " + std::to_string(most) + " bytes");
     std::ifstream in(file, std::ios::binary);
     std::ostringstream all;
     all << in.rdbuf();
@@ -73,7 +74,7 @@ void make_directory(const std::string& directory)
 {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
-    if (error) throw FileError(directory + ": cannot be made: " + error.message());
+    if (error) throw FileError(directory + ": cannot be created: " + error.message());
 }
 
 std::uint64_t checksum(const char* bytes, std::size_t count)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Files that are whole or not there.
+/// Atomic writing and checked reading of files.
 
 #pragma once
 
@@ -9,18 +9,21 @@
 
 namespace hilda::granular {
 
-/// A file that cannot be read or written, or is not what it should be. what() names it.
+/// A file cannot be read or written, or its contents are invalid. what() begins with the file name.
 class FileError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Writes beside the file, brings that to the disk and renames it.
+/// Writes a file atomically: writes FILE.new, flushes it to the disk and renames it. A file that is
+/// interrupted is not visible under its name. Throws FileError.
 void write_file(const std::string& file, const std::string& bytes);
+/// Reads a file of at most `most` bytes. Throws FileError.
 std::string read_file(const std::string& file, std::size_t most);
-/// FNV-1a over words of eight bytes, and over what is left
+/// 64-bit checksum: a variant of FNV-1a over words of eight bytes and the remaining single bytes, with an
+/// additional shift
 std::uint64_t checksum(const char* bytes, std::size_t count);
-/// Makes a directory and those above it.
+/// Creates a directory and its parents. Throws FileError.
 void make_directory(const std::string& directory);
 
 }  // namespace hilda::granular

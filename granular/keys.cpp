@@ -34,7 +34,10 @@ double Keys::number(const std::string& key)
     return value.get<double>();
 }
 
-double Keys::number(const std::string& key, double otherwise) { return has(key) ? number(key) : otherwise; }
+double Keys::number(const std::string& key, double default_value)
+{
+    return has(key) ? number(key) : default_value;
+}
 
 double Keys::positive(const std::string& key)
 {
@@ -43,19 +46,19 @@ double Keys::positive(const std::string& key)
     return value;
 }
 
-double Keys::not_negative(const std::string& key, double otherwise)
+double Keys::not_negative(const std::string& key, double default_value)
 {
-    const double value = number(key, otherwise);
+    const double value = number(key, default_value);
     if (!(value >= 0)) refuse(key, "must not be negative", value);
     return value;
 }
 
-long Keys::count(const std::string& key, long otherwise)
+long Keys::count(const std::string& key, long default_value)
 {
-    if (!has(key)) return otherwise;
+    if (!has(key)) return default_value;
     const Json& value = at(key);
     if (!value.is_number_integer() || value.get<long>() < 0)
-        refuse(key, "must be a whole number, not negative", value);
+        refuse(key, "must be a whole number and not negative", value);
     return value.get<long>();
 }
 
@@ -70,13 +73,13 @@ bool Keys::flag(const std::string& key)
 std::string Keys::text(const std::string& key)
 {
     const Json& value = at(key);
-    if (!value.is_string()) refuse(key, "must be a text", value);
+    if (!value.is_string()) refuse(key, "must be a string", value);
     return value.get<std::string>();
 }
 
-std::string Keys::text(const std::string& key, const std::string& otherwise)
+std::string Keys::text(const std::string& key, const std::string& default_value)
 {
-    return has(key) ? text(key) : otherwise;
+    return has(key) ? text(key) : default_value;
 }
 
 const Keys::Json& Keys::numbers(const std::string& key, std::size_t count, const char* rule)
@@ -89,9 +92,9 @@ const Keys::Json& Keys::numbers(const std::string& key, std::size_t count, const
     return value;
 }
 
-std::array<double, 4> Keys::four(const std::string& key, const std::array<double, 4>& otherwise)
+std::array<double, 4> Keys::four(const std::string& key, const std::array<double, 4>& default_value)
 {
-    return has(key) ? numbers(key, 4, "must be four numbers").get<std::array<double, 4>>() : otherwise;
+    return has(key) ? numbers(key, 4, "must be four numbers").get<std::array<double, 4>>() : default_value;
 }
 
 Vec3 Keys::vector(const std::string& key)
@@ -100,16 +103,17 @@ Vec3 Keys::vector(const std::string& key)
     return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-Vec3 Keys::vector(const std::string& key, const Vec3& otherwise)
+Vec3 Keys::vector(const std::string& key, const Vec3& default_value)
 {
-    return has(key) ? vector(key) : otherwise;
+    return has(key) ? vector(key) : default_value;
 }
 
-std::array<bool, 3> Keys::flags(const std::string& key, const std::array<bool, 3>& otherwise)
+std::array<bool, 3> Keys::flags(const std::string& key, const std::array<bool, 3>& default_value)
 {
-    if (!has(key)) return otherwise;
+    if (!has(key)) return default_value;
     const Json& value = at(key);
-    if (!value.is_array() || value.size() != 3) refuse(key, "must be three times true or false", value);
+    if (!value.is_array() || value.size() != 3)
+        refuse(key, "must be three values, each true or false", value);
     for (int k = 0; k < 3; ++k)
         if (!value[k].is_boolean()) refuse(key + "/" + std::to_string(k), "must be true or false", value[k]);
     return {value[0].get<bool>(), value[1].get<bool>(), value[2].get<bool>()};
@@ -133,7 +137,7 @@ VectorFormula Keys::formulas(const std::string& key, const Compile& compile)
             continue;
         }
         if (!value[k].is_string()) refuse(part, "must be a finite number or a formula", value[k]);
-        if (!compile) refuse(part, "must be a number where nobody reads formulas", value[k]);
+        if (!compile) refuse(part, "must be a number, because this program has no formulas", value[k]);
         try {
             all.of[k] = compile(value[k].get<std::string>());
         } catch (const InvalidCase& e) {
@@ -162,15 +166,15 @@ void Keys::end() const
         if (!known.contains(key)) {
             std::string names;
             for (const std::string& k : known) names += (names.empty() ? "" : ", ") + k;
-            throw InvalidCase(place_of(key) + ": unknown key; known here are " + names);
+            throw InvalidCase(place_of(key) + ": unknown key; valid keys are " + names);
         }
 }
 
 double LawKeys::restitution()
 {
-    constexpr double least = 1e-7;  // ln e must be finite
+    constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
     const double e = pair.number("restitution");
-    if (!(e >= 0 && e <= 1)) pair.refuse("restitution", "must be in (0, 1]", e);
+    if (!(e >= 0 && e <= 1)) pair.refuse("restitution", "must be in [0, 1]", e);
     return std::max(e, least);
 }
 
@@ -181,7 +185,7 @@ float LawKeys::static_friction()
 
 float LawKeys::kinetic_friction()
 {
-    pair.number("mu");  // whoever asks for friction says how much
+    pair.number("mu");  // mu is required: it has no default value
     return static_cast<float>(pair.not_negative("mu"));
 }
 

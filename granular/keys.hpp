@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reads the objects of a case file, and says of what is wrong where it stands.
+/// Typed access to the objects of a case file, with error messages that state the place of the entry.
 
 #pragma once
 
@@ -13,37 +13,39 @@
 
 namespace hilda::granular {
 
-/// One object of a case. Every key must be asked for before end(): one that nobody knows is an error.
+/// One JSON object of a case. The accessors record the keys that they look up; end() rejects all others.
+/// Accessors without a default value throw InvalidCase if the key is missing, and all throw InvalidCase if
+/// the value is invalid.
 class Keys {
 public:
     using Json = nlohmann::ordered_json;
 
-    /// `place` is the JSON pointer of the object. InvalidCase where it is none.
+    /// `place` is the JSON pointer of the object. Throws InvalidCase if `object` is not a JSON object.
     Keys(const Json& object, std::string place);
 
     bool has(const std::string& key);
     double number(const std::string& key);
-    double number(const std::string& key, double otherwise);
+    double number(const std::string& key, double default_value);
     double positive(const std::string& key);
-    double not_negative(const std::string& key, double otherwise = 0);
-    long count(const std::string& key, long otherwise);
-    bool flag(const std::string& key);  ///< false where it is not there
+    double not_negative(const std::string& key, double default_value = 0);
+    long count(const std::string& key, long default_value);
+    bool flag(const std::string& key);  ///< false if the key is missing
     std::string text(const std::string& key);
-    std::string text(const std::string& key, const std::string& otherwise);
-    std::array<double, 4> four(const std::string& key, const std::array<double, 4>& otherwise);
+    std::string text(const std::string& key, const std::string& default_value);
+    std::array<double, 4> four(const std::string& key, const std::array<double, 4>& default_value);
     Vec3 vector(const std::string& key);
-    Vec3 vector(const std::string& key, const Vec3& otherwise);
-    std::array<bool, 3> flags(const std::string& key, const std::array<bool, 3>& otherwise);
-    /// Whether one of three components is a text, and so a formula
+    Vec3 vector(const std::string& key, const Vec3& default_value);
+    std::array<bool, 3> flags(const std::string& key, const std::array<bool, 3>& default_value);
+    /// Whether the value is an array that contains a string, that is, a formula
     bool has_formula(const std::string& key);
-    /// Three numbers or formulas
+    /// A vector of three components, each a number or a formula in t
     VectorFormula formulas(const std::string& key, const Compile& compile);
     Keys object(const std::string& key);
-    /// The members of an array, none where it is not there
+    /// Elements of an array with their JSON pointers; empty if the key is missing
     std::vector<std::pair<const Json*, std::string>> list(const std::string& key);
     const Json& raw(const std::string& key);
 
-    /// InvalidCase for a key that was not asked for
+    /// Throws InvalidCase if the object has a key that was not looked up.
     void end() const;
     template <class Value>
     [[noreturn]] void refuse(const std::string& key, const std::string& rule, const Value& value) const
@@ -63,7 +65,7 @@ private:
     std::set<std::string> known;
 };
 
-/// What a law reads: its own keys, and what the two materials have between them
+/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it
 class LawKeys {
 public:
     LawKeys(Keys& own, Keys& pair, const Material& i, const Material& j, bool material_normal)
@@ -71,15 +73,16 @@ public:
     {}
 
     float positive(const std::string& key) { return static_cast<float>(own.positive(key)); }
-    float not_negative(const std::string& key, float otherwise = 0)
+    float not_negative(const std::string& key, float default_value = 0)
     {
-        return static_cast<float>(own.not_negative(key, otherwise));
+        return static_cast<float>(own.not_negative(key, default_value));
     }
     int flag(const std::string& key) { return own.flag(key) ? 1 : 0; }
     double restitution();
     float static_friction();
     float kinetic_friction();
-    /// Whether the normal law goes by the moduli of the materials, and the spring across it does so too
+    /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
+    /// then does so too
     bool material_normal() const { return of_materials; }
 
     const Material &i, &j;

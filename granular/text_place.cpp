@@ -9,12 +9,12 @@ namespace hilda::granular {
 
 namespace {
 
-/// Walks through JSON that is known to be whole.
-class Walk {
+/// A position in a valid JSON text
+class Cursor {
 public:
-    explicit Walk(const std::string& text) : text(text) { skip_space(); }
+    explicit Cursor(const std::string& text) : text(text) { skip_space(); }
 
-    /// Stands on a value; goes to what the pointer names from there.
+    /// Moves from a value to the value at the pointer relative to it, as far as it exists.
     void follow(std::string pointer)
     {
         while (!pointer.empty()) {
@@ -26,7 +26,8 @@ public:
     std::size_t at = 0;
 
 private:
-    /// From an object or a list to its member of this name or number; stays where it is if there is none.
+    /// Moves from an object or an array to the member with this name or index. Returns false and does not
+    /// move if there is none.
     bool enter(const std::string& name)
     {
         const std::size_t begin = at;
@@ -89,9 +90,9 @@ std::string text_place(const std::string& text, std::size_t byte)
 
 std::string text_place(const std::string& text, const std::string& pointer)
 {
-    Walk walk(text);
-    walk.follow(pointer);
-    return text_place(text, walk.at);
+    Cursor cursor(text);
+    cursor.follow(pointer);
+    return text_place(text, cursor.at);
 }
 
 }  // namespace hilda::granular

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where in the text of a case something stands.
+/// Line and column of an entry in the text of a case.
 
 #pragma once
 
@@ -7,9 +7,10 @@
 
 namespace hilda::granular {
 
-/// "LINE:COLUMN" of a byte, counted from 1
+/// "LINE:COLUMN" of a byte, both counted from 1
 std::string text_place(const std::string& text, std::size_t byte);
-/// Of the value that a JSON pointer names, or of the last on the way to it that is there. The text is JSON.
+/// "LINE:COLUMN" of the value at a JSON pointer, or of the innermost existing value that contains it. The
+/// text must be valid JSON.
 std::string text_place(const std::string& text, const std::string& pointer);
 
 }  // namespace hilda::granular

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How bad input is refused, and how a healthy program reports that the numerics failed.
+/// Exceptions for invalid input and for numerical failures.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace hilda::lie {
 
-/// Input that the mathematics has no answer for. what() says where, what is wrong, and the value.
+/// Invalid input. what() contains the place, the error and the value.
 class InvalidInput : public std::invalid_argument {
 public:
     using std::invalid_argument::invalid_argument;
@@ -25,32 +25,33 @@ template <class Value>
     throw InvalidInput(text.str());
 }
 
-/// A computation that could not be finished. The state is left as it was at t_n.
+/// A computation that failed. The state remains that of t_n.
 class NumericalFailure : public std::runtime_error {
 public:
     NumericalFailure(std::string status, const std::string& what)
         : std::runtime_error(what), status(std::move(status))
     {}
 
-    std::string
-        status;  ///< newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ida_failed, ...
+    /// newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ida_failed,
+    /// ...
+    std::string status;
 };
 
-/// Newton's method did not reach its tolerance.
+/// Newton's method has not reached its tolerance.
 class NoConvergence : public NumericalFailure {
 public:
     NoConvergence(const std::string& what, double correction, int iterations)
         : NumericalFailure("newton_diverged", what), correction(correction), iterations(iterations)
     {}
 
-    double correction;  ///< norm of the last correction, in the units of the scheme
+    double correction;  ///< norm of the last correction, in the units of Settings::tolerance
     int iterations;
-    std::string largest =
-        {};  ///< name of the constraint row with the largest residual at the last iterate, if any
-    double residual = 0;  ///< that residual, as Phi gives it
+    /// Name of the constraint row with the largest residual at the last iterate; empty if there are no rows
+    std::string largest = {};
+    double residual = 0;  ///< Φ of that row
 };
 
-/// The saddle matrix has no inverse that double precision can use: redundant or singular constraints.
+/// A matrix is singular to working precision: redundant or singular constraints.
 class SingularMatrix : public NumericalFailure {
 public:
     SingularMatrix(const std::string& what, double reciprocal_condition)
@@ -60,13 +61,13 @@ public:
     double reciprocal_condition;
 };
 
-/// Settings::stop said so.
+/// Settings::stop has returned true.
 class Interrupted : public NumericalFailure {
 public:
     Interrupted() : NumericalFailure("interrupted", "interrupted inside a step") {}
 };
 
-/// A number that is not finite came out of the model or the solver.
+/// The model or the solver has computed a number that is not finite.
 class NonFinite : public NumericalFailure {
 public:
     explicit NonFinite(const std::string& what) : NumericalFailure("nonfinite", what) {}

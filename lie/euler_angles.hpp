@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Euler angles ε = (θ, φ, ψ) in the z-x-z sequence: A = R_z(θ) R_x(φ) R_z(ψ).        Fang (2022), Eq. 2.1b
-/// Singular where sin φ = 0: there θ and ψ turn about the same axis.
+/// Singular for sin φ = 0: θ and ψ are then rotations about the same axis.
 
 #pragma once
 
@@ -8,6 +8,7 @@
 
 namespace hilda::lie {
 
+/// A(ε)
 inline Mat3 rotation(const Vec3& eps)
 {
     using Eigen::AngleAxisd;
@@ -16,7 +17,7 @@ inline Mat3 rotation(const Vec3& eps)
         .toRotationMatrix();
 }
 
-/// B(ε) with ω̄ = B(ε) ε̇, and so δπ̄ = B δε
+/// B(ε), with ω̄ = B(ε) ε̇ and δθ̄ = B(ε) δε; body frame
 inline Mat3 B(const Vec3& eps)
 {
     const double s_phi = std::sin(eps[1]), c_phi = std::cos(eps[1]);
@@ -30,8 +31,8 @@ inline Mat3 B(const Vec3& eps)
     return B;
 }
 
-/// The Euler angles of a rotation, 0 ≤ φ ≤ π. Where sin φ = 0 only θ ± ψ is determined; ψ = 0 is returned
-/// then.
+/// The Euler angles of a rotation, with 0 ≤ φ ≤ π. For sin φ = 0 only θ ± ψ is determined; the result then
+/// has ψ = 0.
 inline Vec3 euler_angles(const Mat3& A)
 {
     const double phi = std::atan2(std::hypot(A(2, 0), A(2, 1)), A(2, 2));
@@ -39,7 +40,7 @@ inline Vec3 euler_angles(const Mat3& A)
     return {std::atan2(A(0, 2), -A(1, 2)), phi, std::atan2(A(2, 0), A(2, 1))};
 }
 
-/// Angle [rad] between the nutation φ and the nearest singular one, kπ.
+/// Distance [rad] of the nutation angle φ from the nearest singular value kπ.
 inline double distance_to_singular_set(const Vec3& eps)
 {
     constexpr double pi = 3.14159265358979323846;

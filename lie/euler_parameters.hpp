@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Euler parameters p = (e0, e), unit length, e0 the scalar.                    Fang (2022), Eqs. 2.1a, 2.20
+/// Euler parameters p = (e0, e) of unit length; e0 is the scalar part.           Fang (2022), Eqs. 2.1a, 2.20
 
 #pragma once
 
@@ -17,7 +17,7 @@ inline Mat3 rotation(const Vec4& p)
     return (2 * p[0] * p[0] - 1) * Mat3::Identity() + 2 * (e * e.transpose() + p[0] * tilde(e));
 }
 
-/// E(p) = [-e, e0 I + ẽ]: ω = 2 E ṗ in the global frame
+/// E(p) = [-e, e0 I + ẽ]: the angular velocity in the global frame is ω = 2 E ṗ.
 inline Mat34 E(const Vec4& p)
 {
     Mat34 E;
@@ -25,7 +25,7 @@ inline Mat34 E(const Vec4& p)
     return E;
 }
 
-/// G(p) = [-e, e0 I - ẽ]: ω̄ = 2 G ṗ and ṗ = ½ Gᵀ ω̄, in the body frame; A = E Gᵀ               Eq. 2.20
+/// G(p) = [-e, e0 I - ẽ]: in the body frame ω̄ = 2 G ṗ and ṗ = ½ Gᵀ ω̄. A = E Gᵀ.                 Eq. 2.20
 inline Mat34 G(const Vec4& p)
 {
     Mat34 G;
@@ -33,8 +33,8 @@ inline Mat34 G(const Vec4& p)
     return G;
 }
 
-/// The Euler parameters of a rotation, with e0 ≥ 0. Divides by the largest of the four (Shepperd's method),
-/// so every digit is kept at every angle.
+/// The Euler parameters of a rotation, with e0 ≥ 0. Shepperd's method: division by the largest of the four,
+/// which is accurate at all angles.
 inline Vec4 euler_parameters(const Mat3& A)
 {
     const double trace = A.trace();
@@ -43,7 +43,7 @@ inline Vec4 euler_parameters(const Mat3& A)
     int largest = 0;
     four_squares.maxCoeff(&largest);
 
-    Vec4 p;  // up to its length
+    Vec4 p;  // not yet normalised
     switch (largest) {
         case 0:
             p << four_squares[0], A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1);

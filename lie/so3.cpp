@@ -7,8 +7,21 @@
 
 namespace hilda::lie {
 
-// By way of Euler parameters: acos((tr A - 1)/2) loses half the digits near 0 and near π, the vector and
-// scalar parts of p do not.
+Mat3 exp(const Vec3& theta)
+{
+    const RotationCoefficients c(theta.squaredNorm());
+    Mat3 A = c.cosc * theta * theta.transpose();
+    const double cosine = 1 - c.cosc * theta.squaredNorm();
+    A.diagonal().array() += cosine;
+    const Vec3 s = c.sinc * theta;
+    A(2, 1) += s.x(), A(1, 2) -= s.x();
+    A(0, 2) += s.y(), A(2, 0) -= s.y();
+    A(1, 0) += s.z(), A(0, 1) -= s.z();
+    return A;
+}
+
+// Computed from the Euler parameters, which are accurate at all angles. acos((tr A - 1)/2) would lose half of
+// the digits near 0 and π.
 Vec3 log(const Mat3& A)
 {
     const Vec4 p = euler_parameters(A);
@@ -18,11 +31,19 @@ Vec3 log(const Mat3& A)
     return 2 * std::atan2(sin_half, p[0]) / sin_half * e;  // e0 ≥ 0, so the angle is at most π
 }
 
+Mat3 right_jacobian(const Vec3& theta)
+{
+    const RotationCoefficients c(theta.squaredNorm());
+    const Mat3 theta_tilde = tilde(theta);
+    return Mat3::Identity() - c.cosc * theta_tilde + c.sincc * theta_tilde * theta_tilde;
+}
+
 Mat3 right_jacobian_inverse(const Vec3& theta)
 {
     const double x2 = theta.squaredNorm();
     const RotationCoefficients c(x2);
-    // (1 - (x/2) cot(x/2)) / x², which is (cosc - sinc/2) / (x² cosc); its numerator cancels near zero
+    // k = (1 - (x/2) cot(x/2))/x² = (1 - sinc/(2 cosc))/x². The numerator cancels near zero: power series
+    // there.
     double k = 0;
     if (x2 < 0.25) {
         k = 1.0 / 12 +
@@ -43,5 +64,9 @@ Mat3 nearest_rotation(const Mat3& B)
     if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign[2] = -1;
     return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
+
+Mat3 orthonormalised(const Mat3& A) { return A * (1.5 * Mat3::Identity() - 0.5 * A.transpose() * A); }
+
+double orthogonality_error(const Mat3& A) { return (A.transpose() * A - Mat3::Identity()).norm(); }
 
 }  // namespace hilda::lie

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Rotations: the tilde map, exponential, logarithm and right Jacobian of SO(3).   Fang (2022), Sec. 3.1, 3.3
+/// Rotations: tilde map, exponential map, logarithm and right Jacobian of SO(3).  Fang (2022), Secs. 3.1, 3.3
 
 #pragma once
 
@@ -14,7 +14,7 @@ namespace hilda::lie {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// The skew-symmetric ã with ã b = a × b.
+/// The skew-symmetric matrix ã with ã b = a × b.
 inline Mat3 tilde(const Vec3& a)
 {
     Mat3 a_tilde;
@@ -29,14 +29,16 @@ inline Mat3 tilde(const Vec3& a)
 /// The vector of the skew-symmetric part of S: vee(tilde(a)) = a.
 inline Vec3 vee(const Mat3& S) { return 0.5 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)); }
 
-/// The three functions of the angle that exp, its Jacobian and their inverses are made of. Near zero the
-/// closed forms cancel, so below 0.5 rad they are summed as series; the first dropped term is under 1e-17.
+/// The scalar functions of the angle x in exp, its right Jacobian and the inverses of both.
+///
+/// The closed forms lose digits by cancellation near zero. Below 0.5 rad they are replaced by power series,
+/// whose first neglected term is below 1e-17.
 struct RotationCoefficients {
-    double sinc;   ///< sin x / x
-    double cosc;   ///< (1 - cos x) / x²
-    double sincc;  ///< (x - sin x) / x³
+    double sinc;   ///< (sin x)/x
+    double cosc;   ///< (1 - cos x)/x²
+    double sincc;  ///< (x - sin x)/x³
 
-    /// x2 = x² [rad²], any non-negative number
+    /// x2 = x² ≥ 0 [rad²]
     explicit RotationCoefficients(double x2)
     {
         if (x2 < 0.25) {
@@ -62,37 +64,30 @@ private:
 };
 
 /// exp(θ̃): the rotation by the angle |θ| [rad] about θ.                                  Eqs. 3.10, 3.11
-inline Mat3 exp(const Vec3& theta)
-{
-    const RotationCoefficients c(theta.squaredNorm());
-    Mat3 A = c.cosc * theta * theta.transpose();
-    const double cosine = 1 - c.cosc * theta.squaredNorm();
-    A.diagonal().array() += cosine;
-    const Vec3 s = c.sinc * theta;
-    A(2, 1) += s.x(), A(1, 2) -= s.x();
-    A(0, 2) += s.y(), A(2, 0) -= s.y();
-    A(1, 0) += s.z(), A(0, 1) -= s.z();
-    return A;
-}
+Mat3 exp(const Vec3& theta);
 
-/// The rotation vector θ with exp(θ̃) = A and |θ| ≤ π [rad]; at π one of the two signs.
+/// The rotation vector θ with exp(θ̃) = A and |θ| ≤ π [rad]. For |θ| = π both θ and -θ are solutions; one is
+/// returned.
 Vec3 log(const Mat3& A);
 
-/// J_r(θ) with exp(θ + δ) = exp(θ) exp(J_r(θ) δ) + O(δ²).
-inline Mat3 right_jacobian(const Vec3& theta)
-{
-    const RotationCoefficients c(theta.squaredNorm());
-    const Mat3 theta_tilde = tilde(theta);
-    return Mat3::Identity() - c.cosc * theta_tilde + c.sincc * theta_tilde * theta_tilde;
-}
+/// The right Jacobian: exp((θ + δ)~) = exp(θ̃) exp((J_r(θ) δ)~) + O(δ²),
+///
+///     J_r(θ) = I - (1 - cos x)/x² θ̃ + (x - sin x)/x³ θ̃²,    x = |θ|
+Mat3 right_jacobian(const Vec3& theta);
 
-/// J_r(θ)⁻¹. Singular at |θ| = 2π, where it is not finite.
+/// J_r(θ)⁻¹ for |θ| < 2π. J_r is singular at |θ| = 2π; the result is not finite there.
 Mat3 right_jacobian_inverse(const Vec3& theta);
 
 /// The rotation nearest to B in the Frobenius norm (B = A S with S symmetric positive definite).
 Mat3 nearest_rotation(const Mat3& B);
 
-/// ‖AᵀA - I‖_F, zero for a rotation
-inline double orthogonality_error(const Mat3& A) { return (A.transpose() * A - Mat3::Identity()).norm(); }
+/// The rotation nearest to A, to first order in AᵀA - I (one Newton step of the polar decomposition).
+///
+/// Applied after every step, it removes the rounding errors of A: ‖AᵀA - I‖ remains a few ulp for any number
+/// of steps.
+Mat3 orthonormalised(const Mat3& A);
+
+/// ‖AᵀA - I‖_F. Zero for a rotation.
+double orthogonality_error(const Mat3& A);
 
 }  // namespace hilda::lie

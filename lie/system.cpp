@@ -1,16 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Variations by central differences, for systems that do not give theirs in closed form.
+/// Energy, and the default variations of a system by central differences.
 #include "lie/system.hpp"
+
+#include <algorithm>
 
 namespace hilda::lie {
 
+double energy(const System& system, const State& x)
+{
+    double e = system.potential_energy(x);
+    for (int b = 0; b < system.bodies(); ++b) {
+        const Motion& body = x.body[b];
+        e += 0.5 * system.mass().m[b] * body.rdot.squaredNorm() +
+             0.5 * body.omega_bar.dot(system.mass().J_bar[b] * body.omega_bar);
+    }
+    return e;
+}
+
 namespace {
 
-// Truncation h² and rounding 1e-16/h balance here for quantities of size one.
+// Increment of the differences. For quantities of size one, truncation h² and rounding 1e-16/h are equal at
+// about 6e-6.
 constexpr double h = 6e-6;
 
-/// Moves component c of (δr, δθ, δṙ, δω̄)
-void move(Motion& body, int c, double by)
+/// Adds `by` to component c of (δr, δθ̄, δṙ, δω̄).
+void displace(Motion& body, int c, double by)
 {
     if (c < 3)
         body.r[c] += by;
@@ -22,15 +36,15 @@ void move(Motion& body, int c, double by)
         body.omega_bar[c - 9] += by;
 }
 
-/// Calls back for each component of each body with the states on both sides of x.
+/// Calls use(body, component, state at +h, state at -h) for the first `components` components of each body.
 template <class Use>
-void differences(const State& x, int components, Use use)
+void for_each_difference(const State& x, int components, Use use)
 {
     State plus = x, minus = x;
     for (size_t b = 0; b < x.body.size(); ++b)
         for (int c = 0; c < components; ++c) {
-            move(plus.body[b], c, h);
-            move(minus.body[b], c, -h);
+            displace(plus.body[b], c, h);
+            displace(minus.body[b], c, -h);
             use(static_cast<int>(b), c, plus, minus);
             plus.body[b] = minus.body[b] = x.body[b];
         }
@@ -41,9 +55,9 @@ void differences(const State& x, int components, Use use)
 void System::second_variation(const State& x, SecondVariation& out) const
 {
     Rows plus = pattern(), minus = pattern();
-    differences(x, 6, [&](int body, int c, const State& ahead, const State& behind) {
-        variation(ahead, plus);
-        variation(behind, minus);
+    for_each_difference(x, 6, [&](int body, int c, const State& x_plus, const State& x_minus) {
+        variation(x_plus, plus);
+        variation(x_minus, minus);
         for (int k = 0; k < plus.rows(); ++k)
             for (int b = 0; b < out.entries[k]; ++b) {
                 if (plus.entry[plus.start[k] + b].body != body) continue;
@@ -58,9 +72,9 @@ void System::second_variation(const State& x, SecondVariation& out) const
 void System::nu_variation(const State& x, Rows& out) const
 {
     Eigen::VectorXd plus(rows()), minus(rows());
-    differences(x, 6, [&](int body, int c, const State& ahead, const State& behind) {
-        nu(ahead, plus);
-        nu(behind, minus);
+    for_each_difference(x, 6, [&](int body, int c, const State& x_plus, const State& x_minus) {
+        nu(x_plus, plus);
+        nu(x_minus, minus);
         for (int k = 0; k < out.rows(); ++k)
             for (int n = out.start[k]; n < out.start[k + 1]; ++n)
                 if (out.entry[n].body == body)
@@ -72,9 +86,9 @@ void System::gamma_variation(const State& x, GammaVariation& out) const
 {
     Eigen::VectorXd plus(rows()), minus(rows());
     const Rows& C = pattern();
-    differences(x, 12, [&](int body, int c, const State& ahead, const State& behind) {
-        gamma(ahead, plus);
-        gamma(behind, minus);
+    for_each_difference(x, 12, [&](int body, int c, const State& x_plus, const State& x_minus) {
+        gamma(x_plus, plus);
+        gamma(x_minus, minus);
         for (int k = 0; k < C.rows(); ++k)
             for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
                 if (C.entry[n].body != body) continue;

@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/trajectory.hpp"
 
+#include "lie/check.hpp"
+#include "lie/integrator.hpp"
+#include "lie/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace hilda::lie {
 
 TimeGrid TimeGrid::over(double t_end, double h, double dt)
 {
-    if (!(h > 0) || !std::isfinite(h)) reject("lie::Grid", "the step must be positive and finite", h);
+    if (!(h > 0) || !std::isfinite(h))
+        reject("lie::TimeGrid", "the step h must be positive and finite [s]", h);
     if (!(t_end >= 0) || !std::isfinite(t_end))
-        reject("lie::Grid", "the end must be finite and not negative", t_end);
+        reject("lie::TimeGrid", "the end time must be finite and not negative [s]", t_end);
     if (!(dt >= 0) || !std::isfinite(dt))
-        reject("lie::Grid", "the output interval must be finite and not negative", dt);
-    if (t_end / h > 1e15) reject("lie::Grid", "more than 1e15 steps are asked for, step", h);
-    constexpr double slack = 1e-9;  // of a step: t_end / h and dt / h are rarely whole in binary
+        reject("lie::TimeGrid", "the output interval must be finite and not negative [s]", dt);
+    if (t_end / h > 1e15)
+        reject("lie::TimeGrid", "the number of steps must be at most 1e15; increase the step h", t_end / h);
+    constexpr double slack = 1e-9;  // of a step, for the rounding of t_end / h and dt / h
     TimeGrid grid;
     grid.h = h;
     grid.steps = static_cast<long>(std::ceil(t_end / h - slack));
@@ -24,8 +34,8 @@ March::March(State x, Integrator& integrator, double h, long n, int iterations)
       t_0(n == 0 ? this->x.t : this->x.t - time(n)), n(n), iterations(iterations)
 {}
 
-// Not a sum of h, which would drift; and where a second holds a whole number of steps the quotient, which is
-// the double nearest to a decimal like 0.009 where the product is not.
+// A sum of h would drift. If 1/h is an integer, node/(1/h) is the double nearest to a decimal such as 0.009;
+// the product node · h is not.
 double March::time(long node) const
 {
     const double per_second = std::round(1 / h);
@@ -47,8 +57,9 @@ int March::try_step(State& to)
 void March::advance(std::span<Observer* const> observers)
 {
     const int k = try_step(after);
-    if (n > 0) integrator.fill_node(x, after);  // the start keeps the accelerations it was solved for
-    integrator.system().accepted(x, after);  // first: where it fails, the node is told of when the march ends
+    if (n > 0) integrator.fill_node(x, after);  // the start has its own accelerations and multipliers
+    // Before the observers: if accepted() throws, finish() passes this node to them.
+    integrator.system().accepted(x, after);
     for (Observer* o : observers) o->accepted(x, n, iterations);
     std::swap(x, after);
     ++n;
@@ -59,8 +70,8 @@ void March::finish(std::span<Observer* const> observers)
 {
     State node = x;
     if (integrator.is_staggered() && n > 0) {
-        // A node is known in full one step late, also the last one. Where that step fails, its multipliers
-        // and accelerations are those of the node before.
+        // The multipliers, accelerations and node velocities of the last node follow from a further step. If
+        // this step fails, the multipliers and accelerations of the node before are used.
         try {
             try_step(after);
             integrator.fill_node(node, after);

@@ -1,52 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// From a start and a scheme to a trajectory.
+/// Time integration: a scheme is applied to a start for the nodes of a time grid.
 
 #pragma once
 
-#include "lie/integrator.hpp"
+#include "lie/state.hpp"
 
 #include <span>
+#include <vector>
 
 namespace hilda::lie {
 
-/// Nodes t_n = t_0 + n h, n = 0 … steps; every so-many-th of them is a row of the trajectory.
+class Integrator;
+
+/// The nodes t_n = t_0 + n h, n = 0 … steps. The nodes at multiples of `interval`, and the last node, are
+/// output rows.
 struct TimeGrid {
     double h = 1e-3;  ///< [s]
     long steps = 0;
-    long interval = 1;
+    long interval = 1;  ///< nodes from one output row to the next
 
-    /// Nodes up to the first at or after t_end; of them every ceil(dt/h)-th is a row, each when dt is 0. Both
-    /// are exact when they are multiples of h. InvalidInput when a number makes no sense.
+    /// The grid from 0 to the first node at or after t_end, with the output interval ceil(dt/h) (dt = 0: each
+    /// node). t_end and dt are matched exactly if they are multiples of h up to rounding. Throws InvalidInput
+    /// if h is not positive, t_end or dt is negative, or one of them is not finite.
     static TimeGrid over(double t_end, double h, double dt = 0);
 
     bool is_row(long n) const { return n % interval == 0 || n == steps; }
 };
 
-/// Watches nodes as they are accepted. A node comes with its velocities, accelerations and multipliers all at
-/// its time.
+/// Receives each node when it is complete: velocities, accelerations and multipliers are those of its time.
 class Observer {
 public:
     virtual ~Observer() = default;
-    /// n-th node; iterations of the step that led to it (0 at the start)
+    /// Node n, and the number of iterations of the step that ends there (0 at the start)
     virtual void accepted(const State& node, long n, int iterations) = 0;
 };
 
+/// The output rows of a run
 struct Trajectory {
     std::vector<State> row;
 };
 
-/// A march in progress: holds the node it stands on, so that it can be written down between two steps and
-/// gone on with.
+/// A time integration in progress. It holds the current node; a run can be saved between two steps and
+/// resumed.
 class March {
 public:
-    /// From the node x with number n: x.t belongs to it. Give n > 0 only to go on with an earlier march.
+    /// Starts at node n with the state x at time x.t. n > 0 resumes an earlier march; `iterations` is that of
+    /// its last step.
     March(State x, Integrator& integrator, double h, long n = 0, int iterations = 0);
 
-    /// Takes one step and tells the observers of the node it leaves. On a NumericalFailure the march stays
-    /// where it was.
+    /// Computes one step, and passes the node at its beginning to the observers. On a NumericalFailure the
+    /// march remains at its node.
     void advance(std::span<Observer* const> observers);
 
-    /// Tells the observers of the node it stands on, without leaving it: the end of a run.
+    /// Passes the current node to the observers: the end of a run. The march remains at this node.
     void finish(std::span<Observer* const> observers);
 
     const State& node() const { return x; }
@@ -55,7 +61,7 @@ public:
 
 private:
     int try_step(State& after);
-    double time(long node) const;  ///< node h [s]
+    double time(long node) const;  ///< node · h [s]
 
     State x, after;
     Integrator& integrator;
@@ -64,7 +70,7 @@ private:
     int iterations;
 };
 
-/// Runs over the whole grid and keeps its rows.
+/// Integrates over the whole grid and returns its output rows.
 Trajectory march(State x, Integrator& integrator, const TimeGrid& grid,
                  std::span<Observer* const> observers = {});
 

@@ -8,7 +8,7 @@
 
 namespace hilda::studies {
 
-/// The shortest decimal that reads back as the same double
+/// Appends the shortest decimal text that reads back as the same double
 inline void append_number(std::string& row, double value)
 {
     char digits[32];
@@ -21,6 +21,7 @@ inline void append_number(std::string& row, long value)
     row.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
+/// Appends the components of a vector, each preceded by a comma
 template <class Vector>
 void append_vector(std::string& row, const Vector& v)
 {
@@ -30,7 +31,7 @@ void append_vector(std::string& row, const Vector& v)
     }
 }
 
-/// A name as a field of the header: quoted where it has a comma, a quote or a line break
+/// A name as a field of the header row, quoted if it contains a comma, a quote or a line break
 inline std::string csv_field(const std::string& name)
 {
     if (name.find_first_of(",\"\r\n") == std::string::npos) return name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How the program ends: what the exit codes mean, and the exceptions that lead to them.
+/// Exit codes of the program, and the exceptions that cause them.
 
 #pragma once
 
@@ -21,7 +21,7 @@ inline constexpr int not_available = 7;
 inline constexpr int signal = 128;  ///< plus the number of the signal
 }  // namespace exit_code
 
-/// An error of the program's own surroundings, with the exit code it leads to.
+/// An error outside the numerics and the model, with its exit code
 class Failure : public std::runtime_error {
 public:
     Failure(int code, const std::string& what) : std::runtime_error(what), code(code) {}
@@ -29,26 +29,26 @@ public:
     int code;
 };
 
-/// The command line asks for something that cannot be.
+/// An invalid command line
 class UsageError : public Failure {
 public:
     explicit UsageError(const std::string& what) : Failure(exit_code::wrong_command_line, what) {}
 };
 
-/// A file could not be read or written. what() names it.
+/// A file cannot be read or written. what() begins with its path.
 class IoError : public Failure {
 public:
     explicit IoError(const std::string& what) : Failure(exit_code::input_output, what) {}
 };
 
-/// A device or an optional part is not there.
+/// A device or an optional component is not available.
 class NotAvailable : public Failure {
 public:
     explicit NotAvailable(const std::string& what) : Failure(exit_code::not_available, what) {}
 };
 
-/// Says on stderr what happened, "hilda: error: ...", and returns the exit code. The one place where this is
-/// decided.
+/// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their
+/// errors here.
 int report(const std::exception& error);
 
 }  // namespace hilda::studies

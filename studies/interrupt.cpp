@@ -12,7 +12,7 @@ namespace {
 
 volatile std::sig_atomic_t signal_caught = 0;
 
-extern "C" void note(int signal)
+extern "C" void record_signal(int signal)
 {
     if (signal_caught != 0) _exit(128 + signal);
     signal_caught = signal;
@@ -28,7 +28,7 @@ void handle(void (*handler)(int))
 
 }  // namespace
 
-Interrupt::Interrupt() { handle(note); }
+Interrupt::Interrupt() { handle(record_signal); }
 Interrupt::~Interrupt() { handle(SIG_DFL); }
 int Interrupt::caught() { return signal_caught; }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Ctrl-C and SIGTERM ask a run to stop after the step it is in; a second one stops it at once.
+/// Handling of SIGINT (Ctrl-C) and SIGTERM: the first signal requests the end of the run, the second
+/// terminates the process.
 
 #pragma once
 
 namespace hilda::studies {
 
-/// While one of these lives, SIGINT and SIGTERM are noted instead of ending the program.
+/// During the lifetime of an object of this class, the first SIGINT or SIGTERM is recorded and does not end
+/// the program.
 class Interrupt {
 public:
     Interrupt();
@@ -13,7 +15,7 @@ public:
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    /// The signal that came, or 0
+    /// Number of the recorded signal, or 0
     static int caught();
 };
 

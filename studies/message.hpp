@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Lines on stderr.
+/// Messages on stderr.
 
 #pragma once
 
@@ -8,14 +8,15 @@
 
 namespace hilda::studies {
 
-/// Writes a text to stderr. Where nobody listens (a closed stderr, a full disk behind it) it is lost, and
-/// that is no error: fmt::print would throw.
+/// Writes a text to stderr. Errors of stderr (closed, or redirected to a full disk) are ignored; fmt::print
+/// would throw.
 inline void message(const std::string& text) noexcept
 {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
 }
 
+/// Writes the line "hilda: warning: WHAT".
 inline void warning(const std::string& what) { message("hilda: warning: " + what + '\n'); }
 
 }  // namespace hilda::studies

@@ -27,20 +27,20 @@ namespace {
     throw IoError(path + ": " + what + ": " + std::strerror(error));
 }
 
-/// A descriptor that is closed, and a file that is removed unless it was kept
+/// A temporary file, which commit() renames to the target and which is removed otherwise
 class Temporary {
 public:
-    explicit Temporary(const std::string& goal) : goal(goal), path(goal + ".tmp")
+    explicit Temporary(const std::string& target) : target(target), path(target + ".tmp")
     {
         descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        if (descriptor < 0) fail(goal, "cannot be written");
+        if (descriptor < 0) fail(target, "cannot be written");
     }
     Temporary(const Temporary&) = delete;
     Temporary& operator=(const Temporary&) = delete;
     ~Temporary()
     {
         if (descriptor >= 0) close(descriptor);
-        if (!kept) unlink(path.c_str());
+        if (!renamed) unlink(path.c_str());
     }
 
     void write(const std::string& content) const
@@ -49,29 +49,30 @@ public:
         while (done < content.size()) {
             const ssize_t n = ::write(descriptor, content.data() + done, content.size() - done);
             if (n < 0 && errno == EINTR) continue;
-            if (n < 0) fail(goal, "cannot be written");
+            if (n < 0) fail(target, "cannot be written");
             done += static_cast<size_t>(n);
         }
-        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(goal, "cannot be written");
+        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(target, "cannot be written");
     }
 
-    void become_goal()
+    void commit()
     {
-        rename_file(path, goal);
-        kept = true;
+        rename_file(path, target);
+        renamed = true;
     }
 
 private:
-    const std::string goal, path;
+    const std::string target, path;
     int descriptor = -1;
-    bool kept = false;
+    bool renamed = false;
 };
 
 void sync_directory(const std::string& path)
 {
     const fs::path parent = fs::path(path).parent_path();
     const int descriptor = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return;  // the file is there; only a power cut could now undo its name
+    if (descriptor < 0)
+        return;  // the file is complete; without the fsync only its name could be lost in a power failure
     fsync(descriptor);
     close(descriptor);
 }
@@ -90,10 +91,10 @@ std::string processor()
 void write_file(const std::string& name, const std::string& content)
 {
     std::error_code error;
-    const fs::path goal = fs::weakly_canonical(name, error);  // a link keeps pointing where it does
-    const std::string path = error ? name : goal.string();
+    const fs::path target = fs::weakly_canonical(name, error);  // writes through a symbolic link
+    const std::string path = error ? name : target.string();
     if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
-        // a device or a pipe is written to, not replaced
+        // devices and pipes are written to, not replaced
         std::ofstream out(path, std::ios::binary);
         out << content << std::flush;
         if (!out) fail(name, "cannot be written");
@@ -101,7 +102,7 @@ void write_file(const std::string& name, const std::string& content)
     }
     Temporary file(path);
     file.write(content);
-    file.become_goal();
+    file.commit();
 }
 
 void rename_file(const std::string& from, const std::string& to)
@@ -123,13 +124,13 @@ std::string read_file(const std::string& path, size_t most)
     return content;
 }
 
-bool is_vacant(const std::string& directory)
+bool is_missing_or_empty(const std::string& directory)
 {
     std::error_code error;
     const fs::file_status status = fs::status(directory, error);
     if (status.type() == fs::file_type::not_found) return true;
     if (status.type() != fs::file_type::directory)
-        throw IoError(directory + ": " + (error ? error.message() : "is there, and is not a directory"));
+        throw IoError(directory + ": " + (error ? error.message() : "exists and is not a directory"));
     const bool empty = fs::is_empty(directory, error);
     if (error) throw IoError(directory + ": " + error.message());
     return empty;
@@ -139,7 +140,7 @@ void make_directory(const std::string& directory)
 {
     std::error_code error;
     fs::create_directories(directory, error);
-    if (error) throw IoError(directory + ": cannot be made: " + error.message());
+    if (error) throw IoError(directory + ": cannot be created: " + error.message());
 }
 
 std::string as_text(const nlohmann::ordered_json& json)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What every run and study writes the same way: directories, small files, and where a result comes from.
+/// Directories, small files and provenance of runs and studies.
 
 #pragma once
 
@@ -11,26 +11,28 @@
 
 namespace hilda::studies {
 
-/// Writes a file that is either the old one or the new one, never half of it: to FILE.tmp, fsync, rename,
-/// fsync of the directory. IoError names the file; the temporary file is then gone.
+/// Writes a file atomically: to FILE.tmp, fsync, rename, fsync of the directory. After a crash the file has
+/// its old or its new contents. A symbolic link is followed; a device or pipe is written to directly.
+/// IoError; the temporary file is removed then.
 void write_file(const std::string& path, const std::string& content);
 
-/// Gives a file another name, in place of what may have had it, and makes that last.
+/// Renames a file, replacing an existing file, and synchronises the directory with the disk. IoError.
 void rename_file(const std::string& from, const std::string& to);
 
-/// The whole of a file of at most `most` bytes. IoError when it cannot be read.
+/// Contents of a regular file of at most `most` bytes. IoError.
 std::string read_file(const std::string& path, size_t most);
 
-/// True when there is nothing at that path, or an empty directory. IoError when there is something else.
-bool is_vacant(const std::string& directory);
+/// True if the path does not exist or is an empty directory. IoError if it is not a directory.
+bool is_missing_or_empty(const std::string& directory);
 
-/// Makes the directory and those above it.
+/// Creates the directory and its parents. IoError.
 void make_directory(const std::string& directory);
 
-/// Two-space JSON and a line break; bytes that are not UTF-8 (of a command line) are replaced.
+/// JSON text with an indentation of two spaces and a final line break. Invalid UTF-8 (possible in a command
+/// line) is replaced.
 std::string as_text(const nlohmann::ordered_json& json);
 
-/// Version, git state, flags, compiler, libraries, command line, processor, threads.
+/// Version, git state, compiler and flags, libraries, command line, processor and number of threads, as JSON
 nlohmann::ordered_json provenance(const std::string& command_line, int threads);
 
 }  // namespace hilda::studies

@@ -20,20 +20,20 @@ namespace {
 
 }  // namespace
 
-OutputFile::OutputFile(std::string file, std::uint64_t keep, bool go_on)
-    : path(std::move(file)), written(keep)
+OutputFile::OutputFile(std::string file, std::uint64_t keep_bytes, bool resume)
+    : path(std::move(file)), written(keep_bytes)
 {
-    descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | (go_on ? 0 : O_CREAT | O_TRUNC), 0666);
+    descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | (resume ? 0 : O_CREAT | O_TRUNC), 0666);
     if (descriptor < 0) fail(path);
-    if (!go_on) return;
+    if (!resume) return;
     struct stat s {};
     if (fstat(descriptor, &s) != 0) fail(path);
-    if (static_cast<std::uint64_t>(s.st_size) < keep) {
+    if (static_cast<std::uint64_t>(s.st_size) < keep_bytes) {
         close(descriptor);
-        throw IoError(path + ": is shorter than the checkpoint says: " + std::to_string(s.st_size) +
-                      " bytes, not " + std::to_string(keep));
+        throw IoError(path + ": is shorter than the checkpoint states: " + std::to_string(s.st_size) +
+                      " bytes, not " + std::to_string(keep_bytes));
     }
-    if (ftruncate(descriptor, static_cast<off_t>(keep)) != 0 || lseek(descriptor, 0, SEEK_END) < 0)
+    if (ftruncate(descriptor, static_cast<off_t>(keep_bytes)) != 0 || lseek(descriptor, 0, SEEK_END) < 0)
         fail(path);
 }
 
@@ -50,7 +50,7 @@ void OutputFile::flush()
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
             written += done;
-            buffer.clear();  // whoever catches this must not meet it again
+            buffer.clear();  // a later flush() must not fail again for the same rows
             fail(path);
         }
         done += static_cast<size_t>(n);

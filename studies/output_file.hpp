@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A growing file of results: buffered, every write checked, its length known, so that a checkpoint can name
-/// it.
+/// A buffered output file with checked writes and known length, which can be continued from a checkpoint.
 
 #pragma once
 
@@ -13,26 +12,28 @@ namespace hilda::studies {
 
 class OutputFile {
 public:
-    /// Opens the file anew, or, to go on, cuts it to `keep` bytes. IoError names the file, also when it is
-    /// shorter than that.
-    explicit OutputFile(std::string path, std::uint64_t keep = 0, bool go_on = false);
+    /// Creates the file; with `resume`, opens it and truncates it to `keep_bytes` bytes. IoError, also if the
+    /// file is shorter than that.
+    explicit OutputFile(std::string path, std::uint64_t keep_bytes = 0, bool resume = false);
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
-    /// Does not write: flush() says whether that worked.
+    /// Closes the file without writing the buffer, because a destructor could not report an error. Call
+    /// flush() before.
     ~OutputFile();
 
-    /// What is appended here is written by the next flush().
+    /// Text appended here is written by the next flush().
     std::string buffer;
 
-    /// Writes the buffer when it has grown large.
+    /// Writes the buffer if it exceeds 1 MiB. IoError.
     void flush_when_full()
     {
         if (buffer.size() >= full) flush();
     }
+    /// Writes the buffer. IoError.
     void flush();
-    /// flush(), and down to the disk
+    /// flush() and fdatasync. IoError.
     void sync();
-    /// Length of the file with the buffer
+    /// Length of the file including the buffer [byte]
     std::uint64_t size() const { return written + buffer.size(); }
     const std::string& name() const { return path; }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One line on a terminal, rewritten at most five times a second.
+/// Progress line of a run on a terminal (stderr), updated at most five times per second.
 
 #pragma once
 
-#include "lie/integrator.hpp"
+#include "lie/statistics.hpp"
 
 #include <chrono>
 
@@ -13,16 +13,17 @@ class Progress {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Shows nothing when stderr is no terminal or `quiet`.
+    /// Shows nothing if stderr is not a terminal or `quiet` is set.
     Progress(bool quiet, double t_end, long steps, long first_step);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress() { clear(); }
 
     bool shown() const { return show; }
-    /// t/T, steps per second, iterations per step, time left
+    /// Shows time t of t_end [s], steps per second, iterations per step and estimated remaining time; n:
+    /// number of the node.
     void update(Clock::time_point now, double t, long n, const lie::Statistics& statistics);
-    /// Takes the line away, so that a message can stand there.
+    /// Clears the line before other messages.
     void clear();
 
 private:

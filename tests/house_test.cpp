@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The source tree has the documented layout: which room may include which, which folders a room has, how many units
-// a folder holds, no catch-all folders, and a fixed top level.
+// Tests of the layout of the source tree: allowed includes between the rooms, the folders of each room, the
+// number of units in a folder, no catch-all folders, and the entries of the top level.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -18,12 +18,12 @@ namespace {
 const fs::path root = HILDA_SOURCE_DIR;
 const std::set<std::string> rooms = {"lie", "dae", "contact", "granular", "reference", "tests", "studies"};
 
-/// What each room may include of ours, besides itself.
-const std::map<std::string, std::set<std::string>> below = {
+/// The rooms that each room may include, besides itself.
+const std::map<std::string, std::set<std::string>> allowed_rooms = {
     {"lie", {}},
     {"dae", {"lie"}},
     {"contact", {"dae", "lie"}},
-    {"granular", {}},  // except granular/program/formula.cpp, see objection()
+    {"granular", {}},  // except granular/program/formula.cpp, see include_error()
     {"reference", {"dae", "lie"}},
     {"studies", {"lie", "dae", "contact", "granular", "reference"}},
     {"tests", {"lie", "dae", "contact", "granular", "reference", "studies"}},
@@ -50,9 +50,9 @@ const std::map<std::string, std::set<std::string>> folders = {
 /// A folder holds about 20 units. A unit is a header with its sources, or a source alone.
 constexpr std::size_t most_units = 21;
 
-/// Libraries that a room must not include, by the first folder of their headers. A room that used GSL would be bound
-/// to the GPL, and could then not be linked with the CUDA runtime.
-const std::map<std::string, std::set<std::string>> kept_out = {
+/// Libraries that a room must not include, by the first folder of their headers. GSL is under the GPL and
+/// must not be linked with the CUDA runtime.
+const std::map<std::string, std::set<std::string>> forbidden_libraries = {
     {"lie",
      {"gsl", "nlohmann", "fmt", "spdlog", "CLI", "ida", "nvector", "sundials", "sunmatrix", "sunlinsol"}},
     {"dae", {"gsl", "spdlog", "CLI", "ida", "nvector", "sundials", "sunmatrix", "sunlinsol"}},
@@ -60,20 +60,22 @@ const std::map<std::string, std::set<std::string>> kept_out = {
     {"granular", {"gsl", "Eigen", "ida", "nvector", "sundials", "sunmatrix", "sunlinsol"}},
 };
 
-/// Why `file` may not include `header` (both from the root of the tree), or an empty string.
-std::string objection(const std::string& file, const std::string& header)
+/// The reason why `file` must not include `header` (both relative to the root of the tree); empty if it may.
+std::string include_error(const std::string& file, const std::string& header)
 {
     const std::string room = file.substr(0, file.find('/'));
     const std::string other = header.substr(0, header.find('/'));
     if (header.find("..") != std::string::npos)
-        return "is written with '..': write it from the root of the tree";
-    if (const auto out = kept_out.find(room); out != kept_out.end() && out->second.count(other) != 0)
-        return other + " stays out of " + room;
+        return "contains '..': write the path from the root of the tree";
+    if (const auto out = forbidden_libraries.find(room);
+        out != forbidden_libraries.end() && out->second.count(other) != 0)
+        return room + " must not include " + other;
     if (rooms.count(other) == 0 || other == room) return "";
-    if (room == "tests" && other == "studies" && header.ends_with(".cpp")) return "is a source of studies";
-    // hilda-granular reads formulas with the grammar of the model files.
+    if (room == "tests" && other == "studies" && header.ends_with(".cpp"))
+        return "is a source file of studies, not a header";
+    // hilda-granular uses the expression grammar of the model files.
     if (file == "granular/program/formula.cpp" && header == "dae/expression.hpp") return "";
-    if (below.at(room).count(other) == 0) return room + " must not know " + other;
+    if (allowed_rooms.at(room).count(other) == 0) return room + " must not include " + other;
     return "";
 }
 
@@ -83,8 +85,8 @@ bool is_source(const fs::path& p)
     return endings.count(p.extension().string()) != 0;
 }
 
-/// All files and folders of the rooms that exist, relative to the root.
-std::vector<fs::path> in_the_rooms()
+/// All files and folders in the rooms, relative to the root.
+std::vector<fs::path> paths_in_rooms()
 {
     std::vector<fs::path> found;
     for (const std::string& room : rooms) {
@@ -95,7 +97,7 @@ std::vector<fs::path> in_the_rooms()
     return found;
 }
 
-/// The first parts of all paths that git tracks; nothing where there is no git.
+/// The first components of all paths tracked by git; empty without a git repository.
 std::set<std::string> tracked_top_level()
 {
     std::set<std::string> top;
@@ -118,48 +120,49 @@ std::set<std::string> tracked_top_level()
 
 }  // namespace
 
-TEST_CASE("a turned arrow is found", "[house]")
+TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
 {
-    CHECK(objection("lie/so3.cpp", "dae/model.hpp") == "lie must not know dae");
-    CHECK(objection("dae/model.hpp", "studies/framework/table.hpp") == "dae must not know studies");
-    CHECK(objection("reference/motions/closed_form.cpp", "contact/surface.hpp") ==
-          "reference must not know contact");
-    CHECK(objection("granular/world/world.hpp", "dae/model.hpp") == "granular must not know dae");
-    CHECK(objection("studies/program/main.cpp", "tests/support/random_motion.hpp") ==
-          "studies must not know tests");
-    CHECK(objection("tests/lie/so3_test.cpp", "studies/program/main.cpp") == "is a source of studies");
-    CHECK(objection("dae/start.cpp", "gsl/gsl_odeiv2.h") == "gsl stays out of dae");
-    CHECK(objection("dae/start.cpp", "sunlinsol/sunlinsol_klu.h") == "sunlinsol stays out of dae");
-    CHECK(objection("dae/start.cpp", "../lie/so3.hpp") != "");
+    CHECK(include_error("lie/so3.cpp", "dae/model.hpp") == "lie must not include dae");
+    CHECK(include_error("dae/model.hpp", "studies/framework/table.hpp") == "dae must not include studies");
+    CHECK(include_error("reference/motions/closed_form.cpp", "contact/surface.hpp") ==
+          "reference must not include contact");
+    CHECK(include_error("granular/world/world.hpp", "dae/model.hpp") == "granular must not include dae");
+    CHECK(include_error("studies/program/main.cpp", "tests/support/random_motion.hpp") ==
+          "studies must not include tests");
+    CHECK(include_error("tests/lie/so3_test.cpp", "studies/program/main.cpp") ==
+          "is a source file of studies, not a header");
+    CHECK(include_error("dae/start.cpp", "gsl/gsl_odeiv2.h") == "dae must not include gsl");
+    CHECK(include_error("dae/start.cpp", "sunlinsol/sunlinsol_klu.h") == "dae must not include sunlinsol");
+    CHECK(include_error("dae/start.cpp", "../lie/so3.hpp") != "");
 
-    CHECK(objection("granular/program/run.cpp", "dae/expression.hpp") == "granular must not know dae");
-    CHECK(objection("granular/program/formula.cpp", "dae/model.hpp") == "granular must not know dae");
+    CHECK(include_error("granular/program/run.cpp", "dae/expression.hpp") == "granular must not include dae");
+    CHECK(include_error("granular/program/formula.cpp", "dae/model.hpp") == "granular must not include dae");
 
-    CHECK(objection("granular/program/formula.cpp", "dae/expression.hpp") == "");
-    CHECK(objection("dae/model.hpp", "lie/system.hpp") == "");
-    CHECK(objection("tests/studies/table_test.cpp", "studies/framework/table.hpp") == "");
-    CHECK(objection("reference/motions/closed_form.cpp", "gsl/gsl_odeiv2.h") == "");
-    CHECK(objection("reference/solvers/ida_solver.cpp", "ida/ida.h") == "");
+    CHECK(include_error("granular/program/formula.cpp", "dae/expression.hpp") == "");
+    CHECK(include_error("dae/model.hpp", "lie/system.hpp") == "");
+    CHECK(include_error("tests/studies/table_test.cpp", "studies/framework/table.hpp") == "");
+    CHECK(include_error("reference/motions/closed_form.cpp", "gsl/gsl_odeiv2.h") == "");
+    CHECK(include_error("reference/solvers/ida_solver.cpp", "ida/ida.h") == "");
 }
 
-TEST_CASE("no arrow between the rooms turns round", "[house]")
+TEST_CASE("each room includes only the rooms and libraries that it may", "[house]")
 {
     static const std::regex include_line(R"re(^\s*#\s*include\s*["<]([^">]+)[">])re");
-    int read = 0;
-    for (const fs::path& p : in_the_rooms()) {
+    int files_read = 0;
+    for (const fs::path& p : paths_in_rooms()) {
         if (!is_source(p)) continue;
-        ++read;
+        ++files_read;
         std::ifstream in(root / p);
         std::string line;
         for (int number = 1; std::getline(in, line); ++number) {
             std::smatch m;
             if (!std::regex_search(line, m, include_line)) continue;
-            const std::string why = objection(p.generic_string(), m[1].str());
-            if (!why.empty())
-                FAIL_CHECK(p.generic_string() << ":" << number << ": " << m[1].str() << ": " << why);
+            const std::string error = include_error(p.generic_string(), m[1].str());
+            if (!error.empty())
+                FAIL_CHECK(p.generic_string() << ":" << number << ": " << m[1].str() << ": " << error);
         }
     }
-    CHECK(read > 0);
+    CHECK(files_read > 0);
 }
 
 TEST_CASE("every folder of a room is one of the documented layout", "[house]")
@@ -181,7 +184,7 @@ TEST_CASE("every folder of a room is one of the documented layout", "[house]")
 TEST_CASE("a folder holds at most about 20 units", "[house]")
 {
     std::map<std::string, std::set<std::string>> units;
-    for (const fs::path& p : in_the_rooms())
+    for (const fs::path& p : paths_in_rooms())
         if (is_source(p)) units[p.parent_path().generic_string()].insert(p.stem().string());
     CHECK(units.size() > 20);
     for (const auto& [folder, stems] : units) {
@@ -208,14 +211,14 @@ TEST_CASE("there is no catch-all folder or file", "[house]")
 {
     const std::set<std::string> catch_all = {"util",   "utils", "utility", "utilities",
                                              "common", "core",  "misc"};
-    for (const fs::path& p : in_the_rooms()) {
+    for (const fs::path& p : paths_in_rooms()) {
         if (p.generic_string() == "granular/core" || p.generic_string() == "tests/granular/core") continue;
         INFO(p.generic_string());
         CHECK(catch_all.count(p.stem().string()) == 0);
     }
 }
 
-TEST_CASE("the top level of the tree is what the house says", "[house]")
+TEST_CASE("the top level of the tree has the documented entries", "[house]")
 {
     const std::set<std::string> always = {
         "CMakeLists.txt", "CMakePresets.json", "README.md",   "LICENSE", ".ci", "cmake",
@@ -227,11 +230,11 @@ TEST_CASE("the top level of the tree is what the house says", "[house]")
 
     const std::set<std::string> top = tracked_top_level();
     if (top.empty()) {
-        WARN("no git here: the top level was not looked at");
+        WARN("skipped: not a git repository");
         return;
     }
     for (const std::string& name : top) {
-        INFO(name << " is tracked but has no place at the top level");
+        INFO(name << " is tracked but not allowed at the top level");
         CHECK(allowed.count(name) == 1);
     }
     for (const std::string& name : always) {

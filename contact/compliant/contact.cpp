@@ -10,10 +10,12 @@ namespace hilda::contact {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double nearby = 1e-6;         // a gap, over the same, that is none
-constexpr double deepest = 0.1;         // overlap at a start, over a radius of curvature
-constexpr double no_curvature = 1e-12;  // over the size of the curvatures: rounding
+constexpr double contact_tolerance = 1e-6;  // gap relative to the smaller size
+// overlap at the start, relative to a radius of curvature or to the size
+constexpr double max_relative_overlap = 0.1;
+constexpr double no_curvature = 1e-12;  // relative to the curvatures of the two surfaces: rounding
 
+/// Velocity of the material point of body b at C [m/s, global]
 Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
 
 /// "what, got value unit"
@@ -27,12 +29,13 @@ std::string got(const std::string& what, double value, const std::string& unit)
 
 }  // namespace
 
-CompliantContact::CompliantContact(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
-                          std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction)
-    : FrictionPair(std::move(name), std::move(i), std::move(j), std::move(of_i), std::move(of_j),
+CompliantContact::CompliantContact(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
+                                   std::shared_ptr<const NormalLaw> law,
+                                   std::shared_ptr<const FrictionModel> friction)
+    : FrictionPair(std::move(name), std::move(i), std::move(j), std::move(inertia_i), std::move(inertia_j),
                    std::move(friction)),
       law(std::move(law)), detector(make_detector(this->i, this->j)),
-      m_normal(reduced(this->of_i.m, this->of_j.m))
+      m_normal(reduced(this->inertia_i.m, this->inertia_j.m))
 {}
 
 NormalInput CompliantContact::normal_input(const ContactPoint& contact_point, const Motion& bi,
@@ -45,67 +48,71 @@ NormalInput CompliantContact::normal_input(const ContactPoint& contact_point, co
             .m = m_normal};
 }
 
-ContactPoint CompliantContact::find(const Motion& bi, const Motion& bj, const ContactHistory& history) const
+ContactPoint CompliantContact::detect(const Motion& bi, const Motion& bj, const ContactHistory& history) const
 {
-    const Points last{history.contact_frame.c_i, history.contact_frame.c_j};
+    const PreviousPoints last{history.contact_frame.c_i, history.contact_frame.c_j};
     try {
-        return detector->detect(bi, bj, history.found ? &last : nullptr);
+        return detector->detect(bi, bj, history.has_points ? &last : nullptr);
     } catch (const lie::NumericalFailure& e) {
         rethrow(e);
     }
 }
 
-ContactState CompliantContact::without_slip(const ContactPoint& contact_point, const Motion& bi,
-                                            const Motion& bj) const
+ContactState CompliantContact::state_without_displacement(const ContactPoint& contact_point, const Motion& bi,
+                                                          const Motion& bj) const
 {
     ContactState now;
     now.contact_point = contact_point;
     now.N = law->force(normal_input(contact_point, bi, bj));
-    now.slip = no_slip(contact_point, contact_point.n.unitOrthogonal());
-    set_fictitious(now, bi, bj);
+    now.slip = zero_displacement(contact_point, contact_point.n.unitOrthogonal());
+    set_fictitious_inertia(now, bi, bj);
     return now;
 }
 
 ContactState CompliantContact::evaluate(const Motion& bi, const Motion& bj,
                                         const ContactHistory& history) const
 {
-    const ContactPoint contact_point = find(bi, bj, history);
+    const ContactPoint contact_point = detect(bi, bj, history);
     return contact_state(contact_point, law->force(normal_input(contact_point, bi, bj)), bi, bj, history);
 }
 
-bool CompliantContact::close(const Motion& bi, const Motion& bj, const ContactHistory& history) const
+bool CompliantContact::is_near_contact(const Motion& bi, const Motion& bj,
+                                       const ContactHistory& history) const
 {
-    return find(bi, bj, history).gap <= nearby * (std::isfinite(length) ? length : 1);
+    return detect(bi, bj, history).gap <=
+           contact_tolerance * (std::isfinite(smaller_size) ? smaller_size : 1);
 }
 
-ContactState CompliantContact::hardest(const Motion& bi, const Motion& bj, const ContactHistory& history,
-                                       double weight) const
+ContactState CompliantContact::state_at_largest_compression(const Motion& bi, const Motion& bj,
+                                                            const ContactHistory& history,
+                                                            double weight) const
 {
-    ContactPoint contact_point = find(bi, bj, history);
+    ContactPoint contact_point = detect(bi, bj, history);
     NormalInput p = normal_input(contact_point, bi, bj);
     const double gap = std::max(contact_point.gap, 0.), approach = std::max(p.overlap_rate, 0.);
-    const double first = std::max(p.overlap, 0.);
-    p.overlap = first;
-    const double given =
+    const double initial = std::max(p.overlap, 0.);
+    p.overlap = initial;
+    const double available_energy =
         law->energy(p) + weight * gap + (std::isfinite(p.m) ? 0.5 * p.m * approach * approach : 0);
-    const auto beyond = [&](double overlap) {
+    const auto exceeds = [&](double overlap) {
         p.overlap = overlap;
-        return law->energy(p) > given + weight * (overlap - first);
+        return law->energy(p) > available_energy + weight * (overlap - initial);
     };
     constexpr double shortest = 1e-12, longest = 1e3;  // [m]
-    double lower = std::max(first, shortest), upper = lower;
-    while (!beyond(upper) && upper < longest) lower = upper, upper *= 2;
-    if (upper >= longest) lower = upper = first;  // no spring
+    // solve energy(δ) = available energy + weight (δ - initial) for δ: bracket, then bisect
+    double lower = std::max(initial, shortest), upper = lower;
+    while (!exceeds(upper) && upper < longest) lower = upper, upper *= 2;
+    if (upper >= longest) lower = upper = initial;  // the law has no spring
     while (upper > lower * (1 + 1e-6)) {
         const double middle = 0.5 * (lower + upper);
-        (beyond(middle) ? upper : lower) = middle;
+        (exceeds(middle) ? upper : lower) = middle;
     }
     contact_point.gap = -upper;
     const Motion still_i{.r = bi.r, .A = bi.A}, still_j{.r = bj.r, .A = bj.A};
-    return without_slip(contact_point, still_i, still_j);
+    return state_without_displacement(contact_point, still_i, still_j);
 }
 
-std::string CompliantContact::objection(const Motion& bi, const Motion& bj) const
+std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) const
 {
     ContactPoint contact_point;
     try {
@@ -120,25 +127,27 @@ std::string CompliantContact::objection(const Motion& bi, const Motion& bj) cons
     const double rounding = no_curvature * (contact_point.K_i.norm() + contact_point.K_j.norm());
     if (std::abs(least) <= rounding) least = 0;
     if (least < 0)
-        return got("a surface does not fit into the other: the sum of their curvatures must not be negative",
-                   least, "1/m");
-    // a coin that hovers flat leans before it touches; a foot on a plane never curves
+        return got(
+            "one surface does not fit into the other: the sum of their curvatures must not be negative",
+            least, "1/m");
+    // The curvature of a disk parallel to the plane is zero, but the disk is tilted when it comes into
+    // contact. That of a foot on a plane is always zero.
     const bool may_curve = contact_point.gap > 0 && (i.surface->size() > 0 || j.surface->size() > 0);
     if (mean <= rounding && !may_curve && (law->needs_curvature() || friction->needs_curvature()))
-        return got("rolling and spinning friction need curvature: the sum of the curvatures must be positive",
+        return got("the normal or friction law needs curvature: the sum of the curvatures must be positive",
                    mean, "1/m");
     const auto too_deep = [&](const Surface& surface, const Mat3& K) {
-        const auto [less, more] = principal_curvatures(K, contact_point.n);
-        const double curvature = std::max(std::abs(less), std::abs(more));
+        const auto [kappa_1, kappa_2] = principal_curvatures(K, contact_point.n);
+        const double curvature = std::max(std::abs(kappa_1), std::abs(kappa_2));
         const double radius = curvature > rounding ? 1 / curvature : infinite;
-        // where it is flat its size tells how deep is deep
+        // on a flat part of a surface the size is the reference
         const double size = surface.size() > 0 ? surface.size() : infinite;
         const bool round = radius <= size * (1 + 1e-9);
         const double length = round ? radius : size;
-        if (!(-contact_point.gap > deepest * length)) return std::string();
+        if (!(-contact_point.gap > max_relative_overlap * length)) return std::string();
         std::ostringstream what;
         what << "the surfaces must not overlap by more than a tenth of "
-             << (round ? "a radius of curvature, " : "the size of one, ") << length << " m";
+             << (round ? "the radius of curvature " : "the size ") << length << " m";
         return got(what.str(), -contact_point.gap, "m");
     };
     if (const std::string why = too_deep(*i.surface, contact_point.K_i); !why.empty()) return why;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One pair of surfaces that can touch: where, how hard, with what friction.
+/// Compliant contact of one pair of surfaces: detection, normal force and friction.
 
 #pragma once
 
@@ -8,39 +8,43 @@
 
 namespace hilda::contact {
 
-/// Constant; the memory belongs to who steps the bodies. A step has the order
+/// The object is constant; the caller owns the ContactHistory. The calls of a step are
 ///
-///     Meeting now = contact.meet(bi, bj, memory);     // touch, normal force, motion of the contact point
-///     contact.advance(now, bi, bj, memory);           // histories, once per accepted step
-///     Wrench w = contact.load(now, rates, memory);    // friction, on top of the normal force N n
+///     ContactState now = contact.evaluate(bi, bj, history);   // contact point, N, sliding displacement
+///     contact.advance(now, bi, bj, history);                  // friction history, once per accepted step
+///     Wrench w = contact.load(now, rates, history);           // friction loads, in addition to N n
 class CompliantContact : public FrictionPair {
 public:
-    /// InvalidInput for surfaces that have no single touch.
-    CompliantContact(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
+    /// InvalidInput for surfaces that never have a single contact point.
+    CompliantContact(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
                      std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction);
 
-    /// lie::NumericalFailure "contact_not_converged" with the name of the contact, where no touch is found.
+    /// The state of the contact at the poses and velocities of bi, bj. lie::NumericalFailure
+    /// "contact_not_converged" with the name of the contact if no contact point is found.
     ContactState evaluate(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 
-    /// Why a run cannot begin here: a ball larger than its bowl, an overlap above a tenth of a radius of curvature or of
-    /// the size of a surface; or an empty text. lie::NumericalFailure where the search for the touch fails.
-    std::string objection(const Motion& bi, const Motion& bj) const;
+    /// The reason why a run cannot start at these poses, or an empty text: the contact point is not unique, a
+    /// surface does not fit into the other, a law needs curvature and there is none, or the overlap exceeds a
+    /// tenth of a radius of curvature or of the size of a surface. lie::NumericalFailure if the search for
+    /// the contact point fails.
+    std::string start_error(const Motion& bi, const Motion& bj) const;
 
-    /// The largest step [s] with which symplectic Euler is stable: FrictionPair::stable_step with the springs of the
-    /// normal law
+    /// The largest step [s] for which symplectic Euler is stable: FrictionPair::stable_step with stiffness
+    /// and damping of the normal law
     double stable_step(const ContactState& now, const Motion& bi, const Motion& bj, int contacts_of_i = 1,
                        int contacts_of_j = 1) const;
 
-    /// The meeting of these surfaces when they will press hardest: what they approach with, and what a fall through
-    /// their gap and overlap adds under a weight [N] that may rest on them, has gone into the spring of the normal law.
-    /// An estimate, of two bodies without joints; for stable_step() at a start.
-    ContactState hardest(const Motion& bi, const Motion& bj, const ContactHistory& history,
-                         double weight) const;
+    /// Estimate of the contact state at the largest compression to be expected from this start, for
+    /// stable_step(). The kinetic energy of the approach, and the work of a weight [N] over the gap and the
+    /// compression, are stored in the spring of the normal law. The bodies are treated as free (no joints).
+    /// The state returned has zero velocities. For a law without a spring it has the present overlap.
+    ContactState state_at_largest_compression(const Motion& bi, const Motion& bj,
+                                              const ContactHistory& history, double weight) const;
 
-    /// Whether they touch or are about to: nearer than a millionth of their size
-    bool close(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
+    /// True if the gap is less than 1e-6 times the smaller size of the surfaces
+    bool is_near_contact(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 
-    /// In the spring of the normal law [J]
+    /// Elastic energy of the normal law [J]
     double energy(const ContactState& now, const Motion& bi, const Motion& bj) const
     {
         return law->energy(normal_input(now.contact_point, bi, bj));
@@ -50,8 +54,9 @@ public:
 
 private:
     NormalInput normal_input(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;
-    ContactPoint find(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
-    ContactState without_slip(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;
+    ContactPoint detect(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
+    ContactState state_without_displacement(const ContactPoint& contact_point, const Motion& bi,
+                                            const Motion& bj) const;
 
     std::unique_ptr<const Detector> detector;
     double m_normal;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact_force.hpp"
 
+#include "dae/model.hpp"
+
 namespace hilda::contact {
 
 ContactForce::ContactForce(const std::string& name, const dae::Model& model, int i, const Shape& shape_i,
@@ -15,31 +17,36 @@ ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& h
     return contact.evaluate(motion(x, i), motion(x, j), history);
 }
 
-bool ContactForce::close(const lie::State& x) const
+bool ContactForce::is_active(const lie::State& x) const
 {
-    return works(x) && contact.close(motion(x, i), motion(x, j), recall(x));
+    return constraint == nullptr || dae::Model::mode(*constraint, x) == dae::Constraint::fallback_active;
+}
+
+bool ContactForce::is_near_contact(const lie::State& x) const
+{
+    return is_active(x) && contact.is_near_contact(motion(x, i), motion(x, j), saved_history(x));
 }
 
 double ContactForce::potential_energy(const lie::State& x) const
 {
-    if (!works(x)) return 0;
+    if (!is_active(x)) return 0;
     return contact.energy(at(x).contact_state, motion(x, i), motion(x, j));
 }
 
-std::string ContactForce::objection(const lie::State& x) const
+std::string ContactForce::start_error(const lie::State& x) const
 {
-    if (replaced != nullptr) return {};  // whether the surfaces fit it is asked when it works
-    return contact.objection(motion(x, i), motion(x, j));
+    if (constraint != nullptr) return {};  // the surfaces are checked when the fallback becomes active
+    return contact.start_error(motion(x, i), motion(x, j));
 }
 
 double ContactForce::stable_step(const lie::State& x) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    double weight = 0;  // all that may rest on the contact
+    double weight = 0;  // weight of all bodies: the largest static load of the contact
     for (const double m : model.mass().m) weight += m * model.gravity.norm();
     try {
-        return contact.stable_step(contact.hardest(bi, bj, recall(x), weight), bi, bj, contacts_of(i, x),
-                                   contacts_of(j, x));
+        return contact.stable_step(contact.state_at_largest_compression(bi, bj, saved_history(x), weight), bi,
+                                   bj, contacts_of(i, x), contacts_of(j, x));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Which of many bodies are near enough to touch.
+/// Broad phase of contact detection: the pairs of bodies whose bounding spheres are close to each other.
 
 #pragma once
 
@@ -14,23 +14,26 @@ namespace hilda::contact {
 
 using lie::Vec3;
 
-/// Two bodies by their numbers, i < j
+/// A pair of body numbers, i < j
 struct Candidate {
     int i, j;
 
     friend bool operator==(const Candidate&, const Candidate&) = default;
 };
 
-/// Balls around the bodies, sorted into cubic cells a little wider than two of the largest balls and the margin: what is
-/// within the margin of a ball lies in its own cell or in one of the 26 around it. Cells are found by a hash, so that a
-/// ball that flies away costs nothing. O(N) for balls that do not differ much in size.
+/// Spatial hashing of bounding spheres. The cell size is slightly larger than the largest diameter plus the
+/// margin, so that all neighbours of a sphere lie in its own cell or in the 26 adjacent cells. Cells are
+/// stored in a hash table, so the memory does not depend on the extent of the domain. The cost is O(N) for
+/// spheres of similar size.
 class BroadPhase {
 public:
-    /// Pairs with |centre_i - centre_j| < reach_i + reach_j + margin, in the order of i, then of j, however the cells lie.
-    /// A reach [m] is the radius of a ball around the whole body; infinite for what is big, such as a bowl or a floor, which
-    /// is a candidate with every ball but not with another of its kind; negative for a body that takes no part. Takes
-    /// nothing from the heap once the buffers have grown. InvalidInput for a margin or reach that is none,
-    /// lie::NumericalFailure "nonfinite" for a centre of a ball.
+    /// The pairs with |centre_i - centre_j| < reach_i + reach_j + margin, sorted by i, then by j.
+    ///
+    /// `reach` [m] is the radius of the bounding sphere of a body about its centre [m]. Infinite means an
+    /// unbounded body such as a floor: it forms a pair with every bounded body, but not with another
+    /// unbounded one. Negative means that the body is ignored. Does not allocate after the buffers have grown
+    /// to their final size. InvalidInput for a negative or infinite margin, a reach that is NaN, or arrays of
+    /// different lengths; lie::NumericalFailure "nonfinite" if the centre of a bounded body is not finite.
     const std::vector<Candidate>& find(std::span<const Vec3> centre, std::span<const double> reach,
                                        double margin);
 
@@ -38,9 +41,10 @@ private:
     using Cell = std::array<std::int64_t, 3>;
 
     std::vector<Candidate> found;
-    std::vector<int> big;
-    std::vector<Cell> cell;          // of each body
-    std::vector<int> first, sorted;  // bodies by bucket, in their order
+    std::vector<int> unbounded;
+    std::vector<Cell> cell;  // cell of each body
+    // bodies sorted by bucket; bucket k holds sorted[first[k]] .. sorted[first[k + 1] - 1]
+    std::vector<int> first, sorted;
 };
 
 }  // namespace hilda::contact

@@ -7,18 +7,19 @@ namespace hilda::contact {
 
 namespace {
 
-/// Along the common perpendicular of the axes. With z_i, z_j the axes and d from the origin of j to that of i,
-/// it meets them at
+/// The contact points lie on the common perpendicular of the axes. With the unit axes z_i, z_j and d = o_i -
+/// o_j, the feet of the perpendicular on the axes are
 ///
 ///     f_i = o_i - z_i ((d × z_j)·m) / |m|²,   f_j = o_j - z_j ((d × z_i)·m) / |m|²,   m = z_i × z_j
 ///
-/// Where the axes are parallel it is any perpendicular, and the one through o_i is taken.
+/// For parallel axes the perpendicular is not unique, and the one through o_i is used if the cylinders do not
+/// touch.
 class CylinderCylinder final : public Detector {
 public:
     CylinderCylinder(const Shape& i, double R_i, const Shape& j, double R_j) : i(i), j(j), R_i(R_i), R_j(R_j)
     {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Vec3 o_i = bi.r + bi.A * i.position, o_j = bj.r + bj.A * j.position, d = o_i - o_j;
         const Vec3 z_i = bi.A * i.orientation.col(2), z_j = bj.A * j.orientation.col(2), m = z_i.cross(z_j);
@@ -27,7 +28,7 @@ public:
             const Vec3 f_j = o_j + z_j.dot(d) * z_j, across = o_i - f_j;
             const double distance = across.norm();
             if (!(distance > R_i + R_j))
-                throw NoUniqueContactPoint("two cylinders are parallel: they touch along a line");
+                throw NoUniqueContactPoint("the axes of two cylinders are parallel: the contact is a line");
             return between(o_i, z_i, f_j, z_j, across / distance, distance);
         }
         const double distance = d.dot(m) / sine;
@@ -50,7 +51,7 @@ private:
                 .K_j = 1 / R_j * t_j * t_j.transpose()};
     }
 
-    static constexpr double parallel = 1e-9;  // sine of the angle of the axes
+    static constexpr double parallel = 1e-9;  // sine of the angle between the axes
 
     const Shape i, j;
     const double R_i, R_j;
@@ -64,8 +65,8 @@ std::unique_ptr<Detector> cylinder_cylinder(const Shape& i, const Shape& j)
     const auto* b = dynamic_cast<const Cylinder*>(j.surface.get());
     if (a == nullptr || b == nullptr) return nullptr;
     if (a->concave || b->concave)
-        lie::reject("contact::make_detector", "a pair of surfaces must touch in a single point",
-                    "a cylinder in a pipe");
+        lie::reject("contact::make_detector", "a pair of surfaces must have a single contact point",
+                    "a cylinder and a concave cylinder");
     return std::make_unique<CylinderCylinder>(i, a->R, j, b->R);
 }
 

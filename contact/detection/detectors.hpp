@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The detectors there are, for make_detector to choose from.
+/// The detectors that make_detector() chooses from.
 
 #pragma once
 
@@ -7,29 +7,34 @@
 
 namespace hilda::contact {
 
-/// A shape of a moving body in the global frame
-struct Placed {
+/// Pose of a surface in the global frame: origin [m], and axes as the columns of a rotation matrix
+struct PlacedShape {
     Vec3 origin;
     Mat3 axes;
 
-    Placed(const Shape& s, const Motion& b) : origin(b.r + b.A * s.position), axes(b.A * s.orientation) {}
+    PlacedShape(const Shape& s, const Motion& b) : origin(b.r + b.A * s.position), axes(b.A * s.orientation)
+    {}
 };
 
-/// What a detector of j and i says of i and j: the same numbers, with the sign of n changed.
-ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj, const Points* from);
+/// The contact point of bodies i and j from a detector made for the pair j, i: the results are exchanged and
+/// n changes its sign. The numbers are bit-identical.
+ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj,
+                              const PreviousPoints* from);
 
-// Each makes a detector for the surfaces in its name, i before j, and none for others.
+// Each function returns a detector for the surfaces in its name, in this order, and nullptr for other
+// surfaces.
 
 std::unique_ptr<Detector> sphere_plane(const Shape& i, const Shape& j);
-/// Ball and ball, ball in bowl, bowl on ball. InvalidInput unless the ball is the smaller.
+/// Two spheres, of which one may be concave. InvalidInput unless the sphere is smaller than the concave one.
 std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j);
 std::unique_ptr<Detector> foot_plane(const Shape& i, const Shape& j);
 std::unique_ptr<Detector> disk_plane(const Shape& i, const Shape& j);
-/// NumericalFailure where they are parallel
+/// Two cylinders with crossing axes. detect() throws NoUniqueContactPoint if the axes are parallel and the
+/// cylinders touch.
 std::unique_ptr<Detector> cylinder_cylinder(const Shape& i, const Shape& j);
-/// Any surface that knows its support in closed form
+/// Any surface with a support function, and a plane
 std::unique_ptr<Detector> support_plane(const Shape& i, const Shape& j);
-/// Any two surfaces
+/// Any two smooth surfaces, by Newton's method
 std::unique_ptr<Detector> common_normal(const Shape& i, const Shape& j);
 
 }  // namespace hilda::contact

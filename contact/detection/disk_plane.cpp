@@ -8,11 +8,12 @@ namespace hilda::contact {
 
 namespace {
 
-/// The lowest point of the rim. With e the direction from the centre to it and θ between e and -n,
+/// The contact point is the point of the rim farthest along -n. With e the unit vector from the centre to it
+/// and θ the angle between e and -n,
 ///
 ///     n - (n·z) z = -cos θ e,   t = z × e,   K_i = (1/R) cos θ (I - n nᵀ)
 ///
-/// Flat above the plane all points of the rim are equally low, and it is any of them.
+/// If the disk is parallel to the plane and above it, any point of the rim is returned.
 class DiskPlane final : public Detector {
 public:
     DiskPlane(const Shape& i, double R, const Shape& j)
@@ -20,17 +21,17 @@ public:
           n_bar_j(j.orientation.col(2))
     {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Vec3 c = bi.r + bi.A * c_bar_i, z = bi.A * z_bar_i, n = bj.A * n_bar_j;
-        const Vec3 t_cosine = n.cross(z);  // as long as cos θ, and free of cancellation when the disk is flat
+        const Vec3 t_cosine = n.cross(z);  // its length is cos θ, without cancellation at θ = π/2
         const double cosine = t_cosine.norm();
-        const bool leans = cosine > flat;
-        const Vec3 t = leans ? Vec3(t_cosine / cosine) : z.unitOrthogonal();
+        const bool is_tilted = cosine > flat;
+        const Vec3 t = is_tilted ? Vec3(t_cosine / cosine) : z.unitOrthogonal();
         const Vec3 C_i = c + R * t.cross(z);
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);
-        if (!leans && !(gap > 0))
-            throw NoUniqueContactPoint("a disk lies flat on a plane: it touches with all of its rim");
+        if (!is_tilted && !(gap > 0))
+            throw NoUniqueContactPoint("a disk lies flat on a plane: the contact is the whole rim");
         return {.C_i = C_i,
                 .C_j = C_i - gap * n,
                 .n = n,

@@ -7,14 +7,15 @@ namespace hilda::contact {
 
 namespace {
 
-/// The foot touches at its origin, however it is turned; the normal is that of the plane.
+/// The contact point of body i is the origin of the foot, at any orientation. The normal is that of the
+/// plane.
 class FootPlane final : public Detector {
 public:
     FootPlane(const Shape& i, const Shape& j)
         : o_bar_i(i.position), o_bar_j(j.position), n_bar_j(j.orientation.col(2))
     {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Vec3 C_i = bi.r + bi.A * o_bar_i, n = bj.A * n_bar_j;
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);

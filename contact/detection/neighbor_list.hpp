@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Bodies of a few kinds of which any two may meet.
+/// Neighbour list for many bodies of a few types.
 
 #pragma once
 
@@ -12,81 +12,86 @@
 
 namespace hilda::contact {
 
-/// Bodies that are alike
+/// Properties shared by bodies of one type
 struct BodyType {
     Inertia inertia;
     Shape shape;
-    /// Radius of a ball about the centre of mass that holds the body [m]; infinite for what is big, such as a bowl or a
-    /// floor. Big bodies do not meet each other.
+    /// Radius of the bounding sphere about the centre of mass [m]. Infinite for an unbounded body such as a
+    /// floor or a bowl. There is no contact between two unbounded bodies.
     double reach = std::numeric_limits<double>::infinity();
 };
 
-/// Pairs of bodies that may touch, as they come near and part. A Law is what is constant of two kinds, made before a run; a
-/// State is what a pair keeps from step to step, as long as it is a candidate, and begins as State(). Pairs are looked
-/// for anew only when some body has moved by half the skin, and their order is that of the body numbers.
+/// The pairs of bodies that may be in contact (Verlet list). Law is constant data of two body types, set
+/// before the run. State is the data of one pair from step to step: it starts as State() when the pair enters
+/// the list and is deleted when the pair leaves it. The list is updated when a body has moved by half the
+/// skin. It is sorted by body numbers.
 template <class Law, class State>
 class NeighborList {
 public:
     struct Pair {
         const Law* law;
-        int i, j;  ///< in the order of the kinds of the law
+        int i, j;  ///< in the order of the types of the law
         State state = {};
     };
 
-    double margin = 0;  ///< Pairs nearer than this are in the list [m] ...
-    double skin =
-        0.1;  ///< ... and those that are no further off than this beyond it, over the smallest reach
+    double margin = 0;  ///< the list contains all pairs of bounding spheres closer than this [m]
+    double skin = 0.1;  ///< additional distance, relative to the smallest reach
 
-    int add(const BodyType& kind)
+    /// Adds a body type and returns its number. InvalidInput unless the reach is positive.
+    int add_type(const BodyType& type)
     {
-        if (!(kind.reach > 0))
-            lie::reject("contact::Crowd", "the reach of a kind must be positive", kind.reach);
-        kinds.push_back(kind);
-        laws.resize(kinds.size());
-        for (auto& row : laws) row.resize(kinds.size());
-        return static_cast<int>(kinds.size()) - 1;
+        if (!(type.reach > 0))
+            lie::reject("contact::NeighborList", "the reach of a body type must be positive", type.reach);
+        types.push_back(type);
+        laws.resize(types.size());
+        for (auto& row : laws) row.resize(types.size());
+        return static_cast<int>(types.size()) - 1;
     }
 
-    const BodyType& kind(int k) const
+    const BodyType& body_type(int k) const
     {
-        if (k < 0 || k >= static_cast<int>(kinds.size()))
-            lie::reject("contact::Crowd", "no kind has this number", k);
-        return kinds[k];
+        if (k < 0 || k >= static_cast<int>(types.size()))
+            lie::reject("contact::NeighborList", "there is no body type with this number", k);
+        return types[k];
     }
 
-    /// Body b, the last one there is, is of kind k.
-    void enter(int b, int k)
+    /// Adds body b, the last body of the system, with type k. Earlier bodies without a type are ignored.
+    void add_body(int b, int k)
     {
-        kind_of.resize(b, none);
+        type_of.resize(b, none);
         reach.resize(b, -1);
-        kind_of.push_back(k);
-        reach.push_back(kind(k).reach);
-        searched_at.clear();
+        type_of.push_back(k);
+        reach.push_back(body_type(k).reach);
+        reference_position.clear();
     }
 
-    /// What holds between two kinds, or among one; bodies of kinds that have no law pass through each other.
-    void set(int kind_i, int kind_j, std::unique_ptr<const Law> law)
+    /// Sets the law of a pair of types, which may be equal. Bodies of types without a law do not interact.
+    /// InvalidInput if both types are unbounded or the pair has a law already.
+    void set_law(int type_i, int type_j, std::unique_ptr<const Law> law)
     {
-        if (std::isinf(kind(kind_i).reach) && std::isinf(kind(kind_j).reach))
-            lie::reject("contact::Crowd", "one of two kinds that meet must have a finite reach",
-                        kind(kind_i).reach);
-        if (laws[kind_i][kind_j] != nullptr || laws[kind_j][kind_i] != nullptr)
-            lie::reject("contact::Crowd", "two kinds have one law, and these have it already; kind", kind_j);
-        laws[kind_i][kind_j] = std::move(law);
-        searched_at.clear();
+        if (std::isinf(body_type(type_i).reach) && std::isinf(body_type(type_j).reach))
+            lie::reject("contact::NeighborList",
+                        "one of the two body types of a law must have a finite reach",
+                        body_type(type_i).reach);
+        if (laws[type_i][type_j] != nullptr || laws[type_j][type_i] != nullptr)
+            lie::reject("contact::NeighborList",
+                        "a pair of body types must have one law only; law set again for type", type_j);
+        laws[type_i][type_j] = std::move(law);
+        reference_position.clear();
     }
 
-    /// The pairs of these bodies. lie::NumericalFailure "nonfinite" for a body that is nowhere.
+    /// The pairs at these poses, updated if necessary. lie::NumericalFailure "nonfinite" if a position is not
+    /// finite.
     std::vector<Pair>& find(const std::vector<Motion>& body)
     {
-        if (stale(body)) search(body);
+        if (needs_update(body)) update(body);
         return pairs;
     }
 
-    const std::vector<Pair>& pair() const { return pairs; }  ///< those of the last find()
+    const std::vector<Pair>& pair() const { return pairs; }  ///< the pairs of the last find()
 
-    /// The same with nothing remembered and nothing kept: for a check before a run
-    std::vector<Pair> near(const std::vector<Motion>& body) const
+    /// The pairs at these poses with new states, without changing the list. For checks before a run.
+    std::vector<Pair> pairs_near(const std::vector<Motion>& body) const
     {
         std::vector<Pair> out;
         BroadPhase once;
@@ -102,7 +107,7 @@ private:
 
     Pair pair_of(const Candidate& c) const
     {
-        const int i = kind_of[c.i], j = kind_of[c.j];
+        const int i = type_of[c.i], j = type_of[c.j];
         if (laws[i][j] != nullptr) return {.law = laws[i][j].get(), .i = c.i, .j = c.j};
         return {.law = laws[j][i].get(), .i = c.j, .j = c.i};
     }
@@ -110,51 +115,52 @@ private:
     double skin_length() const
     {
         double smallest = std::numeric_limits<double>::infinity();
-        for (const BodyType& k : kinds) smallest = std::min(smallest, k.reach);
+        for (const BodyType& k : types) smallest = std::min(smallest, k.reach);
         return std::isfinite(smallest) ? skin * smallest : 0;
     }
 
-    bool stale(const std::vector<Motion>& body) const
+    bool needs_update(const std::vector<Motion>& body) const
     {
-        if (kinds.empty()) return false;
-        if (searched_at.empty() || margin != searched_margin) return true;
+        if (types.empty()) return false;
+        if (reference_position.empty() || margin != reference_margin) return true;
         const double half = 0.5 * skin_length();
-        for (size_t b = 0; b < searched_at.size(); ++b)
+        for (size_t b = 0; b < reference_position.size(); ++b)
             if (std::isfinite(reach[b]) && reach[b] > 0 &&
-                !((body[b].r - searched_at[b]).squaredNorm() < half * half))
+                !((body[b].r - reference_position[b]).squaredNorm() < half * half))
                 return true;
         return false;
     }
 
-    void search(const std::vector<Motion>& body)
+    void update(const std::vector<Motion>& body)
     {
-        searched_at.clear();
-        for (size_t b = 0; b < reach.size(); ++b) searched_at.push_back(body[b].r);
-        searched_margin = std::numeric_limits<double>::quiet_NaN();  // should the search fail
-        const auto& candidates = broad_phase.find(searched_at, reach, margin + skin_length());
-        searched_margin = margin;
+        reference_position.clear();
+        for (size_t b = 0; b < reach.size(); ++b) reference_position.push_back(body[b].r);
+        reference_margin = std::numeric_limits<double>::quiet_NaN();  // forces an update if the search throws
+        const auto& candidates = broad_phase.find(reference_position, reach, margin + skin_length());
+        reference_margin = margin;
 
-        before.swap(pairs);
+        previous.swap(pairs);
         pairs.clear();
-        auto old = before.begin();
+        auto old = previous.begin();
         const auto lower = [](const Pair& p) { return std::pair(std::min(p.i, p.j), std::max(p.i, p.j)); };
         for (const Candidate& c : candidates) {
             Pair now = pair_of(c);
             if (now.law == nullptr) continue;
-            while (old != before.end() && lower(*old) < std::pair(c.i, c.j)) ++old;
-            if (old != before.end() && lower(*old) == std::pair(c.i, c.j)) now.state = std::move(old->state);
+            while (old != previous.end() && lower(*old) < std::pair(c.i, c.j)) ++old;
+            if (old != previous.end() && lower(*old) == std::pair(c.i, c.j))
+                now.state = std::move(old->state);
             pairs.push_back(std::move(now));
         }
     }
 
-    std::vector<BodyType> kinds;
+    std::vector<BodyType> types;
     std::vector<std::vector<std::unique_ptr<const Law>>> laws;
-    std::vector<int> kind_of;   // of each body
-    std::vector<double> reach;  // of each body, negative for those of no kind
-    std::vector<Vec3> searched_at;
-    double searched_margin = 0;
+    std::vector<int> type_of;   // type of each body, or none
+    std::vector<double> reach;  // of each body [m], negative for bodies without a type
+    std::vector<Vec3> reference_position;
+    double reference_margin = 0;
     BroadPhase broad_phase;
-    std::vector<Pair> pairs, before;
+    std::vector<Pair> pairs, previous;
 };
 
 }  // namespace hilda::contact

@@ -7,13 +7,14 @@ namespace hilda::contact {
 
 namespace {
 
+/// C_i = c - R n, where c is the centre of the sphere; C_j is the projection of c onto the plane.
 class SpherePlane final : public Detector {
 public:
     SpherePlane(const Shape& i, double R, const Shape& j)
         : c_bar_i(i.position), R(R), o_bar_j(j.position), n_bar_j(j.orientation.col(2))
     {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Vec3 c = bi.r + bi.A * c_bar_i, n = bj.A * n_bar_j;
         const double height = n.dot(c - bj.r - bj.A * o_bar_j);

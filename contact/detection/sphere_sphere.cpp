@@ -7,20 +7,22 @@ namespace hilda::contact {
 
 namespace {
 
-/// With signed radii, negative for the bowl, one formula serves: C_i = c_i - R_i n and C_j = c_j + R_j n. The
-/// normal runs along the line of centres: from j to i between balls, the other way in a bowl.
+/// Two spheres with signed radii, negative for a concave sphere: C_i = c_i - R_i n, C_j = c_j + R_j n. The
+/// normal lies on the line of the centres. It points from c_j to c_i for two convex spheres, and from c_i to
+/// c_j if one is concave.
 class SphereSphere final : public Detector {
 public:
     SphereSphere(const Shape& i, double R_i, const Shape& j, double R_j)
         : c_bar_i(i.position), R_i(R_i), c_bar_j(j.position), R_j(R_j), sign(R_i > 0 && R_j > 0 ? 1 : -1)
     {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Vec3 c_i = bi.r + bi.A * c_bar_i, c_j = bj.r + bj.A * c_bar_j;
         const double distance = (c_i - c_j).norm();
         if (!(distance > 0))
-            throw NoUniqueContactPoint("the centres of two spheres coincide: there is no contact normal");
+            throw NoUniqueContactPoint(
+                "the centres of two spheres coincide: the contact normal is undefined");
         const Vec3 n = (c_i - c_j) / (sign * distance);
         const Mat3 P = Mat3::Identity() - n * n.transpose();
         return {.C_i = c_i - R_i * n,
@@ -48,9 +50,10 @@ std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j)
     if (a == nullptr || b == nullptr) return nullptr;
     const double R_i = a->sigma() * a->R, R_j = b->sigma() * b->R;
     if (!(1 / R_i + 1 / R_j > 0))
-        lie::reject("contact::make_detector", "a ball must be smaller than the bowl it touches",
-                    "a ball of radius " + dae::shortest(a->concave ? b->R : a->R) + " in a bowl of radius " +
-                        dae::shortest(a->concave ? a->R : b->R));
+        lie::reject("contact::make_detector",
+                    "the radius of a sphere must be less than that of the concave sphere around it",
+                    dae::shortest(a->concave ? b->R : a->R) + " m in " +
+                        dae::shortest(a->concave ? a->R : b->R) + " m");
     return std::make_unique<SphereSphere>(i, R_i, j, R_j);
 }
 

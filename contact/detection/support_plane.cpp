@@ -6,30 +6,31 @@ namespace hilda::contact {
 
 namespace {
 
-/// The point of surface i that is furthest against the normal of the plane, which may change at once from one
-/// end of a long body to the other. Where the furthest points are many, as of a ring that hovers flat, it is the
-/// one of a direction that leans by so little that the gap is the same to round-off.
+/// The contact point of surface i is its support point along -n, the inward normal of the plane. It may jump
+/// from one end of a long body to the other. If the support point is not unique, as for a torus parallel to
+/// the plane, and the bodies do not touch, the support point of a slightly tilted direction is used; the gap
+/// is the same to round-off.
 class SupportPlane final : public Detector {
 public:
     SupportPlane(const Shape& i, const Shape& j) : i(i), o_bar_j(j.position), n_bar_j(j.orientation.col(2)) {}
 
-    ContactPoint detect(const Motion& bi, const Motion& bj, const Points*) const override
+    ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
-        const Placed at(i, bi);
+        const PlacedShape at(i, bi);
         const Vec3 n = bj.A * n_bar_j;
         const Vec3 down = -(at.axes.transpose() * n).normalized();
         try {
-            return contact_point(at, bj, n, *i.surface->support(down));
-        } catch (const lie::NumericalFailure& many) {
-            const Vec3 leaning = (down + lean * down.unitOrthogonal()).normalized();
-            const ContactPoint one = contact_point(at, bj, n, *i.surface->support(leaning));
-            if (one.gap > 0) return one;
-            throw NoUniqueContactPoint(many.what());
+            return at_support(at, bj, n, *i.surface->support(down));
+        } catch (const lie::NumericalFailure& e) {
+            const Vec3 tilted = (down + tilt * down.unitOrthogonal()).normalized();
+            const ContactPoint contact_point = at_support(at, bj, n, *i.surface->support(tilted));
+            if (contact_point.gap > 0) return contact_point;
+            throw NoUniqueContactPoint(e.what());
         }
     }
 
 private:
-    ContactPoint contact_point(const Placed& at, const Motion& bj, const Vec3& n, const Vec3& a) const
+    ContactPoint at_support(const PlacedShape& at, const Motion& bj, const Vec3& n, const Vec3& a) const
     {
         const Vec3 C_i = at.origin + at.axes * a;
         const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);
@@ -41,7 +42,7 @@ private:
                 .K_j = Mat3::Zero()};
     }
 
-    static constexpr double lean = 1e-9;
+    static constexpr double tilt = 1e-9;
 
     const Shape i;
     const Vec3 o_bar_j, n_bar_j;

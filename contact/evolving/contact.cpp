@@ -13,43 +13,45 @@ namespace hilda::contact {
 
 namespace {
 
-// Of K_i + K_j, times L: below, the contact points run away.
-constexpr double least_relative_curvature = 1e-6;
-constexpr int most_iterations = 50;
+// Lower limit of the smaller eigenvalue of K_i + K_j, times L. Below it the contact points are not determined
+// (line contact, matching curvatures).
+constexpr double min_relative_curvature = 1e-6;
+constexpr int max_iterations = 50;
 
 double smaller_size(const Shape& i, const Shape& j)
 {
     const double a = i.surface->size(), b = j.surface->size();
     if (a > 0 && b > 0) return std::min(a, b);
     if (!(a + b > 0))
-        lie::reject("contact::EvolvingContact", "one of the surfaces must be curved",
+        lie::reject("contact::EvolvingContact", "at least one of the two surfaces must be curved",
                     i.surface->name() + " and " + j.surface->name());
     return a + b;
 }
 
-/// |∇G| at a point of a surface
-double length(const Vec3& gradient, const Vec3& a)
+/// |∇G|, checked. `a`: the point in the surface frame [m], for the message. Throws lie::NumericalFailure
+/// "contact_lost" where the gradient vanishes or is not a number.
+double gradient_norm(const Vec3& gradient, const Vec3& a)
 {
     const double g = gradient.norm();
     if (g > 0) return g;
     std::ostringstream what;
     what << "a surface has no normal at (" << a.x() << ", " << a.y() << ", " << a.z()
-         << "), in its own frame";
+         << "), in its own frame: the gradient vanishes there";
     throw lie::NumericalFailure("contact_lost", what.str());
 }
 
 }  // namespace
 
-/// One body's part of the contact at its point ᾱ, in global axes
+/// Contact point, normal and surface row of one body, in global axes
 struct EvolvingContact::Side {
-    Vec3 arm;  // A ᾱ
+    Vec3 arm;  // A ᾱ [m]
     Vec3 n;    // A n̄
-    double G;  // G/|∇G|
+    double G;  // G/|∇G| [m]
 
     Side(const Shape& shape, const Motion& body, const double* alpha)
     {
         const Vec3 a = shape.to_surface(Vec3::Map(alpha)), gradient = shape.surface->gradient(a);
-        const double g = length(gradient, a);
+        const double g = gradient_norm(gradient, a);
         arm = body.A * Vec3::Map(alpha);
         n = shape.surface->sigma() / g * (body.A * (shape.orientation * gradient));
         G = shape.surface->value(a) / g;
@@ -58,20 +60,20 @@ struct EvolvingContact::Side {
 
 namespace {
 
-/// The same with second derivatives
+/// The same with the second derivatives of the surface
 struct CurvedSide {
-    Vec3 arm, n, u, a;
-    double G, g;
-    Mat3 axes;
-    Mat3 H;   // A ∇²G/|∇G| Aᵀ
-    Mat3 dn;  // ∂n/∂(A ᾱ)
+    Vec3 arm, n, u, a;  // u = ∇G/|∇G| in global axes; a: the point in the surface frame
+    double G, g;        // G/|∇G|, |∇G|
+    Mat3 axes;          // from the surface frame to global axes
+    Mat3 H;             // ∇²G/|∇G| in global axes
+    Mat3 dn;            // ∂n/∂(A ᾱ) = σ (I - u uᵀ) H
     double sigma;
 
     CurvedSide(const Shape& shape, const Motion& body, const double* alpha)
     {
         a = shape.to_surface(Vec3::Map(alpha));
         const Surface::Derivatives d = shape.surface->derivatives(a);
-        g = length(d.gradient, a);
+        g = gradient_norm(d.gradient, a);
         axes = body.A * shape.orientation;
         sigma = shape.surface->sigma();
         arm = body.A * Vec3::Map(alpha);
@@ -84,7 +86,7 @@ struct CurvedSide {
     Mat3 shape_operator() const { return dn - (dn * u) * u.transpose(); }
 };
 
-/// Velocity of the material point of a body that lies at this arm
+/// Velocity of the material point of the body at this arm from the centre of mass, global axes
 Vec3 velocity(const Motion& body, const Vec3& arm)
 {
     return body.rdot + (body.A * body.omega_bar).cross(arm);
@@ -116,19 +118,19 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
                     unilateral.restitution);
 }
 
-EvolvingContact::Mat32 EvolvingContact::tangents(const At& x) const
+EvolvingContact::Mat32 EvolvingContact::tangents(const Arguments& x) const
 {
     if (normal_rows == NormalRows::fixed_xy) return Mat3::Identity().leftCols<2>();
     return Mat32::Map(x.internal_state);
 }
 
-EvolvingContact::Mat32 EvolvingContact::tangents_across(const At& x, const Vec3& n) const
+EvolvingContact::Mat32 EvolvingContact::projected_tangents(const Arguments& x, const Vec3& n) const
 {
     const Mat32 T = Mat32::Map(x.internal_state);
     return T - n * (n.transpose() * T);
 }
 
-void EvolvingContact::phi(const At& x, double* out) const
+void EvolvingContact::phi(const Arguments& x, double* out) const
 {
     const Side side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     Vec3::Map(out) = (x.bi.r - x.bj.r) + (side_i.arm - side_j.arm);
@@ -136,125 +138,132 @@ void EvolvingContact::phi(const At& x, double* out) const
     out[5] = side_i.G, out[6] = side_j.G;
 }
 
-void EvolvingContact::variation(const At& x, Derivatives& out) const
+void EvolvingContact::variation(const Arguments& x, Derivatives& out) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     const Mat32 T = tangents(x);
-    Mat32 across = Mat32::Zero(), turning = Mat32::Zero();  // rows of the slip and of ω_i - ω_j, transposed
-    if (friction != Friction::none) across = tangents_across(x, side_i.n);
-    if (law.resists_rolling())
-        turning = -lie::tilde(side_i.n) *
-                  levers(side_i.shape_operator() + side_j.shape_operator(), side_i.n) * across;
-    const auto fill = [&](const CurvedSide& side, const Motion& body, double sign, auto& of_body,
-                          int column) {
-        // -A ~ᾱ: row c is -e_cᵀ ~(Aᾱ) A = (e_c-th row of A) turned
-        of_body.template block<3, 3>(0, 0) = sign * Mat3::Identity();
-        of_body.template block<3, 3>(0, 3) = -sign * (lie::tilde(side.arm) * body.A);
-        of_body.template block<2, 3>(3, 3) = -L * (T.transpose() * lie::tilde(side.n) * body.A);
-        out.of_alpha.template block<3, 3>(0, column) = sign * body.A;
-        out.of_alpha.template block<2, 3>(3, column) = L * (T.transpose() * side.dn * body.A);
-        out.of_alpha.template block<1, 3>(column == 0 ? 5 : 6, column) = side.u.transpose() * body.A;
+    Mat32 T_slip = Mat32::Zero(), T_roll = Mat32::Zero();  // transposed rows of the slip and of ω_i - ω_j
+    if (friction != Friction::none) T_slip = projected_tangents(x, side_i.n);
+    if (law.has_rolling_resistance())
+        T_roll = -lie::tilde(side_i.n) *
+                 lever_arms(side_i.shape_operator() + side_j.shape_operator(), side_i.n) * T_slip;
+    const auto fill = [&](const CurvedSide& side, const Motion& body, double sign, auto& C_body, int column) {
+        // The derivative of A ᾱ with respect to δθ̄ is -A ᾱ~ = -(Aᾱ)~ A.
+        C_body.template block<3, 3>(0, 0) = sign * Mat3::Identity();
+        C_body.template block<3, 3>(0, 3) = -sign * (lie::tilde(side.arm) * body.A);
+        C_body.template block<2, 3>(3, 3) = -L * (T.transpose() * lie::tilde(side.n) * body.A);
+        out.Phi_alpha.template block<3, 3>(0, column) = sign * body.A;
+        out.Phi_alpha.template block<2, 3>(3, column) = L * (T.transpose() * side.dn * body.A);
+        out.Phi_alpha.template block<1, 3>(column == 0 ? 5 : 6, column) = side.u.transpose() * body.A;
         if (friction == Friction::none) return;
-        of_body.template block<2, 3>(7, 0) = sign * across.transpose();
-        of_body.template block<2, 3>(7, 3) = -sign * (across.transpose() * lie::tilde(side.arm) * body.A);
-        if (law.resists_rolling()) of_body.template block<2, 3>(9, 3) = sign * (turning.transpose() * body.A);
+        C_body.template block<2, 3>(7, 0) = sign * T_slip.transpose();
+        C_body.template block<2, 3>(7, 3) = -sign * (T_slip.transpose() * lie::tilde(side.arm) * body.A);
+        if (law.has_rolling_resistance())
+            C_body.template block<2, 3>(9, 3) = sign * (T_roll.transpose() * body.A);
     };
-    fill(side_i, x.bi, 1, out.of_i, 0);
-    fill(side_j, x.bj, -1, out.of_j, 3);
+    fill(side_i, x.bi, 1, out.C_i, 0);
+    fill(side_j, x.bj, -1, out.C_j, 3);
 }
 
-void EvolvingContact::gamma(const At& x, double* out) const
+void EvolvingContact::gamma(const Arguments& x, double* out) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     const Vec3 n = side_i.n;
     const Vec3 omega_i = x.bi.A * x.bi.omega_bar, omega_j = x.bj.A * x.bj.omega_bar;
 
-    // Montana's equations without charts: (K_i + K_j) A_i ᾱ̇_i = n × (ω_i - ω_j) - K_j s, and + K_i s for j
+    // Montana's contact equations without charts, with s the slip:
+    //     (K_i + K_j) A_i ᾱ̇_i = n × (ω_i - ω_j) - K_j s,    (K_i + K_j) A_j ᾱ̇_j = n × (ω_i - ω_j) + K_i s
     const Mat32 T = tangent_basis(n);
     const Vec3 slip = velocity(x.bi, side_i.arm) - velocity(x.bj, side_j.arm),
-               turned = n.cross(omega_i - omega_j);
+               n_cross_omega = n.cross(omega_i - omega_j);
     const Mat3 K_i = side_i.shape_operator(), K_j = side_j.shape_operator();
     const Eigen::Matrix2d K = T.transpose() * (K_i + K_j) * T;
     const Eigen::Matrix2d inverse = K.inverse();
-    const Vec3 adot_i = T * (inverse * (T.transpose() * (turned - K_j * slip)));
-    const Vec3 adot_j = T * (inverse * (T.transpose() * (turned + K_i * slip)));
+    const Vec3 adot_i = T * (inverse * (T.transpose() * (n_cross_omega - K_j * slip)));
+    const Vec3 adot_j = T * (inverse * (T.transpose() * (n_cross_omega + K_i * slip)));
 
-    const auto of = [&](const Shape& shape, const CurvedSide& side, const Vec3& omega, const Vec3& adot,
-                        Vec3& point, Vec3& normal, double& on_surface, Vec3& material) {
+    const auto differentiate = [&](const Shape& shape, const CurvedSide& side, const Vec3& omega,
+                                   const Vec3& adot, Vec3& point, Vec3& normal, double& surface_row,
+                                   Vec3& material) {
         const Vec3 centripetal = omega.cross(omega.cross(side.arm));
         point = centripetal + 2 * omega.cross(adot);
         material = centripetal + omega.cross(adot);
-        on_surface = -adot.dot(side.H * adot);
-        // what third derivatives of G would give, along ᾱ̇
-        Vec3 bent = Vec3::Zero();
+        surface_row = -adot.dot(side.H * adot);
+        // ᾱ̇ᵀ (∂²n/∂ᾱ²) ᾱ̇ needs third derivatives of G; they are taken along ᾱ̇ by central differences.
+        Vec3 third_derivative = Vec3::Zero();
         if (const double speed = adot.norm(); speed > 0) {
             const double step = 1e-5 * L;
             const Vec3 along = side.axes.transpose() * (adot / speed);
-            bent = speed * speed *
-                   (side.axes * (shape.surface->normal_derivative(side.a + step * along) * along -
-                                 shape.surface->normal_derivative(side.a - step * along) * along)) /
-                   (2 * step);
+            third_derivative =
+                speed * speed *
+                (side.axes * (shape.surface->normal_derivative(side.a + step * along) * along -
+                              shape.surface->normal_derivative(side.a - step * along) * along)) /
+                (2 * step);
         }
-        normal = omega.cross(omega.cross(side.n)) + 2 * omega.cross(side.dn * adot) + bent;
+        normal = omega.cross(omega.cross(side.n)) + 2 * omega.cross(side.dn * adot) + third_derivative;
     };
     Vec3 point_i, point_j, normal_i, normal_j, material_i, material_j;
-    of(shape_i, side_i, omega_i, adot_i, point_i, normal_i, out[5], material_i);
-    of(shape_j, side_j, omega_j, adot_j, point_j, normal_j, out[6], material_j);
+    differentiate(shape_i, side_i, omega_i, adot_i, point_i, normal_i, out[5], material_i);
+    differentiate(shape_j, side_j, omega_j, adot_j, point_j, normal_j, out[6], material_j);
     Vec3::Map(out) = point_j - point_i;
     Eigen::Vector2d::Map(out + 3) = -L * (tangents(x).transpose() * (normal_i + normal_j));
     if (friction != Friction::none)
-        Eigen::Vector2d::Map(out + 7) = tangents_across(x, n).transpose() * (material_j - material_i);
-    if (law.resists_rolling()) Eigen::Vector2d::Map(out + 9).setZero();  // of bodies that do not roll as yet
+        Eigen::Vector2d::Map(out + 7) = projected_tangents(x, n).transpose() * (material_j - material_i);
+    // γ is used at starts and restarts only; zero is exact for bodies that do not roll there.
+    if (law.has_rolling_resistance()) Eigen::Vector2d::Map(out + 9).setZero();
 }
 
-Mat3 EvolvingContact::levers(const Mat3& K_sum, const Vec3& n) const
+Mat3 EvolvingContact::lever_arms(const Mat3& K_sum, const Vec3& n) const
 {
     const Mat32 T = tangent_basis(n);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> kappa;
     kappa.computeDirect(T.transpose() * K_sum * T);
-    const Eigen::Vector2d longest = Eigen::Vector2d::Constant(10 * L);
+    const Eigen::Vector2d max_lever_arm = Eigen::Vector2d::Constant(10 * L);
     const Mat32 along = T * kappa.eigenvectors();
-    return along * kappa.eigenvalues().cwiseInverse().cwiseMin(longest).asDiagonal() * along.transpose();
+    return along * kappa.eigenvalues().cwiseInverse().cwiseMin(max_lever_arm).asDiagonal() *
+           along.transpose();
 }
 
-void EvolvingContact::compliance(const At& x, lie::Rows::Regularised* out) const
+void EvolvingContact::regularisation(const Arguments& x, lie::Rows::Regularised* out) const
 {
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
-    const auto set = [&](lie::Rows::Regularised& pair, const double* by, double K, double D, double factor) {
+    const auto set_pair = [&](lie::Rows::Regularised& pair, const double* pair_state, double K, double D,
+                              double factor) {
         pair.K = K, pair.D = D, pair.n = n;
-        pair.S = Eigen::Vector2d::Map(by);
-        pair.mu = factor * (by[2] != 0 ? law.mu_k : law.mu_s);
+        pair.S = Eigen::Vector2d::Map(pair_state);
+        pair.mu = factor * (pair_state[2] != 0 ? law.mu_k : law.mu_s);
     };
     if (!is_regularised()) return;
-    set(out[slips], x.internal_state + slides_by, law.K_E, law.K_D, 1);
-    if (!law.resists_rolling()) return;
+    set_pair(out[sliding_pair], x.internal_state + sliding_state, law.K_E, law.K_D, 1);
+    if (!law.has_rolling_resistance()) return;
     const ContactPoint at = contact_point(x);
-    const double kappa = 2 / levers(at.K_i + at.K_j, n).trace();
-    set(out[rolls], x.internal_state + rolls_by, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
-        2 * law.eta_r);
+    const double kappa = 2 / lever_arms(at.K_i + at.K_j, n).trace();
+    set_pair(out[rolling_pair], x.internal_state + rolling_state, 4 * law.eta_r * law.K_E,
+             law.D_roll * kappa * kappa, 2 * law.eta_r);
 }
 
-/// S, Z and what slips, out of the multipliers of the step that led here
-void EvolvingContact::update_friction(const At& x, bool start, double* internal_state) const
+/// Updates S, Z and the slip flags from the multipliers of the last step (see ImplicitFriction). A start and
+/// an inactive contact reset them.
+void EvolvingContact::update_friction(const Arguments& x, bool start, double* internal_state) const
 {
-    constexpr double at_bound = 1e-4;  // of |λ|, see lie::GiveWay
-    const double h = start ? 0 : x.t - internal_state[instant];
-    internal_state[instant] = x.t;
+    constexpr double bound_tolerance = 1e-4;  // relative to |λ|; above the tolerance of lie::BoundedRows
+    const double h = start ? 0 : x.t - internal_state[node_time];
+    internal_state[node_time] = x.t;
     if (start || x.inactive) {
-        std::fill(internal_state + slides_by, internal_state + 14, 0.);
+        std::fill(internal_state + sliding_state, internal_state + 14, 0.);
         return;
     }
     lie::Rows::Regularised pair[2];
-    compliance(x, pair);
+    regularisation(x, pair);
     const Vec3 Psi = x.lambda->segment<3>(first_row);
-    const double N = Psi.dot(pair[slips].n) > 0 ? Psi.norm() : 0;
-    for (const Pair p : {slips, rolls}) {
-        if (p == rolls && !law.resists_rolling()) continue;
-        double* by = internal_state + (p == slips ? slides_by : rolls_by);
+    const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
+    for (const RowPair p : {sliding_pair, rolling_pair}) {
+        if (p == rolling_pair && !law.has_rolling_resistance()) continue;
+        double* pair_state = internal_state + (p == sliding_pair ? sliding_state : rolling_state);
         const lie::Rows::Regularised& c = pair[p];
         const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
-        Eigen::Vector2d::Map(by) += h * c.mobility(h) * (lambda - c.K * c.S);
-        by[2] = lambda.norm() > (1 - at_bound) * c.mu * N;
+        Eigen::Vector2d::Map(pair_state) += h * c.mobility(h) * (lambda - c.K * c.S);
+        pair_state[2] = lambda.norm() > (1 - bound_tolerance) * c.mu * N;
     }
 }
 
@@ -271,7 +280,7 @@ unsigned EvolvingContact::nonzero(int row) const
     return 0b111111111111;
 }
 
-ContactPoint EvolvingContact::contact_point(const At& x) const
+ContactPoint EvolvingContact::contact_point(const Arguments& x) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     ContactPoint contact_point;
@@ -282,15 +291,15 @@ ContactPoint EvolvingContact::contact_point(const At& x) const
     return contact_point;
 }
 
-void EvolvingContact::update_alpha(const At& x, bool afresh, double* alpha) const
+void EvolvingContact::update_alpha(const Arguments& x, bool afresh, double* alpha) const
 {
     Vec3 a_i = Vec3::Zero(), a_j = Vec3::Zero();
     bool found = false;
     if (!afresh) {
         CommonNormal::Pair p = common_normal.placed(x.bi, x.bj);
         p.a_i = shape_i.to_surface(Vec3::Map(x.alpha)), p.a_j = shape_j.to_surface(Vec3::Map(x.alpha + 3));
-        for (int k = 0; k < most_iterations && !found; ++k) {
-            const double correction = common_normal.improve(p);
+        for (int k = 0; k < max_iterations && !found; ++k) {
+            const double correction = common_normal.newton_step(p);
             if (!std::isfinite(correction)) break;
             found = correction < 1e-12 * L;
         }
@@ -305,7 +314,7 @@ void EvolvingContact::update_alpha(const At& x, bool afresh, double* alpha) cons
     Vec3::Map(alpha + 3) = a_j;
 }
 
-bool EvolvingContact::update_internal_state(const At& x, bool start, double* internal_state) const
+bool EvolvingContact::update_internal_state(const Arguments& x, bool start, double* internal_state) const
 {
     const ContactPoint at = contact_point(x);
     const auto fail = [&](const std::string& status, const std::string& what, double value) {
@@ -317,18 +326,19 @@ bool EvolvingContact::update_internal_state(const At& x, bool start, double* int
     };
     const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
     if (!x.inactive) {
-        if (const double facing = n_i.dot(at.n); !(facing < -0.5))
-            return fail("contact_lost", "the normals are no longer opposite, their product is", facing);
-        if (const double least = least_curvature(at) * L; !(least > least_relative_curvature))
+        if (const double n_dot_n = n_i.dot(at.n); !(n_dot_n < -0.5))
+            return fail("contact_lost",
+                        "the normals are no longer opposite; n_i . n_j must be below -0.5, got", n_dot_n);
+        if (const double least = least_curvature(at) * L; !(least > min_relative_curvature))
             return fail("contact_singular",
-                        "the surfaces fit each other too well for one contact point: the least sum of "
-                        "curvatures, times a size, is",
+                        "the contact point is not unique, because the curvatures match; the smaller "
+                        "eigenvalue of K_i + K_j times the size of the surfaces must exceed 1e-6, got",
                         least);
     }
     Mat32 T;
     if (start) {
         T = tangent_basis(n_i);
-        internal_state[rebounded] = -std::numeric_limits<double>::infinity();
+        internal_state[last_rebound] = -std::numeric_limits<double>::infinity();
     } else {
         const Mat32 before = Mat32::Map(internal_state);
         const Vec3 along = before.col(0) - n_i * n_i.dot(before.col(0));
@@ -340,40 +350,40 @@ bool EvolvingContact::update_internal_state(const At& x, bool start, double* int
     return true;
 }
 
-double EvolvingContact::separation_speed(const At& x) const
+double EvolvingContact::separation_speed(const Arguments& x) const
 {
     const ContactPoint at = contact_point(x);
     return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
 }
 
-double EvolvingContact::velocity_error(const At& x) const
+double EvolvingContact::velocity_error(const Arguments& x) const
 {
     const ContactPoint at = contact_point(x);
     const Vec3 slip = velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r);
     return friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip));
 }
 
-std::string EvolvingContact::objection(const At& x) const
+std::string EvolvingContact::start_error(const Arguments& x) const
 {
-    if (const std::string why = common_normal.misfit(x.bi, x.bj); !why.empty()) return why;
+    if (const std::string why = common_normal.width_conflict(x.bi, x.bj); !why.empty()) return why;
     ContactPoint at;
     try {
         at = detector->detect(x.bi, x.bj, nullptr);
     } catch (const NoUniqueContactPoint& e) {
         return e.what();
     }
-    // where there is none, this throws
+    // normal() throws if the surface has no normal at the point.
     shape_i.surface->normal(shape_i.to_surface(x.bi.A.transpose() * (at.C_i - x.bi.r)));
     shape_j.surface->normal(shape_j.to_surface(x.bj.A.transpose() * (at.C_j - x.bj.r)));
     const double least = least_curvature(at);
-    if (least * L > least_relative_curvature) return {};
+    if (least * L > min_relative_curvature) return {};
     std::ostringstream what;
     what.precision(6);
-    if (least < -least_relative_curvature / L)
+    if (least < -min_relative_curvature / L)
         what << "a surface does not fit into the other: the sum of their curvatures must be positive, got ";
     else
-        what << "the surfaces fit each other along a line or a face, and have no single contact point: the "
-                "least sum of their curvatures must be positive, got ";
+        what << "the surfaces touch along a line or a face and have no unique contact point: the smaller "
+                "eigenvalue of the sum of their curvatures must be positive, got ";
     what << least << " 1/m";
     return what.str();
 }
@@ -387,7 +397,8 @@ std::string EvolvingContact::row_name(int row) const
     return is_regularised() && (row == 7 || row == 8) ? sliding[row - 7] : names[row];
 }
 
-EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eigen::VectorXd& lambda) const
+EvolvingContact::Multipliers EvolvingContact::multipliers(const Arguments& x,
+                                                          const Eigen::VectorXd& lambda) const
 {
     Multipliers m;
     m.Psi = lambda.segment<3>(first_row);
@@ -401,9 +412,9 @@ EvolvingContact::Multipliers EvolvingContact::multipliers(const At& x, const Eig
     m.tangential = m.Psi - m.F_N * n;
     if (friction != Friction::none) {
         m.rolling = lambda.segment<2>(first_velocity_row);
-        m.friction = -tangents_across(x, n) * m.rolling;
+        m.friction = -projected_tangents(x, n) * m.rolling;
     }
-    if (law.resists_rolling()) m.resistance = lambda.segment<2>(first_velocity_row + 2);
+    if (law.has_rolling_resistance()) m.resistance = lambda.segment<2>(first_velocity_row + 2);
     return m;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Two bodies that stay in contact, with the contact points as unknowns: no collision is looked for.
-///                                                                            Fang (2022), Secs. 5.1, 5.3
+/// Evolving contact: a contact constraint whose contact points are unknowns of the equations of motion.
+/// Source: Fang (2022), Secs. 5.1 and 5.3. Corrections to the printed equations: docs/theory/corrections.md.
 
 #pragma once
 
@@ -8,109 +8,130 @@
 #include "contact/detection/detector.hpp"
 #include "contact/evolving/implicit_friction.hpp"
 #include "contact/shape.hpp"
-#include "dae/model.hpp"
+#include "dae/constraint.hpp"
 
 namespace hilda::contact {
 
-/// What happens where the bodies would be pulled together, and where they meet
+/// Behaviour of a contact that can open: lift-off under tension and rebound at an impact.
 struct Unilateral {
-    bool enabled = false;    ///< else the contact holds both ways and never ends
-    double restitution = 0;  ///< e, 0 … 1
+    bool enabled = false;    ///< false: a bilateral constraint, which also transmits tension
+    double restitution = 0;  ///< coefficient of restitution e, from 0 to 1
     enum class Impact {
-        newton,  ///< the velocity of separation is e times that of approach
-        poisson  ///< the impulse of restitution is e times that of compression
+        newton,  ///< v⁺ = -e v⁻ for the normal velocity of the contact points
+        poisson  ///< the normal impulse of restitution is e times that of compression
     } impact = Impact::newton;
 };
 
-/// Seven rows and six massless unknowns, the contact points ᾱ_i and ᾱ_j in the frames of their bodies:
+/// Contact constraint between two smooth surfaces, written in their contact points.
 ///
-///     Ψ = r_i + A_i ᾱ_i - r_j - A_j ᾱ_j             the contact points coincide, three rows            (5.12)
-///     N = L Tᵀ (A_i n̄_i + A_j n̄_j)                  the normals are opposite, two rows                 (5.17)
-///     G = G_i(ᾱ_i)/|∇G_i|,  G_j(ᾱ_j)/|∇G_j|         the points lie on the surfaces, two rows          (5.27)
+/// The contact points ᾱ_i, ᾱ_j ∈ R³ in the body frames are six algebraic unknowns. The seven position rows
+/// are
 ///
-/// One degree of freedom less, that along the normal. n̄ is the unit normal out of the body, σ ∇G/|∇G|. T is a tangent
-/// basis of A_i n̄_i at the last node, and L the smaller size of the two surfaces, so that all rows are lengths and
-/// conditioning does not depend on size. (5.17) projects on the global x and y instead, and is singular for a normal
-/// in that plane; NormalRows::fixed_xy shows it.
+///     Ψ = r_i + A_i ᾱ_i - r_j - A_j ᾱ_j           3 rows: the contact points coincide                 (5.12)
+///     N = L Tᵀ (A_i n̄_i + A_j n̄_j)                2 rows: the normals are opposite                    (5.17)
+///     G = G_i(ᾱ_i)/|∇G_i|,  G_j(ᾱ_j)/|∇G_j|       2 rows: the points lie on the surfaces              (5.27)
 ///
-/// The multipliers (Ψ, N, G) are forces. Where the relative curvature K_i + K_j is regular in the tangent plane,
+/// n̄ = σ ∇G/|∇G| is the outward unit normal of a body. T (3 × 2, global axes) is a tangent basis of A_i n̄_i
+/// at the last node and is constant during a step. L is the smaller size of the two surfaces [m]. All rows
+/// are lengths, so the conditioning does not depend on the size of the bodies. Seven rows minus six unknowns
+/// remove one degree of freedom, the one along the normal.
+///
+/// (5.17) projects on the global x and y axes instead of T. That choice is singular for a normal in the
+/// xy-plane; it is available as NormalRows::fixed_xy for comparison.
+///
+/// The multipliers λ_Ψ, λ_N, λ_G are forces [N]. If the relative curvature K_i + K_j is regular in the
+/// tangent plane,
 ///
 ///     λ_N = 0,    λ_Ψ = F_N A_i n̄_i,    λ_G = -F_N (σ_i, σ_j)
 ///
-/// with the normal force F_N, positive in compression: -λ_Ψ pushes body i. |λ_N| > 0 tells that the normals given are
-/// not those of the surface.
+/// with the normal force F_N, positive in compression. The force on body i is -λ_Ψ. A nonzero λ_N shows that
+/// the normals supplied are not the gradients of the surface functions.
+///
+/// update_internal_state() throws lie::NumericalFailure "contact_lost" if n_i · n_j ≥ -½ and
+/// "contact_singular" if the smaller eigenvalue of K_i + K_j times L is at most 1e-6. With a fallback it
+/// returns false instead.
 class EvolvingContact final : public dae::Constraint {
 public:
     enum class NormalRows { tangent, fixed_xy };
     enum class Friction {
-        none,  ///< or one that a force adds
-        rolling,  ///< ideal: the material points in contact have one velocity, two rows more          (non-holonomic)
-        implicit  ///< that of Chapter 4 in the equations of the step: those two rows give way, and two more of rolling
+        none,  ///< none in the constraint; an EvolvingFriction can add it as a force
+        /// Ideal rolling: two nonholonomic rows make the tangential velocities of the material points in
+        /// contact equal.
+        rolling,
+        /// ImplicitFriction: the same two rows, regularised and bounded, and two more for the rolling
+        /// resistance
+        implicit
     };
 
-    /// Bodies i and j of the model, `ground` for the fixed one. InvalidInput for two planes, and for e outside 0 … 1.
+    /// A contact between bodies i and j of the model; dae::ground is the ground. Throws lie::InvalidInput if
+    /// neither surface is curved, if the restitution is outside [0, 1], or if make_detector() rejects the
+    /// pair.
     EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
                     Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent,
                     const Unilateral& unilateral = {});
-    /// With friction that is implicit
+    /// The same with implicit friction. Also throws lie::InvalidInput for invalid parameters of the friction.
     EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
                     const ImplicitFriction& friction, NormalRows normal_rows = NormalRows::tangent,
                     const Unilateral& unilateral = {});
 
-    int rows() const override { return 7; }
+    int position_rows() const override { return 7; }
     int velocity_rows() const override
     {
-        return friction == Friction::none ? 0 : law.resists_rolling() ? 4 : 2;
+        return friction == Friction::none ? 0 : law.has_rolling_resistance() ? 4 : 2;
     }
     bool is_regularised() const override { return friction == Friction::implicit; }
-    bool solved_first(int pair) const override { return pair == rolls; }
-    int unknowns() const override { return 6; }
-    /// T by columns, and when it last rebounded [s]; of implicit friction the instant of this [s], and of sliding and rolling
-    /// S or Z along T [m] and whether it slips
+    bool solved_first(int pair) const override { return pair == rolling_pair; }
+    int algebraic_variables() const override { return 6; }
+    /// Internal state variables: T by columns, and the time of the last rebound [s]. With implicit friction
+    /// also the time of the node [s], and for sliding and for rolling the elastic displacement along T, S or
+    /// Z [m] (2 numbers), and a slip flag. The constants are the indices in this array.
     int internal_states() const override { return is_regularised() ? 14 : 7; }
-    static constexpr int rebounded = 6, instant = 7, slides_by = 8, rolls_by = 11;
+    static constexpr int last_rebound = 6, node_time = 7, sliding_state = 8, rolling_state = 11;
+
     bool may_be_inactive() const override { return unilateral.enabled || fallback; }
     bool has_fallback() const override { return fallback; }
 
-    void phi(const At& x, double* out) const override;
-    void variation(const At& x, Derivatives& out) const override;
-    void gamma(const At& x, double* out) const override;
+    void phi(const Arguments& x, double* out) const override;
+    void variation(const Arguments& x, Derivatives& out) const override;
+    void gamma(const Arguments& x, double* out) const override;
     unsigned nonzero(int row) const override;
-    void compliance(const At& x, lie::Rows::Regularised* out) const override;
-    void update_alpha(const At& x, bool afresh, double* alpha) const override;
-    bool update_internal_state(const At& x, bool start, double* internal_state) const override;
-    double gap(const At& x) const override { return contact_point(x).gap; }
-    double separation_speed(const At& x) const override;
+    void regularisation(const Arguments& x, lie::Rows::Regularised* out) const override;
+    void update_alpha(const Arguments& x, bool afresh, double* alpha) const override;
+    bool update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
+    double gap(const Arguments& x) const override { return contact_point(x).gap; }
+    double separation_speed(const Arguments& x) const override;
     bool is_unilateral() const override { return unilateral.enabled; }
-    double velocity_error(const At& x) const override;
-    double allowance() const override { return 1e-6 * L; }
-    std::string objection(const At& x) const override;
+    double velocity_error(const Arguments& x) const override;
+    double position_tolerance() const override { return 1e-6 * L; }
+    std::string start_error(const Arguments& x) const override;
     std::string row_name(int row) const override;
 
-    /// The touch that α says: its points, the normal into body i, gap along it, shape operators
-    ContactPoint contact_point(const At& x) const;
-    /// Multipliers of this contact out of those of a model: λ_Ψ [N, global], λ_N, λ_G, those of rolling [N]
+    /// The contact point that corresponds to α in x: points, normal into body i, gap along the normal, shape
+    /// operators
+    ContactPoint contact_point(const Arguments& x) const;
+    /// The multipliers of this contact, extracted from those of the model
     struct Multipliers {
         using Vec2 = Eigen::Vector2d;
 
-        Vec3 Psi = Vec3::Zero();
-        Vec2 N = Vec2::Zero(), G = Vec2::Zero();
-        Vec2 rolling = Vec2::Zero();     ///< or of implicit friction
-        double F_N = 0;                  ///< λ_Ψ · n_i [N]
-        Vec3 tangential = Vec3::Zero();  ///< λ_Ψ - F_N n_i, zero but for rounding
-        Vec3 friction = Vec3::Zero();    ///< of rolling or of implicit friction, on body i [N, global]
-        Vec2 resistance = Vec2::Zero();  ///< λ_R of implicit friction [N]
+        Vec3 Psi = Vec3::Zero();                  ///< λ_Ψ [N, global axes]
+        Vec2 N = Vec2::Zero(), G = Vec2::Zero();  ///< λ_N, λ_G [N]
+        /// λ of the two rows of ideal rolling or of implicit sliding friction, along T [N]
+        Vec2 rolling = Vec2::Zero();
+        double F_N = 0;                  ///< normal force λ_Ψ · n_i [N]
+        Vec3 tangential = Vec3::Zero();  ///< λ_Ψ - F_N n_i [N]; zero up to rounding
+        Vec3 friction = Vec3::Zero();    ///< friction force of these rows on body i [N, global axes]
+        Vec2 resistance = Vec2::Zero();  ///< λ_R, rolling resistance of implicit friction [N]
     };
-    Multipliers multipliers(const At& x, const Eigen::VectorXd& lambda) const;
+    Multipliers multipliers(const Arguments& x, const Eigen::VectorXd& lambda) const;
 
     const Shape shape_i, shape_j;
-    const double L;  ///< [m]
+    const double L;  ///< smaller size of the two surfaces [m]
     const Friction friction;
-    const ImplicitFriction law;  ///< where friction is implicit
+    const ImplicitFriction law;  ///< used if friction == Friction::implicit
     const NormalRows normal_rows;
     const Unilateral unilateral;
-    /// Whether a ContactForce stands by where there is no single contact point, or where the force of this contact is not
-    /// determined: to be set before the contact becomes part of a model.
+    /// Whether a ContactForce replaces this constraint when there is no unique contact point or the
+    /// multiplier is indeterminate. To be set before the contact is added to a model.
     bool fallback = false;
 
 private:
@@ -119,13 +140,14 @@ private:
 
     struct Side;
     using Mat32 = Eigen::Matrix<double, 3, 2>;
-    Mat32 tangents(const At& x) const;
-    /// T of the node, put into the plane across n
-    Mat32 tangents_across(const At& x, const Vec3& n) const;
-    enum Pair { slips = 0, rolls = 1 };
-    /// (K_i + K_j)⁻¹ in the tangent plane of global axes, 1/κ no longer than ten times L
-    Mat3 levers(const Mat3& K_sum, const Vec3& n) const;
-    void update_friction(const At& x, bool start, double* internal_state) const;
+    Mat32 tangents(const Arguments& x) const;
+    /// T' = (I - n nᵀ) T: the tangent basis of the node projected on the tangent plane of the normal n
+    Mat32 projected_tangents(const Arguments& x, const Vec3& n) const;
+    enum RowPair { sliding_pair = 0, rolling_pair = 1 };
+    /// (K_i + K_j)⁻¹ on the tangent plane, 3 × 3 in global axes [m]. Its eigenvalues, the lever arms 1/κ, are
+    /// limited to 10 L.
+    Mat3 lever_arms(const Mat3& K_sum, const Vec3& n) const;
+    void update_friction(const Arguments& x, bool start, double* internal_state) const;
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;

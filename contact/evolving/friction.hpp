@@ -1,33 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Friction from the motion of the contact point, where the contact point is an unknown.   Fang (2022), Sec. 5.5.2
+/// Tracked friction as a force on an evolving contact.   Source: Fang (2022), Sec. 5.5.2
 
 #pragma once
 
 #include "contact/evolving/contact.hpp"
 #include "contact/friction/tracked_force.hpp"
+#include "dae/model.hpp"
 
 namespace hilda::contact {
 
-/// The friction of Chapter 4 on a contact that evolves. The contact points ᾱ_i, ᾱ_j of two nodes are all it needs of its
-/// tracking: no touch is looked for, and their ways over the two bodies are those of Eq. 4.1. It acts on the material
-/// points at C, and there is nothing of it in the equations of ᾱ.
+/// A friction law of Chapter 4 that acts on an evolving contact as a force.
 ///
-/// Its normal force F_N is the multiplier of the constraint as it stood when the last step was accepted, kept in
-/// State::remembered so that the loads are a function of the state. Half-implicit schemes find λ_n in the step that
-/// leaves t_n, so that there it is F_N of t_{n-1}. It matters where friction is at its bound, to first order in h;
-/// friction that sticks does not see it. Where the body is so shaped that the friction μ F_N would change F_N by more
-/// than itself, the lag does not settle and F_N swings from step to step.
+/// The displacements of the contact point over the two bodies (Eq. 4.1) follow from ᾱ_i, ᾱ_j at two nodes. No
+/// contact detection is needed. The force acts on the material points at C; it does not appear in the
+/// equations of ᾱ.
 ///
-/// Where F_N is not positive there is no friction, nor where the contact is open, which forgets the histories. After an
-/// impact it begins with the second step, when F_N is known.
+/// The normal force F_N is the multiplier of the constraint at the last accepted step. It is saved among the
+/// internal state variables, so that the loads are a function of the state. Half-implicit schemes find λ_n in
+/// the step that leaves t_n; F_N is then that of t_{n-1}. The lag causes an error of first order in h if
+/// friction is at its bound, and none if it sticks. If a change of the friction force μ F_N changes F_N by
+/// more than itself (shape of the body), the lag is unstable and F_N oscillates from step to step.
 ///
-/// At a node the dashpots go by the mean speeds Δs/h of the step that led there, as in Chapter 4, and elsewhere by the
-/// velocities of x. The leapfrog schemes extrapolate their velocities to t_n, which makes 4 M - 4 h D - h² K of what
-/// stable_step() looks at: half the step where damping rules. The means lag by h/2, and keep the bound
-/// for all half-implicit schemes but rA-half-2, which like rA-rattle stands three fifths of it.
+/// The friction is zero if F_N ≤ 0 or if the contact is inactive; an inactive contact loses its histories.
+/// After an impact the friction acts from the second step on, when F_N is known.
+///
+/// At a node the dampers use the mean rates Δs/h of the last step, as in Chapter 4. Elsewhere they use the
+/// velocities of the state. The alternative, the velocities that leapfrog schemes extrapolate to t_n, was
+/// rejected: the matrix whose singularity defines stable_step() becomes 4 M - 4 h D - h² K, which halves the
+/// limit where damping dominates. With the mean rates, which lag by h/2, the limit holds for all
+/// half-implicit schemes except rA-half-2. rA-half-2 and rA-rattle are stable up to three fifths of it.
 class EvolvingFriction final : public TrackedForce {
 public:
-    /// For a contact of this model; it takes its name and its bodies. InvalidInput for one that rolls ideally.
+    /// Takes the name and the bodies of a contact of this model. Throws lie::InvalidInput if the contact
+    /// already has friction of its own (ideal rolling or implicit).
     EvolvingFriction(const dae::Model& model, const EvolvingContact& contact,
                      std::shared_ptr<const FrictionModel> friction);
 
@@ -35,32 +40,35 @@ public:
     void update_internal_state(lie::State& x) const override;
     bool internal_state_uses_multipliers() const override { return true; }
 
-    /// Of the springs across the normal, along which the constraint holds
+    /// Stability limit of the step [s] (see FrictionPair::stable_step) for the tangential springs; the
+    /// constraint eliminates the normal direction. Infinite while the fallback replaces the contact.
     double stable_step(const lie::State& x) const override;
 
-    double normal_force(const lie::State& x) const;  ///< that friction goes by [N]
-    bool works(const lie::State& x) const override { return !dae::Model::inactive(contact, x); }
-    const dae::Constraint* held_by() const override { return &contact; }
+    double normal_force(const lie::State& x) const;  ///< the F_N that the friction uses [N]; 0 if inactive
+    bool is_active(const lie::State& x) const override;
+    const dae::Constraint* normal_constraint() const override { return &contact; }
 
     const EvolvingContact& contact;
 
 private:
-    const FrictionPair& pair() const override { return rubbing; }
+    const FrictionPair& pair() const override { return friction_pair; }
     ContactState evaluate(const lie::State& x, const ContactHistory& history) const override;
-    bool presses() const override { return false; }
-    bool close(const lie::State& x) const override { return works(x); }
-    Rates speeds(const Instant& now, const lie::State& x) const override;
+    bool applies_normal_force() const override { return false; }
+    bool is_near_contact(const lie::State& x) const override { return is_active(x); }
+    Rates damper_rates(const Instant& now, const lie::State& x) const override;
     ContactPoint contact_point(const lie::State& x) const;
 
-    /// What it remembers besides the track and the histories: vectors by their components in (u, w)
-    struct Step {
-        double N = 0, psi = 0;  ///< F_N; speeds of the last step, of a start those of the start
+    /// Internal state in addition to that of TrackedForce. Tangent vectors are stored by their components in
+    /// (u, w).
+    struct StepData {
+        double N = 0, psi = 0;  ///< F_N [N]; mean spin rate of the last step [rad/s]
+        /// Mean rates of the last step [m/s]; at a start those of the initial velocities
         Vec2 s = Vec2::Zero(), p_i = Vec2::Zero(), p_j = Vec2::Zero();
     };
-    Step last_step(const lie::State& x) const;
-    void keep_step(const Step& last, lie::State& x) const;
+    StepData last_step(const lie::State& x) const;
+    void save_step(const StepData& last, lie::State& x) const;
 
-    const FrictionPair rubbing;
+    const FrictionPair friction_pair;
 };
 
 }  // namespace hilda::contact

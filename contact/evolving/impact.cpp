@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of UnilateralStep that is an impact.
+// Impacts of UnilateralStep: compression, restitution, closing.
 #include "contact/evolving/unilateral.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
 
 #include <algorithm>
@@ -9,57 +10,60 @@ namespace hilda::contact {
 
 using lie::State;
 
-/// The velocities of x jump where contact c meets, h being the length of a whole step.
-void UnilateralStep::collide(State& x, TrackedContact& c, double h)
+/// Impact of contact c in x: computes the velocity jump and decides between rebound and closing. h: the whole
+/// step.
+void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
 {
-    const Unilateral& how = c.contact->unilateral;
+    const Unilateral& unilateral = c.contact->unilateral;
     const double approach = std::max(0., -separation_speed(c, x));
-    if (++c.closings == most_meetings) c.held = true;
+    if (++c.impacts == max_impacts) c.stays_active = true;
     dae::Model::set_mode(*c.contact, x, dae::Constraint::active);
-    if (!determined(c, x)) {
-        hand_over(c, x, approach);
+    if (!force_is_determined(c, x)) {
+        switch_to_fallback(c, x, approach);
         restart(x);
         return;
     }
     dae::project_positions(model, K, x);
-    before = x;
-    const size_t told = happened.size();
-    jump(x, nullptr, 0);  // compression
+    before_impact = x;
+    const size_t events_before = event_log.size();
+    solve_velocity_jump(x, nullptr, 0);  // compression: all active constraints hold
     const double compression = force(c, x, x.lambda);
     dae::solve_accelerations(model, K, x);
     const double F_N = force(c, x, x.lambda);
 
-    // Free of c, the gap would have the acceleration -F_N/m with m = compression/approach.
-    double& rebounded = x.internal_state[c.contact->first_internal_state + EvolvingContact::rebounded];
-    const double rebound = c.held || x.t - rebounded < h ? 0 : how.restitution * approach;
-    const bool flies = rebound > 0 && 2 * rebound * compression > h * approach * F_N;
-    if (flies) {
-        if (how.impact == Unilateral::Impact::newton) {
-            x = before;
-            happened.resize(told);
-            jump(x, &c, rebound);
+    // Without c the gap would have the acceleration -F_N/m with the effective mass m = compression/approach.
+    // The contact separates if the time of flight 2 m rebound/F_N is longer than a step.
+    double& last_rebound = x.internal_state[c.contact->first_internal_state + EvolvingContact::last_rebound];
+    const double rebound = c.stays_active || x.t - last_rebound < h ? 0 : unilateral.restitution * approach;
+    const bool separates = rebound > 0 && 2 * rebound * compression > h * approach * F_N;
+    if (separates) {
+        if (unilateral.impact == Unilateral::Impact::newton) {
+            x = before_impact;
+            event_log.resize(events_before);
+            solve_velocity_jump(x, &c, rebound);
         }
         dae::Model::set_mode(*c.contact, x, dae::Constraint::inactive);
-        if (how.impact == Unilateral::Impact::poisson) {
-            before = x;
-            push(c, how.restitution * compression, before);
-            jump(x, nullptr, 0);
+        if (unilateral.impact == Unilateral::Impact::poisson) {
+            before_impact = x;
+            add_impulse(c, unilateral.restitution * compression, before_impact);
+            solve_velocity_jump(x, nullptr, 0);
         }
     }
-    happened.insert(happened.begin() + static_cast<std::ptrdiff_t>(told),
-                    {.type = flies ? ContactEvent::Type::impact : ContactEvent::Type::closing,
-                     .t = x.t,
-                     .contact = c.number,
-                     .speed = approach});
-    c.last = c.before = {};
-    if (flies) rebounded = x.t;
+    event_log.insert(event_log.begin() + static_cast<std::ptrdiff_t>(events_before),
+                     {.type = separates ? ContactEvent::Type::impact : ContactEvent::Type::closing,
+                      .t = x.t,
+                      .contact = c.number,
+                      .speed = approach});
+    c.last_node = c.previous_node = {};
+    if (separates) last_rebound = x.t;
     restart(x);
 }
 
-/// Whether the force of c is determined together with those of all that is closed
-bool UnilateralStep::determined(const TrackedContact& c, State& x)
+/// Whether the multiplier of c is determined together with those of all active constraints: the scaled K of x
+/// is regular. Throws lie::NumericalFailure "contact_rank" if it is not and c has no fallback.
+bool UnilateralStep::force_is_determined(const TrackedContact& c, State& x)
 {
-    constexpr double singular = 1e-11;  // reciprocal condition of the scaled K
+    constexpr double singular = 1e-11;  // reciprocal condition number of the scaled K
     double condition = 0;
     try {
         K.assemble(x);
@@ -70,15 +74,15 @@ bool UnilateralStep::determined(const TrackedContact& c, State& x)
     if (!c.contact->has_fallback())
         throw lie::NumericalFailure("contact_rank",
                                     "contact '" + c.contact->name +
-                                        "' presses where other constraints hold already, so that its "
-                                        "force is not determined");
+                                        "': its normal force is not determined, because the other active "
+                                        "constraints prevent the approach already; specify a fallback");
     return false;
 }
 
-/// An impulse along the normal, which the next jump takes with it
-void UnilateralStep::push(const TrackedContact& c, double impulse, const State& x)
+/// Adds a normal impulse of contact c [N s] to `momentum`, which the next velocity jump applies.
+void UnilateralStep::add_impulse(const TrackedContact& c, double impulse, const State& x)
 {
-    const dae::Constraint::At at = model.at(*c.contact, x);
+    const dae::Constraint::Arguments at = model.arguments(*c.contact, x);
     const ContactPoint contact_point = c.contact->contact_point(at);
     const auto add = [&](int body, const lie::Motion& motion, const Vec3& C, double sign) {
         if (body == dae::ground) return;
@@ -90,11 +94,14 @@ void UnilateralStep::push(const TrackedContact& c, double impulse, const State& 
     add(c.contact->j, at.bj, contact_point.C_j, -1);
 }
 
-/// The velocities of x jump so that all closed contacts and other constraints hold them, but for the one that rebounds,
-/// which separates at this speed. Contacts that would have to pull are opened. x.lambda are the impulses.
-void UnilateralStep::jump(State& x, const TrackedContact* rebounding, double speed)
+/// Velocity jump K (v⁺, P) = (M v⁻ + impulse, ν): all active contacts and the other constraints hold after
+/// it; the contact `rebounding` separates with this speed [m/s]. Contacts with a negative normal impulse
+/// become inactive, the most negative first, and the jump is computed again. The impulses P [N s] are left in
+/// x.lambda. Regularised rows are empty in K here, so implicit friction has no impulse; the rows of ideal
+/// rolling have one.
+void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebounding, double speed)
 {
-    for (TrackedContact* pulling = nullptr;; pulling = nullptr) {
+    for (TrackedContact* tensile = nullptr;; tensile = nullptr) {
         K.assemble(x);
         v.setZero();
         for (int b = 0; b < model.bodies(); ++b)
@@ -104,21 +111,21 @@ void UnilateralStep::jump(State& x, const TrackedContact* rebounding, double spe
         model.nu(x, K.constraint_part(v));
         if (rebounding != nullptr)
             K.constraint_part(v).segment<3>(rebounding->contact->first_row) +=
-                speed * rebounding->contact->contact_point(model.at(*rebounding->contact, x)).n;
+                speed * rebounding->contact->contact_point(model.arguments(*rebounding->contact, x)).n;
         K.solve_refined(v);
         x.lambda = K.constraint_part(v);
         double largest = 0, least = 0;
         for (TrackedContact& c : contact) {
-            if (!closed(c, x)) continue;
+            if (!is_active(c, x)) continue;
             const double P = force(c, x, x.lambda);
             largest = std::max(largest, std::abs(P));
-            if (&c != rebounding && c.contact->unilateral.enabled && !c.held && P < least)
-                least = P, pulling = &c;
+            if (&c != rebounding && c.contact->unilateral.enabled && !c.stays_active && P < least)
+                least = P, tensile = &c;
         }
-        if (pulling == nullptr || least > -rounding * largest) break;
-        dae::Model::set_mode(*pulling->contact, x, dae::Constraint::inactive);
-        happened.push_back(
-            {.type = ContactEvent::Type::lift_off, .t = x.t, .contact = pulling->number, .speed = 0});
+        if (tensile == nullptr || least > -rounding * largest) break;
+        dae::Model::set_mode(*tensile->contact, x, dae::Constraint::inactive);
+        event_log.push_back(
+            {.type = ContactEvent::Type::lift_off, .t = x.t, .contact = tensile->number, .speed = 0});
     }
     for (int b = 0; b < model.bodies(); ++b) {
         x.body[b].rdot = v.segment<3>(6 * b);

@@ -9,8 +9,8 @@ namespace hilda::contact {
 
 void ImplicitFriction::validate() const
 {
-    const auto check = [](const char* what, double value, bool fine) {
-        if (!fine || !std::isfinite(value)) lie::reject("contact::ImplicitFriction", what, value);
+    const auto check = [](const char* what, double value, bool valid) {
+        if (!valid || !std::isfinite(value)) lie::reject("contact::ImplicitFriction", what, value);
     };
     check("mu_k must not be negative", mu_k, mu_k >= 0);
     check("mu_s must not be below mu_k", mu_s, mu_s >= mu_k);

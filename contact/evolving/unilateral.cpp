@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evolving/unilateral.hpp"
 
+#include "dae/model.hpp"
 #include "dae/start.hpp"
 #include "lie/check.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 
 #include <algorithm>
 
@@ -12,10 +15,10 @@ namespace {
 
 using lie::State;
 
-constexpr double touching = 1e-13;  // a gap, over the size of the contact, that is none
-constexpr int most_searches = 80;   // steps of regula falsi
-constexpr int most_events = 50;     // for each contact in one step
-constexpr double rest = 1e-9;       // of a step, that is not worth a step
+constexpr double gap_tolerance = 1e-13;  // gap counted as zero, relative to L
+constexpr int max_gap_iterations = 80;   // of regula falsi
+constexpr int max_events = 50;           // per contact in one step
+constexpr double min_remainder = 1e-9;   // remaining time that is skipped, relative to h
 
 }  // namespace
 
@@ -24,179 +27,187 @@ UnilateralStep::UnilateralStep(const dae::Model& model, const lie::Scheme& schem
     : model(model), scheme(scheme.make(model, settings)), K(model, lie::Metric::mass, settings.linear_solver),
       momentum(Eigen::VectorXd::Zero(6 * model.bodies())), v(K.size())
 {
-    for (size_t n = 0; n < model.evolving().size(); ++n) {
-        const auto* c = dynamic_cast<const EvolvingContact*>(model.evolving()[n].get());
+    for (size_t n = 0; n < model.general_constraints().size(); ++n) {
+        const auto* c = dynamic_cast<const EvolvingContact*>(model.general_constraints()[n].get());
         if (c != nullptr && c->may_be_inactive()) contact.push_back({c, static_cast<int>(n)});
     }
 }
 
-void UnilateralStep::TrackedContact::note(double t, double F_N)
+void UnilateralStep::TrackedContact::record(double t, double F_N)
 {
-    if (t == last.t) return;
-    before = last;
-    last = {t, F_N};
+    if (t == last_node.t) return;
+    previous_node = last_node;
+    last_node = {t, F_N};
 }
 
-/// When F_N was zero on its way to this value at t
-double UnilateralStep::TrackedContact::lift_off(double t, double F_N) const
+/// Zero of the parabola through the F_N of the last two nodes and this one, F_N < 0 at t. Newton's method
+/// starts at the zero of the secant through the last node and this one.
+double UnilateralStep::TrackedContact::lift_off_time(double t, double F_N) const
 {
-    if (!(last.t < t) || !(last.F_N > 0)) return t;
-    const double slope = (F_N - last.F_N) / (t - last.t);
-    double s = -last.F_N / slope;  // after last.t, on the straight line
-    if (before.t < last.t) {
-        const double bend = (slope - (last.F_N - before.F_N) / (last.t - before.t)) / (t - before.t);
+    if (!(last_node.t < t) || !(last_node.F_N > 0)) return t;
+    const double slope = (F_N - last_node.F_N) / (t - last_node.t);
+    double s = -last_node.F_N / slope;  // zero of the secant, relative to last_node.t
+    if (previous_node.t < last_node.t) {
+        const double curvature =
+            (slope - (last_node.F_N - previous_node.F_N) / (last_node.t - previous_node.t)) /
+            (t - previous_node.t);
         for (int k = 0; k < 5; ++k)
-            s -= (last.F_N + slope * s + bend * s * (s + last.t - t)) / (slope + bend * (2 * s + last.t - t));
+            s -= (last_node.F_N + slope * s + curvature * s * (s + last_node.t - t)) /
+                 (slope + curvature * (2 * s + last_node.t - t));
     }
-    return std::clamp(last.t + s, last.t, t);
+    return std::clamp(last_node.t + s, last_node.t, t);
 }
 
-/// F_N in the pose of x by these multipliers
+/// F_N of these multipliers in the pose of x
 double UnilateralStep::force(const TrackedContact& c, const State& x, const Eigen::VectorXd& lambda) const
 {
-    return c.contact->multipliers(model.at(*c.contact, x), lambda).F_N;
+    return c.contact->multipliers(model.arguments(*c.contact, x), lambda).F_N;
 }
 
 double UnilateralStep::gap(const TrackedContact& c, const State& x) const
 {
-    return c.contact->gap(model.at(*c.contact, x));
+    return c.contact->gap(model.arguments(*c.contact, x));
 }
 
 double UnilateralStep::separation_speed(const TrackedContact& c, const State& x) const
 {
-    return c.contact->separation_speed(model.at(*c.contact, x));
+    return c.contact->separation_speed(model.arguments(*c.contact, x));
 }
 
 bool UnilateralStep::overlaps(const TrackedContact& c, const State& x) const
 {
-    return open(c, x) && gap(c, x) < -touching * c.contact->L;
+    return is_inactive(c, x) && gap(c, x) < -gap_tolerance * c.contact->L;
 }
 
-/// The nearest points of the open contacts
+/// Updates the nearest points of the inactive contacts.
 void UnilateralStep::update_alpha(State& x) const
 {
     for (const TrackedContact& c : contact)
-        if (open(c, x))
-            c.contact->update_alpha(model.at(*c.contact, x), false, x.alpha.data() + c.contact->first_alpha);
+        if (is_inactive(c, x))
+            c.contact->update_alpha(model.arguments(*c.contact, x), false,
+                                    x.alpha.data() + c.contact->first_alpha);
 }
 
 int UnilateralStep::step(State& x, double h)
 {
-    tell_of_handed_over(x);
-    struct Restore {
+    report_fallbacks(x);
+    struct Rollback {
         State &x, &from;
-        std::vector<ContactEvent>& happened;
+        std::vector<ContactEvent>& event_log;
         const size_t events;
         bool done = false;
-        ~Restore()
+        ~Rollback()
         {
             if (done) return;
             x = from;
-            happened.resize(events);
+            event_log.resize(events);
         }
-    } restore{x, first = x, happened, happened.size()};
-    begin = x;
-    size_t kept = happened.size();
+    } rollback{x, at_entry = x, event_log, event_log.size()};
+    step_start = x;
+    size_t kept_events = event_log.size();
     for (;;) try {
             const int iterations = advance(x, h);
-            restore.done = true;
+            rollback.done = true;
             return iterations;
         } catch (const lie::NumericalFailure&) {
-            x = begin;
-            happened.resize(kept);
-            if (!hand_over_flattest(x)) throw;
-            kept = happened.size();
+            x = step_start;
+            event_log.resize(kept_events);
+            if (!switch_least_curved_to_fallback(x)) throw;
+            kept_events = event_log.size();
             restart(x);
-            begin = x;
+            step_start = x;
         }
 }
 
 void UnilateralStep::fill_node(State& node, const State&) const
 {
     for (size_t b = 0; b < node.body.size(); ++b) {
-        const lie::Motion& from = known.body[b];
+        const lie::Motion& from = full_node.body[b];
         lie::Motion& to = node.body[b];
         to.rdot = from.rdot, to.omega_bar = from.omega_bar;
         to.rddot = from.rddot, to.omegadot_bar = from.omegadot_bar;
     }
-    node.lambda = known.lambda;
+    node.lambda = full_node.lambda;
 }
 
-UnilateralStep::Past UnilateralStep::past() const
+UnilateralStep::History UnilateralStep::history() const
 {
-    Past all{.events = happened, .closed = {}};
+    History all{.events = event_log, .node_forces = {}};
     for (const TrackedContact& c : contact) {
-        all.closed.push_back(c.before);
-        all.closed.push_back(c.last);
+        all.node_forces.push_back(c.previous_node);
+        all.node_forces.push_back(c.last_node);
     }
     return all;
 }
 
-void UnilateralStep::go_on_from(const Past& past)
+void UnilateralStep::restore(const History& saved)
 {
-    if (past.closed.size() != 2 * contact.size())
+    if (saved.node_forces.size() != 2 * contact.size())
         lie::reject("contact::UnilateralStep",
-                    "a past must be that of a model with as many contacts that open", past.closed.size() / 2);
-    happened = past.events;
+                    "the history must be of a model with as many unilateral contacts",
+                    saved.node_forces.size() / 2);
+    event_log = saved.events;
     for (size_t k = 0; k < contact.size(); ++k) {
-        contact[k].before = past.closed[2 * k];
-        contact[k].last = past.closed[2 * k + 1];
+        contact[k].previous_node = saved.node_forces[2 * k];
+        contact[k].last_node = saved.node_forces[2 * k + 1];
     }
 }
 
-/// From t_n to t_n + h, with all that happens on the way
+/// Advances x from t_n to t_n + h through all events.
 int UnilateralStep::advance(State& x, double h)
 {
     int iterations = 0;
-    const int most = most_events * static_cast<int>(contact.size() + 1);
-    for (TrackedContact& c : contact) c.held = false, c.closings = 0;
-    double left = h;
-    for (int part = 0; part < most; ++part) {
+    const int max_parts = max_events * static_cast<int>(contact.size() + 1);
+    for (TrackedContact& c : contact) c.stays_active = false, c.impacts = 0;
+    double remaining = h;
+    for (int part = 0; part < max_parts; ++part) {
         node = x;
-        // a scheme that lags and has a history finds the forces of this node with the step
-        const bool anew_here = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
-        const bool forces_known = !scheme->is_staggered() || anew_here;
-        if (forces_known && release_pulling(node)) restart(node);
-        int k = try_step(node, trial, left);
+        // A staggered scheme with a history finds the multipliers of this node only in the step that leaves
+        // it.
+        const bool restarts = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
+        const bool forces_known = !scheme->is_staggered() || restarts;
+        if (forces_known && deactivate_tensile(node)) restart(node);
+        int k = try_step(node, trial, remaining);
         while (!forces_known) {
             node.lambda = trial.lambda;
-            if (!release_pulling(node)) break;
-            k += try_step(node, trial, left);
+            if (!deactivate_tensile(node)) break;
+            k += try_step(node, trial, remaining);
         }
         iterations = std::max(iterations, k);
 
-        anew = node;
-        if (!forces_known) scheme->fill_node(anew, trial);
-        anew.history.resize(0);
-        if (part == 0) known = anew;
+        restart_node = node;
+        if (!forces_known) scheme->fill_node(restart_node, trial);
+        restart_node.history.resize(0);
+        if (part == 0) full_node = restart_node;
         for (TrackedContact& c : contact)
-            if (closed(c, node)) c.note(node.t, force(c, node, anew.lambda));
+            if (is_active(c, node)) c.record(node.t, force(c, node, restart_node.lambda));
 
         TrackedContact* closing = nullptr;
-        const double taken = find_closing(trial, left, closing);
+        const double elapsed = find_closing(trial, remaining, closing);
         if (closing == nullptr) {
             x = trial;
-            if (part > 0) restart(x);  // its history is of another step
+            if (part > 0) restart(x);  // its history belongs to another step size
             return iterations;
         }
-        if (taken > 0) model.accepted(node, trial);
-        collide(trial, *closing, h);
+        if (elapsed > 0) model.accepted(node, trial);
+        resolve_impact(trial, *closing, h);
         x = trial;
-        left -= taken;
-        if (left <= rest * h) {
-            x.t = begin.t + h;
+        remaining -= elapsed;
+        if (remaining <= min_remainder * h) {
+            x.t = step_start.t + h;
             return iterations;
         }
     }
     std::string last;
     for (const TrackedContact& c : contact)
-        if (c.closings >= most_meetings) last += (last.empty() ? "'" : ", '") + c.contact->name + "'";
+        if (c.impacts >= max_impacts) last += (last.empty() ? "'" : ", '") + c.contact->name + "'";
     throw lie::NumericalFailure("too_many_impacts",
-                                "contacts open and close without end within one step, more than " +
-                                    std::to_string(most) + " times: " + last);
+                                "more than " + std::to_string(max_parts) +
+                                    " contact events in one step; contacts that close repeatedly: " + last +
+                                    "; use a smaller step, restitution 0, or compliant contacts");
 }
 
-/// One step of the scheme, and the points of what is open after it
+/// One step of the scheme, then the nearest points of the inactive contacts
 int UnilateralStep::try_step(const State& from, State& to, double h)
 {
     to = from;
@@ -206,72 +217,76 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
     return k;
 }
 
-/// Hands over the closed contact whose surfaces fit each other best, if there is one that may be. Where a step fails,
-/// that is the one to blame.
-bool UnilateralStep::hand_over_flattest(State& x)
+/// Switches the active contact with the smallest relative curvature (eigenvalue of K_i + K_j times L) to its
+/// fallback. Such a contact is the likeliest reason why a step fails. Returns false if no active contact has
+/// a fallback.
+bool UnilateralStep::switch_least_curved_to_fallback(State& x)
 {
-    TrackedContact* flattest = nullptr;
+    TrackedContact* least_curved = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (TrackedContact& c : contact)
-        if (closed(c, x) && c.contact->has_fallback())
+        if (is_active(c, x) && c.contact->has_fallback())
             if (const double k =
-                    least_curvature(c.contact->contact_point(model.at(*c.contact, x))) * c.contact->L;
+                    least_curvature(c.contact->contact_point(model.arguments(*c.contact, x))) * c.contact->L;
                 k < least)
-                flattest = &c, least = k;
-    if (flattest == nullptr) return false;
-    hand_over(*flattest, x, 0);
+                least_curved = &c, least = k;
+    if (least_curved == nullptr) return false;
+    switch_to_fallback(*least_curved, x, 0);
     return true;
 }
 
-/// A contact may have handed over in the start, or when the step to x was accepted.
-void UnilateralStep::tell_of_handed_over(const State& x)
+/// Logs the switches to a fallback that happened at the start or when the step to x was accepted.
+void UnilateralStep::report_fallbacks(const State& x)
 {
     for (TrackedContact& c : contact) {
-        if (c.gone || mode(c, x) != dae::Constraint::fallback_active) continue;
-        c.gone = true;
-        const auto told = [&](const ContactEvent& e) {
+        if (c.fallback_reported || mode(c, x) != dae::Constraint::fallback_active) continue;
+        c.fallback_reported = true;
+        const auto logged = [&](const ContactEvent& e) {
             return e.contact == c.number && e.type == ContactEvent::Type::fallback_active;
         };
-        if (std::none_of(happened.begin(), happened.end(), told))
-            happened.push_back(
+        if (std::none_of(event_log.begin(), event_log.end(), logged))
+            event_log.push_back(
                 {.type = ContactEvent::Type::fallback_active, .t = x.t, .contact = c.number, .speed = 0});
     }
 }
 
-void UnilateralStep::hand_over(const TrackedContact& c, State& x, double speed)
+void UnilateralStep::switch_to_fallback(const TrackedContact& c, State& x, double speed)
 {
     dae::Model::set_mode(*c.contact, x, dae::Constraint::fallback_active);
-    happened.push_back(
+    event_log.push_back(
         {.type = ContactEvent::Type::fallback_active, .t = x.t, .contact = c.number, .speed = speed});
 }
 
-/// Accelerations and multipliers of a node, from which a scheme is to start anew
+/// Computes accelerations and multipliers of a node from which the scheme restarts; deactivates tensile
+/// contacts.
 void UnilateralStep::restart(State& x)
 {
     x.history.resize(0);
     do dae::solve_accelerations(model, K, x);
-    while (release_pulling(x));
+    while (deactivate_tensile(x));
 }
 
-/// Opens the closed contact that pulls most, by the multipliers in x, if there is one.
-bool UnilateralStep::release_pulling(State& x)
+/// Deactivates the active unilateral contact with the most negative F_N, by the multipliers in x. Returns
+/// false if there is none.
+bool UnilateralStep::deactivate_tensile(State& x)
 {
     TrackedContact* worst = nullptr;
     double least = 0, largest = 0;
     for (TrackedContact& c : contact) {
-        if (!closed(c, x)) continue;
+        if (!is_active(c, x)) continue;
         const double F_N = force(c, x, x.lambda);
         largest = std::max(largest, std::abs(F_N));
-        if (c.contact->unilateral.enabled && !c.held && F_N < least) worst = &c, least = F_N;
+        if (c.contact->unilateral.enabled && !c.stays_active && F_N < least) worst = &c, least = F_N;
     }
     if (worst == nullptr || !(least < -rounding * largest)) return false;
-    happened.push_back(
-        {.type = ContactEvent::Type::lift_off, .t = worst->lift_off(x.t, least), .contact = worst->number});
+    event_log.push_back({.type = ContactEvent::Type::lift_off,
+                         .t = worst->lift_off_time(x.t, least),
+                         .contact = worst->number});
     dae::Model::set_mode(*worst->contact, x, dae::Constraint::inactive);
     return true;
 }
 
-/// Of the contacts that overlap in `to` and did not in `from`, the one whose gap a straight line has zero first
+/// Of the contacts that overlap in `to`, the one whose gap, interpolated linearly from `from`, is zero first
 UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from, const State& to)
 {
     TrackedContact* next = nullptr;
@@ -284,46 +299,49 @@ UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from
     return next;
 }
 
-/// How long a step from `anew` takes to where the first gap is zero; `to` is then there. h, and no contact, where none
-/// overlaps in `to`.
+/// Length of the step from restart_node at which the first gap is zero; `to` is then the state there. Returns
+/// h and first = nullptr if no inactive contact overlaps in `to`.
 double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
 {
     first = nullptr;
     const double whole = h;
-    while (TrackedContact* next = first_to_close(anew, to)) {
+    while (TrackedContact* next = first_to_close(restart_node, to)) {
         first = next;
-        h = zero_of_gap(*next, to, h);
+        h = find_zero_gap(*next, to, h);
         if (!(h > 0)) {
-            // it opened here and does not leave, or there is no impact to speak of
-            if (!(whole * separation_speed(*next, anew) < -rounding * next->contact->L)) next->held = true;
-            to = anew;
+            // The gap is zero already at the node. Without a noticeable approach speed this is no impact, for
+            // example because the contact became inactive here and does not separate: it stays active for
+            // this step.
+            if (!(whole * separation_speed(*next, restart_node) < -rounding * next->contact->L))
+                next->stays_active = true;
+            to = restart_node;
             return 0;
         }
     }
     return h;
 }
 
-/// The length of step, up to h, after which the gap of c is zero, where it is negative after h; 0 where it is none to
-/// begin with and does not open.
-double UnilateralStep::zero_of_gap(const TrackedContact& c, State& to, double h)
+/// Step length in (0, h] at which the gap of c is zero, given a negative gap after h. Returns 0 if the gap is
+/// zero at the beginning and does not open.
+double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double h)
 {
-    const double none = touching * c.contact->L;
-    double a = 0, g_a = gap(c, anew), b = h, g_b = gap(c, to);
-    for (int halving = 0; g_a <= none; ++halving) {  // it leaves and comes back
-        if (halving == 6 || !(separation_speed(c, anew) > 0)) return 0;
+    const double tolerance = gap_tolerance * c.contact->L;
+    double a = 0, g_a = gap(c, restart_node), b = h, g_b = gap(c, to);
+    for (int halving = 0; g_a <= tolerance; ++halving) {  // it opens first and closes again
+        if (halving == 6 || !(separation_speed(c, restart_node) > 0)) return 0;
         a = halving == 0 ? 0.5 * h : 0.5 * a;
-        try_step(anew, to, a);
+        try_step(restart_node, to, a);
         g_a = gap(c, to);
-        if (g_a < -none) b = a, g_b = g_a;
+        if (g_a < -tolerance) b = a, g_b = g_a;
     }
     double s = b;
-    for (int k = 0, last = 0; k < most_searches; ++k) {
+    for (int k = 0, last = 0; k < max_gap_iterations; ++k) {
         s = (a * g_b - b * g_a) / (g_b - g_a);
         if (!(s > a && s < b)) s = 0.5 * (a + b);
-        try_step(anew, to, s);
+        try_step(restart_node, to, s);
         const double g = gap(c, to);
-        if (std::abs(g) <= none) return s;
-        // regula falsi; the end that stays twice counts half ("Illinois")
+        if (std::abs(g) <= tolerance) return s;
+        // regula falsi, Illinois variant: if the same end point remains twice, its value is halved
         if (g < 0) {
             b = s, g_b = g;
             if (last < 0) g_a /= 2;
@@ -335,15 +353,15 @@ double UnilateralStep::zero_of_gap(const TrackedContact& c, State& to, double h)
         }
         if (!(b - a > 1e-15 * h)) break;
     }
-    // rounding is coarser than that: the last that does not overlap
-    try_step(anew, to, a);
+    // rounding prevents a gap within the tolerance: take the last step without overlap
+    try_step(restart_node, to, a);
     return a;
 }
 
 std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const lie::Scheme& scheme,
                                                  const lie::Settings& settings)
 {
-    for (const auto& c : model.evolving())
+    for (const auto& c : model.general_constraints())
         if (c->may_be_inactive()) return std::make_unique<UnilateralStep>(model, scheme, settings);
     return scheme.make(model, settings);
 }

@@ -1,49 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Contacts that come and go while a scheme steps: lift-off, flight, impact.
+/// Event-driven time stepping with unilateral contacts: lift-off, flight, impact, fallback.
 
 #pragma once
 
 #include "contact/evolving/contact.hpp"
+#include "dae/model.hpp"
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/saddle.hpp"
 
 namespace hilda::contact {
 
-/// What happened to a contact, and when
+/// Event of a contact: its type, time, and approach speed.
 struct ContactEvent {
-    enum class Type { lift_off, impact, closing, fallback_active } type = Type::lift_off;
+    enum class Type {
+        lift_off,        ///< active to inactive, the normal force became negative
+        impact,          ///< an impact with a rebound; the contact stays inactive
+        closing,         ///< inactive to active
+        fallback_active  ///< a compliant contact force replaces the constraint
+    } type = Type::lift_off;
     double t = 0;      ///< [s]
-    int contact = 0;   ///< its number in Model::evolving()
-    double speed = 0;  ///< of approach at an impact and a closing [m/s]
+    int contact = 0;   ///< index in Model::evolving()
+    double speed = 0;  ///< approach speed of an impact or a closing [m/s], else 0
 
     bool operator==(const ContactEvent&) const = default;
 };
 
-/// Steps a model whose contacts may open, with any scheme that takes contacts that evolve.
+/// Integrator for models with contacts that can become inactive. It wraps any scheme that accepts evolving
+/// contacts.
 ///
-/// A contact is closed, and its rows hold, or open, and its contact points are the nearest points of the two surfaces.
-/// Which of them are open stands in State::memory.
+/// An active contact has its constraint rows in force. For an inactive contact the nearest points of the two
+/// surfaces are tracked. A contact whose fallback is active stays so until the end of the run. The mode of
+/// each contact is stored in State::discrete_state.
 ///
-/// - Lift-off: where F_N < 0 at t_n, the step from t_n is made again without that contact. It holds until then with
-///   F_N of O(h), so that what follows is of second order; with rolling of first, for its friction is finite until then.
-///   The time reported is where the parabola of F_N over the last nodes is 0.
-/// - Flight: the nearest points are followed from node to node.
-/// - Impact: where a gap would be negative at t_{n+1}, the instant at which it is zero is found (regula falsi on the
-///   length of the step, started anew from t_n), the velocities jump there, and the rest of the step follows.
-///   Normal impulses, without friction: Newton, v⁺ = -e v⁻ along the normal; Poisson, the impulse of compression, with
-///   v = 0 after it, and e times it after that. Other closed contacts hold in an impact if they press, else they open.
-/// - Handing over, where that is allowed: of a contact whose force would not be determined with those that are closed,
-///   when it meets (else lie::NumericalFailure "contact_rank"); of the flattest contact, where a step fails.
-/// - Closing: where e is 0, or where the rebound would be or was shorter than a step, the contact closes.
+/// - Lift-off: if F_N < 0 at t_n, the step from t_n is repeated without the contact, the most negative one
+///   first. Up to then the contact was active with F_N = O(h), so the motion after lift-off is of second
+///   order. With rolling it is of first order, because the friction is finite at lift-off. The time reported
+///   is the zero of the parabola through F_N at the last nodes.
+/// - Impact: if a gap is negative at t_{n+1}, the step length at which it is zero is found by regula falsi
+///   (Illinois variant); every trial starts from t_n. The velocities jump there and the rest of the step
+///   follows.
+/// - Impulses: the compression makes all active contacts and the other constraints hold after the impact.
+///   Newton's law then prescribes the normal velocity v⁺ = -e v⁻; Poisson's law adds e times the normal
+///   impulse of compression. Other active contacts remain active if their normal impulse is not negative;
+///   else they become inactive.
+/// - Friction in impacts: the rows of ideal rolling take part, so a contact with ideal rolling has a
+///   tangential impulse that removes the slip (a sphere that lands without spin keeps 5/7 of its tangential
+///   velocity). Regularised rows of implicit friction and tracked friction forces have no impulse.
+/// - Closing: the contact becomes active if e = 0, if the time of flight after the rebound would be shorter
+///   than a step, or if its last rebound was less than a step ago.
+/// - Fallback, if the contact has one: a contact whose multiplier is not determined together with those of
+///   the active constraints at its impact switches to it; without a fallback this is lie::NumericalFailure
+///   "contact_rank". If a step fails, the active contact with the smallest K_i + K_j that has a fallback
+///   switches to it, and the step is repeated.
 ///
-/// At each of them the scheme starts anew from the node: rA-half-1, which takes v_0 as v_{-½}, loses about h times the
-/// acceleration of free flight with every impact. Impulses are without friction, also of contacts that roll; of contacts
-/// that meet at once, one after the other.
+/// The scheme restarts from the node of each event; its multi-step history is discarded. rA-half-1, which
+/// takes v_0 as v_{-½}, has at each restart an error of the velocity of about h times the acceleration.
 ///
-/// A gap that closes and opens again within one step is not seen. A contact that meets for the third time in one step,
-/// as in a groove whose walls it strikes in turns, ever more often, is held closed until the next.
+/// Limitations: contacts that close at the same time are treated one after the other. A gap that closes and
+/// opens again within one step is not detected. A contact with its third impact in one step (for example
+/// alternating impacts on the two walls of a groove) stays active until the end of the step.
 class UnilateralStep final : public lie::Integrator {
 public:
-    /// The model and the scheme must outlive it.
+    /// The model must outlive the integrator.
     UnilateralStep(const dae::Model& model, const lie::Scheme& scheme, const lie::Settings& settings);
 
     int step(lie::State& x, double h) override;
@@ -55,45 +75,45 @@ public:
     const lie::System& system() const override { return model; }
     lie::Statistics statistics() const override { return scheme->statistics(); }
 
-    /// What happened so far, in order of time
-    const std::vector<ContactEvent>& events() const { return happened; }
+    /// All events so far, in order of time
+    const std::vector<ContactEvent>& events() const { return event_log; }
 
-    /// A node at which a contact was closed; none where t is NaN
-    struct Known {
+    /// Normal force of an active contact at a node [s, N]; t is NaN if there is none.
+    struct NodeForce {
         double t = std::numeric_limits<double>::quiet_NaN(), F_N = 0;
     };
-    /// All that it knows and that does not stand in the state; for checkpoints
-    struct Past {
+    /// What the integrator stores in addition to the State; needed by checkpoints
+    struct History {
         std::vector<ContactEvent> events;
-        std::vector<Known>
-            closed;  ///< of each contact that may open the last two, for the time of a lift-off
+        std::vector<NodeForce>
+            node_forces;  ///< the last two of each contact that can become inactive; for lift_off_time()
     };
-    Past past() const;
-    void go_on_from(const Past& past);  ///< InvalidInput for one of another number of contacts
+    History history() const;
+    void restore(const History& saved);  ///< lie::InvalidInput if the number of contacts differs
 
 private:
-    static constexpr int most_meetings = 3;  ///< of a contact in one step
+    static constexpr int max_impacts = 3;  ///< of one contact in one step
     static constexpr double rounding =
-        1e-9;  ///< of the largest force, and of a size that is approached in a step
+        1e-9;  ///< relative to the largest force; also to L, for the approach in one step
 
     struct TrackedContact {
         const EvolvingContact* contact;
         int number;
-        Known last = {}, before = {};
-        int closings = 0;   ///< in the step
-        bool held = false;  ///< stays closed for the rest of the step
-        bool gone = false;  ///< handed over, and told of
+        NodeForce last_node = {}, previous_node = {};
+        int impacts = 0;                 ///< in the current step
+        bool stays_active = false;       ///< until the end of the current step
+        bool fallback_reported = false;  ///< the fallback is active and its event is in the log
 
-        void note(double t, double F_N);
-        double lift_off(double t, double F_N) const;
+        void record(double t, double F_N);
+        double lift_off_time(double t, double F_N) const;
     };
 
     static int mode(const TrackedContact& c, const lie::State& x) { return dae::Model::mode(*c.contact, x); }
-    static bool open(const TrackedContact& c, const lie::State& x)
+    static bool is_inactive(const TrackedContact& c, const lie::State& x)
     {
         return mode(c, x) == dae::Constraint::inactive;
     }
-    static bool closed(const TrackedContact& c, const lie::State& x)
+    static bool is_active(const TrackedContact& c, const lie::State& x)
     {
         return mode(c, x) == dae::Constraint::active;
     }
@@ -106,32 +126,35 @@ private:
     int advance(lie::State& x, double h);
     int try_step(const lie::State& from, lie::State& to, double h);
     void restart(lie::State& x);
-    bool release_pulling(lie::State& x);
+    bool deactivate_tensile(lie::State& x);
     TrackedContact* first_to_close(const lie::State& from, const lie::State& to);
     double find_closing(lie::State& to, double h, TrackedContact*& first);
-    double zero_of_gap(const TrackedContact& c, lie::State& to, double h);
-    void collide(lie::State& x, TrackedContact& c, double h);
-    bool determined(const TrackedContact& c, lie::State& x);
-    void hand_over(const TrackedContact& c, lie::State& x, double speed);
-    bool hand_over_flattest(lie::State& x);
-    void tell_of_handed_over(const lie::State& x);
-    void jump(lie::State& x, const TrackedContact* rebounding, double speed);
-    void push(const TrackedContact& c, double impulse, const lie::State& x);
+    double find_zero_gap(const TrackedContact& c, lie::State& to, double h);
+    void resolve_impact(lie::State& x, TrackedContact& c, double h);
+    bool force_is_determined(const TrackedContact& c, lie::State& x);
+    void switch_to_fallback(const TrackedContact& c, lie::State& x, double speed);
+    bool switch_least_curved_to_fallback(lie::State& x);
+    void report_fallbacks(const lie::State& x);
+    void solve_velocity_jump(lie::State& x, const TrackedContact* rebounding, double speed);
+    void add_impulse(const TrackedContact& c, double impulse, const lie::State& x);
 
     const dae::Model& model;
     std::unique_ptr<lie::Integrator> scheme;
-    lie::Saddle K;  ///< for impacts and restarts
+    lie::Saddle K;  ///< saddle matrix of impacts and restarts
     std::vector<TrackedContact> contact;
-    std::vector<ContactEvent> happened;
-    lie::State first;          ///< the state to go back to where the step fails ...
-    lie::State begin;          ///< of the step, to go back to
-    lie::State node, trial;    ///< of a part of it, and where that leads
-    lie::State anew;           ///< the node in full and without a history
-    lie::State known, before;  ///< the node that the step left, in full; a state before it jumps
-    Eigen::VectorXd momentum, v;
+    std::vector<ContactEvent> event_log;
+    lie::State at_entry;                  ///< state at the call of step(); restored if the step fails
+    lie::State step_start;                ///< state from which the current attempt of the step starts
+    lie::State node, trial;               ///< begin and end of a part of the step
+    lie::State restart_node;              ///< `node` filled in (see fill_node()), without a history
+    lie::State full_node, before_impact;  ///< t_n, filled in (see fill_node()); state before an impact
+    /// Impulse that the next velocity jump adds: 6 numbers per body, global force and body-frame torque part
+    Eigen::VectorXd momentum;
+    Eigen::VectorXd v;  ///< right side and solution of a velocity jump
 };
 
-/// The scheme for this model: as it is, or within UnilateralStep where contacts of the model may open.
+/// The integrator of a scheme for this model, wrapped by UnilateralStep if a contact of the model can become
+/// inactive
 std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const lie::Scheme& scheme,
                                                  const lie::Settings& settings);
 

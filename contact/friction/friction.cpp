@@ -9,14 +9,15 @@ namespace hilda::contact {
 
 namespace {
 
-// Built on first use: files enrol their laws before main, in an order nobody fixes.
+// A function-local static: laws are registered during static initialisation, whose order is unspecified.
 std::vector<FrictionLaw>& list()
 {
     static std::vector<FrictionLaw> laws;
     return laws;
 }
 
-// K_i + K_j of a determinant below this part of its squared norm cannot be inverted: a plane on a plane.
+// K_i + K_j is singular if its determinant is below this fraction of its squared norm (e.g. a foot on a
+// plane).
 constexpr double singular = 1e-9;
 
 }  // namespace
@@ -42,18 +43,18 @@ Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, 
 {
     const Vec3& n = slip.n;
     const Vec3 omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar, omega = omega_i - omega_j;
-    const auto flat = [&](const Vec3& v) -> Vec3 { return v - n * n.dot(v); };
-    const Vec3 v = flat(bj.rdot + omega_j.cross(contact_point.C_j - bj.r) - bi.rdot -
-                        omega_i.cross(contact_point.C_i - bi.r));
+    const auto project = [&](const Vec3& v) -> Vec3 { return v - n * n.dot(v); };
+    const Vec3 v = project(bj.rdot + omega_j.cross(contact_point.C_j - bj.r) - bi.rdot -
+                           omega_i.cross(contact_point.C_i - bi.r));
     Rates r{.s = v + contact_point.gap * omega_j.cross(n),
             .p_i = Vec3::Zero(),
             .p_j = Vec3::Zero(),
             .psi = omega.dot(n)};
 
-    // (K_i + K_j) ṗ = q, of a body with an edge along the edge alone
+    // (K_i + K_j) ṗ = q; for a body with an edge, ṗ has the direction of the edge
     const Mat3 K = contact_point.K_i + contact_point.K_j;
     const bool edge_j = contact_point.edge_j.squaredNorm() > 0;
-    const Vec3 edge = contact_point.edge_i + contact_point.edge_j;  // at most one of the two
+    const Vec3 edge = contact_point.edge_i + contact_point.edge_j;  // at most one is not zero
     const Vec3 u = slip.u, w = n.cross(u), Ku = K * u, Kw = K * w;
     const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
     if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
@@ -62,7 +63,7 @@ Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, 
         const double x = u.dot(q), y = w.dot(q);
         return ((d * x - b * y) * u + (a * y - b * x) * w) / det;
     };
-    for (int pass = 0; pass < 2; ++pass) {  // the gap is small against the radii: a part (gap κ)² is left out
+    for (int pass = 0; pass < 2; ++pass) {  // two passes for the term gap ṅ: the error is of order (gap κ)²
         if (edge_j) {
             r.p_j = solve(omega.cross(n) - contact_point.K_i * r.s);
             r.p_i = r.p_j + r.s;
@@ -96,8 +97,8 @@ FrictionParameters FrictionParameters::as_in_dissertation() const
 
 void FrictionParameters::validate() const
 {
-    const auto check = [](const char* what, double value, bool fine) {
-        if (!fine || !std::isfinite(value)) lie::reject("friction", what, value);
+    const auto check = [](const char* what, double value, bool valid) {
+        if (!valid || !std::isfinite(value)) lie::reject("friction", what, value);
     };
     check("mu_k must not be negative", mu_k, mu_k >= 0);
     check("mu_s must not be below mu_k", mu_s, mu_s >= mu_k);
@@ -122,7 +123,8 @@ const FrictionLaw& friction_law(const std::string& name)
         if (law.name == name) return law;
         all += (all.empty() ? "" : ", ") + law.name;
     }
-    lie::reject("contact::friction_law", "there are " + all, "'" + name + "'");
+    lie::reject("contact::friction_law", "the name must be one of the registered laws " + all,
+                "'" + name + "'");
 }
 
 bool register_friction_law(FrictionLaw law)

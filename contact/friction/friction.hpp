@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a friction law is to a contact: a history that it keeps, loads that it makes of it.
+/// Interface of friction laws: state variables of a contact, friction loads, and the registry of laws.
 
 #pragma once
 
@@ -17,13 +17,14 @@ namespace hilda::contact {
 
 class NormalLaw;
 
-/// Whether a micro-deflection sticks or slips, and whether its dashpot works
+/// Regime of a micro-deflection: stick or slip, and whether the damper is active
 struct Regime {
-    bool slipping = false;  ///< k; sticking, s, at first
+    bool slipping = false;  ///< true: slip (index k); false: stick (index s), the initial regime
     bool damped = true;
 };
 
-/// What a contact remembers of its friction. Vectors by their components in (u, w) of the Track.
+/// Friction history of a contact: the micro-deflections and their regimes. Vectors are components in (u, w)
+/// of the ContactFrame.
 struct Deflections {
     Vec2 S = Vec2::Zero();                                ///< sliding micro-deflection [m]
     Vec2 Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();  ///< rolling micro-deflections [rad]
@@ -31,116 +32,124 @@ struct Deflections {
     Regime slide, roll_i, roll_j, spin;
 };
 
-/// A contact at one instant, as a friction law sees it
+/// State of a contact at one instant: the input of friction laws
 struct ContactState {
     ContactPoint contact_point;
-    SlidingDisplacement slip;  ///< since the instant before
-    double N = 0;              ///< normal force [N]; not positive where the surfaces do not touch
-    /// Fictitious mass and moments of inertia of the pair for the dashpots, about the tangents and about the
-    /// normal [kg, kg m²]                                                                    Eqs. 4.4, 4.10
+    SlidingDisplacement slip;  ///< displacement since the previous instant
+    double N = 0;              ///< normal force [N]; zero or negative if there is no contact
+    /// Fictitious mass of the pair [kg] and its moments of inertia about the tangents and about the normal
+    /// [kg m²], for the damping coefficients                                              Eqs. 4.4, 4.10
     double m = 0, I_roll = 0, I_spin = 0;
-    double lever =
-        std::numeric_limits<double>::infinity();  ///< the longest that 1/κ may be as a lever arm [m]
+    /// Upper limit of the lever arm 1/κ of rolling friction [m]
+    double max_lever = std::numeric_limits<double>::infinity();
 };
 
-/// Speeds of what Slip has the displacements of
+/// Rates of the displacements in SlidingDisplacement, in the global frame
 struct Rates {
-    Vec3 s;         ///< of the material of j against that of i [m/s]
-    Vec3 p_i, p_j;  ///< of the contact point over the material of each body [m/s]
-    double psi;     ///< [rad/s]
+    Vec3 s;         ///< velocity of the material of j relative to that of i, tangential [m/s]
+    Vec3 p_i, p_j;  ///< velocity of the contact point relative to the material of each body [m/s]
+    double psi;     ///< spin rate [rad/s]
 };
 
-/// The mean over a step of length h
+/// The mean rates over a step of length h [s]: Δs/h, q_i/h, q_j/h, ψ/h
 Rates mean_rates(const SlidingDisplacement& slip, double h);
 
-/// At this instant, from the velocities of the bodies, the limit of the mean rates for a small step:
+/// The rates at this instant from the velocities of the bodies; the limit of the mean rates for h → 0:
 ///
 ///     ṡ = v_j(C_j) - v_i(C_i) + gap ṅ,   ṅ = ω_j × n + K_j ṗ_j              in the tangent plane
 ///
-/// the velocity of each body at its own point: in the middle between the two there is a false slip of |ω gap|. The
-/// contact point moves as Montana's equations say: (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ. Zero for p where K_i +
-/// K_j is singular.
+/// The velocity of each body is taken at its own contact point; at their mid-point there would be a false
+/// slip velocity |ω gap|. The velocities of the contact point follow from Montana (1988), without charts:
+///
+///     (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ,   ṗ_j = ṗ_i - ṡ
+///
+/// p_i and p_j are zero if K_i + K_j is singular. Only n and u of `slip` are used.
 Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, const Motion& bi,
             const Motion& bj);
 
-/// Friction on the two bodies of a contact, global: F [N] on i at C, -F on j; torques [N m]
+/// Friction loads of a contact in the global frame: force F [N] on i at C and -F on j; torques T_i, T_j [N m]
 struct Wrench {
     Vec3 F = Vec3::Zero(), T_i = Vec3::Zero(), T_j = Vec3::Zero();
-    /// Elastic parts, for figures: of F [N], of the rolling torque on i and j, of the spinning torque on i [N m]
+    /// Elastic parts for output: of F [N], of the rolling torques on i and j, of the spinning torque on i
+    /// about n [N m]
     Vec3 F_E = Vec3::Zero(), T_roll_E = Vec3::Zero(), T_roll_E_j = Vec3::Zero();
     double T_spin_E = 0;
-    double T_spin = 0;
+    double T_spin = 0;  ///< spinning torque on i about n [N m]
 };
 
-/// The springs and dashpots of a friction law, for the stability of an explicit step
+/// Stiffness and damping of a friction law in the stick regime, for the stability limit of explicit schemes
 struct Springs {
     double K_slide = 0, D_slide = 0;  ///< [N/m, N s/m]
     double K_roll = 0, D_roll = 0;    ///< [N m/rad, N m s/rad]
-    double K_spin = 0, D_spin = 0;
+    double K_spin = 0, D_spin = 0;    ///< [N m/rad, N m s/rad]
 };
 
-/// a b / (a + b), of masses or moments of inertia, one of which may be infinite
+/// Reduced mass or moment of inertia a b / (a + b), of which one may be infinite
 double reduced(double a, double b);
 
-/// Derive for a law of your own; one object may serve many contacts.
+/// Interface of a friction law. An object has no state of a contact and may be shared by many contacts.
 class FrictionModel {
 public:
     virtual ~FrictionModel() = default;
 
-    /// Frames and counter-spin that the law wants
+    /// Parameters of the tracking that the law requires
     virtual Tracking tracking() const { return {}; }
-    /// Fictitious mass or moment of inertia of two, one of which may be infinite
+    /// Fictitious mass or moment of inertia of two bodies, of which one may be infinite
     virtual double fictitious(double a, double b) const { return reduced(a, b); }
 
-    /// The history from the last instant to this one
+    /// Advances the deflections from the previous instant to `now`
     virtual void advance(const ContactState& now, Deflections& deflections) const = 0;
-    /// Friction of the history it has got to
+    /// Friction loads from the deflections at `now` and the rates
     virtual Wrench load(const ContactState& now, const Rates& rates,
                         const Deflections& deflections) const = 0;
     virtual Springs springs(const ContactState& now) const = 0;
-    virtual bool needs_curvature() const { return false; }  ///< rolling or spinning that it resists
+    virtual bool needs_curvature() const { return false; }  ///< true for rolling or spinning resistance
 };
 
-/// No friction at all
+/// The law without friction
 std::shared_ptr<const FrictionModel> frictionless();
 
-/// What the built-in laws are told; a law takes from it what concerns it. As it stands: the balanced preset.
+/// Parameters of the built-in laws; each law uses those it needs. The defaults are the balanced preset.
 struct FrictionParameters {
-    double mu_s = 0, mu_k = 0;  ///< μ_s ≥ μ_k ≥ 0
+    double mu_s = 0, mu_k = 0;  ///< static and kinetic friction coefficient, μ_s ≥ μ_k ≥ 0
     double K_E = 0;             ///< sliding stiffness [N/m]
-    double zeta = 1;   ///< part of the critical damping in D = ζ 2 √(m K)                  Eqs. 4.4, 4.10
-    double eta_r = 0;  ///< rolling resistance; 0: none                                            Eq. 4.5
-    double eta_psi = 0;  ///< spinning resistance; 0: none                                           Eq. 4.9
-    double E_star = 0;   ///< effective modulus [Pa] of a Hertzian patch that resists spinning, instead  A.8
-    double mu_r = 0;     ///< of constant-torque and epsd: M_r ≤ μ_r R N
+    double zeta = 1;   ///< damping ratio ζ in D = ζ 2 √(m K)                               Eqs. 4.4, 4.10
+    double eta_r = 0;  ///< rolling resistance coefficient; 0: none                                Eq. 4.6
+    double eta_psi = 0;  ///< spinning resistance coefficient; 0: none                              Eq. 4.9
+    double E_star = 0;  ///< effective modulus [Pa] of a Hertzian contact patch, instead of η_ψ     Sec. A.8
+    double mu_r = 0;    ///< rolling friction coefficient of constant-torque and epsd: M_r ≤ μ_r R N
 
-    /// Dashpots of sliding, rolling and spinning [N s/m, N m s/rad], instead of those by ζ
+    /// Damping of sliding, rolling and spinning [N s/m, N m s/rad]; if given, it replaces the value from ζ
     std::optional<double> D_slide = {}, D_roll = {}, D_spin = {};
 
     Tracking tracking = {};
-    bool capped = true;            ///< spring and dashpot together stay within the static Coulomb bound
-    bool relative_rolling = true;  ///< one rolling vector with opposite torques, not one for each body
-    bool reduced_mass = true;      ///< fictitious mass: m_i m_j / (m_i + m_j), not the mean
+    bool capped = true;  ///< limit the sum of spring and damper to the static bound
+    /// One relative rolling vector with opposite torques, instead of one vector per body
+    bool relative_rolling = true;
+    bool reduced_mass = true;  ///< fictitious mass m_i m_j / (m_i + m_j), instead of the mean
 
-    /// The same as the dissertation has it: counter-spin by ψ, histories with body i, dashpots beyond the bound, a
-    /// rolling torque for each body, mean masses.
+    /// These parameters with the dissertation preset: β = 1, contact frame of body i, no limit on the damper,
+    /// one rolling vector per body, mean masses.
     FrictionParameters as_in_dissertation() const;
-    /// InvalidInput for values that are none
+    /// InvalidInput for values outside their range
     void validate() const;
 };
 
-/// A law as it stands in the list
+/// A registered friction law
 struct FrictionLaw {
-    std::string name, what;
+    std::string name, what;  ///< name in model files, one-line description
     std::shared_ptr<const FrictionModel> (*make)(const FrictionParameters&) = nullptr;
-    /// Reads the keys that only this law has, and makes it. In p those that all laws share have been read. Without it the
-    /// law has no keys of its own. Throws dae::PlacedError.
+    /// Reads the keys of this law alone and creates it; p contains the common keys. nullptr: the law has no
+    /// keys of its own and is created by `make`. Throws dae::PlacedError.
     std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p,
                                                  const NormalLaw& normal) = nullptr;
 };
+/// All registered laws, sorted by name
 const std::vector<FrictionLaw>& friction_laws();
-/// The law of that name; InvalidInput names those there are.
+/// The law with this name; InvalidInput with the list of names if there is none
 const FrictionLaw& friction_law(const std::string& name);
+/// Registers a friction law. Call it in the initialiser of a constant at namespace scope in the file of the
+/// law. The template sets `make` to the constructor Law(const FrictionParameters&).
 bool register_friction_law(FrictionLaw law);
 template <class Law>
 bool register_friction_law(FrictionLaw law)

@@ -11,10 +11,10 @@ namespace hilda::contact {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double longest_lever = 10;  // of rolling, over the size of the smaller body
+constexpr double longest_lever = 10;  // upper limit of the lever arm of rolling, relative to the smaller size
 
-/// The smaller size of two surfaces, of which a plane has none
-double smaller_size(const Shape& i, const Shape& j)
+/// The smaller size of two surfaces [m]; a plane has no size
+double smaller_size_of(const Shape& i, const Shape& j)
 {
     double smaller = infinite;
     for (const Shape* s : {&i, &j})
@@ -22,7 +22,7 @@ double smaller_size(const Shape& i, const Shape& j)
     return smaller;
 }
 
-/// nᵀ J n and the mean over the tangents
+/// Moment of inertia about n, nᵀ J n, and the mean over the tangent directions [kg m²]
 struct Moments {
     double normal, tangential;
 };
@@ -38,11 +38,12 @@ Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
 
 Mat3 Inertia::J_bar_inverse() const { return turns() ? Mat3(J_bar.inverse()) : Mat3(Mat3::Zero()); }
 
-FrictionPair::FrictionPair(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
+FrictionPair::FrictionPair(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
                            std::shared_ptr<const FrictionModel> friction)
-    : name(std::move(name)), i(std::move(i)), j(std::move(j)), of_i(std::move(of_i)), of_j(std::move(of_j)),
-      friction(std::move(friction)), length(smaller_size(this->i, this->j)),
-      m(this->friction->fictitious(this->of_i.m, this->of_j.m))
+    : name(std::move(name)), i(std::move(i)), j(std::move(j)), inertia_i(std::move(inertia_i)),
+      inertia_j(std::move(inertia_j)), friction(std::move(friction)),
+      smaller_size(smaller_size_of(this->i, this->j)),
+      m(this->friction->fictitious(this->inertia_i.m, this->inertia_j.m))
 {}
 
 void FrictionPair::rethrow(const lie::NumericalFailure& e) const
@@ -50,11 +51,12 @@ void FrictionPair::rethrow(const lie::NumericalFailure& e) const
     throw lie::NumericalFailure(e.status, "contact '" + name + "': " + e.what());
 }
 
-void FrictionPair::set_fictitious(ContactState& now, const Motion& bi, const Motion& bj) const
+void FrictionPair::set_fictitious_inertia(ContactState& now, const Motion& bi, const Motion& bj) const
 {
     now.m = m;
-    now.lever = longest_lever * length;
-    const Moments a = moments(of_i, bi.A, now.contact_point.n), b = moments(of_j, bj.A, now.contact_point.n);
+    now.max_lever = longest_lever * smaller_size;
+    const Moments a = moments(inertia_i, bi.A, now.contact_point.n),
+                  b = moments(inertia_j, bj.A, now.contact_point.n);
     now.I_roll = friction->fictitious(a.tangential, b.tangential);
     now.I_spin = friction->fictitious(a.normal, b.normal);
 }
@@ -68,12 +70,13 @@ ContactState FrictionPair::contact_state(const ContactPoint& contact_point, doub
     if (!(now.N > 0)) return now;
     try {
         now.slip = history.touching
-                       ? follow(history.contact_frame, now.contact_point, i, j, bi, bj, friction->tracking())
-                       : no_slip(now.contact_point, now.contact_point.n.unitOrthogonal());
+                       ? track_contact_point(history.contact_frame, now.contact_point, i, j, bi, bj,
+                                             friction->tracking())
+                       : zero_displacement(now.contact_point, now.contact_point.n.unitOrthogonal());
     } catch (const lie::NumericalFailure& e) {
         rethrow(e);
     }
-    set_fictitious(now, bi, bj);
+    set_fictitious_inertia(now, bi, bj);
     return now;
 }
 
@@ -87,7 +90,7 @@ void FrictionPair::advance(const ContactState& now, const Motion& bi, const Moti
         friction->advance(now, history.deflections);
     history.contact_frame = contact_frame(
         now.contact_point, touching ? now.slip.u : now.contact_point.n.unitOrthogonal(), bi, bj);
-    history.found = true;
+    history.has_points = true;
     history.touching = touching;
 }
 
@@ -100,8 +103,8 @@ double FrictionPair::stable_step(const ContactState& now, const NormalSupport& n
     const Springs springs = friction->springs(now);
     const Vec3 n = now.contact_point.n, u = n.unitOrthogonal(), w = n.cross(u);
 
-    // Rows: sliding along u and w, pressing along n, rolling about u and w, spinning about n
-    constexpr int pressing = 2;
+    // Rows of W = M⁻¹: sliding along u and w, approach along n, rolling about u and w, spinning about n
+    constexpr int normal_row = 2;
     Rows linear = Rows::Zero();
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
     Mat6 W = Mat6::Zero();
@@ -115,12 +118,12 @@ double FrictionPair::stable_step(const ContactState& now, const NormalSupport& n
         W += contacts *
              (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
     };
-    add(of_i, bi, now.contact_point.C_i, contacts_of_i);
-    add(of_j, bj, now.contact_point.C_j, contacts_of_j);
-    if (normal.rigid && W(pressing, pressing) > 0) {
-        // what friction moves, the force that holds the normal having answered
-        const Vec6 answer = W.col(pressing);
-        W -= answer * answer.transpose() / answer[pressing];
+    add(inertia_i, bi, now.contact_point.C_i, contacts_of_i);
+    add(inertia_j, bj, now.contact_point.C_j, contacts_of_j);
+    if (normal.rigid && W(normal_row, normal_row) > 0) {
+        // eliminate the constrained normal motion: Schur complement
+        const Vec6 normal_column = W.col(normal_row);
+        W -= normal_column * normal_column.transpose() / normal_column[normal_row];
     }
     Vec6 K, D;
     K << springs.K_slide, springs.K_slide, normal.K, springs.K_roll, springs.K_roll, springs.K_spin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Two surfaces with friction between them, whatever it is that presses them together.
+/// Friction between two surfaces for any source of the normal force (compliant law or constraint).
 
 #pragma once
 
@@ -8,71 +8,81 @@
 
 namespace hilda::contact {
 
-/// Mass [kg] and inertia [kg m², body frame] as a contact sees them; infinite for a body that nothing moves
+/// Mass m [kg] and inertia matrix [kg m², body frame] of a body in a contact; infinite for the ground
 struct Inertia {
     double m = std::numeric_limits<double>::infinity();
     Mat3 J_bar = Mat3::Constant(std::numeric_limits<double>::infinity());
 
     bool moves() const { return std::isfinite(m); }
     bool turns() const { return std::isfinite(J_bar(0, 0)); }
-    Mat3 J_bar_inverse() const;  ///< zero where it does not turn
+    Mat3 J_bar_inverse() const;  ///< zero if the inertia is infinite
 };
 
-/// What a contact keeps from step to step
+/// History of a contact between steps: the contact frame and the friction deflections
 struct ContactHistory {
-    bool found = false;     ///< track has the points of the last touch, where the search begins
-    bool touching = false;  ///< history and frames go on from them
+    /// contact_frame is valid: its points are the initial guess of the next detection
+    bool has_points = false;
+    /// The surfaces were in contact: frame and deflections are continued
+    bool touching = false;
     ContactFrame contact_frame = {};
     Deflections deflections = {};
 };
 
-/// What keeps two bodies apart along the normal of their contact
+/// Stiffness and damping of a contact in the normal direction, for the stability limit
 struct NormalSupport {
-    double K = 0, D = 0;  ///< of a spring and dashpot [N/m, N s/m]
-    bool rigid = false;   ///< or a constraint, and nothing moves along it
+    double K = 0, D = 0;  ///< linearised normal law [N/m, N s/m]
+    bool rigid = false;   ///< the normal direction is a constraint; K and D are not used
 };
 
-/// Constant; the memory belongs to who steps the bodies. See Contact for the order of a step.
+/// A pair of surfaces with a friction law. The object is constant; the caller owns the ContactHistory. See
+/// CompliantContact for the order of the calls in a step.
 class FrictionPair {
 public:
-    FrictionPair(std::string name, Shape i, Shape j, Inertia of_i, Inertia of_j,
+    FrictionPair(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
                  std::shared_ptr<const FrictionModel> friction);
 
-    /// The contact at this touch under the normal force N [N], with the motion of its point since the memory. Where N is
-    /// not positive there is the touch and no more.
+    /// The state of the contact at a contact point with normal force N [N]. The sliding displacement is that
+    /// since `history`. If N is not positive only contact_point and N are set.
     ContactState contact_state(const ContactPoint& contact_point, double N, const Motion& bi,
                                const Motion& bj, const ContactHistory& history) const;
-    /// From the instant of the memory to that of the meeting. Where the surfaces have parted, histories are
-    /// dropped; where they meet anew, they begin at zero.
+    /// Advances `history` to the instant of `now`. The deflections are set to zero if the surfaces have
+    /// separated, and start at zero if contact begins.
     void advance(const ContactState& now, const Motion& bi, const Motion& bj, ContactHistory& history) const;
+    /// Friction loads; zero if N is not positive
     Wrench load(const ContactState& now, const Rates& rates, const ContactHistory& history) const
     {
         return now.N > 0 ? friction->load(now, rates, history.deflections) : Wrench();
     }
 
-    /// The largest step [s] with which symplectic Euler is stable on the springs and dashpots of this contact, none of
-    /// them slipping, with the curvatures and the normal force of this meeting. It is the h at which
-    /// 4 M - 2 h D - h² K becomes singular; for one damped mode h ω = 2 (√(1 + ζ²) - ζ). A body that has more than
-    /// one contact lends each an equal part of its mass: where each of them is then stable, all are together.
+    /// The largest step [s] for which symplectic Euler is stable with the springs and dampers of this
+    /// contact, all in the stick regime, for the curvatures and the normal force of `now`. It is the smallest
+    /// h for which 4 M - 2 h D - h² K is singular. M⁻¹ is the 6 × 6 matrix of inverse effective masses of the
+    /// relative motions: sliding along u and w, approach along n, rolling about u and w, spinning about n.
+    /// For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
     ///
-    /// A sphere that does not resist rolling and is held on its surface: h = (√(d² + 4 k) - d)/k with d = D q, k = K q,
-    /// q = 1/m + R²/I.
+    /// The mass of a body with several contacts is divided equally among them (contacts_of_i, contacts_of_j).
+    /// If each contact is stable with its share, the whole system is. Infinite if no finite step is unstable.
+    ///
+    /// Example: for a sphere without rolling friction held on its surface, h = (√(d² + 4 k) - d)/k,
+    /// where d = D q, k = K q, q = 1/m + R²/I.
     double stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
                        const Motion& bj, int contacts_of_i = 1, int contacts_of_j = 1) const;
 
     const std::string name;
     const Shape i, j;
-    const Inertia of_i, of_j;
+    const Inertia inertia_i, inertia_j;
     const std::shared_ptr<const FrictionModel> friction;
 
 protected:
+    /// Throws e again with the name of the contact in front of the message
     [[noreturn]] void rethrow(const lie::NumericalFailure& e) const;
-    void set_fictitious(ContactState& now, const Motion& bi, const Motion& bj) const;
+    /// Sets m, I_roll, I_spin and max_lever of `now`
+    void set_fictitious_inertia(ContactState& now, const Motion& bi, const Motion& bj) const;
 
-    double length;  ///< the smaller size of the two [m], infinite where neither has one
+    double smaller_size;  ///< smaller size of the two surfaces [m]; infinite if neither has one
 
 private:
-    double m;
+    double m;  // fictitious mass [kg]
 };
 
 }  // namespace hilda::contact

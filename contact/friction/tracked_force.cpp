@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/friction/tracked_force.hpp"
 
+#include "dae/model.hpp"
+
 #include <cstring>
 
 namespace hilda::contact {
 
 namespace {
 
-// Rounding of a pose that went through other coordinates and back, over 1 m and the distance from the origin; and
-// of a time, over 1 s and itself
-constexpr double at_rest = 1e-12;
+// Relative rounding error of a pose that was converted to other coordinates and back, and of a time. Lengths
+// are relative to 1 m plus the distance from the origin, times to 1 s plus the time.
+constexpr double same_pose = 1e-12;
 
-/// All that a contact remembers in real numbers: the histories, the last way of the contact point over each body, which
-/// gives the rolling of the dissertation its curvature, the track and the instant
-struct Kept {
+/// The internal state of a contact: deflections, last displacement of the contact point relative to each body
+/// (its direction determines the curvature of rolling in the dissertation preset), contact frame, and time
+struct SavedValues {
     Vec2 S = Vec2::Zero(), Theta_i = Vec2::Zero(), Theta_j = Vec2::Zero();
     Vec2 p_i = Vec2::Zero(), p_j = Vec2::Zero();
     ContactFrame contact_frame = {};
     double Psi = 0, t = 0;
 };
-constexpr size_t numbers = 5 * 2 + 6 * 3 + 2;
-static_assert(sizeof(Kept) == numbers * sizeof(double), "what is kept is numbers and nothing else");
+constexpr size_t saved_reals = 5 * 2 + 6 * 3 + 2;
+static_assert(sizeof(SavedValues) == saved_reals * sizeof(double),
+              "SavedValues must consist of doubles without padding");
 
-Kept kept(const lie::State& x, int first)
+SavedValues saved_values(const lie::State& x, int first)
 {
-    Kept all;
+    SavedValues all;
     std::memcpy(static_cast<void*>(&all), x.internal_state.data() + first, sizeof all);
     return all;
 }
 
-/// The one whole number: a bit for each flag that is not as in a memory without a past, so that zero is such a one
+/// The discrete state of a contact: one bit per flag, so that 0 is the initial history
 int flags_of(const ContactHistory& m)
 {
-    int flags = m.found | m.touching << 1, bit = 2;
+    int flags = m.has_points | m.touching << 1, bit = 2;
     for (const Regime* r :
          {&m.deflections.slide, &m.deflections.roll_i, &m.deflections.roll_j, &m.deflections.spin}) {
         flags |= r->slipping << bit++;
@@ -45,14 +48,14 @@ void set_flags(int flags, ContactHistory& m)
 {
     int bit = 0;
     const auto next = [&] { return (flags >> bit++ & 1) != 0; };
-    m.found = next(), m.touching = next();
+    m.has_points = next(), m.touching = next();
     for (Regime* r :
          {&m.deflections.slide, &m.deflections.roll_i, &m.deflections.roll_j, &m.deflections.spin})
         r->slipping = next(), r->damped = !next();
 }
 
-/// F [N, global] at C and T [N m, global] on body b
-void put(int b, const Vec3& F, const Vec3& C, const Vec3& T, const lie::State& x, lie::Loads& out)
+/// Adds the force F [N] at the point C [m] and the torque T [N m], all global, to the loads of body b
+void add_load(int b, const Vec3& F, const Vec3& C, const Vec3& T, const lie::State& x, lie::Loads& out)
 {
     if (b == dae::ground) return;
     const Motion& body = x.body[b];
@@ -66,7 +69,7 @@ TrackedForce::TrackedForce(const std::string& name, const dae::Model& model, int
     : i(i), j(j), model(model), name_i(model.body_name(i)), name_j(model.body_name(j))
 {
     this->name = name;
-    if (i == j) lie::reject(in_words(), "a contact needs two different bodies", "'" + name_i + "' twice");
+    if (i == j) lie::reject(label(), "a contact needs two different bodies", "'" + name_i + "' twice");
 }
 
 Inertia TrackedForce::inertia(const dae::Model& model, int b)
@@ -75,25 +78,25 @@ Inertia TrackedForce::inertia(const dae::Model& model, int b)
     return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
 }
 
-int TrackedForce::internal_states() const { return numbers; }
+int TrackedForce::internal_states() const { return saved_reals; }
 
-ContactHistory TrackedForce::recall(const lie::State& x) const
+ContactHistory TrackedForce::saved_history(const lie::State& x) const
 {
     ContactHistory m;
     set_flags(x.discrete_state[first_discrete_state], m);
-    const Kept all = kept(x, first_internal_state);
+    const SavedValues all = saved_values(x, first_internal_state);
     m.contact_frame = all.contact_frame;
     m.deflections.S = all.S, m.deflections.Theta_i = all.Theta_i, m.deflections.Theta_j = all.Theta_j;
     m.deflections.Psi = all.Psi;
     return m;
 }
 
-void TrackedForce::keep(const Instant& now, lie::State& x) const
+void TrackedForce::save(const Instant& now, lie::State& x) const
 {
     const ContactHistory& m = now.history;
     x.discrete_state[first_discrete_state] = flags_of(m);
     const SlidingDisplacement& s = now.contact_state.slip;
-    Kept all;
+    SavedValues all;
     all.S = m.deflections.S, all.Theta_i = m.deflections.Theta_i, all.Theta_j = m.deflections.Theta_j;
     all.Psi = m.deflections.Psi;
     all.contact_frame = m.contact_frame;
@@ -104,7 +107,7 @@ void TrackedForce::keep(const Instant& now, lie::State& x) const
 
 TrackedForce::Instant TrackedForce::at(const lie::State& x) const
 {
-    Instant now{.contact_state = {}, .history = recall(x)};
+    Instant now{.contact_state = {}, .history = saved_history(x)};
     try {
         now.contact_state = evaluate(x, now.history);
     } catch (const lie::NumericalFailure& e) {
@@ -112,12 +115,12 @@ TrackedForce::Instant TrackedForce::at(const lie::State& x) const
     }
     SlidingDisplacement& s = now.contact_state.slip;
     if (now.contact_state.N > 0 && now.history.touching) {
-        const Kept last = kept(x, first_internal_state);
-        const double length = at_rest * (1 + now.contact_state.contact_point.C().norm());
-        if (std::abs(x.t - last.t) <= at_rest * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
-            s.p_j.norm() < length && std::abs(s.psi) < at_rest) {
+        const SavedValues last = saved_values(x, first_internal_state);
+        const double length = same_pose * (1 + now.contact_state.contact_point.C().norm());
+        if (std::abs(x.t - last.t) <= same_pose * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
+            s.p_j.norm() < length && std::abs(s.psi) < same_pose) {
             const Vec3 n = s.n, u = s.u;
-            s = no_slip(now.contact_state.contact_point, u);
+            s = zero_displacement(now.contact_state.contact_point, u);
             s.p_i = tangent(last.p_i, n, u), s.p_j = tangent(last.p_j, n, u);
             now.is_saved = true;
             return now;
@@ -131,33 +134,37 @@ Wrench TrackedForce::load(const Instant& now, const lie::State& x) const
 {
     const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return {};
-    return pair().load(m, speeds(now, x), now.history);
+    return pair().load(m, damper_rates(now, x), now.history);
 }
 
-Rates TrackedForce::speeds(const Instant& now, const lie::State& x) const
+Rates TrackedForce::damper_rates(const Instant& now, const lie::State& x) const
 {
     return rates(now.contact_state.contact_point, now.contact_state.slip, motion(x, i), motion(x, j));
 }
 
 void TrackedForce::add(const lie::State& x, lie::Loads& out) const
 {
-    if (!works(x)) return;
+    if (!is_active(x)) return;
     const Instant now = at(x);
     const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return;
     const Wrench w = load(now, x);
-    const Vec3 F = presses() ? Vec3(m.N * m.contact_point.n + w.F) : w.F, C = m.contact_point.C();
-    put(i, F, C, w.T_i, x, out);
-    put(j, -F, C, w.T_j, x, out);
+    const Vec3 F = applies_normal_force() ? Vec3(m.N * m.contact_point.n + w.F) : w.F,
+               C = m.contact_point.C();
+    add_load(i, F, C, w.T_i, x, out);
+    add_load(j, -F, C, w.T_j, x, out);
 }
 
-Wrench TrackedForce::friction(const lie::State& x) const { return works(x) ? load(at(x), x) : Wrench(); }
+Wrench TrackedForce::friction(const lie::State& x) const { return is_active(x) ? load(at(x), x) : Wrench(); }
 
-double TrackedForce::time_of_history(const lie::State& x) const { return kept(x, first_internal_state).t; }
+double TrackedForce::time_of_history(const lie::State& x) const
+{
+    return saved_values(x, first_internal_state).t;
+}
 
 void TrackedForce::update_internal_state(lie::State& x) const
 {
-    if (works(x)) keep(at(x), x);
+    if (is_active(x)) save(at(x), x);
 }
 
 int TrackedForce::contacts_of(int body, const lie::State& x) const
@@ -166,9 +173,10 @@ int TrackedForce::contacts_of(int body, const lie::State& x) const
     for (const auto& force : model.forces()) {
         const auto* other = dynamic_cast<const TrackedForce*>(force.get());
         if (other == nullptr || (other->i != body && other->j != body)) continue;
-        if (other != this && other->held_by() != nullptr && other->held_by() == held_by())
-            continue;  // of the same contact, of which one works at a time
-        if (other == this || other->close(x)) ++count;
+        if (other != this && other->normal_constraint() != nullptr &&
+            other->normal_constraint() == normal_constraint())
+            continue;  // another force of the same contact; only one of them is active
+        if (other == this || other->is_near_contact(x)) ++count;
     }
     return std::max(1, count);
 }

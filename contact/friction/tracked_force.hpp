@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A force between two bodies that remembers how their contact point has moved.       Fang (2022), Secs. 4.2, 4.3
+/// Contact force of a model with friction from the tracked contact point.         Fang (2022), Secs. 4.2, 4.3
 
 #pragma once
 
 #include "contact/friction/friction_pair.hpp"
-#include "dae/model.hpp"
+#include "dae/force.hpp"
+
+namespace hilda::dae {
+class Constraint;
+class Model;
+}  // namespace hilda::dae
 
 namespace hilda::contact {
 
-/// Friction on body i at C, the opposite on body j, and what presses them together where that is a load. What the contact
-/// remembers is in the state: the track, the histories and the instant t_n that they belong to in State::remembered,
-/// what sticks and what slips in State::memory. It changes when a step is accepted.
+/// Friction on body i at C and the opposite on body j, with the normal force if that is a load and not a
+/// constraint. Contact frame, deflections and their time t_n are stored in State::internal_state, the regimes
+/// (stick or slip) in State::discrete_state. Both change only when a step is accepted.
 ///
-/// The loads of a state x are a function of x alone: those of the histories carried on from t_n to the pose of x,
-/// with dashpots by the velocities of x. In x(t_n) itself they are the histories as they stand: a contact that slips
-/// sits exactly at its bound, and to carry it on by rounding would let it stick, and switch its dashpot on.
+/// The loads of a state x are a function of x alone: the deflections are advanced from t_n to the pose of x,
+/// and the dampers use the velocities of x. If x is the state of t_n itself, the stored deflections are used
+/// without advancing them. A slipping contact is exactly at its bound; advancing it by a rounding error could
+/// change its regime to stick and activate its damper.
 class TrackedForce : public dae::Force {
 public:
     void add(const lie::State& x, lie::Loads& out) const override;
@@ -25,23 +31,24 @@ public:
 
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
-    std::string in_words() const override { return "contact '" + name + "'"; }
+    std::string label() const override { return "contact '" + name + "'"; }
 
-    /// What it remembers in x
-    ContactHistory recall(const lie::State& x) const;
-    /// The contact at x, with the histories carried on to it
+    /// The contact history stored in x
+    ContactHistory saved_history(const lie::State& x) const;
+    /// State of the contact at x, and the history advanced to x
     struct Instant {
         ContactState contact_state;
         ContactHistory history;
-        bool is_saved =
-            false;  ///< x is that of the memory itself, as it was when the step to it was accepted
+        /// x is the state at which the history was stored; the history is then not advanced
+        bool is_saved = false;
     };
     Instant at(const lie::State& x) const;
-    Wrench friction(const lie::State& x) const;  ///< for figures
-    /// Whether there is anything of it at present
-    virtual bool works(const lie::State&) const { return true; }
-    /// The constraint that is the normal force of the same contact; nullptr where there is none
-    virtual const dae::Constraint* held_by() const { return nullptr; }
+    Wrench friction(const lie::State& x) const;  ///< friction loads at x, for output
+    /// False if the force is currently not applied, for example a fallback while its constraint is active
+    virtual bool is_active(const lie::State&) const { return true; }
+    /// The constraint that supplies the normal force of the same contact, or for which this force is the
+    /// fallback; nullptr if there is none
+    virtual const dae::Constraint* normal_constraint() const { return nullptr; }
 
     const int i, j;
 
@@ -49,24 +56,27 @@ protected:
     TrackedForce(const std::string& name, const dae::Model& model, int i, int j);
 
     virtual const FrictionPair& pair() const = 0;
-    /// Touch, normal force, and motion of the contact point since the memory
+    /// Contact point, normal force and sliding displacement since `history`
     virtual ContactState evaluate(const lie::State& x, const ContactHistory& history) const = 0;
-    /// That the dashpots go by: at this instant, from the velocities of the bodies
-    virtual Rates speeds(const Instant& now, const lie::State& x) const;
-    /// Whether the normal force is a load; else a constraint has it
-    virtual bool presses() const = 0;
-    /// Whether the bodies of another contact touch, or are about to
-    virtual bool close(const lie::State& x) const = 0;
+    /// Rates for the dampers. Default: the rates at this instant from the velocities of the bodies, see
+    /// rates().
+    virtual Rates damper_rates(const Instant& now, const lie::State& x) const;
+    /// True if the normal force is part of this load; false if a constraint supplies it
+    virtual bool applies_normal_force() const = 0;
+    /// True if the bodies are in contact or close to it; used to count the contacts of a body
+    virtual bool is_near_contact(const lie::State& x) const = 0;
 
-    /// How many contacts of a body touch at x, this one among them
+    /// Number of contacts of a body that are near contact at x, including this one
     int contacts_of(int body, const lie::State& x) const;
-    /// Throws what went wrong in `x`, with the bodies and the time.
+    /// Throws e again with the names of the bodies and the time of x appended
     [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
 
+    /// Mass and inertia of body b of the model; infinite for the ground
     static Inertia inertia(const dae::Model& model, int b);
 
-    void keep(const Instant& now, lie::State& x) const;
-    double time_of_history(const lie::State& x) const;  ///< t_n [s]
+    /// Stores the history of `now` in x
+    void save(const Instant& now, lie::State& x) const;
+    double time_of_history(const lie::State& x) const;  ///< time t_n of the stored history [s]
 
     const dae::Model& model;
 

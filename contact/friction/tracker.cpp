@@ -7,25 +7,29 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double rounding = 1e-15;  // of positions: a way shorter than this part of them has no direction
+constexpr double rounding =
+    1e-15;  // of positions: a displacement below this fraction of them has no direction
 
-/// From where the old point c_bar of a body has gone to the new one, in the tangent plane and as long as along the surface
-Vec3 way(const Vec3& c_bar, const Vec3& C, const Vec3& n, const Motion& b, const Surface& surface)
+/// p_b: from the present position of the old contact point c_bar to the new contact point C, in the tangent
+/// plane, with the length of the path along the surface
+Vec3 surface_displacement(const Vec3& c_bar, const Vec3& C, const Vec3& n, const Motion& b,
+                          const Surface& surface)
 {
     const Vec3 s = b.A * c_bar, d = C - (b.r + s);
     const Vec3 t = d - n * n.dot(d);
-    const double flat = t.norm();
-    if (flat <= rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
-    return surface.arc(d.norm()) / flat * t;
+    const double length = t.norm();
+    if (length <= rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
+    return surface.arc(d.norm()) / length * t;
 }
 
-/// u_0 ⊥ n_0 after the smallest rotation that takes n_0 to n                                        Sec. A.6
-Vec3 carried(const Vec3& u_0, const Vec3& n_0, const Vec3& n)
+/// u_0 ⊥ n_0 after the smallest rotation that maps n_0 to n (parallel transport)                    Sec. A.6
+Vec3 transported(const Vec3& u_0, const Vec3& n_0, const Vec3& n)
 {
     const double cosine = n.dot(n_0);
     if (!(cosine > -0.99))
-        throw lie::NumericalFailure("contact_not_converged",
-                                    "the normal of a contact turns round within a step");
+        throw lie::NumericalFailure(
+            "contact_not_converged",
+            "the normal of a contact rotates by more than 172 deg in a step; reduce the step");
     Vec3 u = u_0 - n.dot(u_0) / (1 + cosine) * (n_0 + n);
     u -= n * n.dot(u);
     return u / u.norm();
@@ -44,7 +48,7 @@ ContactFrame contact_frame(const ContactPoint& contact_point, const Vec3& u, con
             .u_j = bj.A.transpose() * u};
 }
 
-SlidingDisplacement no_slip(const ContactPoint& contact_point, const Vec3& u)
+SlidingDisplacement zero_displacement(const ContactPoint& contact_point, const Vec3& u)
 {
     const Vec3 zero = Vec3::Zero();
     return {.n = contact_point.n,
@@ -59,25 +63,26 @@ SlidingDisplacement no_slip(const ContactPoint& contact_point, const Vec3& u)
             .ds = zero};
 }
 
-SlidingDisplacement follow(const ContactFrame& from, const ContactPoint& to, const Shape& i, const Shape& j,
-                           const Motion& bi, const Motion& bj, const Tracking& how)
+SlidingDisplacement track_contact_point(const ContactFrame& from, const ContactPoint& to, const Shape& i,
+                                        const Shape& j, const Motion& bi, const Motion& bj,
+                                        const Tracking& how)
 {
     SlidingDisplacement s;
     s.n = to.n;
-    s.u_i = carried(bi.A * from.u_i, bi.A * from.n_i, s.n);
-    s.u_j = carried(bj.A * from.u_j, bj.A * from.n_j, s.n);
+    s.u_i = transported(bi.A * from.u_i, bi.A * from.n_i, s.n);
+    s.u_j = transported(bj.A * from.u_j, bj.A * from.n_j, s.n);
     s.psi = std::atan2(s.n.dot(s.u_j.cross(s.u_i)), s.u_j.dot(s.u_i));
-    s.p_i = way(from.c_i, to.C_i, s.n, bi, *i.surface);
-    s.p_j = way(from.c_j, to.C_j, s.n, bj, *j.surface);
+    s.p_i = surface_displacement(from.c_i, to.C_i, s.n, bi, *i.surface);
+    s.p_j = surface_displacement(from.c_j, to.C_j, s.n, bj, *j.surface);
     if (how.carrier == Carrier::mid) {
-        const double part = how.beta * s.psi / 2, cosine = std::cos(part), sine = std::sin(part);
-        s.u = (s.u_i + s.u_j).normalized();  // halfway, without another sine
-        s.q_i = turned(s.p_i, s.n, cosine, -sine);
-        s.q_j = turned(s.p_j, s.n, cosine, sine);
+        const double angle = how.beta * s.psi / 2, cosine = std::cos(angle), sine = std::sin(angle);
+        s.u = (s.u_i + s.u_j).normalized();  // bisector, without another sine and cosine
+        s.q_i = rotated(s.p_i, s.n, cosine, -sine);
+        s.q_j = rotated(s.p_j, s.n, cosine, sine);
     } else {
         s.u = s.u_i;
         s.q_i = s.p_i;
-        s.q_j = turned(s.p_j, s.n, std::cos(how.beta * s.psi), std::sin(how.beta * s.psi));
+        s.q_j = rotated(s.p_j, s.n, std::cos(how.beta * s.psi), std::sin(how.beta * s.psi));
     }
     s.ds = s.q_i - s.q_j;
     return s;

@@ -15,23 +15,23 @@ namespace {
 using Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd, Eigen::Vector4d;
 
 constexpr const char* where = "contact::HeightMap";
-constexpr int fewest = 4;             // samples either way: what a cubic needs
-constexpr double on_the_edge = 1e-9;  // outside of the grid, in cells: rounding
-constexpr double converged = 1e-9;    // of the size; the error that is left is its square
+constexpr int min_samples = 4;           // samples in each direction, required by a cubic
+constexpr double edge_tolerance = 1e-9;  // allowed distance outside the grid, in cells (rounding)
+constexpr double tolerance = 1e-9;       // of the step, relative to the size; convergence is quadratic
 
-/// The n + 2 coefficients of the not-a-knot cubic spline through n samples. With δ² the second difference of neighbours
-/// and m_i = δ²c_i, which is Δx² f'' at a sample,
+/// The n + 2 coefficients c of the not-a-knot cubic spline through n samples f. With δ² the central second
+/// difference and m_i = δ²c_i, which is Δx² f'' at sample i,
 ///
 ///     c_i + m_i / 6 = f_i,   m_(i-1) + 4 m_i + m_(i+1) = 6 δ²f_i   0 < i < n - 1
-///     m_0 - 2 m_1 + m_2 = 0, and so at the other end               not a knot
+///     m_0 - 2 m_1 + m_2 = 0, likewise at the other end             not-a-knot
 ///
-/// The second of these with the third gives m_1 = δ²f_1 at once, and what is left is tridiagonal.
+/// The second and the third equation give m_1 = δ²f_1 directly. The remaining system is tridiagonal.
 VectorXd spline(const VectorXd& f)
 {
     const Eigen::Index n = f.size();
     VectorXd m = VectorXd::Zero(n), pivot = VectorXd::Constant(n, 4);
     for (Eigen::Index i = 1; i < n - 1; ++i) m[i] = f[i - 1] - 2 * f[i] + f[i + 1];
-    // rows 2..n-3, with m_1 and m_(n-2) known
+    // right-hand sides of rows 2..n-3; m_1 and m_(n-2) are known
     for (Eigen::Index i = 2; i < n - 2; ++i) m[i] *= 6;
     if (n > 4) m[2] -= m[1], m[n - 3] -= m[n - 2];
     for (Eigen::Index i = 3; i < n - 2; ++i) pivot[i] -= 1 / pivot[i - 1], m[i] -= m[i - 1] / pivot[i - 1];
@@ -49,8 +49,9 @@ VectorXd spline(const VectorXd& f)
 MatrixXd checked_coefficients(const MatrixXd& heights)
 {
     for (const Eigen::Index samples : {heights.rows(), heights.cols()})
-        if (samples < fewest) lie::reject(where, "a height map needs 4 samples either way", samples);
-    if (!heights.allFinite()) lie::reject(where, "the heights must be finite", "one that is not");
+        if (samples < min_samples)
+            lie::reject(where, "a height map needs at least 4 samples in each direction", samples);
+    if (!heights.allFinite()) lie::reject(where, "the heights must be finite", "a value that is not finite");
     MatrixXd along_x(heights.rows() + 2, heights.cols()), c(heights.rows() + 2, heights.cols() + 2);
     for (Eigen::Index j = 0; j < heights.cols(); ++j) along_x.col(j) = spline(heights.col(j));
     for (Eigen::Index i = 0; i < c.rows(); ++i) c.row(i) = spline(along_x.row(i).transpose()).transpose();
@@ -77,7 +78,7 @@ std::string point(const char* before, const Vec3& a)
     return what.str();
 }
 
-/// The four B-splines over a cell, and their derivatives, at u = 0..1
+/// The four uniform cubic B-splines of a cell and their first and second derivatives, at u in [0, 1]
 struct Basis {
     Vector4d B, B1, B2;
 
@@ -115,10 +116,10 @@ HeightMap::Height HeightMap::at(const Vector2d& x) const
     const Vector4d Cv = C * v.B, Cv1 = C * v.B1;
     Height h;
     h.f = u.B.dot(Cv);
-    h.slope = Vector2d(u.B1.dot(Cv), u.B.dot(Cv1)).cwiseQuotient(spacing);
-    h.bend(0, 0) = u.B2.dot(Cv) / (spacing.x() * spacing.x());
-    h.bend(0, 1) = h.bend(1, 0) = u.B1.dot(Cv1) / (spacing.x() * spacing.y());
-    h.bend(1, 1) = u.B.dot(C * v.B2) / (spacing.y() * spacing.y());
+    h.gradient = Vector2d(u.B1.dot(Cv), u.B.dot(Cv1)).cwiseQuotient(spacing);
+    h.hessian(0, 0) = u.B2.dot(Cv) / (spacing.x() * spacing.x());
+    h.hessian(0, 1) = h.hessian(1, 0) = u.B1.dot(Cv1) / (spacing.x() * spacing.y());
+    h.hessian(1, 1) = u.B.dot(C * v.B2) / (spacing.y() * spacing.y());
     return h;
 }
 
@@ -127,16 +128,18 @@ Surface::Derivatives HeightMap::derivatives(const Vec3& a) const
     if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
     const Vector2d beyond =
         ((a.head<2>() - corner - 0.5 * extent()).cwiseAbs() - 0.5 * extent()).cwiseQuotient(spacing);
-    if (!(beyond.maxCoeff() <= on_the_edge))
-        throw lie::NumericalFailure("nonfinite", point("a height map has no height beyond its grid, at", a));
+    if (!(beyond.maxCoeff() <= edge_tolerance))
+        throw lie::NumericalFailure("nonfinite",
+                                    point("a height map is not defined outside its grid: point", a));
     const Height h = at(a.head<2>());
-    Derivatives d{a.z() - h.f, Vec3(-h.slope.x(), -h.slope.y(), 1), Mat3::Zero()};
-    d.hessian.topLeftCorner<2, 2>() = -h.bend;
+    Derivatives d{a.z() - h.f, Vec3(-h.gradient.x(), -h.gradient.y(), 1), Mat3::Zero()};
+    d.hessian.topLeftCorner<2, 2>() = -h.hessian;
     return d;
 }
 
-/// Of the samples no further away than the surface straight above or below, and that point, the nearest
-Vector2d HeightMap::near_sample(const Vec3& a) const
+/// The closest sample; only samples no farther from a than the point of the surface above or below a are
+/// examined. That point is returned if no sample is closer.
+Vector2d HeightMap::nearest_sample(const Vec3& a) const
 {
     const Vector2d upper = corner + extent();
     Vector2d best = a.head<2>().cwiseMax(corner).cwiseMin(upper);
@@ -160,43 +163,45 @@ Vector2d HeightMap::near_sample(const Vec3& a) const
     return best;
 }
 
-/// Newton's method on E = |x - a|²/2 over (x, y), downhill and within the grid:
+/// Newton's method for the minimum of E = |x - a|²/2 over (x, y), with line search and restricted to the
+/// grid:
 ///
 ///     ∂E = x - a + (f - a_z) ∇f,   ∂²E = I + ∇f ∇fᵀ + (f - a_z) ∇²f
 Vec3 HeightMap::project(const Vec3& a) const
 {
     if (!a.allFinite())
-        throw lie::NumericalFailure("nonfinite", point("no nearest point of a height map to", a));
+        throw lie::NumericalFailure("nonfinite",
+                                    point("the projection onto a height map needs a finite point, got", a));
     constexpr int most = 100;
-    constexpr double small = 1e-6;  // a step that leads downhill, though E may not tell for rounding
+    constexpr double negligible_step = 1e-6;  // relative step below which rounding of E hides the decrease
     const Vector2d upper = corner + extent();
     const auto energy = [&](const Vector2d& x, double f) {
         return 0.5 * ((x - a.head<2>()).squaredNorm() + (f - a.z()) * (f - a.z()));
     };
-    Vector2d x = near_sample(a);
+    Vector2d x = nearest_sample(a);
     Height h = at(x);
     for (int k = 0; k < most; ++k) {
-        const Vector2d slope = x - a.head<2>() + (h.f - a.z()) * h.slope;
-        Eigen::Matrix2d M = Eigen::Matrix2d::Identity() + h.slope * h.slope.transpose();
-        if (const Eigen::Matrix2d exact = M + (h.f - a.z()) * h.bend;
+        const Vector2d slope = x - a.head<2>() + (h.f - a.z()) * h.gradient;
+        Eigen::Matrix2d M = Eigen::Matrix2d::Identity() + h.gradient * h.gradient.transpose();
+        if (const Eigen::Matrix2d exact = M + (h.f - a.z()) * h.hessian;
             exact.determinant() > 0 && exact.trace() > 0)
-            M = exact;  // else not near a minimum
+            M = exact;  // otherwise the Gauss-Newton matrix: ∂²E is not positive definite
         Vector2d step = -(M.inverse() * slope);
         const double before = energy(x, h.f);
         Vector2d next = x;
         for (int half = 0; half < 40; ++half, step *= 0.5) {
             next = (x + step).cwiseMax(corner).cwiseMin(upper);
             h = at(next);
-            if (step.norm() <= small * length || energy(next, h.f) <= before) break;
+            if (step.norm() <= negligible_step * length || energy(next, h.f) <= before) break;
         }
         const double correction = step.norm(), moved = (next - x).norm();
         x = next;
-        if (correction <= converged * length) return {x.x(), x.y(), h.f};
-        if (moved <= converged * length) break;  // against the edge
+        if (correction <= tolerance * length) return {x.x(), x.y(), h.f};
+        if (moved <= tolerance * length) break;  // stopped by the edge of the grid
     }
     throw lie::NumericalFailure(
         "contact_not_converged",
-        point("the nearest point of a height map is on the edge of its grid, from", a));
+        point("the closest point of a height map lies on the edge of its grid: point", a));
 }
 
 namespace {
@@ -204,17 +209,17 @@ namespace {
 const bool registered = register_surface(
     {.name = "height-map", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const MatrixXd heights = read_rows(o, "heights");
-         if (std::min(heights.rows(), heights.cols()) < fewest)
+         if (std::min(heights.rows(), heights.cols()) < min_samples)
              o.fail("heights", "heights must have at least 4 rows of at least 4 numbers, got " +
                                    std::to_string(heights.rows()) + " of " + std::to_string(heights.cols()));
          const std::vector<double> spacing = o.numbers("spacing", 2);
          if (!(spacing[0] > 0 && spacing[1] > 0))
-             o.fail("spacing", "spacing must be positive, got " + dae::described(*o.look("spacing")));
+             o.fail("spacing", "spacing must be positive, got " + dae::described(*o.find("spacing")));
          Vector2d corner = Vector2d::Zero();
          if (o.has("corner"))
              corner = Vector2d::Map(o.numbers("corner", 2).data());
          else
-             o.keep("corner", {.value = dae::Json::List{{.value = 0.0}, {.value = 0.0}}});
+             o.record("corner", {.value = dae::Json::List{{.value = 0.0}, {.value = 0.0}}});
          return std::make_shared<HeightMap>(heights, corner, Vector2d(spacing[0], spacing[1]));
      }});
 

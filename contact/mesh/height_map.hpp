@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Terrain from samples: a bicubic spline with two continuous derivatives.
+/// Height map: a surface z = f(x, y) interpolated from samples by a bicubic spline with two continuous
+/// derivatives.
 
 #pragma once
 
@@ -7,27 +8,31 @@
 
 namespace hilda::contact {
 
-/// G = z - f(x, y), with the body below. With u and v the position within the cell (i, j) of the grid, in cells,
+/// G = z - f(x, y), with the body below the surface. In the cell (i, j) of the grid, with local coordinates
+/// u, v in [0, 1],
 ///
 ///     f(x, y) = Σ c_(i+k)(j+l) B_k(u) B_l(v),   k, l = 0..3
 ///
-/// where B are the uniform cubic B-splines and c the coefficients for which f passes through the samples. At its ends
-/// the spline is not-a-knot: the two outermost cells are one cubic. It is then exact for every polynomial of degree 3
-/// in x and in y, and for a smooth f the errors of f, ∇f and ∇²f fall with the fourth, third and second power
-/// of the spacing, up to the edge. The natural spline, with f'' = 0 there, has a curvature at the edge that does not
-/// converge.
+/// where B are the uniform cubic B-splines and c the coefficients for which f interpolates the samples. The
+/// end condition is not-a-knot: the two outermost cells share one cubic. The spline is then exact for
+/// polynomials of degree 3 in x and in y. For a smooth f the errors of f, ∇f and ∇²f are of order 4, 3 and 2
+/// in the spacing, up to the edge. The natural spline (f'' = 0 at the edge) is not used because its curvature
+/// at the edge does not converge.
 ///
-/// B-splines rather than slopes or 16 coefficients per cell: f has two continuous derivatives whatever the rounding
-/// of c, and a sample costs one number.
+/// B-spline coefficients are stored rather than slopes at the samples or 16 coefficients per cell: f then has
+/// two continuous derivatives even with rounded coefficients, and one number per sample is sufficient.
 ///
-/// Outside of the grid there is no surface: every evaluation throws lie::NumericalFailure with the point.
+/// The surface is defined on the grid only: every evaluation outside throws lie::NumericalFailure "nonfinite"
+/// with the point.
 class HeightMap final : public Surface {
 public:
-    /// heights(i, j) = f(x_0 + i Δx, y_0 + j Δy) [m], with the corner (x_0, y_0) and the spacing (Δx, Δy).
-    /// InvalidInput unless there are at least 4 samples either way, all are finite, and the spacing is positive.
+    /// heights(i, j) = f(x_0 + i Δx, y_0 + j Δy) [m], with the corner (x_0, y_0) and the spacing (Δx, Δy)
+    /// [m]. InvalidInput unless there are at least 4 samples in each direction, all are finite, and the
+    /// spacing is positive.
     HeightMap(const Eigen::MatrixXd& heights, const Eigen::Vector2d& corner, const Eigen::Vector2d& spacing);
 
-    /// Samples a function f(x, y) at n_x times n_y points, corners included. InvalidInput as above.
+    /// Samples a function f(x, y) at n_x by n_y points of the rectangle [lower, upper]. InvalidInput as
+    /// above.
     template <class F>
     static HeightMap sampled(const F& f, const Eigen::Vector2d& lower, const Eigen::Vector2d& upper, int n_x,
                              int n_y)
@@ -45,9 +50,9 @@ public:
     Vec3 gradient(const Vec3& a) const override { return derivatives(a).gradient; }
     Mat3 hessian(const Vec3& a) const override { return derivatives(a).hessian; }
     Derivatives derivatives(const Vec3& a) const override;
-    /// NumericalFailure "contact_not_converged" where the nearest point is on the edge of the grid
+    /// NumericalFailure "contact_not_converged" if the closest point lies on the edge of the grid
     Vec3 project(const Vec3& a) const override;
-    /// Half the shorter side of the grid
+    /// Half the shorter side of the grid [m]
     double size() const override { return length; }
 
     const Eigen::Vector2d corner, spacing;
@@ -55,16 +60,16 @@ public:
 private:
     struct Height {
         double f;
-        Eigen::Vector2d slope;
-        Eigen::Matrix2d bend;
+        Eigen::Vector2d gradient;
+        Eigen::Matrix2d hessian;
     };
-    /// f, ∇f, ∇²f at a point of the grid
+    /// f, ∇f and ∇²f at a point x of the grid
     Height at(const Eigen::Vector2d& x) const;
     Eigen::Vector2d extent() const;
-    /// A point from which Newton's method finds the nearest one
-    Eigen::Vector2d near_sample(const Vec3& a) const;
+    /// Starting point of Newton's method in project(): the closest sample, or the point above or below a
+    Eigen::Vector2d nearest_sample(const Vec3& a) const;
 
-    const Eigen::MatrixXd c;  // c(i + 1, j + 1) belongs to the sample (i, j)
+    const Eigen::MatrixXd c;  // B-spline coefficients; c(i + 1, j + 1) belongs to sample (i, j)
     const double length;
 };
 

@@ -16,16 +16,17 @@ namespace hilda::contact {
 
 namespace {
 
-// over the longest edge at a vertex
-constexpr double fit_reach = 2.5;    // of the vertices to which its patch is fitted
-constexpr double blend_reach = 1.5;  // of the patch: everywhere on the mesh some vertex is within 0.6
+// lengths relative to the longest edge at a vertex
+constexpr double fit_reach = 2.5;  // radius within which the patch is fitted to vertices
+constexpr double blend_reach =
+    1.5;  // support radius ρ; every point of the mesh has a vertex within 0.6 edges
 
-constexpr int terms = 10;            // of a cubic
-constexpr int enough = 14;           // vertices to fit one to
-constexpr double growth = 1.3;       // of the reach where they are not enough,
-constexpr int most_growths = 3;      // so often
-constexpr double determined = 1e-7;  // pivot over pivot of the normal equations
-constexpr double most_turn = 80;     // of the normal within the reach [deg]
+constexpr int terms = 10;                 // of a cubic in two variables
+constexpr int min_vertices = 14;          // required to fit a cubic
+constexpr double growth = 1.3;            // factor by which the fit radius grows if the fit is not determined
+constexpr int max_growths = 3;            // number of times
+constexpr double min_pivot_ratio = 1e-7;  // smallest to largest pivot of the normal equations
+constexpr double max_angle = 80;          // between vertex normals of one patch [deg]
 
 using Terms = Eigen::Matrix<double, terms, 1>;
 
@@ -45,7 +46,8 @@ double longest_edge(const TriangleMesh& mesh, int vertex)
     return longest;
 }
 
-/// The vertices within a distance that edges join to one, with that one first. `seen` is false before and after.
+/// The vertices within a distance that are connected by edges to `vertex`, which is the first. `seen` is a
+/// work array, false before and after the call.
 std::vector<int> neighbours(const TriangleMesh& mesh, int vertex, double distance, std::vector<bool>& seen)
 {
     std::vector<int> found = {vertex};
@@ -65,19 +67,19 @@ constexpr const char* where = "contact::MeshSurface: ";
 
 [[noreturn]] void refuse(const std::string& what)
 {
-    throw lie::InvalidInput(where + ("the mesh is too coarse to be smooth: " + what));
+    throw lie::InvalidInput(where + ("the mesh is too coarse for a smooth surface: " + what));
 }
 
-void check_turn(const TriangleMesh& mesh, const std::vector<int>& near)
+void check_normals(const TriangleMesh& mesh, const std::vector<int>& near)
 {
     for (const int v : near) {
         const Vec3 &n = mesh.vertex_normal[near[0]], &m = mesh.vertex_normal[v];
-        const double turn = std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / std::numbers::pi;
-        if (turn <= most_turn) continue;
+        const double angle = std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / std::numbers::pi;
+        if (angle <= max_angle) continue;
         std::ostringstream what;
         what.precision(3);
-        what << "from vertex " << near[0] << " to vertex " << v << ", near to it, its normal turns by "
-             << turn << " deg, at most " << most_turn;
+        what << "the normals of the neighbouring vertices " << near[0] << " and " << v << " differ by "
+             << angle << " deg, the limit is " << max_angle << " deg";
         refuse(what.str());
     }
 }
@@ -92,17 +94,18 @@ MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(give
     for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
         if (mesh.around[v].empty()) continue;
         box.extend(mesh.vertices[v]);
-        patches[v] = fitted(v, seen);
+        patches[v] = fit_patch(v, seen);
     }
     length = 0.5 * std::cbrt(box.volume());
 
-    // From each vertex outward over the triangles that its patch can reach from within their band
-    std::vector<std::vector<int>> counting(mesh.triangles.size());
+    // For each vertex, find the triangles that its patch contributes to: search outward over adjacent
+    // triangles whose distance from the vertex is below ρ plus half an edge
+    std::vector<std::vector<int>> patches_at(mesh.triangles.size());
     for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
         std::vector<int> reached = mesh.around[v], tested = reached;
         for (const int t : tested) seen[t] = true;
         for (size_t k = 0; k < reached.size(); ++k) {
-            counting[reached[k]].push_back(v);  // in ascending order: sums are the same at every triangle
+            patches_at[reached[k]].push_back(v);  // ascending order makes the sums reproducible
             for (const int corner : mesh.triangles[reached[k]])
                 for (const int t : mesh.around[corner]) {
                     if (seen[t]) continue;
@@ -114,10 +117,10 @@ MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(give
         }
         for (const int t : tested) seen[t] = false;
     }
-    first.push_back(0);
-    for (const std::vector<int>& patches_of : counting) {
-        list.insert(list.end(), patches_of.begin(), patches_of.end());
-        first.push_back(static_cast<int>(list.size()));
+    first_patch.push_back(0);
+    for (const std::vector<int>& patches_of : patches_at) {
+        patch_list.insert(patch_list.end(), patches_of.begin(), patches_of.end());
+        first_patch.push_back(static_cast<int>(patch_list.size()));
     }
 }
 
@@ -128,20 +131,21 @@ double MeshSurface::half_edge(int triangle) const
     return 0.5 * std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
 }
 
-/// Least squares with weights (1 - r²/R²)², which let a vertex at the reach R come and go unnoticed. Lengths are over
-/// R, so that the condition of the normal equations does not depend on the size of the mesh.
-MeshSurface::Patch MeshSurface::fitted(int vertex, std::vector<bool>& seen) const
+/// Least squares with the weights (1 - r²/R²)², which vanish at the fit radius R so that the fit depends
+/// continuously on the vertices. Lengths are divided by R, so that the condition of the normal equations is
+/// independent of the mesh size.
+MeshSurface::Patch MeshSurface::fit_patch(int vertex, std::vector<bool>& seen) const
 {
     const double edge = longest_edge(mesh, vertex);
     double R = fit_reach * edge;
     Patch patch{mesh.vertices[vertex], Mat3::Identity(), blend_reach * edge, {}};
     patch.E << tangent_basis(mesh.vertex_normal[vertex]), mesh.vertex_normal[vertex];
     size_t known = 0;
-    for (int grown = 0; grown <= most_growths; ++grown, R *= growth) {
+    for (int grown = 0; grown <= max_growths; ++grown, R *= growth) {
         const std::vector<int> near = neighbours(mesh, vertex, R, seen);
         known = near.size();
-        if (known < enough) continue;
-        check_turn(mesh, near);
+        if (known < min_vertices) continue;
+        check_normals(mesh, near);
 
         Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
         Terms right = Terms::Zero();
@@ -155,7 +159,7 @@ MeshSurface::Patch MeshSurface::fitted(int vertex, std::vector<bool>& seen) cons
             }
         }
         const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> ldlt(normal);
-        if (!(ldlt.vectorD().minCoeff() > determined * ldlt.vectorD().maxCoeff())) continue;
+        if (!(ldlt.vectorD().minCoeff() > min_pivot_ratio * ldlt.vectorD().maxCoeff())) continue;
         const Terms f = ldlt.solve(right);
         const double scale[] = {R, 1, 1 / R, 1 / (R * R)};
         constexpr int degree[terms] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
@@ -186,12 +190,12 @@ Surface::Derivatives MeshSurface::derivatives(const Vec3& a) const
 {
     if (!a.allFinite()) return {NAN, Vec3::Constant(NAN), Mat3::Constant(NAN)};
     const TriangleMesh::Nearest near = mesh.nearest(a);
-    if (!(near.distance <= half_edge(near.triangle))) return distance(a, near);
+    if (!(near.distance <= half_edge(near.triangle))) return distance_function(a, near);
 
-    // W = Σ w, V = Σ w Q with their derivatives, and G = V / W
+    // G = V / W with W = Σ w, V = Σ w Q, by the quotient rule
     Derivatives W{0, Vec3::Zero(), Mat3::Zero()}, V = W;
-    for (int k = first[near.triangle]; k < first[near.triangle + 1]; ++k) {
-        const Patch& patch = patches[list[k]];
+    for (int k = first_patch[near.triangle]; k < first_patch[near.triangle + 1]; ++k) {
+        const Patch& patch = patches[patch_list[k]];
         const Vec3 d = a - patch.v;
         const double rho2 = patch.rho * patch.rho, s = 1 - d.squaredNorm() / rho2;
         if (!(s > 0)) continue;
@@ -214,8 +218,8 @@ Surface::Derivatives MeshSurface::derivatives(const Vec3& a) const
     return G;
 }
 
-/// That to a face, an edge or a vertex
-Surface::Derivatives MeshSurface::distance(const Vec3& a, const TriangleMesh::Nearest& near) const
+/// Signed distance to the closest face, edge or vertex, with its derivatives
+Surface::Derivatives MeshSurface::distance_function(const Vec3& a, const TriangleMesh::Nearest& near) const
 {
     const double side = (a - near.point).dot(mesh.normal(near.triangle, near.feature)) < 0 ? -1 : 1;
     const Vec3 n = (a - near.point) / near.distance;

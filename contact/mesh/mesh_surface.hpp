@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A smooth surface through a triangle mesh: normal and curvature are those of one G.
+/// A smooth implicit surface fitted to a triangle mesh.
 
 #pragma once
 
@@ -8,28 +8,29 @@
 
 namespace hilda::contact {
 
-/// At each vertex k a cubic patch z = f_k(x, y) in a frame whose z is the normal there, fitted to the vertices around it
-/// by weighted least squares; and the patches blended by a partition of unity:
+/// At each vertex k a cubic patch z = f_k(x, y) is fitted to the surrounding vertices by weighted least
+/// squares, in a frame with z along the vertex normal. The patches are blended by a partition of unity:
 ///
-///     G(ᾱ) = Σ w_k Q_k / Σ w_k,   Q_k = z_k - f_k(x_k, y_k),   w_k = (1 - |ᾱ - v_k|²/ρ_k²)³ within ρ_k, else 0
+///     G(ᾱ) = Σ w_k Q_k / Σ w_k,   Q_k = z_k - f_k(x_k, y_k),   w_k = max(0, 1 - |ᾱ - v_k|²/ρ_k²)³
 ///
-/// with (x_k, y_k, z_k) = E_kᵀ(ᾱ - v_k). w has two continuous derivatives, and so has G. With edges of length e the
-/// Q_k are wrong by O(e⁴), so that by Σ ∇(w_k / Σ w) = 0 the surface is wrong by O(e⁴), its normal by O(e³) and its
-/// curvature by O(e²). It passes through the vertices to O(e⁴), and not exactly.
+/// with (x_k, y_k, z_k) = E_kᵀ(ᾱ - v_k). w has two continuous derivatives, and so has G. With edge length e
+/// the error of Q_k is O(e⁴). Since Σ ∇(w_k / Σ w) = 0, the error of the surface is O(e⁴), of its normal
+/// O(e³), and of its curvature O(e²). The surface passes through the vertices to O(e⁴), not exactly.
 ///
-/// A rigid ball that slides over a surface feels its curvature: a force needs second derivatives that converge.
-/// That rules out the flat facets with interpolated normals, whose normal is the gradient of nothing, and the
-/// parametric patches that join with a common tangent plane (Nagata, PN triangles): their curvature jumps at
-/// every edge, and G would be a distance to be found by iteration.
+/// The contact force on a sliding body depends on the curvature of the surface, so the second derivatives
+/// must converge. Two alternatives are rejected for this reason. For flat facets with interpolated normals
+/// the normal is not the gradient of any G. For parametric patches with common tangent planes (Nagata, PN
+/// triangles) the curvature jumps at every edge, and G would be a distance that needs an iteration.
 ///
-/// Of the patches only those count whose vertex is joined to the triangle nearest to ᾱ by triangles within ρ_k, so that
-/// the two sides of a thin body do not feel each other. Further from the mesh than half an edge, G is the signed
-/// distance to the triangles, which leads a search back; at that border it jumps.
+/// Only patches whose vertex is connected to the triangle closest to ᾱ by triangles within ρ_k contribute, so
+/// that the two sides of a thin body do not influence each other. At distances above half an edge length from
+/// the mesh, G is the signed distance to the triangles, which leads an iteration back to the mesh. G is
+/// discontinuous at this limit.
 class MeshSurface final : public Surface {
 public:
-    /// A hollow, touched from inside, where concave. InvalidInput where the mesh is too coarse to be smooth: where its
-    /// normals turn by more than 80 degrees among the vertices of one patch, as at a sharp edge, or its vertices
-    /// are too few for one.
+    /// With `concave` contact is on the inside. InvalidInput if the mesh is too coarse for a smooth surface:
+    /// the vertex normals of one patch differ by more than 80 degrees, as at a sharp edge, or the vertices do
+    /// not determine a cubic.
     explicit MeshSurface(TriangleMesh mesh, bool concave = false);
 
     std::string name() const override { return "mesh"; }
@@ -38,7 +39,8 @@ public:
     Mat3 hessian(const Vec3& a) const override { return derivatives(a).hessian; }
     Derivatives derivatives(const Vec3& a) const override;
     double sigma() const override { return concave ? -1 : 1; }
-    /// Of the box around it half the mean side: (abc)^(1/3) for an ellipsoid along the axes
+    /// Half the geometric mean of the sides of the bounding box [m]: (abc)^(1/3) for an ellipsoid aligned
+    /// with the axes
     double size() const override { return length; }
 
     const TriangleMesh mesh;
@@ -46,21 +48,22 @@ public:
 
 private:
     struct Patch {
-        Vec3 v;                    // where it begins
-        Mat3 E;                    // from its frame; z is the normal
-        double rho;                // its reach
+        Vec3 v;                    // origin: the vertex [m]
+        Mat3 E;                    // axes of the patch frame; z is the vertex normal
+        double rho;                // support radius of the weight [m]
         std::array<double, 10> f;  // coefficients of 1, x, y, x², xy, y², x³, x²y, xy², y³
 
-        /// Q_k, ∇Q_k, ∇²Q_k
+        /// Q_k, ∇Q_k and ∇²Q_k at ᾱ = a
         Derivatives at(const Vec3& a) const;
     };
-    Patch fitted(int vertex, std::vector<bool>& seen) const;
-    Derivatives distance(const Vec3& a, const TriangleMesh::Nearest& near) const;
+    Patch fit_patch(int vertex, std::vector<bool>& seen) const;
+    Derivatives distance_function(const Vec3& a, const TriangleMesh::Nearest& near) const;
     double half_edge(int triangle) const;
 
     double length;
-    std::vector<Patch> patches;    // one for each vertex
-    std::vector<int> first, list;  // those that count at triangle t: list[first[t]] up to list[first[t + 1]]
+    std::vector<Patch> patches;  // one for each vertex
+    // the patches of triangle t are patch_list[first_patch[t]] .. patch_list[first_patch[t + 1] - 1]
+    std::vector<int> first_patch, patch_list;
 };
 
 }  // namespace hilda::contact

@@ -16,12 +16,13 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double no_area = 1e-12;  // over the square of the longest edge: rounding
+constexpr double min_relative_area =
+    1e-12;  // twice the area relative to the square of the longest edge; below is round-off
 
-/// One side of a triangle, on the edge between the vertices low < high
+/// One side of a triangle, between the vertices low < high
 struct Side {
     int low, high, triangle, number;
-    bool rises;  // runs from low to high
+    bool rises;  // oriented from low to high
 
     bool operator<(const Side& b) const
     {
@@ -29,7 +30,7 @@ struct Side {
     }
 };
 
-/// All sides, those of one edge together
+/// The sides of all triangles, sorted so that the sides of one edge are adjacent
 std::vector<Side> sides(const std::vector<Triangle>& triangles)
 {
     std::vector<Side> all;
@@ -42,18 +43,21 @@ std::vector<Side> sides(const std::vector<Triangle>& triangles)
     return all;
 }
 
-std::string the(const char* thing, int number) { return std::string(thing) + " " + std::to_string(number); }
+std::string numbered(const char* thing, int number)
+{
+    return std::string(thing) + " " + std::to_string(number);
+}
 
 std::string fault_of_triangle(const std::vector<Vec3>& vertices, const Triangle& triangle)
 {
     const int n = static_cast<int>(vertices.size());
     for (const int v : triangle)
         if (v < 0 || v >= n)
-            return "has the vertex " + std::to_string(v) + ", of " + std::to_string(n) + " numbered from 0";
+            return "has vertex " + std::to_string(v) + ", allowed are 0 to " + std::to_string(n - 1);
     const auto& [a, b, c] = triangle;
     const Vec3 ab = vertices[b] - vertices[a], ac = vertices[c] - vertices[a];
     const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    if (!(ab.cross(ac).norm() > no_area * longest)) return "has no area";
+    if (!(ab.cross(ac).norm() > min_relative_area * longest)) return "has zero area";
     return {};
 }
 
@@ -66,11 +70,12 @@ std::string fault_of_edges(const std::vector<Triangle>& triangles)
         const std::string edge =
             "the edge of the vertices " + std::to_string(all[k].low) + " and " + std::to_string(all[k].high);
         if (end - k == 1)
-            return edge + " is open: it has triangle " + std::to_string(all[k].triangle) + " only";
-        if (end - k > 2) return edge + " has " + std::to_string(end - k) + " triangles; it must have two";
+            return edge + " is open: it belongs to triangle " + std::to_string(all[k].triangle) + " only";
+        if (end - k > 2)
+            return edge + " belongs to " + std::to_string(end - k) + " triangles; it must belong to two";
         if (all[k].rises == all[k + 1].rises)
-            return edge + " is run along in one direction by " + the("triangles", all[k].triangle) + " and " +
-                   std::to_string(all[k + 1].triangle) + ": one of them is inside out";
+            return edge + " has the same direction in " + numbered("triangles", all[k].triangle) + " and " +
+                   std::to_string(all[k + 1].triangle) + ": one of them has the wrong orientation";
         k = end;
     }
     return {};
@@ -84,15 +89,17 @@ std::vector<std::vector<int>> triangles_around(size_t vertices, const std::vecto
     return around;
 }
 
-int place_in(const Triangle& triangle, int vertex)
+int position_in(const Triangle& triangle, int vertex)
 {
     return static_cast<int>(std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin());
 }
 
-/// Whether the triangles at a vertex follow each other around it, and are not two such rings
-bool one_ring(int vertex, const std::vector<int>& around, const std::vector<Triangle>& triangles)
+/// True if the triangles at a vertex form a single closed ring
+bool is_one_ring(int vertex, const std::vector<int>& around, const std::vector<Triangle>& triangles)
 {
-    const auto after = [&](int t, int k) { return triangles[t][(place_in(triangles[t], vertex) + k) % 3]; };
+    const auto after = [&](int t, int k) {
+        return triangles[t][(position_in(triangles[t], vertex) + k) % 3];
+    };
     int t = around[0];
     for (size_t steps = 1; steps <= around.size(); ++steps) {
         t = *std::find_if(around.begin(), around.end(), [&](int s) { return after(s, 1) == after(t, 2); });
@@ -101,7 +108,7 @@ bool one_ring(int vertex, const std::vector<int>& around, const std::vector<Tria
     return false;
 }
 
-/// The point of a triangle nearest to p, by the side of its edges on which p lies
+/// The point of a triangle closest to p and its feature (see TriangleMesh::Nearest)
 struct NearestInTriangle {
     int feature;
     Vec3 point;
@@ -132,17 +139,18 @@ std::optional<TriangleMesh::Fault> TriangleMesh::fault(const std::vector<Vec3>& 
                                                        const std::vector<Triangle>& triangles)
 {
     for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
-        if (!vertices[v].allFinite()) return Fault{true, the("vertex", v) + " is not finite"};
+        if (!vertices[v].allFinite()) return Fault{true, numbered("vertex", v) + " is not finite"};
     if (triangles.empty()) return Fault{false, "a mesh must have triangles"};
     for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
         if (const std::string what = fault_of_triangle(vertices, triangles[t]); !what.empty())
-            return Fault{false, the("triangle", t) + " " + what};
+            return Fault{false, numbered("triangle", t) + " " + what};
     if (const std::string what = fault_of_edges(triangles); !what.empty()) return Fault{false, what};
 
     const std::vector<std::vector<int>> around = triangles_around(vertices.size(), triangles);
     for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
-        if (!around[v].empty() && !one_ring(v, around[v], triangles))
-            return Fault{false, "two sheets of the mesh meet in vertex " + std::to_string(v) + " only"};
+        if (!around[v].empty() && !is_one_ring(v, around[v], triangles))
+            return Fault{
+                false, "the mesh is not a manifold: two parts of it share only vertex " + std::to_string(v)};
 
     double volume = 0;
     for (const auto& [a, b, c] : triangles) {
@@ -151,8 +159,8 @@ std::optional<TriangleMesh::Fault> TriangleMesh::fault(const std::vector<Vec3>& 
     }
     if (!(volume > 0)) {
         std::ostringstream what;
-        what << "the triangles must be counterclockwise as seen from outside: they enclose " << volume
-             << " m^3";
+        what << "the triangles must be counterclockwise as seen from outside: the enclosed volume is "
+             << volume << " m^3";
         return Fault{false, what.str()};
     }
     return {};
@@ -182,7 +190,7 @@ TriangleMesh::TriangleMesh(std::vector<Vec3> given_vertices, std::vector<Triangl
             vertex_normal[triangle[k]] += std::atan2(one.cross(other).norm(), one.dot(other)) * n;
         }
     }
-    for (Vec3& n : vertex_normal) n.normalize();  // leaves a zero as it is
+    for (Vec3& n : vertex_normal) n.normalize();  // a zero vector stays zero
 
     order.resize(triangles.size());
     std::iota(order.begin(), order.end(), 0);
@@ -236,15 +244,15 @@ TriangleMesh::Nearest TriangleMesh::nearest(const Vec3& a) const
     };
     Nearest best{-1, 0, Vec3::Zero(), std::numeric_limits<double>::infinity()};
     double least = best.distance;
-    struct Open {
+    struct Pending {
         int node;
         double squared;
     };
-    std::array<Open, 64> open;  // halving 2³¹ triangles leaves less
+    std::array<Pending, 64> pending;  // the depth of a tree of 2³¹ triangles is smaller
     int count = 0;
-    open[count++] = {0, squared_distance(nodes[0])};
+    pending[count++] = {0, squared_distance(nodes[0])};
     while (count > 0) {
-        const auto [at, squared] = open[--count];
+        const auto [at, squared] = pending[--count];
         if (!(squared < least)) continue;
         const Node& n = nodes[at];
         for (int k = n.first; k < n.first + n.count; ++k) {
@@ -255,9 +263,10 @@ TriangleMesh::Nearest TriangleMesh::nearest(const Vec3& a) const
             }
         }
         if (n.count > 0) continue;
-        Open left{at + 1, squared_distance(nodes[at + 1])}, right{n.right, squared_distance(nodes[n.right])};
+        Pending left{at + 1, squared_distance(nodes[at + 1])},
+            right{n.right, squared_distance(nodes[n.right])};
         if (left.squared < right.squared) std::swap(left, right);
-        open[count++] = left, open[count++] = right;  // the nearer one is looked at first
+        pending[count++] = left, pending[count++] = right;  // the closer child is visited first
     }
     best.distance = std::sqrt(least);
     return best;
@@ -270,9 +279,9 @@ TriangleMesh read_obj(std::istream& text, const std::string& name)
     std::string line;
     for (int number = 1; std::getline(text, line); ++number) {
         const auto refuse = [&](const std::string& what) {
-            std::ostringstream told;
-            told << "contact::read_obj: " << name << ":" << number << ": " << what;
-            throw lie::InvalidInput(told.str());
+            std::ostringstream message;
+            message << "contact::read_obj: " << name << ":" << number << ": " << what;
+            throw lie::InvalidInput(message.str());
         };
         std::istringstream words(line);
         std::string word;
@@ -282,7 +291,7 @@ TriangleMesh read_obj(std::istream& text, const std::string& name)
             if (!(words >> x[0] >> x[1] >> x[2])) refuse("a vertex must have three numbers, got " + line);
             vertices.push_back(x);
         } else if (word == "f") {
-            // a corner is v, v/vt, v//vn or v/vt/vn; v counts from 1, or back from the last vertex
+            // a corner is v, v/vt, v//vn or v/vt/vn; v counts from 1, or from the last vertex if negative
             std::vector<int> corners;
             const int known = static_cast<int>(vertices.size());
             while (words >> word) {
@@ -293,10 +302,11 @@ TriangleMesh read_obj(std::istream& text, const std::string& name)
                     refuse("a corner of a face must be the number of a vertex, got " + word);
                 }
                 if (v == 0 || v > known || v < -known)
-                    refuse("there is no vertex " + std::to_string(v) + " yet, of " + std::to_string(known));
+                    refuse("vertex " + std::to_string(v) + " is not defined; the number of vertices is " +
+                           std::to_string(known));
                 corners.push_back(v > 0 ? v - 1 : known + v);
             }
-            if (corners.size() < 3) refuse("a face must have three corners or more, got " + line);
+            if (corners.size() < 3) refuse("a face must have at least three corners, got " + line);
             for (size_t k = 1; k + 1 < corners.size(); ++k)
                 triangles.push_back({corners[0], corners[k], corners[k + 1]});
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Triangles that enclose a body, and the one of them that is nearest to a point.
+/// Closed triangle meshes: validation, closest-point queries and reading of OBJ files.
 
 #pragma once
 
@@ -16,63 +16,66 @@ namespace hilda::contact {
 using lie::Mat3;
 using lie::Vec3;
 
-/// The numbers of three vertices, from 0, counterclockwise as seen from outside
+/// Three vertex numbers, from 0, counterclockwise as seen from outside
 using Triangle = std::array<int, 3>;
 
-/// A closed surface of triangles, each edge of two of them. Vertices that no triangle has are allowed. That the
-/// surface does not pass through itself is not tested.
+/// A closed, oriented triangle mesh in which each edge belongs to two triangles. Unused vertices are allowed.
+/// Self-intersections are not detected.
 class TriangleMesh {
 public:
-    /// InvalidInput for what fault() says.
+    /// vertices [m]. InvalidInput if fault() finds one.
     TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles);
 
     struct Fault {
-        bool of_vertices;  ///< or of the triangles
+        bool of_vertices;  ///< true: in the vertices; false: in the triangles
         std::string what;
     };
-    /// What keeps vertices and triangles from being a closed surface with an inside, if anything does: a number that is
-    /// not finite, a vertex that is not there, a triangle without area, an open edge, two triangles of which one
-    /// is inside out, an edge or a vertex in which sheets meet, a mesh that is inside out as a whole.
+    /// The first reason why vertices and triangles are not a closed oriented surface, or nothing: a
+    /// coordinate that is not finite, a vertex number out of range, a triangle of zero area, an open edge,
+    /// adjacent triangles of opposite orientation, a non-manifold edge or vertex, or a mesh with all
+    /// triangles oriented inward.
     static std::optional<Fault> fault(const std::vector<Vec3>& vertices,
                                       const std::vector<Triangle>& triangles);
 
-    /// The point of the mesh nearest to a: on the feature of the triangle, 0 its face, 1, 2, 3 the edge from its
-    /// vertex 0, 1, 2 on, 4, 5, 6 the vertex 0, 1, 2
+    /// The point of the mesh closest to a query point. `feature` is the part of the triangle on which it
+    /// lies: 0 the face, 1, 2, 3 the edge that starts at corner 0, 1, 2; 4, 5, 6 corner 0, 1, 2.
     struct Nearest {
         int triangle, feature;
         Vec3 point;
         double distance;
     };
-    /// In time that grows with the logarithm of the number of triangles; a must be finite
+    /// The closest point to a, which must be finite. O(log n) for n triangles (tree of bounding boxes).
     Nearest nearest(const Vec3& a) const;
-    /// That of a to one triangle
+    /// Distance from a to one triangle [m]
     double distance(int triangle, const Vec3& a) const;
-    /// The normal, out of the body, of the face, edge or vertex: the mean over the triangles there, by their angles.
-    /// A point is outside where it lies on that side of its nearest one (Bærentzen and Aanæs, 2005).
+    /// Outward pseudonormal of a face, edge or vertex: the mean of the adjacent face normals, weighted by
+    /// their angles. A point is outside if it lies on the outer side of its closest point with respect to
+    /// this normal (Bærentzen and Aanæs, 2005).
     Vec3 normal(int triangle, int feature) const;
 
     const std::vector<Vec3> vertices;
     const std::vector<Triangle> triangles;
     std::vector<std::vector<int>> around;  ///< the triangles at each vertex
-    std::vector<Vec3> face_normal;         ///< unit, of each triangle
-    std::vector<Vec3> vertex_normal;       ///< unit, of each vertex; zero where it has no triangle
+    std::vector<Vec3> face_normal;         ///< unit normal of each triangle
+    std::vector<Vec3> vertex_normal;       ///< unit pseudonormal of each vertex; zero for an unused vertex
 
 private:
-    /// Of a tree of boxes: a leaf holds triangles, another has one child behind it and one at `right`
+    /// Node of the bounding-box tree. A leaf has triangles; an inner node has its left child next to it and
+    /// its right child at `right`.
     struct Node {
         Vec3 lower, upper;
-        int first, count;  // in `order`; count = 0 is no leaf
+        int first, count;  // triangles in `order`; count = 0 for an inner node
         int right;
     };
     int build(int first, int last);
 
-    std::vector<std::array<int, 3>> across;  // the triangle at the other side of each edge
+    std::vector<std::array<int, 3>> across;  // the adjacent triangle at each edge
     std::vector<Node> nodes;
     std::vector<int> order;
 };
 
-/// Reads the lines v and f of a Wavefront OBJ text; a polygon becomes a fan of triangles. `name` is that of the file
-/// in messages. InvalidInput with the line where it is not what it should be.
+/// Reads the lines v and f of a Wavefront OBJ text. A polygon is split into a fan of triangles. `name` is the
+/// file name for messages. InvalidInput with the line number for invalid lines and for a mesh with a fault.
 TriangleMesh read_obj(std::istream& text, const std::string& name);
 
 }  // namespace hilda::contact

@@ -10,16 +10,16 @@ namespace hilda::contact {
 
 namespace {
 
-void check(const std::string& law, const std::string& what, double value, bool fine)
+void check(const std::string& law, const std::string& what, double value, bool valid)
 {
-    if (!fine || !std::isfinite(value)) lie::reject("contact::" + law, what, value);
+    if (!valid || !std::isfinite(value)) lie::reject("contact::" + law, what, value);
 }
 
-// A restitution of zero needs an infinite dashpot.
+// e = 0 would require infinite damping.
 constexpr double least_restitution = 1e-6;
 
-/// -ln e of a dashpot that never pulls
-double loss(double zeta)
+/// -ln e as a function of ζ, see damping_ratio(); by its expansion near ζ = 1
+double restitution_exponent(double zeta)
 {
     const double x = 1 - zeta * zeta;
     if (std::abs(x) < 1e-8) return 2 * zeta * (1 + (1 - zeta) / 3);
@@ -28,7 +28,8 @@ double loss(double zeta)
 
 void check_mass(const std::string& law, double m)
 {
-    check(law, "the mass for the damping must be positive, or 0 for that of the pair", m, m >= 0);
+    check(law, "the mass for the damping must be positive, or 0 for the effective mass of the pair", m,
+          m >= 0);
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ Hooke::Hooke(double stiffness, double damping) : k(stiffness), c(damping)
     check("Hooke", "the normal damping must not be negative", c, c >= 0);
 }
 
-Hooke Hooke::rebounding(double stiffness, double restitution, double m)
+Hooke Hooke::with_restitution(double stiffness, double restitution, double m)
 {
     check_mass("Hooke", m);
     Hooke law(stiffness, 0);
@@ -94,12 +95,12 @@ double Hertz::force(const NormalInput& p) const
 double damping_ratio(double e)
 {
     check("damping_ratio", "the coefficient of restitution must be in [0, 1]", e, e >= 0 && e <= 1);
-    const double wanted = -std::log(std::max(e, least_restitution));
+    const double target = -std::log(std::max(e, least_restitution));
     double lower = 0, upper = 1e4;
     for (int k = 0; k < 200 && lower < upper; ++k) {
         const double middle = 0.5 * (lower + upper);
         if (middle == lower || middle == upper) break;
-        (loss(middle) < wanted ? lower : upper) = middle;
+        (restitution_exponent(middle) < target ? lower : upper) = middle;
     }
     return lower;
 }

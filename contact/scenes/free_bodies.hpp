@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What scenes of bodies without joints have in common.
+/// Functions shared by the scenes of free bodies (Scene, DviScene).
 
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace hilda::contact {
 
-/// r + h ṙ and A exp(h ω̄): the pose after a step h [s] with the velocities of the body as they are
+/// Moves the pose over a step h [s] at constant velocities: r ← r + h ṙ, A ← A exp(h ω̄)
 void drift(Motion& body, double h);
 
-/// Of all that moves [J]; one inertia for each body
+/// Kinetic energy of all bodies with finite mass or inertia [J]; one inertia per body
 double kinetic_energy(const std::vector<Inertia>& inertia, const std::vector<Motion>& body);
 
 }  // namespace hilda::contact

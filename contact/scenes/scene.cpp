@@ -10,7 +10,7 @@ namespace hilda::contact {
 
 int Scene::add(const Inertia& of, const Motion& start)
 {
-    if (of.moves() && !(of.m > 0)) lie::reject("contact::Scene", "a mass must be positive", of.m);
+    if (of.moves() && !(of.m > 0)) lie::reject("contact::Scene", "the mass of a body must be positive", of.m);
     inertia.push_back(of);
     inverse.push_back({of.moves() ? 1 / of.m : 0, of.J_bar_inverse()});
     body.push_back(start);
@@ -24,7 +24,7 @@ int Scene::add(const std::string& name, int i, const Shape& shape_i, int j, cons
 {
     for (const int b : {i, j})
         if (b < 0 || b >= static_cast<int>(body.size()))
-            lie::reject("contact::Scene", "no body has this number", b);
+            lie::reject("contact::Scene", "no body has this index", b);
     if (i == j) lie::reject("contact::Scene", "a contact needs two different bodies", i);
     pair.push_back({.contact = CompliantContact(name, shape_i, shape_j, inertia[i], inertia[j],
                                                 std::move(law), std::move(friction)),
@@ -33,49 +33,51 @@ int Scene::add(const std::string& name, int i, const Shape& shape_i, int j, cons
     return static_cast<int>(pair.size()) - 1;
 }
 
-int Scene::add(const BodyType& kind) { return neighbors.add(kind); }
+int Scene::add(const BodyType& type) { return neighbors.add_type(type); }
 
-int Scene::enter(int kind, const Motion& start)
+int Scene::add_body(int type, const Motion& start)
 {
-    const int b = add(neighbors.kind(kind).inertia, start);
-    neighbors.enter(b, kind);
+    const int b = add(neighbors.body_type(type).inertia, start);
+    neighbors.add_body(b, type);
     return b;
 }
 
-void Scene::between(const std::string& name, int kind_i, int kind_j, std::shared_ptr<const NormalLaw> law,
-                    std::shared_ptr<const FrictionModel> friction)
+void Scene::set_contact_law(const std::string& name, int type_i, int type_j,
+                            std::shared_ptr<const NormalLaw> law,
+                            std::shared_ptr<const FrictionModel> friction)
 {
-    const BodyType &i = neighbors.kind(kind_i), &j = neighbors.kind(kind_j);
-    neighbors.set(kind_i, kind_j,
-                  std::make_unique<CompliantContact>(name, i.shape, j.shape, i.inertia, j.inertia,
-                                                     std::move(law), std::move(friction)));
+    const BodyType &i = neighbors.body_type(type_i), &j = neighbors.body_type(type_j);
+    neighbors.set_law(type_i, type_j,
+                      std::make_unique<CompliantContact>(name, i.shape, j.shape, i.inertia, j.inertia,
+                                                         std::move(law), std::move(friction)));
 }
 
 void Scene::check(double h) const
 {
-    double weight = 0;  // all that may rest on a contact
+    double weight = 0;  // of all bodies: an upper estimate of the load on one contact [N]
     for (const Inertia& of : inertia)
         if (of.moves()) weight += gravity.norm() * of.m;
-    struct Checked {
+    struct CheckedContact {
         const CompliantContact& contact;
         int i, j;
         const ContactHistory& history;
     };
-    std::vector<Checked> all;
-    for (const Pair& p : pair) all.push_back({p.contact, p.i, p.j, p.history});
-    const auto near = neighbors.near(body);
-    for (const auto& p : near) all.push_back({*p.law, p.i, p.j, p.state.history});
+    std::vector<CheckedContact> checked;
+    for (const Pair& p : pair) checked.push_back({p.contact, p.i, p.j, p.history});
+    const auto near = neighbors.pairs_near(body);
+    for (const auto& p : near) checked.push_back({*p.law, p.i, p.j, p.state.history});
     std::vector<int> contacts(body.size());
-    for (const Checked& p : all) {
+    for (const CheckedContact& p : checked) {
         const Motion &bi = body[p.i], &bj = body[p.j];
-        if (const std::string why = p.contact.objection(bi, bj); !why.empty())
+        if (const std::string why = p.contact.start_error(bi, bj); !why.empty())
             throw lie::InvalidInput("contact '" + p.contact.name + "': " + why);
-        if (p.contact.close(bi, bj, p.history)) ++contacts[p.i], ++contacts[p.j];
+        if (p.contact.is_near_contact(bi, bj, p.history)) ++contacts[p.i], ++contacts[p.j];
     }
-    for (const Checked& p : all) {
+    for (const CheckedContact& p : checked) {
         const Motion &bi = body[p.i], &bj = body[p.j];
-        const double bound = p.contact.stable_step(p.contact.hardest(bi, bj, p.history, weight), bi, bj,
-                                                   std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
+        const double bound =
+            p.contact.stable_step(p.contact.state_at_largest_compression(bi, bj, p.history, weight), bi, bj,
+                                  std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
         if (h > bound) {
             std::ostringstream what;
             what << "contact '" << p.contact.name << "': the step must not exceed its stability bound of "
@@ -85,24 +87,24 @@ void Scene::check(double h) const
     }
 }
 
-/// Loads of one contact at t_n
-template <class Kept>
-void Scene::contact_point(const CompliantContact& contact, int i, int j, Kept& kept, double h)
+/// Adds the loads of one contact at t_n to F and T and updates its history.
+template <class PairData>
+void Scene::add_contact_loads(const CompliantContact& contact, int i, int j, PairData& data, double h)
 {
     const Motion &bi = body[i], &bj = body[j];
-    kept.contact_state = contact.evaluate(bi, bj, kept.history);
-    contact.advance(kept.contact_state, bi, bj, kept.history);
-    if (!(kept.contact_state.N > 0)) {
-        kept.wrench = {};
+    data.contact_state = contact.evaluate(bi, bj, data.history);
+    contact.advance(data.contact_state, bi, bj, data.history);
+    if (!(data.contact_state.N > 0)) {
+        data.wrench = {};
         return;
     }
-    kept.wrench = contact.load(kept.contact_state, mean_rates(kept.contact_state.slip, h), kept.history);
-    const Vec3 C = kept.contact_state.contact_point.C(),
-               on_i = kept.contact_state.N * kept.contact_state.contact_point.n + kept.wrench.F;
+    data.wrench = contact.load(data.contact_state, mean_rates(data.contact_state.slip, h), data.history);
+    const Vec3 C = data.contact_state.contact_point.C(),
+               on_i = data.contact_state.N * data.contact_state.contact_point.n + data.wrench.F;
     F[i] += on_i;
-    T[i] += (C - bi.r).cross(on_i) + kept.wrench.T_i;
+    T[i] += (C - bi.r).cross(on_i) + data.wrench.T_i;
     F[j] -= on_i;
-    T[j] += (bj.r - C).cross(on_i) + kept.wrench.T_j;
+    T[j] += (bj.r - C).cross(on_i) + data.wrench.T_j;
 }
 
 void Scene::step(double h)
@@ -111,8 +113,8 @@ void Scene::step(double h)
         F[b].setZero();
         T[b].setZero();
     }
-    for (Pair& p : pair) contact_point(p.contact, p.i, p.j, p, h);
-    for (auto& p : neighbors.find(body)) contact_point(*p.law, p.i, p.j, p.state, h);
+    for (Pair& p : pair) add_contact_loads(p.contact, p.i, p.j, p, h);
+    for (auto& p : neighbors.find(body)) add_contact_loads(*p.law, p.i, p.j, p.state, h);
     for (size_t b = 0; b < body.size(); ++b) {
         Motion& m = body[b];
         const Inverse& of = inverse[b];

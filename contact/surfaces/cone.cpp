@@ -46,12 +46,13 @@ Vec3 Cone::project(const Vec3& a) const
 {
     const double rho = a.head<2>().norm(), along = sine * rho + cosine * a.z();
     if (!(rho > 0))
-        throw lie::NumericalFailure("contact_not_converged", "the axis of a cone has no nearest point");
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "a point on the axis of a cone has no unique closest point");
     if (!(along > 0)) {
         std::ostringstream what;
         what.precision(6);
-        what << "the apex of a cone is its nearest point to (" << a.x() << ", " << a.y() << ", " << a.z()
-             << "), and has no normal";
+        what << "the closest point of a cone to (" << a.x() << ", " << a.y() << ", " << a.z()
+             << ") is its apex, where the normal is undefined";
         throw lie::NumericalFailure("contact_not_converged", what.str());
     }
     return along * Vec3(sine * a.x() / rho, sine * a.y() / rho, cosine);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A cone without end: tip or funnel.
+/// An infinite circular cone, convex (tip) or concave (funnel).
 
 #pragma once
 
@@ -7,14 +7,15 @@
 
 namespace hilda::contact {
 
-/// G = ρ cos β - z sin β with ρ² = x² + y²: opens along z of its frame, with its apex at the origin and the angle β
-/// between axis and side. It is straight along its sides and has the curvature cos β / ρ across them; |∇G| = 1.
+/// G = ρ cos β - z sin β with ρ² = x² + y². The cone opens along +z of its frame, its apex is the origin, and
+/// β is the half angle between axis and side. The principal curvatures are 0 along the sides and cos β / ρ
+/// across them; |∇G| = 1.
 ///
-/// The usual x² + y² - z² tan² β has a second half, above the apex, whose inside would be taken for the body.
-/// At the apex, and on the axis behind it, there is no normal: lie::NumericalFailure with the point.
+/// The quadratic form x² + y² - z² tan² β is not used because it has a second nappe, whose inside would also
+/// be part of the body. The normal is not defined on the axis: lie::NumericalFailure with the point.
 class Cone final : public Surface {
 public:
-    /// β [rad]; a funnel, touched from inside, where concave. InvalidInput unless 0 < β < π/2.
+    /// β [rad]. With `concave` contact is on the inside (funnel). InvalidInput unless 0 < β < π/2.
     explicit Cone(double half_angle, bool concave = false);
 
     std::string name() const override { return "cone"; }
@@ -22,9 +23,9 @@ public:
     Vec3 gradient(const Vec3& a) const override;
     Mat3 hessian(const Vec3& a) const override;
     double sigma() const override { return concave ? -1 : 1; }
-    /// NumericalFailure on the axis, and where the apex is the nearest point
+    /// NumericalFailure on the axis, and if the apex is the closest point
     Vec3 project(const Vec3& a) const override;
-    double size() const override { return 0; }  ///< it looks the same from near and from far
+    double size() const override { return 0; }  ///< a cone has no characteristic length
 
     const double half_angle;
     const bool concave;

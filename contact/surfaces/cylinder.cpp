@@ -16,7 +16,8 @@ Vec3 Cylinder::project(const Vec3& a) const
 {
     const double distance = a.head<2>().norm();
     if (!(distance > 0))
-        throw lie::NumericalFailure("contact_not_converged", "the axis of a cylinder has no nearest point");
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "a point on the axis of a cylinder has no unique closest point");
     return {R / distance * a.x(), R / distance * a.y(), a.z()};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A cylinder without ends: shaft or pipe.
+/// An infinite circular cylinder, convex (shaft) or concave (pipe).
 
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace hilda::contact {
 
-/// G = (x² + y² - R²) / 2R: about z of its frame, with curvature 1/R across and 0 along.
+/// G = (x² + y² - R²) / 2R. The axis is z of its frame; the curvature is 1/R around the axis and 0 along it.
 class Cylinder final : public Surface {
 public:
-    /// R [m]; a pipe, touched from inside, where concave. InvalidInput unless R is positive.
+    /// R [m]. With `concave` contact is on the inside (pipe). InvalidInput unless R is positive.
     explicit Cylinder(double R, bool concave = false);
 
     std::string name() const override { return "cylinder"; }

@@ -16,7 +16,8 @@ Vec3 Disk::project(const Vec3& a) const
 {
     const double distance = a.head<2>().norm();
     if (!(distance > 0))
-        throw lie::NumericalFailure("contact_not_converged", "the axis of a disk has no nearest point");
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "a point on the axis of a disk has no unique closest point of the rim");
     return R / distance * Vec3(a.x(), a.y(), 0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A thin disk that touches with its rim: coin, hoop, wheel.
+/// A thin disk that is in contact with its rim: coin, hoop, wheel.
 
 #pragma once
 
@@ -7,16 +7,17 @@
 
 namespace hilda::contact {
 
-/// The rim is the circle of radius R about z, in the plane z = 0 of its frame. A circle has no G: as a surface
-/// the disk is the cylinder through it, G = (x² + y² - R²) / 2R, which has the curvature of the upright disk.
+/// The rim is the circle of radius R about z in the plane z = 0 of its frame. A circle is not a surface G =
+/// 0; G is that of the cylinder through the rim, G = (x² + y² - R²) / 2R, which has the curvature of the
+/// upright disk.
 ///
-/// Its detector gives the curvature of the rim as seen along the contact normal, with θ the angle of the plane of the
-/// disk to the normal (Meusnier), in all directions alike:
+/// The contact detector uses the normal curvature of the rim (Meusnier's theorem) in all tangent directions,
+/// with θ the angle between the plane of the disk and the contact normal:
 ///
 ///     K = (1/R) cos θ (I - n nᵀ)
 ///
-/// Across the rim a disk has an edge, which rolls over no distance. Giving it the curvature of the rim there too keeps
-/// κ, and with it rolling and spinning friction, the same whether the disk moves or stands.
+/// Across the rim the disk has an edge of zero radius. The curvature of the rim is used in this direction
+/// too, so that κ, and with it rolling and spinning friction, does not depend on the direction of motion.
 class Disk final : public Surface {
 public:
     /// R [m]. InvalidInput unless it is positive.
@@ -26,10 +27,10 @@ public:
     double value(const Vec3& a) const override;
     Vec3 gradient(const Vec3& a) const override { return {a.x() / R, a.y() / R, 0}; }
     Mat3 hessian(const Vec3&) const override { return Vec3(1 / R, 1 / R, 0).asDiagonal(); }
-    /// The nearest point of the rim. NumericalFailure on the axis
+    /// The closest point of the rim. NumericalFailure on the axis
     Vec3 project(const Vec3& a) const override;
     double size() const override { return R; }
-    /// 2R asin(chord / 2R): along the rim
+    /// Arc length along the rim, 2R asin(chord / 2R) [m]
     double arc(double chord) const override;
 
     const double R;

@@ -28,10 +28,11 @@ std::optional<Vec3> Ellipsoid::support(const Vec3& u) const
     return Vec3(semi_axes.cwiseProduct(Du) / Du.norm());
 }
 
-/// The nearest point is x_k = s_k² a_k / (s_k² + t) with the largest root t of Σ (s_k a_k / (s_k² + t))² = 1.
-/// That sum falls and is convex for t above -s², with s the shortest semi-axis, so Newton's method rises to
-/// the root from any t on its left. Counted from -s² the root keeps its digits in the middle of the ellipsoid,
-/// where it comes near to -s²; where there is none above, the nearest points are two, and one is returned.
+/// The closest point is x_k = s_k² a_k / (s_k² + t) with the largest root t of Σ (s_k a_k / (s_k² + t))² = 1.
+/// For t > -s², with s the shortest semi-axis, the sum is decreasing and convex, so Newton's method converges
+/// monotonically from any t left of the root. The unknown is τ = t + s², which keeps its relative accuracy
+/// near the centre of the ellipsoid, where t is close to -s². If there is no root τ > 0, two points are
+/// closest, and one is returned.
 Vec3 Ellipsoid::project(const Vec3& a) const
 {
     int shortest = 0;
@@ -40,8 +41,8 @@ Vec3 Ellipsoid::project(const Vec3& a) const
     const Vec3 sa = semi_axes.cwiseProduct(a.cwiseAbs());
     double tau = std::max((sa - above).maxCoeff(), 0.0);  // t + s²
 
-    constexpr int most = 100;
-    for (int k = 0; k < most; ++k) {
+    constexpr int max_iterations = 100;
+    for (int k = 0; k < max_iterations; ++k) {
         double sum = -1, slope = 0;
         for (int m = 0; m < 3; ++m) {
             if (sa[m] == 0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// An ellipsoid, or the bowl of that shape.
+/// An ellipsoid, convex or concave.
 
 #pragma once
 
@@ -7,13 +7,14 @@
 
 namespace hilda::contact {
 
-/// G = (L/2) (x²/a² + y²/b² + z²/c² - 1) with L = (abc)^(1/3), which makes |∇G| of order 1.
+/// G = (L/2) (x²/a² + y²/b² + z²/c² - 1) with L = (abc)^(1/3), so that |∇G| is of order 1.
 ///
-/// With p = (x²/a⁴ + y²/b⁴ + z²/c⁴)^(-1/2), the distance of the tangent plane to the centre, the Gaussian
-/// curvature is p⁴/(abc)² and the mean one p³ (a² + b² + c² - |ᾱ|²) / 2(abc)².
+/// With the distance p = (x²/a⁴ + y²/b⁴ + z²/c⁴)^(-1/2) from the centre to the tangent plane, the Gaussian
+/// curvature is p⁴/(abc)² and the mean curvature p³ (a² + b² + c² - |ᾱ|²) / 2(abc)².
 class Ellipsoid final : public Surface {
 public:
-    /// Semi-axes along x, y and z [m]; a bowl where concave. InvalidInput unless all are positive.
+    /// Semi-axes along x, y and z [m]. With `concave` contact is on the inside. InvalidInput unless all are
+    /// positive.
     explicit Ellipsoid(const Vec3& semi_axes, bool concave = false);
 
     std::string name() const override { return "ellipsoid"; }
@@ -24,7 +25,7 @@ public:
     bool convex() const override { return true; }
     /// D² u / |D u| with D = diag(a, b, c)
     std::optional<Vec3> support(const Vec3& u) const override;
-    /// Everywhere, inside too: see ellipsoid.cpp
+    /// Defined for every point, also inside; see ellipsoid.cpp
     Vec3 project(const Vec3& a) const override;
     double size() const override { return L; }
 

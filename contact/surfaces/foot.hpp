@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The flat face of a body that slides without tipping.
+/// A point contact that represents the flat face of a sliding body.
 
 #pragma once
 
@@ -7,9 +7,9 @@
 
 namespace hilda::contact {
 
-/// A plane that touches at the origin of its frame and nowhere else: all of its load acts there.
-/// A brick on an incline is a foot on a plane. Put the origin where the resultant of the true pressure acts;
-/// what that pressure does to hold the brick flat is not modelled.
+/// A plane whose contact point is always the origin of its frame; the whole contact force acts there.
+/// Example: a brick on an incline. Place the origin where the resultant of the contact pressure acts. The
+/// restoring moment of the pressure against tipping is not modelled.
 class Foot final : public Flat {
 public:
     std::string name() const override { return "foot"; }

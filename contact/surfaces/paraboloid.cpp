@@ -16,13 +16,14 @@ Paraboloid::Paraboloid(double R_x, double R_y, bool concave)
     : R_x(radius(R_x)), R_y(radius(R_y)), concave(concave), curvature(1 / R_x, 1 / R_y, 0)
 {}
 
-/// The nearest point is x_k = R_k a_k / (R_k + t), z = a_z + t with the largest root t of
+/// The closest point is x_k = R_k a_k / (R_k + t), z = a_z + t with the largest root t of
 ///
 ///     Σ R_k a_k² / 2(R_k + t)² - a_z - t = 0
 ///
-/// which falls and is convex for t above -s, with s the smaller radius: Newton's method rises to the root from any t on
-/// its left, and t is counted from -s, as for an ellipsoid. Where there is no root above, which is near the axis and
-/// beyond the centre of curvature, the nearest points are two, and one is returned.
+/// For t > -s, with s the smaller radius, the left side is decreasing and convex, so Newton's method
+/// converges monotonically from any t left of the root. The unknown is τ = t + s, as for the ellipsoid. If
+/// there is no root τ > 0, which happens near the axis beyond the centre of curvature, two points are
+/// closest, and one is returned.
 Vec3 Paraboloid::project(const Vec3& a) const
 {
     const double R[2] = {R_x, R_y}, s = std::min(R_x, R_y);
@@ -31,15 +32,16 @@ Vec3 Paraboloid::project(const Vec3& a) const
     double tau = std::max(-height, 0.0);
     for (int m = 0; m < 2; ++m) {
         if (a[m] == 0) continue;
-        // left of the root, since one term of the sum alone reaches it only further on; no squares, which may vanish
+        // The root of the equation with one term of the sum only is left of the root. Squares are avoided
+        // because they may underflow.
         const double above = R[m] - s, rest = height - above;
         double start = std::cbrt(R[m] / 4) * std::pow(std::abs(a[m]), 2.0 / 3);
         if (rest > 0) start = std::min(start, std::abs(a[m]) * std::sqrt(R[m] / (4 * rest)));
         tau = std::max(tau, start - above);
     }
 
-    constexpr int most = 100;
-    for (int k = 0; k < most; ++k) {
+    constexpr int max_iterations = 100;
+    for (int k = 0; k < max_iterations; ++k) {
         double sum = -height - tau, slope = -1;
         for (int m = 0; m < 2; ++m) {
             if (a[m] == 0) continue;
@@ -70,7 +72,7 @@ const bool registered = register_surface(
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const std::vector<double> R = o.numbers("radii", 2);
          if (!(R[0] > 0 && R[1] > 0))
-             o.fail("radii", "radii must be positive, got " + dae::described(*o.look("radii")));
+             o.fail("radii", "radii must be positive, got " + dae::described(*o.find("radii")));
          return std::make_shared<Paraboloid>(R[0], R[1], o.flag("concave", false));
      },
      .z = "axis"});

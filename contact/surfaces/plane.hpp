@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A plane: floor, wall, incline.
+/// A plane, such as a floor, a wall or an incline.
 
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace hilda::contact {
 
-/// G = z: what is flat
+/// Base class of flat surfaces, G = z
 class Flat : public Surface {
 public:
     double value(const Vec3& a) const final { return a.z(); }
@@ -17,7 +17,7 @@ public:
     double size() const final { return 0; }
 };
 
-/// The plane through the origin of its frame, with the body below it and the normal along z
+/// The plane z = 0 of its frame. The normal is +z and the body lies below the plane.
 class Plane final : public Flat {
 public:
     std::string name() const override { return "plane"; }

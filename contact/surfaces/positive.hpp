@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The one check that the sizes of all surfaces need.
+/// Validation of lengths in the constructors of surfaces.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace hilda::contact {
 
-/// x, which must be positive and finite. InvalidInput otherwise.
+/// Returns x. InvalidInput unless it is positive and finite; the message starts with "where: what must be".
 inline double positive(const char* where, const char* what, double x)
 {
     if (!(x > 0) || !std::isfinite(x))

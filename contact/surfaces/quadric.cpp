@@ -13,7 +13,8 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double none = 1e-12;  // of an eigenvalue over the largest, and of what should cancel: rounding
+constexpr double rounding =
+    1e-12;  // relative size below which eigenvalues and differences are treated as zero
 
 }  // namespace
 
@@ -21,14 +22,14 @@ struct Quadric::Invariants {
     Vec3 lambda;    // eigenvalues of Q
     double norm;    // the largest |λ|
     Vec3 centre;    // ᾱ_0 = -Q⁺ b
-    double d, G_0;  // |Q ᾱ_0 + b| and G(ᾱ_0), 0 where they are rounding
+    double d, G_0;  // |Q ᾱ_0 + b| and G(ᾱ_0), set to 0 if they are rounding
 
     Invariants(const Mat3& Q, const Vec3& b, double c)
     {
         const Eigen::SelfAdjointEigenSolver<Mat3> eigen(Q);
         lambda = eigen.eigenvalues();
         norm = lambda.cwiseAbs().maxCoeff();
-        lambda = (lambda.cwiseAbs().array() > none * norm).select(lambda, 0);
+        lambda = (lambda.cwiseAbs().array() > rounding * norm).select(lambda, 0);
         const Vec3 along = eigen.eigenvectors().transpose() * b;
         Vec3 x, rest;
         for (int k = 0; k < 3; ++k) {
@@ -36,9 +37,9 @@ struct Quadric::Invariants {
             rest[k] = lambda[k] != 0 ? 0 : along[k];
         }
         centre = eigen.eigenvectors() * x;
-        d = rest.norm() > none * b.norm() ? rest.norm() : 0;
+        d = rest.norm() > rounding * b.norm() ? rest.norm() : 0;
         G_0 = c + b.dot(centre);
-        if (!(std::abs(G_0) > none * (std::abs(c) + std::abs(b.dot(centre))))) G_0 = 0;
+        if (!(std::abs(G_0) > rounding * (std::abs(c) + std::abs(b.dot(centre))))) G_0 = 0;
     }
 
     double length() const { return d > 0 ? d / norm : std::sqrt(std::abs(G_0) / norm); }
@@ -46,16 +47,17 @@ struct Quadric::Invariants {
 
 std::string Quadric::fault(const Mat3& Q, const Vec3& b, double c)
 {
-    if (!Q.allFinite() || !b.allFinite() || !std::isfinite(c)) return "its coefficients must be finite";
-    if (!((Q - Q.transpose()).norm() <= none * Q.norm())) return "its Q must be symmetric";
-    if (Q.norm() == 0) return "its Q must not be zero: that is a plane";
+    if (!Q.allFinite() || !b.allFinite() || !std::isfinite(c)) return "the coefficients must be finite";
+    if (!((Q - Q.transpose()).norm() <= rounding * Q.norm())) return "Q must be symmetric";
+    if (Q.norm() == 0) return "Q must not be zero; use a plane";
     const Invariants known(Q, b, c);
     if (known.d > 0) return {};
     const bool above = known.lambda.minCoeff() >= 0, below = known.lambda.maxCoeff() <= 0;
     if (known.G_0 == 0)
-        return above || below ? "it must be a surface, not a point, a line or a plane that it touches"
-                              : "it must not meet itself, as a double cone or two planes do";
-    if ((above && known.G_0 > 0) || (below && known.G_0 < 0)) return "it must have points: G has one sign";
+        return above || below ? "G = 0 must be a surface; it is a point, a line or a double plane"
+                              : "G = 0 must not intersect itself; it is a double cone or two planes";
+    if ((above && known.G_0 > 0) || (below && known.G_0 < 0))
+        return "G = 0 must have points; G does not change its sign";
     return {};
 }
 
@@ -67,7 +69,7 @@ Quadric::Quadric(const Mat3& Q, const Vec3& b, double c, bool concave)
               given << "Q = "
                     << Q.format(Eigen::IOFormat(17, Eigen::DontAlignCols, ", ", "; ", "", "", "[", "]"))
                     << ", b = " << b.transpose() << ", c = " << c;
-              lie::reject("contact::Quadric", "of a quadric, " + what, given.str());
+              lie::reject("contact::Quadric", what, given.str());
           }
           return Invariants(Q, b, c);
       }())
@@ -98,7 +100,7 @@ const bool registered =
                           const Vec3 b = o.vec3("b", Vec3::Zero());
                           const double c = o.number("c");
                           if (const std::string what = Quadric::fault(Q, b, c); !what.empty())
-                              o.fail("Q", "of a quadric, " + what);
+                              o.fail("Q", what);
                           return std::make_shared<Quadric>(Q, b, c, o.flag("concave", false));
                       }});
 

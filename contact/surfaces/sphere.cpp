@@ -16,7 +16,8 @@ Vec3 Sphere::project(const Vec3& a) const
 {
     const double distance = a.norm();
     if (!(distance > 0))
-        throw lie::NumericalFailure("contact_not_converged", "the centre of a sphere has no nearest point");
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "the centre of a sphere has no unique closest point");
     return R / distance * a;
 }
 

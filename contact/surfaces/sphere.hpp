@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A sphere: ball or bowl.
+/// A sphere, convex (ball) or concave (spherical bowl).
 
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace hilda::contact {
 
-/// G = (|ᾱ|² - R²) / 2R. K = (I - n nᵀ) / R everywhere, with the other sign in a bowl.
+/// G = (|ᾱ|² - R²) / 2R. The shape operator is K = (I - n nᵀ) / R, with the opposite sign if concave.
 class Sphere final : public Surface {
 public:
-    /// R [m]; a bowl where concave. InvalidInput unless R is positive.
+    /// R [m]. With `concave` contact is on the inside. InvalidInput unless R is positive.
     explicit Sphere(double R, bool concave = false);
 
     std::string name() const override { return "sphere"; }
@@ -20,10 +20,10 @@ public:
     double sigma() const override { return concave ? -1 : 1; }
     bool convex() const override { return true; }
     std::optional<Vec3> support(const Vec3& u) const override { return Vec3(R * u); }
-    /// NumericalFailure for the centre
+    /// NumericalFailure at the centre
     Vec3 project(const Vec3& a) const override;
     double size() const override { return R; }
-    /// 2R asin(chord / 2R): of the great circle
+    /// Arc length of the great circle, 2R asin(chord / 2R) [m]
     double arc(double chord) const override;
 
     const double R;

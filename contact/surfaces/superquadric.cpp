@@ -19,7 +19,7 @@ const Vec3& positive_axes(const Vec3& semi_axes)
     return semi_axes;
 }
 
-/// Beyond 100 the edges are so sharp that no step of a contact point along them is small.
+/// Above 100 the edges are too sharp: a contact point moves along them by large steps.
 bool exponent_allowed(double p) { return p >= 2 && p <= 100; }
 
 double checked_exponent(double p)
@@ -63,15 +63,15 @@ Mat3 Superquadric::hessian(const Vec3& a) const
     return diagonal.asDiagonal();
 }
 
-/// With ∇G along u, e_k |x_k/s_k|^(e_k - 1) = exp(m) s_k |u_k|, each x_k is a power of exp(m), and the logarithm
-/// of the sum in G is a convex and rising function of m with slopes between 1 and 2: Newton's method finds its
-/// zero from anywhere, for p = q in one step.
+/// ∇G parallel to u means e_k |x_k/s_k|^(e_k - 1) = exp(m) s_k |u_k| / L, with the exponents e_k and the
+/// semi-axes s_k. The logarithm of the sum in G is a convex, increasing function of m with slopes between 1
+/// and 2, so Newton's method converges to its root from any start, in one step if p = q.
 std::optional<Vec3> Superquadric::support(const Vec3& u) const
 {
     double m = 0;
     Vec3 x;  // |x_k / s_k|
-    constexpr int most = 30;
-    for (int iteration = 0; iteration < most; ++iteration) {
+    constexpr int max_iterations = 30;
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         double sum = 0, slope = 0;
         for (int k = 0; k < 3; ++k) {
             const double e = exponent(k);

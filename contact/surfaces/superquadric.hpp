@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A superquadric: an ellipsoid on its way to a box or to a can.
+/// A superquadric: ellipsoids, rounded boxes and rounded cylinders.
 
 #pragma once
 
@@ -9,13 +9,13 @@ namespace hilda::contact {
 
 /// G = (L / max(p, q)) (|x/a|^p + |y/b|^p + |z/c|^q - 1) with L = (abc)^(1/3).
 ///
-/// p = q = 2 is an ellipsoid, p = q = 8 a box with round edges, p = 2 and q = 8 a can with round edges. Above 2
-/// the surface is flat (K = 0 or of rank 1) where it meets the planes of coordinates. Written with one sum and
-/// not, as is usual, with (|x/a|^p + |y/b|^p)^(q/p), which has no second derivative on the z axis for q = 2 < p.
+/// p = q = 2 is an ellipsoid, p = q = 8 a box with round edges, p = 2 and q = 8 a cylinder with round edges.
+/// For exponents above 2 the surface is flat (K has rank 0 or 1) on the coordinate planes. The common form
+/// (|x/a|^p + |y/b|^p)^(q/p) is not used because it has no second derivative on the z axis for q = 2 < p.
 class Superquadric final : public Surface {
 public:
-    /// Semi-axes along x, y and z [m]. InvalidInput unless all are positive and the exponents at least 2: below,
-    /// curvatures are infinite.
+    /// Semi-axes along x, y and z [m]. InvalidInput unless all are positive and the exponents are in [2,
+    /// 100]. Below 2 the curvature is unbounded.
     Superquadric(const Vec3& semi_axes, double p, double q);
     Superquadric(const Vec3& semi_axes, double p) : Superquadric(semi_axes, p, p) {}
 

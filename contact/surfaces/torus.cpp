@@ -10,7 +10,9 @@ Torus::Torus(double R, double r, bool concave)
     : R(positive("contact::Torus", "the radius of the ring of a torus", R)),
       r(positive("contact::Torus", "the radius of the tube of a torus", r)), concave(concave)
 {
-    if (!(r < R)) lie::reject("contact::Torus", "the tube of a torus must be thinner than its ring", r);
+    if (!(r < R))
+        lie::reject("contact::Torus", "the radius of the tube of a torus must be less than that of its ring",
+                    r);
 }
 
 double Torus::value(const Vec3& a) const
@@ -39,7 +41,8 @@ std::optional<Vec3> Torus::support(const Vec3& u) const
 {
     const double across = u.head<2>().norm();
     if (!(across > 1e-12))
-        throw lie::NumericalFailure("contact_not_converged", "a torus lies flat: it touches along a circle");
+        throw lie::NumericalFailure("contact_not_converged",
+                                    "a torus lies flat on a plane: the contact is a circle");
     return Vec3(R / across * Vec3(u.x(), u.y(), 0) + r * u);
 }
 
@@ -49,8 +52,9 @@ Vec3 Torus::project(const Vec3& a) const
     const Vec3 ring = R / rho * Vec3(a.x(), a.y(), 0), out = a - ring;
     const double distance = out.norm();
     if (!(rho > 0 && distance > 0))
-        throw lie::NumericalFailure("contact_not_converged",
-                                    "the axis of a torus and that of its tube have no nearest point");
+        throw lie::NumericalFailure(
+            "contact_not_converged",
+            "a point on the axis or on the centre line of a torus has no unique closest point");
     return ring + r / distance * out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A torus: ring, tyre, or the groove in which balls run.
+/// A torus, convex (ring) or concave (groove).
 
 #pragma once
 
@@ -8,10 +8,10 @@
 namespace hilda::contact {
 
 /// G = ((ρ - R)² + z² - r²) / 2r with ρ² = x² + y²: a tube of radius r around the circle of radius R about z.
-/// G has no derivative on the axis.
+/// G is not differentiable on the axis.
 class Torus final : public Surface {
 public:
-    /// Radii of ring and tube [m]; touched from within the tube where concave. InvalidInput unless 0 < r < R.
+    /// Radii of ring and tube [m]. With `concave` contact is inside the tube. InvalidInput unless 0 < r < R.
     Torus(double R, double r, bool concave = false);
 
     std::string name() const override { return "torus"; }
@@ -19,7 +19,7 @@ public:
     Vec3 gradient(const Vec3& a) const override;
     Mat3 hessian(const Vec3& a) const override;
     double sigma() const override { return concave ? -1 : 1; }
-    /// On the outer half. NumericalFailure along the axis
+    /// The support point on the outer half. NumericalFailure if u is parallel to the axis
     std::optional<Vec3> support(const Vec3& u) const override;
     /// NumericalFailure on the axis and on the centre line of the tube
     Vec3 project(const Vec3& a) const override;

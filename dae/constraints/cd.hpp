@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraint CD: coordinate difference.
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
 
 namespace hilda::dae {
 
-/// Coordinate-difference block: c · d_ij = f(t) along a direction c fixed in the global frame.
+/// Coordinate-difference block: c · d_ij = f(t), with a direction c fixed in the global frame and the vector
+/// d_ij from point P of body i to point Q of body j.
 ///
 ///     Phi    = c . d_ij - f(t)                                              Fang (2022), Eq. 2.5d
 ///     d_ij   = r_j + A_j s_bar_j - r_i - A_i s_bar_i
 ///     Phi_ri = -c^T,   Pi_i =  c^T A_i tilde(s_bar_i)
 ///     Phi_rj =  c^T,   Pi_j = -c^T A_j tilde(s_bar_j)
+///
+/// s_bar_i and s_bar_j are the positions of P and Q in the body frames [m].
 class CD final : public Block {
 public:
     CD(const Vec3& c, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f = {})
-        : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f)), axis(along_axis(c))
+        : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f)), global_axis(axis_of(c))
     {}
 
     double phi(const Motion& bi, const Motion& bj, double t) const override
@@ -32,7 +37,7 @@ public:
 
     double gamma(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
         return f.fddot(t) - c.dot(s_j.centripetal - s_i.centripetal);
     }
 
@@ -46,11 +51,11 @@ public:
 
     Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
 
-    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
     {
-        GammaChange g;
-        Pull(bi, g.i).centripetal(s_bar_i, c);
-        Pull(bj, g.j).centripetal(s_bar_j, -c);
+        GammaDerivatives g;
+        GammaTerms(bi, g.i).centripetal(s_bar_i, c);
+        GammaTerms(bj, g.j).centripetal(s_bar_j, -c);
         return g;
     }
 
@@ -59,10 +64,10 @@ public:
         unsigned axes = 0;
         for (int k = 0; k < 3; ++k)
             if (c[k] != 0) axes |= 1u << k;
-        return axes | crossed(s_bar_i) << 3 | axes << 6 | crossed(s_bar_j) << 9;
+        return axes | cross_product_pattern(s_bar_i) << 3 | axes << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string objection(const Motion&, const Motion&, double) const override
+    std::string start_error(const Motion&, const Motion&, double) const override
     {
         return c.norm() > 0 ? "" : "a vector of length zero has no direction, got |c| = 0";
     }
@@ -71,21 +76,22 @@ public:
     const Driver f;
 
 private:
-    static int along_axis(const Vec3& c)
+    /// Number of the global axis to which c is parallel, or -1
+    static int axis_of(const Vec3& c)
     {
         for (int k = 0; k < 3; ++k)
             if (c == c[k] * Vec3::Unit(k)) return k;
         return -1;
     }
 
-    /// Aᵀ c: where c lies along a global axis, as in a joint, a row of A
+    /// Aᵀ c. If c is parallel to a global axis, as in all joints, it is a multiple of a row of A.
     Vec3 in_body(const Motion& body) const
     {
-        if (axis >= 0) return c[axis] * body.A.row(axis).transpose();
+        if (global_axis >= 0) return c[global_axis] * body.A.row(global_axis).transpose();
         return body.A.transpose() * c;
     }
 
-    const int axis;
+    const int global_axis;
 };
 
 }  // namespace hilda::dae

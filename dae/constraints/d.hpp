@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraint D: squared distance.
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
 
 #include <sstream>
@@ -15,7 +17,8 @@ namespace hilda::dae {
 ///     Phi_ri = -2 d_ij^T,   Pi_i =  2 d_ij^T A_i tilde(s_bar_i)
 ///     Phi_rj =  2 d_ij^T,   Pi_j = -2 d_ij^T A_j tilde(s_bar_j)
 ///
-/// Its row and multiplier scale with 2 |d_ij|. Loses rank where the distance is zero.
+/// Phi_rj has the length 2 |d_ij|. The multiplier is therefore a force divided by 2 |d_ij| [N/m]. The row
+/// loses rank at the distance zero.
 class D final : public Block {
 public:
     D(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, Driver f)
@@ -40,7 +43,7 @@ public:
 
     double gamma(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
         const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
         const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
         return f.fddot(t) - 2 * d_ijdot.squaredNorm() - 2 * d_ij.dot(s_j.centripetal - s_i.centripetal);
@@ -62,26 +65,26 @@ public:
 
     Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
 
-    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
     {
-        const Carried s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
         const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
-        GammaChange g;
-        Pull to_i(bi, g.i), to_j(bj, g.j);
+        GammaDerivatives g;
+        GammaTerms terms_i(bi, g.i), terms_j(bj, g.j);
         g.j.r = -2 * (s_j.centripetal - s_i.centripetal), g.i.r = -g.j.r;
-        to_j.a(s_bar_j, g.j.r), to_i.a(s_bar_i, g.i.r);
+        terms_j.a(s_bar_j, g.j.r), terms_i.a(s_bar_i, g.i.r);
         g.j.rdot = -4 * (bj.rdot + s_j.vdot - bi.rdot - s_i.vdot), g.i.rdot = -g.j.rdot;
-        to_j.adot(s_bar_j, g.j.rdot), to_i.adot(s_bar_i, g.i.rdot);
-        to_j.centripetal(s_bar_j, -2 * d_ij), to_i.centripetal(s_bar_i, 2 * d_ij);
+        terms_j.adot(s_bar_j, g.j.rdot), terms_i.adot(s_bar_i, g.i.rdot);
+        terms_j.centripetal(s_bar_j, -2 * d_ij), terms_i.centripetal(s_bar_i, 2 * d_ij);
         return g;
     }
 
     unsigned nonzero() const override
     {
-        return 0b111 | crossed(s_bar_i) << 3 | 0b111 << 6 | crossed(s_bar_j) << 9;
+        return 0b111 | cross_product_pattern(s_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string objection(const Motion&, const Motion&, double t) const override
+    std::string start_error(const Motion&, const Motion&, double t) const override
     {
         std::ostringstream text;
         if (!(f.f(t) > 0)) text << "f is a squared distance and must be positive, got " << f.f(t);

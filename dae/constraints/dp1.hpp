@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraint DP1: dot product of two body-fixed vectors.
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
 
 #include <memory>
@@ -15,8 +17,8 @@ namespace hilda::dae {
 ///     Phi    = (A_i a_bar_i) . (A_j a_bar_j) - f(t)                         Fang (2022), Eq. 2.5a
 ///     Pi_i   = -a_j^T A_i tilde(a_bar_i),   Pi_j = -a_i^T A_j tilde(a_bar_j)
 ///
-/// Loses rank where the two vectors are parallel, |f| = |a_i| |a_j|. A driver that passes there needs its
-/// complement.
+/// The row loses rank where the two vectors are parallel, |f| = |a_i| |a_j|. A driver that passes such a
+/// point is replaced by its complement near it.
 class DP1 final : public Block {
 public:
     DP1(int i, const Vec3& a_bar_i, int j, const Vec3& a_bar_j, Driver f = {})
@@ -41,7 +43,7 @@ public:
 
     double gamma(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Carried a_i(bi, a_bar_i), a_j(bj, a_bar_j);
+        const BodyFixedVector a_i(bi, a_bar_i), a_j(bj, a_bar_j);
         return f.fddot(t) - a_i.centripetal.dot(a_j.v) - a_i.v.dot(a_j.centripetal) -
                2 * a_i.vdot.dot(a_j.vdot);
     }
@@ -59,44 +61,49 @@ public:
 
     Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
 
-    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
     {
-        const Carried a_i(bi, a_bar_i), a_j(bj, a_bar_j);
-        GammaChange g;
-        const auto pull = [](Pull to, const Vec3& a_bar, const Carried& other) {
-            to.centripetal(a_bar, -other.v);
-            to.a(a_bar, -other.centripetal);
-            to.adot(a_bar, -2 * other.vdot);
+        const BodyFixedVector a_i(bi, a_bar_i), a_j(bj, a_bar_j);
+        GammaDerivatives g;
+        const auto add_terms = [](GammaTerms terms, const Vec3& a_bar, const BodyFixedVector& other) {
+            terms.centripetal(a_bar, -other.v);
+            terms.a(a_bar, -other.centripetal);
+            terms.adot(a_bar, -2 * other.vdot);
         };
-        pull(Pull(bi, g.i), a_bar_i, a_j);
-        pull(Pull(bj, g.j), a_bar_j, a_i);
+        add_terms(GammaTerms(bi, g.i), a_bar_i, a_j);
+        add_terms(GammaTerms(bj, g.j), a_bar_j, a_i);
         return g;
     }
 
-    unsigned nonzero() const override { return crossed(a_bar_i) << 3 | crossed(a_bar_j) << 9; }
-
-    std::string objection(const Motion&, const Motion&, double t) const override
+    unsigned nonzero() const override
     {
-        const double reach = a_bar_i.norm() * a_bar_j.norm(), value = f.f(t);
+        return cross_product_pattern(a_bar_i) << 3 | cross_product_pattern(a_bar_j) << 9;
+    }
+
+    std::string start_error(const Motion&, const Motion&, double t) const override
+    {
+        const double max_value = a_bar_i.norm() * a_bar_j.norm(), value = f.f(t);
         std::ostringstream text;
-        if (!(reach > 0))
-            text << "a vector of length zero has no direction, got |a_i||a_j| = " << reach;
-        else if (std::abs(value) > reach)
-            text << "f must lie between -|a_i||a_j| and |a_i||a_j| = " << reach << ", got " << value;
-        else if (reach - std::abs(value) < 1e-9 * reach)
-            text << "the two vectors are parallel at the start (|f| = |a_i||a_j|), where a DP1 row is "
+        if (!(max_value > 0))
+            text << "a vector of length zero has no direction, got |a_i||a_j| = " << max_value;
+        else if (std::abs(value) > max_value)
+            text << "f must be between -|a_i||a_j| and |a_i||a_j| = " << max_value << ", got " << value;
+        else if (max_value - std::abs(value) < 1e-9 * max_value)
+            text << "the two vectors are parallel at the start (|f| = |a_i||a_j|), where the DP1 row is "
                     "singular, got f = "
                  << value;
         return text.str();
     }
 
-    /// How close the row is to losing rank: |f| / (|a_i| |a_j|), 1 where the vectors are parallel.
+    /// |f| / (|a_i| |a_j|): 1 where the vectors are parallel and the row loses rank
     double alignment(double t) const { return std::abs(f.f(t)) / (a_bar_i.norm() * a_bar_j.norm()); }
 
-    /// The block that drives the same turn where this one is singular. With f = c cos g (or c sin g) and both
-    /// vectors in the plane of the turn, a_j also makes the angle whose cosine is ± sin g with the
-    /// perpendicular (a_i × a_j) × a_i of a_i; the perpendicular is fixed in body i, taken at the start, with
-    /// its sign. None for other forms of f.
+    /// The block that drives the same rotation where this one is singular, or nullptr if f is neither cos(g)
+    /// nor sin(g).
+    ///
+    /// Let the two vectors have length one and stay in one plane. Then a_i · a_j = cos g implies p · a_j = ±
+    /// sin g for the vector p = (a_i × a_j) × a_i, scaled to the length of a_i. p is fixed in body i. Its
+    /// direction and its sign are those at the start.
     std::unique_ptr<DP1> complement(const Motion& bi, const Motion& bj, double t) const
     {
         const std::optional<Driver> other = f.complement();
@@ -104,7 +111,7 @@ public:
         const Vec3 a_j = bi.A.transpose() * (bj.A * a_bar_j);
         const Vec3 axis = a_bar_i.cross(a_j).normalized();
         Vec3 a_bar_perpendicular = axis.cross(a_bar_i);
-        const double sine = a_bar_perpendicular.dot(a_j);  // positive, by the choice of the axis
+        const double sine = a_bar_perpendicular.dot(a_j);  // positive, since axis is along a_i × a_j
         if (other->f(t) * sine < 0) a_bar_perpendicular = -a_bar_perpendicular;
         return std::make_unique<DP1>(i, a_bar_perpendicular, j, a_bar_j, *other);
     }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraint DP2: dot product of a body-fixed vector and the vector between two points.
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
 
 namespace hilda::dae {
 
-/// Second dot-product block: a_i · d_ij = f(t), with d_ij from point P of body i to point Q of body j.
+/// Second dot-product block: a_i · d_ij = f(t), with the vector d_ij from point P of body i to point Q of
+/// body j.
 ///
 ///     Phi    = (A_i a_bar_i) . d_ij - f(t)                                  Fang (2022), Eq. 2.5b
 ///     d_ij   = r_j + A_j s_bar_j - r_i - A_i s_bar_i
@@ -38,7 +41,7 @@ public:
 
     double gamma(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Carried a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const BodyFixedVector a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
         const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
         const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
         return f.fddot(t) - a_i.centripetal.dot(d_ij) - 2 * a_i.vdot.dot(d_ijdot) -
@@ -63,30 +66,30 @@ public:
 
     Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
 
-    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
     {
-        const Carried a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
+        const BodyFixedVector a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
         const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
         const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
-        GammaChange g;
-        Pull to_i(bi, g.i), to_j(bj, g.j);
-        to_i.centripetal(a_bar_i, -d_ij);
-        to_i.adot(a_bar_i, -2 * d_ijdot);
-        to_i.a(a_bar_i, s_i.centripetal - s_j.centripetal);
+        GammaDerivatives g;
+        GammaTerms terms_i(bi, g.i), terms_j(bj, g.j);
+        terms_i.centripetal(a_bar_i, -d_ij);
+        terms_i.adot(a_bar_i, -2 * d_ijdot);
+        terms_i.a(a_bar_i, s_i.centripetal - s_j.centripetal);
         g.j.r = -a_i.centripetal, g.i.r = -g.j.r;
-        to_j.a(s_bar_j, g.j.r), to_i.a(s_bar_i, g.i.r);
+        terms_j.a(s_bar_j, g.j.r), terms_i.a(s_bar_i, g.i.r);
         g.j.rdot = -2 * a_i.vdot, g.i.rdot = -g.j.rdot;
-        to_j.adot(s_bar_j, g.j.rdot), to_i.adot(s_bar_i, g.i.rdot);
-        to_j.centripetal(s_bar_j, -a_i.v), to_i.centripetal(s_bar_i, a_i.v);
+        terms_j.adot(s_bar_j, g.j.rdot), terms_i.adot(s_bar_i, g.i.rdot);
+        terms_j.centripetal(s_bar_j, -a_i.v), terms_i.centripetal(s_bar_i, a_i.v);
         return g;
     }
 
     unsigned nonzero() const override
     {
-        return 0b111 | crossed(a_bar_i) << 3 | 0b111 << 6 | crossed(s_bar_j) << 9;
+        return 0b111 | cross_product_pattern(a_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string objection(const Motion&, const Motion&, double) const override
+    std::string start_error(const Motion&, const Motion&, double) const override
     {
         return a_bar_i.norm() > 0 ? "" : "a vector of length zero has no direction, got |a_i| = 0";
     }

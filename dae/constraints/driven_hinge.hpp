@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraint DrivenHinge: prescribed rotation about an axis, over any number of revolutions.
 #pragma once
 
 #include "dae/block.hpp"
+#include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
 
 namespace hilda::dae {
 
-/// Drives body j about an axis of body i by the angle g(t) - g(t_0) since the start, through whole turns. A
-/// vector b(t) turns in body i ahead of a vector w of body j by a right angle:
+/// Rotates body j about an axis of body i by the angle g(t) - g(t_0) since the start.
+///
+/// The vector w is fixed in body j and perpendicular to the axis. The vector b(t) rotates in body i, 90
+/// degrees ahead of the prescribed direction of w:
 ///
 ///     Phi  = (A_i b_bar(t)) . (A_j w_bar),    b_bar = u_bar' cos g - u_bar sin g
 ///     Pi_i = -w^T A_i tilde(b_bar),   Pi_j = -b^T A_j tilde(w_bar),   nu = -(A_i d/dt b_bar) . w
 ///
-/// u_bar, u_bar' and the axis are right-handed and orthonormal. The row has length one at every angle, unlike
-/// DP1.
+/// u_bar, u_bar' and the axis are right-handed and orthonormal. The row has length one at every angle. A DP1
+/// driver in its place would lose rank twice per revolution.
 class DrivenHinge final : public Block {
 public:
-    /// u_bar ⟂ u_bar_prime, unit, in body i; w_bar, unit, in body j, at the angle g(t_0) from u_bar towards
-    /// u_bar_prime at the start.
+    /// u_bar and u_bar_prime: perpendicular unit vectors in the frame of body i. w_bar: unit vector in the
+    /// frame of body j. At the start it encloses the angle g(t_0) with u_bar, positive towards u_bar_prime.
     DrivenHinge(int i, const Vec3& u_bar, const Vec3& u_bar_prime, int j, const Vec3& w_bar, Driver g)
         : Block(i, j), u_bar(u_bar), u_bar_prime(u_bar_prime), w_bar(w_bar), g(std::move(g))
     {}
@@ -43,8 +47,8 @@ public:
 
     double gamma(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Turning b = b_bar(t);
-        const Carried w(bj, w_bar);
+        const DrivenVector b = b_bar(t);
+        const BodyFixedVector w(bj, w_bar);
         const Vec3& omega_bar = bi.omega_bar;
         const Vec3 bdot = bi.A * (omega_bar.cross(b.b) + b.bdot);
         const Vec3 bddot = bi.A * (omega_bar.cross(omega_bar.cross(b.b) + 2 * b.bdot) + b.bddot);
@@ -72,44 +76,46 @@ public:
                 .pi_j = -w_bar.cross(bj.A.transpose() * (bi.A * bdot))};
     }
 
-    GammaChange gamma_variation(const Motion& bi, const Motion& bj, double t) const override
+    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double t) const override
     {
-        const Turning b = b_bar(t);
-        const Carried w(bj, w_bar);
+        const DrivenVector b = b_bar(t);
+        const BodyFixedVector w(bj, w_bar);
         const Vec3& omega_bar = bi.omega_bar;
         const Vec3 first = omega_bar.cross(b.b) + b.bdot, inner = omega_bar.cross(b.b) + 2 * b.bdot,
                    second = omega_bar.cross(inner) + b.bddot;
-        GammaChange g;
+        GammaDerivatives g;
         const Vec3 g_0 = bi.A.transpose() * -w.centripetal, g_1 = bi.A.transpose() * (-2 * w.vdot),
                    g_2 = bi.A.transpose() * -w.v;
         g.i.theta = b.b.cross(g_0) + first.cross(g_1) + second.cross(g_2);
         g.i.omega = b.b.cross(g_1) + inner.cross(g_2) + b.b.cross(g_2.cross(omega_bar));
-        Pull to_j(bj, g.j);
-        to_j.a(w_bar, -(bi.A * second));
-        to_j.adot(w_bar, -2 * (bi.A * first));
-        to_j.centripetal(w_bar, -(bi.A * b.b));
+        GammaTerms terms_j(bj, g.j);
+        terms_j.a(w_bar, -(bi.A * second));
+        terms_j.adot(w_bar, -2 * (bi.A * first));
+        terms_j.centripetal(w_bar, -(bi.A * b.b));
         return g;
     }
 
     unsigned nonzero() const override
     {
-        return (crossed(u_bar) | crossed(u_bar_prime)) << 3 | crossed(w_bar) << 9;
+        return (cross_product_pattern(u_bar) | cross_product_pattern(u_bar_prime)) << 3 |
+               cross_product_pattern(w_bar) << 9;
     }
 
     const Vec3 u_bar, u_bar_prime, w_bar;
     const Driver g;
 
 private:
-    struct Turning {
+    /// b̄ and its time derivatives in the frame of body i
+    struct DrivenVector {
         Vec3 b, bdot, bddot;
     };
-    Turning b_bar(double t) const
+    DrivenVector b_bar(double t) const
     {
         const Jet a = g.jet(t);
         const double c = std::cos(a.f), s = std::sin(a.f);
         const Vec3 b = c * u_bar_prime - s * u_bar;
-        const Vec3 ahead = -s * u_bar_prime - c * u_bar;  // db/dg
-        return {b, a.fdot * ahead, a.fddot * ahead - a.fdot * a.fdot * b};
+        const Vec3 db_dg = -s * u_bar_prime - c * u_bar;
+        return {b, a.fdot * db_dg, a.fddot * db_dg - a.fdot * a.fdot * b};
     }
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Translational spring-damper-actuator.
 #pragma once
 
 #include "dae/expression.hpp"
@@ -13,9 +14,11 @@ namespace hilda::dae {
 ///
 ///     f = k (l - l_0) + c ldot + F(l, ldot, t)   [N]                            Haug (1989), Sec. 11.2
 ///
-/// along d_ij; positive pulls the bodies together.
+/// l = |d_ij| is the distance of the points and ldot its rate. f acts along d_ij; a positive f pulls the
+/// bodies together.
 ///
-/// Throws lie::NonFinite where the two points coincide, which leaves no direction.
+/// add() throws lie::NonFinite if the two points coincide, because the direction of the force is then
+/// undefined.
 class SpringDamper final : public Force {
 public:
     int i, j;
@@ -36,7 +39,10 @@ public:
         const Vec3 ddot =
             bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot - bi.A * bi.omega_bar.cross(s_bar_i);
         const double l = d.norm();
-        if (!(l > 0)) throw lie::NonFinite("force '" + name + "': the two points of a spring coincide");
+        if (!(l > 0))
+            throw lie::NonFinite(
+                "force '" + name +
+                "': the two points of the spring coincide, so that its force has no direction");
         const Vec3 along = d / l;
         const double ldot = along.dot(ddot);
         double f = stiffness * (l - free_length) + damping * ldot;
@@ -44,11 +50,11 @@ public:
             const double variables[] = {l, ldot, x.t};
             f += law->value(variables);
         }
-        push(i, f * along, s_bar_i, x, out);
-        push(j, -f * along, s_bar_j, x, out);
+        apply_force(i, f * along, s_bar_i, x, out);
+        apply_force(j, -f * along, s_bar_j, x, out);
     }
 
-    /// Of the linear spring alone
+    /// k (l - l_0)²/2: the linear spring only
     double potential_energy(const State& x) const override
     {
         const Motion &bi = motion(x, i), &bj = motion(x, j);

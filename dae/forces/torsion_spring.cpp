@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Torsional spring-damper: angle, torque and potential energy.
 #include "dae/forces/torsion_spring.hpp"
 
 #include "lie/check.hpp"
@@ -25,7 +26,9 @@ TorsionSpring::TorsionSpring(int i, const Vec3& axis_i, int j, const Vec3& axis_
     const double cosine = (bi.A * axis_bar_i).dot(bj.A * axis_j.normalized());
     if (cosine < 1 - 1e-6)
         lie::reject("torsion spring",
-                    "the two axes must be parallel at the start, the same way; their cosine", cosine);
+                    "the two axes must be parallel at the start and point in the same direction; "
+                    "cosine of their angle",
+                    cosine);
     u_bar_j = bj.A.transpose() * (bi.A * u_bar_i);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One of several laws, chosen when a case is read: a tagged union that a GPU can take apart too.
+/// Tagged union of force laws, selected when a case is read. It is used instead of virtual functions, which a
+/// GPU kernel cannot call through pointers of the host.
 
 #pragma once
 
@@ -11,6 +12,8 @@
 
 namespace hilda::granular {
 
+/// One of the given laws, which are trivially copyable and at most 32 bytes long. The default is the first
+/// law with all parameters zero.
 template <class... Laws>
 class AnyOf {
 public:
@@ -20,26 +23,27 @@ public:
     {
         static_assert(std::is_trivially_copyable_v<Law> && sizeof(Law) <= sizeof bytes);
         int k = 0;
-        ((std::is_same_v<Law, Laws> ? void(kind = k++) : void(k++)), ...);
+        ((std::is_same_v<Law, Laws> ? void(index = k++) : void(k++)), ...);
         std::memcpy(bytes, &law, sizeof law);
     }
 
-    /// Calls f with the law that this is.
+    /// Calls f with the stored law.
     template <class F>
     HILDA_HD void visit(const F& f) const
     {
         int k = 0;
-        ((kind == k++ ? f(*reinterpret_cast<const Laws*>(bytes)) : void()), ...);
+        ((index == k++ ? f(*reinterpret_cast<const Laws*>(bytes)) : void()), ...);
     }
+    /// Whether the stored law is of type Law
     template <class Law>
     bool is() const
     {
-        bool yes = false;
-        visit([&]<class Found>(const Found&) { yes = std::is_same_v<Law, Found>; });
-        return yes;
+        bool result = false;
+        visit([&]<class Found>(const Found&) { result = std::is_same_v<Law, Found>; });
+        return result;
     }
 
-    /// Makes a law of this name out of its keys; false where no law has it.
+    /// Reads the law with this name from its keys; false if no law has the name.
     template <class Keys>
     bool read(const std::string& name, Keys& keys)
     {
@@ -47,6 +51,7 @@ public:
         ((name == Laws::name ? void((*this = Laws::read(keys), found = true)) : void()), ...);
         return found;
     }
+    /// Names of all laws, separated by commas
     static std::string names()
     {
         std::string all;
@@ -55,7 +60,7 @@ public:
     }
 
 private:
-    int kind = 0;
+    int index = 0;
     alignas(8) unsigned char bytes[32] = {};
 };
 

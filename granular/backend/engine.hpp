@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The arrays of a world and the loops over them, where they live: on the CPU or on a GPU.
+/// The engine of a world: its arrays and the loops over them, on the CPU or on a GPU.
 
 #pragma once
 
@@ -13,70 +13,76 @@
 
 namespace hilda::granular {
 
-/// No device of this kind, or none with this number, or it has failed. what() says which and why.
+/// The device does not exist, cannot be used, or has failed; what() gives the reason.
 class DeviceError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
+/// A device: the CPU, or the GPU with the given number
 struct Device {
     enum Kind { cpu, cuda } kind = cpu;
     int number = 0;
 };
 
+/// All arrays of a world in the memory of a back end
 template <class Backend>
 struct Arrays {
     Particles<Backend> particle;
     Pairs<Backend> pairs;
 };
 
+/// Force and torque on a boundary
 struct Wrench {
-    Vec3 F = {0, 0, 0}, T = {0, 0, 0};  ///< [N, N m], about Boundary::r
+    Vec3 F = {0, 0, 0}, T = {0, 0, 0};  ///< [N], [N m] about Boundary::r
 };
 
-/// The steps of a world, each a loop over all of its particles or pairs. Functors are the same on every device, and so
-/// are results, to the bit.
+/// The operations of a step; each is a loop over all particles or pairs. All devices execute the same
+/// functors and give bitwise equal results.
 class Engine {
 public:
     virtual ~Engine() = default;
 
-    /// The arrays as the host sees them, as of now
+    /// The current arrays in host memory; a GPU engine copies them. A change becomes effective with
+    /// arrays_modified().
     virtual Arrays<par::Cpu>& arrays() = 0;
-    /// The caller has written into arrays().
-    virtual void written() = 0;
+    /// Transfers the arrays to the device after the caller has modified arrays().
+    virtual void arrays_modified() = 0;
 
-    /// law_of: materials × materials
+    /// law_of: index of the law of a pair of materials, materials × materials
     virtual void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                           std::uint32_t materials) = 0;
     virtual void set_boundaries(const std::vector<Boundary>& boundaries) = 0;
-    /// From outside, by id [N]; none where the list is empty
-    virtual void set_forces(const std::vector<Four>& forces) = 0;
+    /// External forces by particle id [N]; an empty list means none.
+    virtual void set_forces(const std::vector<Float4>& forces) = 0;
 
     /// See Neighbours::find.
-    virtual void find_neighbours(const Scene& scene) = 0;
+    virtual void find_neighbours(const Domain& domain) = 0;
     /// See find_loads.
-    virtual void find_loads(const Scene& scene, float h) = 0;
+    virtual void find_loads(const Domain& domain, float h) = 0;
     /// See advance.
-    virtual float advance(const StepOf& step) = 0;
-    /// The longest way of a particle since neighbours were looked for [units]
-    virtual float longest_way() = 0;
-    /// What the last loads are on boundaries that are not held, by their numbers; zero for the others
-    virtual const std::vector<Wrench>& on_free_boundaries(const Scene& scene) = 0;
+    virtual float advance(const StepParameters& step) = 0;
+    /// Largest displacement of a particle since the last neighbour search [units]
+    virtual float largest_displacement() = 0;
+    /// Sums of the current contact loads on boundaries with a mass, by boundary number; zero for the others
+    virtual const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) = 0;
 
-    /// Until all that was begun is done: for those who read a clock
+    /// Waits until the device has finished all work, for time measurements.
     virtual void wait() = 0;
-    /// Bytes per second of a copy within its memory, counting what is read and what is written
+    /// Bandwidth of a copy within the memory of the device [B/s], reads and writes added
     virtual double copy_rate() = 0;
 
+    /// Memory of all arrays [B]
     virtual std::size_t bytes() const = 0;
 };
 
-/// DeviceError where there is no such device, or this build knows no GPU. A process uses one GPU, from one thread.
+/// Throws DeviceError if the device does not exist or the program is built without CUDA. A process uses one
+/// GPU, from one thread.
 std::unique_ptr<Engine> make_engine(Device device);
 std::unique_ptr<Engine> make_gpu_engine(int number);
-/// Names of the GPUs that could be used; empty where there are none, and then `why_not` says why.
+/// Names of the available GPUs. If there are none the result is empty and `why_not` is the reason.
 std::vector<std::string> gpus(std::string& why_not);
-/// What is free on a GPU [bytes]. DeviceError
+/// Free memory of a GPU [B]. Throws DeviceError.
 std::size_t gpu_memory(int number);
 
 }  // namespace hilda::granular

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Creation of an engine.
 #include "granular/backend/engine_impl.hpp"
 
 namespace hilda::granular {

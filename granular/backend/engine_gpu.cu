@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine of a GPU: the same functors as on the CPU, a thread for each particle or pair.
+// The engine of a GPU: the functors of the CPU, with one thread per particle or pair.
 #include "granular/backend/par_gpu.cuh"
 
 #include "granular/backend/engine_impl.hpp"
@@ -14,7 +14,7 @@ std::vector<std::string> gpus(std::string& why_not)
 {
     int count = 0;
     const cudaError_t code = cudaGetDeviceCount(&count);
-    // no driver at all (35) and a driver without a device (100) are the same to a user
+    // a missing driver (error 35) and a missing device (error 100) are treated alike
     if (code != cudaSuccess) {
         why_not = cudaGetErrorString(code);
         return {};
@@ -22,50 +22,51 @@ std::vector<std::string> gpus(std::string& why_not)
     std::vector<std::string> names;
     for (int k = 0; k < count; ++k) {
         cudaDeviceProp properties{};
-        par::check(cudaGetDeviceProperties(&properties, k), "the properties of a GPU");
+        par::check(cudaGetDeviceProperties(&properties, k), "query of the GPU properties");
         names.emplace_back(properties.name);
     }
-    if (names.empty()) why_not = "there is none";
+    if (names.empty()) why_not = "no GPU was found";
     return names;
 }
 
 namespace {
 
-void choose(int number)
+void select_device(int number)
 {
-    std::string why;
-    const std::vector<std::string> there = gpus(why);
-    if (there.empty()) throw DeviceError("no GPU can be used: " + why);
-    if (number < 0 || number >= static_cast<int>(there.size()))
-        throw DeviceError("there is no GPU " + std::to_string(number) + ", only 0 to " +
-                          std::to_string(there.size() - 1));
-    constexpr int least = 8;  // of what this is compiled for
+    std::string reason;
+    const std::vector<std::string> names = gpus(reason);
+    if (names.empty()) throw DeviceError("no GPU is available: " + reason);
+    if (number < 0 || number >= static_cast<int>(names.size()))
+        throw DeviceError("GPU number must be from 0 to " + std::to_string(names.size() - 1) + ", got " +
+                          std::to_string(number));
+    constexpr int least = 8;  // lowest compute capability that the program is compiled for
     int major = 0;
     par::check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, number),
-               "what a GPU can do");
+               "query of the compute capability of a GPU");
     if (major < least)
-        throw DeviceError("GPU " + std::to_string(number) + ", " + there[static_cast<std::size_t>(number)] +
-                          ", has compute capability " + std::to_string(major) + " and not " +
-                          std::to_string(least));
-    static int chosen = number;
-    if (number != chosen)
-        throw DeviceError("a process uses one GPU, and this one has used GPU " + std::to_string(chosen));
-    par::check(cudaSetDevice(number), "the choice of a GPU");
+        throw DeviceError("GPU " + std::to_string(number) + " (" + names[static_cast<std::size_t>(number)] +
+                          "): the compute capability must be at least " + std::to_string(least) + ".0, got " +
+                          std::to_string(major));
+    static int selected = number;
+    if (number != selected)
+        throw DeviceError("GPU " + std::to_string(number) +
+                          " cannot be used: this process already uses GPU " + std::to_string(selected));
+    par::check(cudaSetDevice(number), "selection of a GPU");
 }
 
 }  // namespace
 
 std::size_t gpu_memory(int number)
 {
-    choose(number);
+    select_device(number);
     std::size_t free = 0, total = 0;
-    par::check(cudaMemGetInfo(&free, &total), "the memory of a GPU");
+    par::check(cudaMemGetInfo(&free, &total), "query of the free memory of a GPU");
     return free;
 }
 
 std::unique_ptr<Engine> make_gpu_engine(int number)
 {
-    choose(number);
+    select_device(number);
     return std::make_unique<EngineOn<par::Gpu>>();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine of any back end.
+// Implementation of Engine for any back end.
 #pragma once
 
 #include "granular/backend/engine.hpp"
@@ -12,46 +12,49 @@ namespace hilda::granular {
 
 namespace detail {
 
-/// 1 for a pair with a boundary that is not held
-struct IsOnFree {
+/// flag[n] = 1 for a pair with a boundary that has a mass
+struct FlagFreeBoundaryPair {
     const std::uint32_t* j;
     const Boundary* boundary;
-    std::uint32_t* yes;
+    std::uint32_t* flag;
     HILDA_HD void operator()(std::uint32_t n) const
     {
-        yes[n] = (j[n] & PairView::boundary) != 0 && boundary[j[n] & ~PairView::boundary].mass > 0 ? 1 : 0;
+        flag[n] =
+            (j[n] & PairView::boundary_bit) != 0 && boundary[j[n] & ~PairView::boundary_bit].mass > 0 ? 1 : 0;
     }
 };
 
-struct Collect {
-    const std::uint32_t* before;  ///< how many come before each
+/// Writes the indices of the flagged pairs, in their order.
+struct CompactIndices {
+    const std::uint32_t* offset;  ///< number of flagged pairs before each pair
     std::uint32_t* which;
     HILDA_HD void operator()(std::uint32_t n) const
     {
-        if (before[n + 1] > before[n]) which[before[n]] = n;
+        if (offset[n + 1] > offset[n]) which[offset[n]] = n;
     }
 };
 
-struct OnBoundary {
+/// Force [N] and torque about Boundary::r [N m] of one pair on its boundary
+struct BoundaryLoad {
     Vec3 F, T;
     std::uint32_t boundary;
 };
 
-/// What a pair does to its boundary
-struct FindOnBoundary {
+/// Load of a pair on its boundary
+struct ComputeBoundaryLoad {
     CellGrid grid;
     const Position* position;
     const std::uint32_t *i, *j;
     const Load* load;
-    const Four* torque;
+    const Float4* torque;
     const Boundary* boundary;
     const std::uint32_t* which;
-    OnBoundary* out;
+    BoundaryLoad* out;
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const std::uint32_t n = which[k], b = j[n] & ~PairView::boundary;
-        const Four f = load[n].F;
-        const Vec3 F{-f.x, -f.y, -f.z}, r = place(grid, position[i[n]]);
+        const std::uint32_t n = which[k], b = j[n] & ~PairView::boundary_bit;
+        const Float4 f = load[n].F;
+        const Vec3 F{-f.x, -f.y, -f.z}, r = global_position(grid, position[i[n]]);
         const Nearest near = nearest(boundary[b], r);
         Vec3 T = (r - near.distance * near.n - boundary[b].r).cross(F);
         if (torque != nullptr) T -= {torque[n].x, torque[n].y, torque[n].z};
@@ -59,20 +62,22 @@ struct FindOnBoundary {
     }
 };
 
-struct WayOf {
-    const Position *now, *before;
+/// Displacement of a particle since the last neighbour search [units]
+struct DisplacementSinceBuild {
+    const Position *now, *at_build;
     HILDA_HD float operator()(std::uint32_t k) const
     {
-        // owner cells are those of before: the difference is that of the places in them
-        const auto x = static_cast<float>(now[k].x - before[k].x),
-                   y = static_cast<float>(now[k].y - before[k].y),
-                   z = static_cast<float>(now[k].z - before[k].z);
+        // owner cells do not change between searches, so the difference is that of the local coordinates
+        const auto x = static_cast<float>(now[k].x - at_build[k].x),
+                   y = static_cast<float>(now[k].y - at_build[k].y),
+                   z = static_cast<float>(now[k].z - at_build[k].z);
         return sqrt(x * x + y * y + z * z);
     }
 };
 
 }  // namespace detail
 
+/// Engine on a back end: par::Cpu, par::Gpu, or a back end of a test
 template <class Backend>
 class EngineOn : public Engine {
 public:
@@ -81,110 +86,113 @@ public:
         if constexpr (is_cpu) {
             return own;
         } else {
-            if (!current) copy(host, own);
-            current = true;
+            if (!host_is_current) copy(host, own);
+            host_is_current = true;
             return host;
         }
     }
-    void written() override
+    void arrays_modified() override
     {
         if constexpr (!is_cpu) copy(own, host);
     }
 
-    void set_laws(const std::vector<PairLaw>& all, const std::vector<std::uint8_t>& between,
+    void set_laws(const std::vector<PairLaw>& all, const std::vector<std::uint8_t>& law_of_pair,
                   std::uint32_t count) override
     {
         materials = count;
         one_law = all.size() <= 1;
-        turning = false;
-        for (const PairLaw& l : all) turning = turning || l.turns();
-        send(laws, all), send(law_of, between);
+        rotation_laws = false;
+        for (const PairLaw& l : all) rotation_laws = rotation_laws || l.resists_rotation();
+        send(laws, all), send(law_of, law_of_pair);
     }
 
     void set_boundaries(const std::vector<Boundary>& all) override
     {
-        if (all.size() == known.size() &&
-            (all.empty() || std::memcmp(static_cast<const void*>(all.data()), known.data(),
+        if (all.size() == last_boundaries.size() &&
+            (all.empty() || std::memcmp(static_cast<const void*>(all.data()), last_boundaries.data(),
                                         all.size() * sizeof(Boundary)) == 0))
             return;
-        known = all;
+        last_boundaries = all;
         any_free = false;
         for (const Boundary& b : all) any_free = any_free || b.mass > 0;
         send(boundaries, all);
     }
 
-    void set_forces(const std::vector<Four>& all) override { send(force, all); }
+    void set_forces(const std::vector<Float4>& all) override { send(force, all); }
 
-    void find_neighbours(const Scene& scene) override
+    void find_neighbours(const Domain& domain) override
     {
-        current = false;
-        neighbours.find({.scene = scene,
+        host_is_current = false;
+        neighbours.find({.domain = domain,
                          .law_of = one_law ? nullptr : law_of.data(),
                          .materials = materials,
                          .boundary = boundaries.data(),
                          .boundaries = static_cast<std::uint32_t>(boundaries.size()),
-                         .turning = turning},
+                         .rotation_laws = rotation_laws},
                         own.particle, own.pairs);
         free_pairs = 0;
         if (!any_free) return;
         const std::uint32_t n = own.pairs.count;
-        counts.resize(n), before.resize(n + 1);
-        par::for_each(on, n, detail::IsOnFree{own.pairs.j.data(), boundaries.data(), counts.data()});
-        free_pairs = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), before.data(), n));
-        par::for_each(on, n, detail::Collect{before.data(), counts.data()});
+        counts.resize(n), offset.resize(n + 1);
+        par::for_each(on, n,
+                      detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), counts.data()});
+        free_pairs = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), offset.data(), n));
+        par::for_each(on, n, detail::CompactIndices{offset.data(), counts.data()});
     }
 
-    void find_loads(const Scene& scene, float h) override
+    void find_loads(const Domain& domain, float h) override
     {
-        current = false;
-        granular::find_loads(on, particle_view(scene, own.particle), pair_view(),
+        host_is_current = false;
+        granular::find_loads(on, particle_view(domain, own.particle), pair_view(),
                              {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
     }
 
-    float advance(const StepOf& step) override
+    float advance(const StepParameters& step) override
     {
-        current = false;
+        host_is_current = false;
         Particles<Backend>& p = own.particle;
         return granular::advance(on, p.count,
                                  {.position = p.position.data(),
                                   .velocity = p.velocity.data(),
                                   .omega = p.omega.data(),
-                                  .rest = p.rest.data(),
+                                  .compensation = p.compensation.data(),
                                   .acc = p.acc.data(),
-                                  .turn = p.turn.data(),
+                                  .alpha = p.alpha.data(),
                                   .orientation = p.orientation.data(),
-                                  .orientation_rest = p.orientation_rest.data(),
+                                  .orientation_compensation = p.orientation_compensation.data(),
                                   .start = own.pairs.start.data(),
                                   .other_start = own.pairs.other_start.data(),
                                   .other = own.pairs.other.data(),
                                   .load = own.pairs.load.data(),
-                                  .touches = own.pairs.touches.data(),
-                                  .torque = turning ? own.pairs.torque.data() : nullptr,
+                                  .in_contact = own.pairs.in_contact.data(),
+                                  .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
                                   .force = force.size() > 0 ? force.data() : nullptr,
                                   .id = p.id.data(),
                                   .step = step});
     }
 
-    float longest_way() override
+    float largest_displacement() override
     {
         return par::largest(on, own.particle.count,
-                            detail::WayOf{own.particle.position.data(), own.particle.before.data()});
+                            detail::DisplacementSinceBuild{own.particle.position.data(),
+                                                           own.particle.position_at_build.data()});
     }
 
-    const std::vector<Wrench>& on_free_boundaries(const Scene& scene) override
+    const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) override
     {
-        sums.assign(known.size(), Wrench{});
-        on_boundary.resize(free_pairs);
+        wrenches.assign(last_boundaries.size(), Wrench{});
+        boundary_loads.resize(free_pairs);
         par::for_each(on, free_pairs,
-                      detail::FindOnBoundary{scene.grid, own.particle.position.data(), own.pairs.i.data(),
-                                             own.pairs.j.data(), own.pairs.load.data(),
-                                             turning ? own.pairs.torque.data() : nullptr, boundaries.data(),
-                                             counts.data(), on_boundary.data()});
-        of_pairs.resize(free_pairs);
-        par::copy_to_host(on, of_pairs.data(), on_boundary.data(), free_pairs * sizeof(detail::OnBoundary));
-        for (const detail::OnBoundary& one : of_pairs)
-            sums[one.boundary].F += one.F, sums[one.boundary].T += one.T;
-        return sums;
+                      detail::ComputeBoundaryLoad{
+                          domain.grid, own.particle.position.data(), own.pairs.i.data(), own.pairs.j.data(),
+                          own.pairs.load.data(), rotation_laws ? own.pairs.torque.data() : nullptr,
+                          boundaries.data(), counts.data(), boundary_loads.data()});
+        host_boundary_loads.resize(free_pairs);
+        par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
+                          free_pairs * sizeof(detail::BoundaryLoad));
+        for (const detail::BoundaryLoad& load : host_boundary_loads)
+            wrenches[load.boundary].F += load.F, wrenches[load.boundary].T += load.T;
+        return wrenches;
     }
 
     void wait() override { par::wait(on); }
@@ -206,7 +214,7 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               counts.bytes() + before.bytes() + on_boundary.bytes();
+               counts.bytes() + offset.bytes() + boundary_loads.bytes();
     }
 
 private:
@@ -219,10 +227,10 @@ private:
                 p.j.data(),
                 one_law ? nullptr : p.law.data(),
                 p.history.data(),
-                turning ? p.turning.data() : nullptr,
+                rotation_laws ? p.rotation_history.data() : nullptr,
                 p.load.data(),
-                turning ? p.torque.data() : nullptr,
-                p.touches.data(),
+                rotation_laws ? p.torque.data() : nullptr,
+                p.in_contact.data(),
                 p.count};
     }
 
@@ -233,7 +241,7 @@ private:
         par::copy_to_device(on, to.data(), from.data(), from.size() * sizeof(T));
     }
 
-    /// Between the arrays of the host and those of the device
+    /// Copies all arrays between the host and the device.
     template <class To, class From>
     void copy(Arrays<To>& to, Arrays<From>& from)
     {
@@ -250,32 +258,33 @@ private:
         auto& pf = from.particle;
         auto& qf = from.pairs;
         one(p.position, pf.position), one(p.velocity, pf.velocity), one(p.omega, pf.omega);
-        one(p.rest, pf.rest), one(p.kind, pf.kind), one(p.id, pf.id), one(p.acc, pf.acc),
-            one(p.turn, pf.turn);
-        one(p.orientation, pf.orientation), one(p.orientation_rest, pf.orientation_rest);
-        one(p.before, pf.before);
+        one(p.compensation, pf.compensation), one(p.species, pf.species), one(p.id, pf.id),
+            one(p.acc, pf.acc), one(p.alpha, pf.alpha);
+        one(p.orientation, pf.orientation), one(p.orientation_compensation, pf.orientation_compensation);
+        one(p.position_at_build, pf.position_at_build);
         one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.other_start, qf.other_start);
-        one(q.other, qf.other), one(q.law, qf.law), one(q.touches, qf.touches), one(q.history, qf.history);
-        one(q.turning, qf.turning), one(q.torque, qf.torque), one(q.load, qf.load);
+        one(q.other, qf.other), one(q.law, qf.law), one(q.in_contact, qf.in_contact),
+            one(q.history, qf.history);
+        one(q.rotation_history, qf.rotation_history), one(q.torque, qf.torque), one(q.load, qf.load);
         p.count = pf.count, q.count = qf.count;
     }
 
     const Backend on = {};
     Arrays<Backend> own;
-    Arrays<par::Cpu> host;  ///< of a GPU, as of the time when it was last asked for
-    bool current = false;
+    Arrays<par::Cpu> host;  ///< copy of a GPU's arrays; up to date if host_is_current
+    bool host_is_current = false;
     Neighbours<Backend> neighbours;
     par::Array<Backend, PairLaw> laws;
     par::Array<Backend, std::uint8_t> law_of;
     par::Array<Backend, Boundary> boundaries;
-    par::Array<Backend, Four> force;
-    std::vector<Boundary> known;
+    par::Array<Backend, Float4> force;
+    std::vector<Boundary> last_boundaries;
     std::uint32_t materials = 1, free_pairs = 0;
-    bool one_law = true, turning = false, any_free = false;
-    par::Array<Backend, std::uint32_t> counts, before;  ///< then: which pairs are on boundaries that are free
-    par::Array<Backend, detail::OnBoundary> on_boundary;
-    std::vector<detail::OnBoundary> of_pairs;
-    std::vector<Wrench> sums;
+    bool one_law = true, rotation_laws = false, any_free = false;
+    par::Array<Backend, std::uint32_t> counts, offset;  ///< counts: indices of the pairs with free boundaries
+    par::Array<Backend, detail::BoundaryLoad> boundary_loads;
+    std::vector<detail::BoundaryLoad> host_boundary_loads;
+    std::vector<Wrench> wrenches;
 };
 
 }  // namespace hilda::granular

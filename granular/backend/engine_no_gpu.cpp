@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where there is no CUDA to build with.
+// Replaces engine_gpu.cu in a build without CUDA.
 #include "granular/backend/engine.hpp"
 
 namespace hilda::granular {
 
-std::unique_ptr<Engine> make_gpu_engine(int) { throw DeviceError("this program was built without CUDA"); }
+namespace {
 
-std::size_t gpu_memory(int) { throw DeviceError("this program was built without CUDA"); }
+constexpr const char* no_cuda =
+    "the program is built without CUDA; use the device cpu, or rebuild with nvcc in PATH";
+
+}
+
+std::unique_ptr<Engine> make_gpu_engine(int) { throw DeviceError(no_cuda); }
+
+std::size_t gpu_memory(int) { throw DeviceError(no_cuda); }
 
 std::vector<std::string> gpus(std::string& why_not)
 {
-    why_not = "built without CUDA";
+    why_not = "the program is built without CUDA";
     return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reads and writes rows of four words, one for each lane, as packs: a transposition on the way.
+/// Loads and stores rows of four words, one row per lane, as four packs (a 4 x lanes transposition).
 
 #pragma once
 
@@ -10,11 +10,11 @@ namespace hilda::granular {
 namespace detail {
 
 #ifdef __AVX512F__
-/// Four words of sixteen rows as four registers; row k at rows + stride k or where `at` says
+/// Four words of sixteen rows as four registers; row k is at address at(k)
 template <class At>
 inline void load_transposed(const At& at, __m512i out[4])
 {
-    // registers 0 … 3 have in their quarters q the rows 4 q + r
+    // quarter q of register a[r] holds row 4 q + r
     __m512i a[4];
     for (int r = 0; r < 4; ++r) {
         a[r] = _mm512_castsi128_si512(_mm_load_si128(at(r)));
@@ -28,6 +28,7 @@ inline void load_transposed(const At& at, __m512i out[4])
     out[2] = _mm512_unpacklo_epi64(high01, high23), out[3] = _mm512_unpackhi_epi64(high01, high23);
 }
 
+/// The inverse of load_transposed
 template <class At>
 inline void store_transposed(const __m512i in[4], const At& at)
 {
@@ -46,7 +47,7 @@ inline void store_transposed(const __m512i in[4], const At& at)
 
 }  // namespace detail
 
-/// Word w of row k goes to lane k of out[w]; rows are 16 bytes, aligned
+/// Lane k of out[w] is word w of the row at address at(k). Rows start with 16 bytes that are aligned to 16.
 template <class Word, class Row, class At>
 inline void load_rows(const At& at, Word out[4])
 {
@@ -66,6 +67,7 @@ inline void load_rows(const At& at, Word out[4])
 #endif
 }
 
+/// Stores lane k of in[w] as word w of the row at address at(k), in the order of k.
 template <class Word, class At>
 inline void store_rows(const Word in[4], const At& at)
 {
@@ -85,18 +87,20 @@ inline void store_rows(const Word in[4], const At& at)
 }
 
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__)
-/// Bit k tells of flag k
+/// Bit k of the result: flag k is not zero, k = 0 … lanes - 1
 inline unsigned flags(const std::uint8_t* from)
 {
     const __m128i f = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
     return _mm_test_epi8_mask(f, f);
 }
+/// Sets flag k to bit k.
 inline void set_flags(std::uint8_t* to, unsigned bits)
 {
     const __m128i ones = _mm_and_si128(_mm_movm_epi8(static_cast<__mmask16>(bits)), _mm_set1_epi8(1));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to), ones);
 }
-/// Writes first + k for each bit k, and may write up to `lanes` numbers in all; returns how many it wrote.
+/// Writes first + k for each set bit k; returns their number. It may overwrite up to `lanes` elements of
+/// `to`.
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
 {
     const __m512i numbers =
@@ -124,6 +128,7 @@ inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bit
 }
 #endif
 
+/// Bit k of the result: the highest bit of word k
 inline unsigned highest_bits(const std::uint32_t* words)
 {
     PackMask m;

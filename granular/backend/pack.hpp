@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Numbers side by side in the registers of a CPU. Every lane goes its own way, so that a result does not depend on which
-/// lane it was found in.
+/// Packs: floats and integers in the vector registers of a CPU. All operations are elementwise, so that a
+/// result does not depend on the lane in which it is computed.
 
 #pragma once
 
 #ifdef __CUDACC__
-#error "packs are for loops on the CPU"
+#error "pack.hpp is for code of the CPU only"
 #endif
 
 #include "granular/backend/par.hpp"
@@ -26,7 +26,7 @@ constexpr int lanes = 16;
 constexpr int lanes = 8;
 #endif
 
-/// The comparison of packs: all bits of a lane set, or none
+/// Result of a comparison of packs: in each lane all bits are set or none
 struct PackMask {
     using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
     V v;
@@ -36,6 +36,7 @@ struct PackMask {
     PackMask operator~() const { return {~v}; }
 };
 
+/// 32-bit integers
 struct Ints {
     using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
     V v;
@@ -54,13 +55,14 @@ struct Longs {
     V v;
 };
 
+/// Single-precision numbers
 struct Pack {
     using V __attribute__((vector_size(4 * lanes))) = float;
     V v;
 
     Pack() = default;
     Pack(V v) : v(v) {}
-    Pack(float all) : v(all - V{}) {}
+    Pack(float value) : v(value - V{}) {}
 
     friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
     friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
@@ -87,6 +89,7 @@ inline Pack select(PackMask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
 inline Pack abs(Pack a) { return select(PackMask{a.v < 0}, -a, a); }
 #ifdef __AVX512F__
 inline Pack sqrt(Pack a) { return Pack::V(_mm512_sqrt_ps(__m512(a.v))); }
+/// Bit k of the result: lane k of the mask
 inline unsigned bits(PackMask m) { return _mm512_movepi32_mask(__m512i(m.v)); }
 #else
 inline Pack sqrt(Pack a)
@@ -114,7 +117,7 @@ inline Ints as_int(Pack a) { return {Ints::V(a.v)}; }
 inline Pack as_float(Ints bits) { return Pack::V(bits.v); }
 inline Longs wide(Ints a) { return {__builtin_convertvector(a.v, Longs::V)}; }
 
-/// To the nearest whole number, of less than 2^31
+/// Rounds to the nearest integer. The magnitude must be below 2^31.
 inline Pack rint(Pack a)
 {
 #ifdef __AVX512F__
@@ -125,14 +128,16 @@ inline Pack rint(Pack a)
 #endif
 }
 
+/// Maximum of the lanes; NaN if one is NaN
 inline float largest(Pack a)
 {
-    float most = a.v[0];
-    for (int k = 1; k < lanes; ++k) most = par::worse(most, a.v[k]);
-    return most;
+    float maximum = a.v[0];
+    for (int k = 1; k < lanes; ++k) maximum = par::nan_max(maximum, a.v[k]);
+    return maximum;
 }
 
-/// The two halves of words, and words of halves; see Rest
+/// The two bfloat16 numbers of a word as floats, and a word of the upper halves of two words; see
+/// Compensation
 inline Pack low(Ints words) { return as_float(words << 16); }
 inline Pack high(Ints words) { return as_float(words & static_cast<std::int32_t>(0xFFFF0000)); }
 inline Ints halves(Ints low, Ints high)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Memory, prefix sum and sort on the CPU.
 #include "granular/backend/par.hpp"
 
 #include <thrust/execution_policy.h>
@@ -22,7 +23,8 @@ namespace hilda::granular::par {
 void* allocate(Cpu, std::size_t bytes)
 {
     if (bytes == 0) return nullptr;
-    // Large pages: the loops go through a dozen arrays at once, and small pages cost twice the time at 50 000 particles.
+    // Huge pages: the loops access a dozen arrays at once. With small pages a step of 50 000 particles takes
+    // twice the time.
     constexpr std::size_t large = 2 << 20;
     const std::size_t page = bytes >= large ? large : 64, rounded = (bytes + page - 1) / page * page;
     void* memory = std::aligned_alloc(page, rounded);
@@ -40,14 +42,14 @@ void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes)
 
 namespace {
 
-constexpr std::size_t few = 2048;  // not worth waking threads for
+constexpr std::size_t serial_below = 2048;  // starting threads costs more than these elements
 
 }
 
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n)
 {
     out[0] = 0;
-    if (n <= few)
+    if (n <= serial_below)
         thrust::inclusive_scan(thrust::seq, in, in + n, out + 1);
     else
         thrust::inclusive_scan(thrust::device, in, in + n, out + 1);
@@ -56,7 +58,7 @@ std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, s
 
 void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int /*bits*/)
 {
-    if (n <= few)
+    if (n <= serial_below)
         thrust::stable_sort_by_key(thrust::seq, keys, keys + n, values);
     else
         thrust::stable_sort_by_key(thrust::device, keys, keys + n, values);

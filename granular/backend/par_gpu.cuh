@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The primitives of par.hpp with CUDA. Everything is in the order of one stream; what returns a number to the host waits.
+// The primitives of par.hpp with CUDA. All work is issued to one stream. Functions that return a number wait
+// for the device.
 #pragma once
 
 #include "granular/backend/par.hpp"
@@ -11,18 +12,20 @@
 
 namespace hilda::granular {
 
-/// A call of CUDA has failed; see DeviceError.
+/// Throws DeviceError after a CUDA call has failed.
 [[noreturn]] void device_failed(const std::string& what);
 
 namespace par {
 
+/// Tag of the GPU back end
 struct Gpu {};
 
-inline void check(cudaError_t code, const char* doing)
+/// Throws DeviceError if a CUDA call has failed; `operation` names it in the message.
+inline void check(cudaError_t code, const char* operation)
 {
     if (code == cudaSuccess) return;
-    cudaGetLastError();  // so that the next call does not tell it again
-    device_failed(std::string(doing) + ": " + cudaGetErrorString(code) + " (CUDA error " +
+    cudaGetLastError();  // resets the error, so that the next call does not report it again
+    device_failed(std::string(operation) + ": " + cudaGetErrorString(code) + " (CUDA error " +
                   std::to_string(static_cast<int>(code)) + ')');
 }
 
@@ -30,34 +33,36 @@ inline void* allocate(Gpu, std::size_t bytes)
 {
     void* memory = nullptr;
     if (bytes > 0)
-        check(cudaMalloc(&memory, bytes), (std::to_string(bytes) + " bytes of the GPU's memory").c_str());
+        check(cudaMalloc(&memory, bytes),
+              ("allocation of " + std::to_string(bytes) + " bytes on the GPU").c_str());
     return memory;
 }
 inline void release(Gpu, void* memory) noexcept
 {
-    if (memory != nullptr) cudaFree(memory);  // fails only after a failure that was told
+    if (memory != nullptr) cudaFree(memory);  // fails only after an error that was reported
 }
 inline void copy_bytes(Gpu, void* to, const void* from, std::size_t bytes)
 {
-    if (bytes > 0) check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice), "a copy on the GPU");
+    if (bytes > 0) check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice), "copy on the GPU");
 }
 inline void copy_to_host(Gpu, void* to, const void* from, std::size_t bytes)
 {
-    if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "a copy from the GPU");
+    if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "copy from the GPU");
 }
 inline void copy_to_device(Gpu, void* to, const void* from, std::size_t bytes)
 {
-    if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "a copy to the GPU");
+    if (bytes > 0) check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copy to the GPU");
 }
 
-inline void wait(Gpu) { check(cudaDeviceSynchronize(), "work on the GPU"); }
+inline void wait(Gpu) { check(cudaDeviceSynchronize(), "synchronisation with the GPU"); }
 
-/// Memory of one kind of call, kept from one to the next
+/// Work memory of a function, reused by its next call
 template <class Tag>
 inline Array<Gpu, unsigned char>& scratch()
 {
-    static auto* kept = new Array<Gpu, unsigned char>;  // never released: CUDA ends before statics do
-    return *kept;
+    // never released: the CUDA runtime ends before static objects are destroyed
+    static auto* buffer = new Array<Gpu, unsigned char>;
+    return *buffer;
 }
 
 constexpr unsigned block = 128;
@@ -74,18 +79,19 @@ void for_each(Gpu, std::size_t n, const Functor& f)
 {
     if (n == 0) return;
     for_each_kernel<<<blocks(n), block>>>(static_cast<std::uint32_t>(n), f);
-    check(cudaGetLastError(), "a loop on the GPU");
+    check(cudaGetLastError(), "loop on the GPU");
 }
 
-/// Floats that are not negative are in the order of their bits, and what is not a number comes last.
+/// Maximum of non-negative floats by their bit patterns, which have the same order. The pattern of NaN is the
+/// largest.
 template <class Functor>
-__global__ void largest_kernel(std::uint32_t n, Functor f, unsigned* most)
+__global__ void largest_kernel(std::uint32_t n, Functor f, unsigned* maximum)
 {
     const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
     unsigned bits = k < n ? __float_as_uint(f(k)) & 0x7fffffffu : 0u;
     bits = __reduce_max_sync(0xffffffffu, bits);
-    // it only grows: most warps see that theirs is not the largest, and need not wait for the others
-    if (threadIdx.x % 32 == 0 && bits > *static_cast<volatile unsigned*>(most)) atomicMax(most, bits);
+    // The maximum only grows, so most warps need no atomic operation.
+    if (threadIdx.x % 32 == 0 && bits > *static_cast<volatile unsigned*>(maximum)) atomicMax(maximum, bits);
 }
 struct LargestTag;
 template <class Functor>
@@ -94,27 +100,27 @@ float largest(Gpu on, std::size_t n, const Functor& f)
     if (n == 0) return 0;
     auto& memory = scratch<LargestTag>();
     memory.resize(sizeof(float));
-    check(cudaMemsetAsync(memory.data(), 0, sizeof(float)), "a search on the GPU");
+    check(cudaMemsetAsync(memory.data(), 0, sizeof(float)), "maximum on the GPU");
     largest_kernel<<<blocks(n), block>>>(static_cast<std::uint32_t>(n), f,
                                          reinterpret_cast<unsigned*>(memory.data()));
-    check(cudaGetLastError(), "a search on the GPU");
-    static float* most = nullptr;  // in memory that a GPU writes to without a copy between
-    if (most == nullptr) check(cudaMallocHost(&most, sizeof *most), "memory for a GPU to write to");
-    copy_to_host(on, most, memory.data(), sizeof *most);
-    return *most;
+    check(cudaGetLastError(), "maximum on the GPU");
+    static float* maximum = nullptr;  // pinned host memory, which the GPU writes directly
+    if (maximum == nullptr) check(cudaMallocHost(&maximum, sizeof *maximum), "allocation of pinned memory");
+    copy_to_host(on, maximum, memory.data(), sizeof *maximum);
+    return *maximum;
 }
 
 struct ScanTag;
 inline std::uint64_t exclusive_scan(Gpu on, const std::uint32_t* in, std::uint32_t* out, std::size_t n)
 {
-    check(cudaMemsetAsync(out, 0, sizeof *out), "a sum on the GPU");
+    check(cudaMemsetAsync(out, 0, sizeof *out), "prefix sum on the GPU");
     if (n == 0) return 0;
     const auto count = static_cast<std::int64_t>(n);
     std::size_t bytes = 0;
-    check(cub::DeviceScan::InclusiveSum(nullptr, bytes, in, out + 1, count), "a sum on the GPU");
+    check(cub::DeviceScan::InclusiveSum(nullptr, bytes, in, out + 1, count), "prefix sum on the GPU");
     auto& memory = scratch<ScanTag>();
     memory.resize(bytes);
-    check(cub::DeviceScan::InclusiveSum(memory.data(), bytes, in, out + 1, count), "a sum on the GPU");
+    check(cub::DeviceScan::InclusiveSum(memory.data(), bytes, in, out + 1, count), "prefix sum on the GPU");
     std::uint32_t last = 0;
     copy_to_host(on, &last, out + n, sizeof last);
     return last;
@@ -132,12 +138,12 @@ inline void stable_sort_by_key(Gpu on, std::uint64_t* keys, std::uint32_t* value
     const auto count = static_cast<std::int64_t>(n);
     std::size_t size = 0;
     check(cub::DeviceRadixSort::SortPairs(nullptr, size, keys, keys_out, values, values_out, count, 0, bits),
-          "a sort on the GPU");
+          "sort on the GPU");
     auto& memory = scratch<SortTag>();
     memory.resize(size);
     check(cub::DeviceRadixSort::SortPairs(memory.data(), size, keys, keys_out, values, values_out, count, 0,
                                           bits),
-          "a sort on the GPU");
+          "sort on the GPU");
     copy_bytes(on, keys, keys_out, n * sizeof *keys);
     copy_bytes(on, values, values_out, n * sizeof *values);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The arithmetic that physics is written in: a real type R, which is float on a GPU, double in the reference and a pack
-/// of floats in the loops of a CPU; and vectors of it.
+/// Arithmetic of a number type R, and 3-vectors of it. The force laws and the time integration are templates
+/// on R: float on a GPU, Pack in the loops of the CPU, double in DoubleWorld.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace hilda::granular {
 
-/// What belongs to a real type: the number that a parameter is, the answer to a comparison, and whole numbers of 32 bits
+/// Types that belong to a number type: scalar parameter, result of a comparison, 32-bit integer
 template <class R>
 struct RealType {
     using Number = R;
@@ -40,12 +40,13 @@ HILDA_HD inline float select(bool condition, float a, float b) { return conditio
 HILDA_HD inline double select(bool condition, double a, double b) { return condition ? a : b; }
 HILDA_HD inline float to_float(std::int32_t n) { return static_cast<float>(n); }
 HILDA_HD inline std::int32_t to_int(float x) { return static_cast<std::int32_t>(x); }
-HILDA_HD inline std::int32_t as_int(float x)  ///< its bits
+HILDA_HD inline std::int32_t as_int(float x)  ///< bit pattern of a float
 {
     std::int32_t n = 0;
     memcpy(&n, &x, sizeof n);
     return n;
 }
+/// The float with the given bit pattern
 HILDA_HD inline float as_float(std::int32_t bits)
 {
     float x = 0;
@@ -53,6 +54,7 @@ HILDA_HD inline float as_float(std::int32_t bits)
     return x;
 }
 
+/// Minimum and maximum. The functions select with a < b and do not propagate NaN.
 template <class R>
 HILDA_HD inline R smaller(R a, R b)
 {
@@ -64,6 +66,7 @@ HILDA_HD inline R larger(R a, R b)
     return select(a < b, b, a);
 }
 
+/// A 3-vector
 template <class R>
 struct Vec {
     R x, y, z;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Particle-steps per second of a bed of glass beads of 1 mm radius in a box, at rest and while it falls: what LIGGGHTS,
-/// LAMMPS and YADE are compared on.
+/// Benchmark: particle-steps per second of a bed of glass beads of 1 mm radius in a box, while it falls and
+/// at rest. LIGGGHTS, LAMMPS and YADE are compared by the same measure.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_granular_benchmark
 ///     build/native/hilda_granular_benchmark 50000         with 1, 2, 4 … threads
 ///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
 ///
-/// Then, for the bed at rest, how each part of a step uses the memory: bytes that it cannot do without, over its time, as a
-/// part of the rate of a plain copy.
+/// For the bed at rest the program then prints the memory throughput of each part of a step: the bytes that
+/// it has to transfer at least, divided by its time, also as a fraction of the throughput of a copy.
 
 #include "granular/world/world.hpp"
 
@@ -54,10 +54,11 @@ World bed(std::size_t n, Device device)
     return world;
 }
 
-/// Parts of a step on a GPU are timed in a pass of their own, in which they wait for each other.
+/// Prints the line of one phase. On a GPU the parts of a step are timed in a separate pass with
+/// synchronisation between them.
 void report(const char* phase, World& world, long steps, bool gpu)
 {
-    world.step(20);  // memory for all that comes, and on a GPU its first loading
+    world.step(20);  // warm-up: memory allocation, and loading of the kernels on a GPU
     const long rebuilds = world.rebuilds();
     world.take_times();
     const auto begin = std::chrono::steady_clock::now();
@@ -82,15 +83,16 @@ void report(const char* phase, World& world, long steps, bool gpu)
     std::fflush(stdout);
 }
 
-/// Bytes of a dense step that no order of the work avoids: each array that it reads or writes, once
+/// Prints the memory throughput. The number of bytes counts every array once that a step has to read or
+/// write.
 void report_memory(World& world, long steps)
 {
     const double n = static_cast<double>(world.count());
     const double pairs = static_cast<double>(world.candidates()) / n,
                  touching = static_cast<double>(world.contacts().size()) / n;
-    constexpr double state = sizeof(Position) + 2 * sizeof(Four);
+    constexpr double state = sizeof(Position) + 2 * sizeof(Float4);
     const double loads = state + pairs * (2 * sizeof(std::uint32_t) + 1) +
-                         touching * (2 * sizeof(Four) + sizeof(Load)),
+                         touching * (2 * sizeof(Float4) + sizeof(Load)),
                  advance = 2 * (state + sizeof(Compensation)) + 2 * sizeof(std::uint32_t) +
                            pairs * sizeof(std::uint32_t) + 2 * touching * sizeof(Load);
     const double copy = world.copy_rate();
@@ -99,7 +101,7 @@ void report_memory(World& world, long steps)
     world.step(steps);
     const World::Times t = world.take_times();
     world.set_timed(false);
-    std::printf("\ncopy: %.1f GB/s, read and written\n", 1e-9 * copy);
+    std::printf("\ncopy: %.1f GB/s (reads and writes)\n", 1e-9 * copy);
     std::printf("part       bytes per particle   us per step     GB/s  of a copy\n");
     for (const auto& [name, bytes, seconds] :
          {std::tuple{"loads", loads, t.loads}, {"advance", advance, t.advance}}) {

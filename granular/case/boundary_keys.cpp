@@ -17,14 +17,16 @@ Vec3 unit_vector(Keys& keys, const std::string& key)
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// What a formula begins with. Only places must have a value at t = 0: the rest is asked for within steps.
-Vec3 at_begin(const VectorFormula& f)
+/// Value of a formula at t = 0; zero if it is not finite there. Velocities and forces are evaluated within
+/// steps, so they need no value at t = 0. Positions do, which the caller checks.
+Vec3 value_at_start(const VectorFormula& f)
 {
     const Vec3 v = f(0);
     return finite(v) ? v : Vec3{0, 0, 0};
 }
 
-/// Where it is and how it moves, in numbers where all components are numbers
+/// Reads r and v. Vectors of numbers become initial values, vectors with a formula also become prescribed
+/// motions.
 NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& compile)
 {
     NamedBoundary all{.name = name, .boundary = {}};
@@ -35,23 +37,23 @@ NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& co
             return;
         }
         formula = keys.formulas(key, compile);
-        number = at_begin(*formula);
+        number = value_at_start(*formula);
     };
     read("r", all.boundary.r, all.motion.r);
     if (all.motion.r && !finite((*all.motion.r)(0)))
         keys.refuse("r", "must be finite at t = 0", keys.raw("r"));
-    if (all.motion.r && keys.has("v")) keys.refuse("v", "must not stand where r is a formula", keys.raw("v"));
+    if (all.motion.r && keys.has("v")) keys.refuse("v", "must not be given if r is a formula", keys.raw("v"));
     read("v", all.boundary.v, all.motion.v);
     return all;
 }
 
-/// What a tool has besides
+/// Reads the keys of a boundary that may be a tool: omega, mass, inertia, free and F.
 void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
 {
     Boundary& b = tool.boundary;
     if (keys.has_formula("omega")) {
         tool.motion.omega = keys.formulas("omega", compile);
-        b.omega = at_begin(*tool.motion.omega);
+        b.omega = value_at_start(*tool.motion.omega);
     } else {
         b.omega = keys.vector("omega", {0, 0, 0});
     }
@@ -59,19 +61,19 @@ void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
     b.mass = keys.positive("mass");
     b.inertia = keys.not_negative("inertia");
     if (b.inertia > 0 && tool.motion.omega)
-        keys.refuse("omega", "must be numbers where the inertia lets it turn", keys.raw("omega"));
+        keys.refuse("omega", "must be three numbers if inertia is positive", keys.raw("omega"));
     b.free = keys.flags("free", {true, true, true});
     if (tool.motion.v && !finite((*tool.motion.v)(0)))
-        keys.refuse("v", "must be finite at t = 0 where a tool is free", keys.raw("v"));
+        keys.refuse("v", "must be finite at t = 0 if the boundary has a mass", keys.raw("v"));
     if (keys.has_formula("F")) {
         tool.motion.F = keys.formulas("F", compile);
-        b.F = at_begin(*tool.motion.F);
+        b.F = value_at_start(*tool.motion.F);
     } else {
         b.F = keys.vector("F", {0, 0, 0});
     }
 }
 
-/// The sides that `open` leaves
+/// The sides of a box as planes, without those that `open` lists
 std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
 {
     const Vec3 low = keys.vector("low"), high = keys.vector("high");
@@ -105,7 +107,7 @@ std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
         }
         all.push_back(std::move(plane));
     }
-    if (all.empty()) keys.refuse("open", "must leave a side", keys.raw("open"));
+    if (all.empty()) keys.refuse("open", "must not contain all six sides", keys.raw("open"));
     return all;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The boundaries of a case file.
+/// Reader of the boundaries of a case file.
 
 #pragma once
 
@@ -10,10 +10,11 @@ namespace hilda::granular {
 struct NamedBoundary {
     std::string name;
     Boundary boundary;
-    Motion motion = {};  ///< formulas that it has; without its number
+    BoundaryMotion motion = {};  ///< prescribed motion and load; the boundary number is not set
 };
 
-/// One, or the sides of a box, named NAME-x, NAME+x, NAME-y, ... after where they are. InvalidCase.
+/// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
+/// names NAME-x, NAME+x, NAME-y, ... Throws InvalidCase.
 std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name, const Compile& compile);
 
 }  // namespace hilda::granular

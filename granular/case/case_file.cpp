@@ -13,9 +13,9 @@ namespace {
 
 using Json = Keys::Json;
 
-/// What the library refuses in an entry gets its place.
+/// Calls f and prefixes the message of an InvalidCase with the JSON pointer of the entry.
 template <class F>
-auto in_entry(const std::string& place, const F& f)
+auto with_place(const std::string& place, const F& f)
 {
     try {
         return f();
@@ -49,11 +49,11 @@ std::uint16_t read_replica(Keys& keys)
 
 Material read_material(Keys& m)
 {
-    Material made{
+    Material material{
         .name = m.text("name"), .density = m.positive("density"), .E = m.positive("E"), .nu = m.number("nu")};
-    if (!(made.nu > -1 && made.nu < 0.5)) m.refuse("nu", "must be between -1 and 0.5", made.nu);
+    if (!(material.nu > -1 && material.nu < 0.5)) m.refuse("nu", "must be between -1 and 0.5", material.nu);
     m.end();
-    return made;
+    return material;
 }
 
 void read_domain(Keys domain, WorldOptions& o)
@@ -66,15 +66,17 @@ void read_domain(Keys domain, WorldOptions& o)
     domain.end();
 }
 
-/// Against the memory that there is. A close-packed crystal, with six contacts a particle, takes most when its contacts
-/// are written: with laws of rolling and spin 3460 bytes a particle.
-void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<Filling>& fills,
-                  const Environment& there)
+/// Compares an estimate of the required memory with the available memory. Throws InvalidCase.
+///
+/// The peak occurs while contacts.csv is written. It was measured on a close-packed crystal with six contacts
+/// per particle and rolling and spin laws: 3460 bytes per particle.
+void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<FillSpec>& fills,
+                  const Environment& available)
 {
     constexpr double gigabyte = 1e9, of_output = 2560, of_cell = 4;
     std::uint16_t replicas = 0;
-    for (const Filling& f : fills) {
-        particles += estimate(f);
+    for (const FillSpec& f : fills) {
+        particles += estimated_count(f);
         largest = std::max(largest, 2 * f.radius);
         replicas = std::max(replicas, f.replica);
     }
@@ -86,27 +88,27 @@ void check_memory(double particles, double largest, const WorldOptions& o, const
                            const char* where) {
         if (many * each <= static_cast<double>(have)) return;
         char what[200];
-        std::snprintf(what, sizeof what, "%s: %.3g %s need about %.3g GB of memory%s, and there are %.3g GB",
+        std::snprintf(what, sizeof what, "%s: %.3g %s need about %.3g GB of memory%s; %.3g GB are available",
                       place, many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
         throw InvalidCase(what);
     };
-    check("/fill", particles, "particles", of_output + in_world, there.memory, "");
-    check("/fill", particles, "particles", in_world, there.device_memory, " of the GPU");
+    check("/fill", particles, "particles", of_output + in_world, available.memory, "");
+    check("/fill", particles, "particles", in_world, available.device_memory, " of the GPU");
     if (particles > 0)
-        check("/domain", cells, "cells", of_cell, std::min(there.memory, there.device_memory), "");
+        check("/domain", cells, "cells", of_cell, std::min(available.memory, available.device_memory), "");
 }
 
 void seed_fills(Case& c, std::uint64_t seed)
 {
     const Json& all = c.source.json();
     const std::size_t fills = all.is_object() && all.contains("fill") ? all.at("fill").size() : 0;
-    if (fills == 0) c.notices.emplace_back("--seed: this case fills nothing");
+    if (fills == 0) c.notices.emplace_back("--seed has no effect: the case has no fill");
     for (std::size_t k = 0; k < fills; ++k) {
         const Json& one = all.at("fill").at(k);
         if (one.is_object() && one.contains("file")) continue;
         c.source.set({.pointer = "/fill/" + std::to_string(k) + "/seed",
                       .value = std::to_string(seed + k),
-                      .asked = "--seed " + std::to_string(seed)});
+                      .origin = "--seed " + std::to_string(seed)});
     }
 }
 
@@ -123,14 +125,15 @@ void read(Case& out, const Environment& environment)
     o.gravity = keys.vector("gravity", {0, 0, -9.81});
     out.h = o.h = keys.positive("step");
     out.end = keys.positive("end");
-    if (constexpr double most = 9e15; out.end / out.h > most)
-        keys.refuse("end", "must not be more than 9e15 steps away", out.end);
-    out.every = keys.has("every") ? keys.positive("every") : out.end / 1000;
-    // whole numbers of rows, which are whole numbers of steps apart
-    const double row = out.h * std::max(1., std::round(out.every / out.h)),
-                 seldom = row * std::max(1., std::round(out.end / 100 / row));
-    out.frames_every = keys.has("frames_every") ? keys.positive("frames_every") : seldom;
-    out.anew = keys.has("checkpoint_every") ? keys.positive("checkpoint_every") : seldom;
+    if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)
+        keys.refuse("end", "must be at most 9e15 steps", out.end);
+    out.interval = keys.has("interval") ? keys.positive("interval") : out.end / 1000;
+    // a whole number of rows, which are a whole number of steps apart
+    const double row = out.h * std::max(1., std::round(out.interval / out.h)),
+                 long_interval = row * std::max(1., std::round(out.end / 100 / row));
+    out.frame_interval = keys.has("frame_interval") ? keys.positive("frame_interval") : long_interval;
+    out.checkpoint_interval =
+        keys.has("checkpoint_interval") ? keys.positive("checkpoint_interval") : long_interval;
     o.skin = keys.number("skin", o.skin);
     if (!(o.skin > 0 && o.skin <= 1)) keys.refuse("skin", "must be in (0, 1] diameters", o.skin);
     o.scheme = read_scheme(keys);
@@ -141,7 +144,7 @@ void read(Case& out, const Environment& environment)
         Keys m(*object, place);
         materials.push_back(read_material(m));
     }
-    if (materials.empty()) throw InvalidCase("/materials: must name at least one");
+    if (materials.empty()) throw InvalidCase("/materials: must have at least one entry");
     const auto material = [&](Keys& k, const std::string& key) {
         const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
         for (std::size_t n = 0; n < materials.size(); ++n)
@@ -151,26 +154,28 @@ void read(Case& out, const Environment& environment)
     out.world = std::make_unique<World>(o, materials);
     for (const auto& entry : keys.list("laws")) {
         Keys pair(*entry.first, entry.second);
-        const auto of = read_between(pair, materials);
-        const PairLaw law = read_pair(pair, materials[of[0]], materials[of[1]], out.notices);
-        in_entry(pair.place,
-                 [&] { out.world->set_law(static_cast<int>(of[0]), static_cast<int>(of[1]), law); });
+        const auto ij = read_between(pair, materials);
+        const PairLaw law = read_pair(pair, materials[ij[0]], materials[ij[1]], out.notices);
+        with_place(pair.place,
+                   [&] { out.world->set_law(static_cast<int>(ij[0]), static_cast<int>(ij[1]), law); });
         pair.end();
     }
-    std::vector<std::pair<Motion, std::string>> motions;
-    std::string free;  // the first entry that has a mass
+    std::vector<std::pair<BoundaryMotion, std::string>> motions;
+    std::string free;  // place of the first boundary with a mass
     for (const auto& entry : keys.list("boundaries")) {
         Keys b(*entry.first, entry.second);
-        const int made_of = material(b, "material");
+        const int boundary_material = material(b, "material");
         const std::string name = b.text("name", "boundary " + std::to_string(out.boundaries.size()));
         if (name.find_first_of(",\"\n\r") != std::string::npos)
-            b.refuse("name", "must be without commas, quotes and line ends, since it names columns", name);
+            b.refuse("name",
+                     "must not contain commas, quotes or line ends, because it is part of column names",
+                     name);
         for (NamedBoundary& n : read_boundary(b, name, environment.compile)) {
             if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
                 b.refuse("name", "another boundary has this name", n.name);
-            n.boundary.material = made_of;
-            n.motion.boundary = in_entry(b.place, [&] { return out.world->add(n.boundary); });
-            if (n.motion.moves()) motions.emplace_back(n.motion, b.place);
+            n.boundary.material = boundary_material;
+            n.motion.boundary = with_place(b.place, [&] { return out.world->add(n.boundary); });
+            if (n.motion.is_prescribed()) motions.emplace_back(n.motion, b.place);
             if (n.boundary.mass > 0 && free.empty()) free = b.place;
             out.boundaries.push_back(n.name);
         }
@@ -180,63 +185,63 @@ void read(Case& out, const Environment& environment)
     const auto replica = [&](Keys& k) {
         const std::uint16_t number = read_replica(k);
         if (number > 0 && !free.empty())
-            k.refuse("replica", "must be 0 where a boundary is free, as " + free, number);
+            k.refuse("replica", "must be 0 if a boundary has a mass, as " + free + " has", number);
         return number;
     };
     for (const auto& entry : keys.list("particles")) {
         Keys p(*entry.first, entry.second);
         if (p.has("orientation") && !o.orientation)
-            p.refuse("orientation", "needs /orientation to be true", p.raw("orientation"));
-        const Particle made{.r = p.vector("r"),
-                            .radius = p.positive("radius"),
-                            .material = material(p, "material"),
-                            .v = p.vector("v", {0, 0, 0}),
-                            .omega = p.vector("omega", {0, 0, 0}),
-                            .fixed = p.flag("fixed"),
-                            .replica = replica(p),
-                            .e = p.four("orientation", Particle().e)};
-        largest = std::max(largest, 2 * made.radius);
-        const std::uint32_t id = in_entry(p.place, [&] { return out.world->add(made); });
+            p.refuse("orientation", "requires /orientation to be true", p.raw("orientation"));
+        const Particle particle{.r = p.vector("r"),
+                                .radius = p.positive("radius"),
+                                .material = material(p, "material"),
+                                .v = p.vector("v", {0, 0, 0}),
+                                .omega = p.vector("omega", {0, 0, 0}),
+                                .fixed = p.flag("fixed"),
+                                .replica = replica(p),
+                                .e = p.four("orientation", Particle().e)};
+        largest = std::max(largest, 2 * particle.radius);
+        const std::uint32_t id = with_place(p.place, [&] { return out.world->add(particle); });
         out.entries.emplace_back(id, p.place);
         if (p.has("force")) {
             const Vec3 F = p.vector("force");
-            in_entry(p.place, [&] { out.world->set_force(id, F); });
+            with_place(p.place, [&] { out.world->set_force(id, F); });
         }
         p.end();
     }
-    std::vector<Filling> fillings;
+    std::vector<FillSpec> fills;
     for (const auto& entry : keys.list("fill")) {
         Keys f(*entry.first, entry.second);
-        fillings.push_back(read_filling(f));
-        Filling& made = fillings.back();
-        const bool listed = made.kind == Filling::Kind::listed;
-        made.material = listed && !f.has("material") ? -1 : material(f, "material");
-        made.replica = replica(f);
+        fills.push_back(read_fill(f));
+        FillSpec& spec = fills.back();
+        const bool from_csv = spec.type == FillSpec::Type::csv;
+        spec.material = from_csv && !f.has("material") ? -1 : material(f, "material");
+        spec.replica = replica(f);
         if (!o.orientation)
-            for (Particle& p : made.particles) p.e = Particle().e;
-        if (listed) out.files_read += "\n" + f.place_of("file") + ' ' + std::to_string(made.checksum);
+            for (Particle& p : spec.particles) p.e = Particle().e;
+        if (from_csv) out.files_read += "\n" + f.place_of("file") + ' ' + std::to_string(spec.checksum);
         f.end();
     }
     keys.end();
-    check_memory(static_cast<double>(out.world->count()), largest, o, fillings, environment);
-    for (std::size_t k = 0; k < fillings.size(); ++k) {
+    check_memory(static_cast<double>(out.world->count()), largest, o, fills, environment);
+    for (std::size_t k = 0; k < fills.size(); ++k) {
         const std::string place = "/fill/" + std::to_string(k);
         out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()), place);
-        in_entry(place, [&] {
-            for (const Particle& p : fill(fillings[k])) out.world->add(p);
+        with_place(place, [&] {
+            for (const Particle& p : fill(fills[k])) out.world->add(p);
         });
     }
     if (motions.empty()) return;
-    std::vector<Motion> all;
+    std::vector<BoundaryMotion> all;
     for (const auto& [motion, place] : motions) {
         all.push_back(motion);
         try {
-            drive(*out.world, {motion}, out.h);
+            apply_motions(*out.world, {motion}, out.h);
         } catch (const NotFinite& e) {
             throw InvalidCase(place + ": " + e.what());
         }
     }
-    out.world->before_each_step([all, h = out.h](World& w) { drive(w, all, h); });
+    out.world->before_each_step([all, h = out.h](World& w) { apply_motions(w, all, h); });
 }
 
 }  // namespace
@@ -246,34 +251,35 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     Case out{.source = CaseText(text, file)};
     for (const Setting& setting : environment.settings) out.source.set(setting);
     try {
+        out.notices = out.source.notices();
         if (environment.seed) seed_fills(out, *environment.seed);
         read(out, environment);
     } catch (const InvalidCase& e) {
-        throw InvalidCase(out.source.placed(e.what()));
+        throw InvalidCase(out.source.with_location(e.what()));
     } catch (const Json::exception& e) {
-        throw InvalidCase(out.source.placed(e.what()));
+        throw InvalidCase(out.source.with_location(e.what()));
     }
     return out;
 }
 
-void settle(const Case& c)
+void insert_particles(const Case& c)
 {
     try {
         c.world->step(0);
     } catch (const InvalidCase& e) {
-        // the world speaks of particles by their ids
+        // Messages of the world refer to particles by their ids.
         const std::string what = e.what();
         std::string place;
         unsigned id = 0;
         if (std::sscanf(what.c_str(), "particle %u", &id) == 1) {
             for (const auto& [first, entry] : c.entries)
                 if (first <= id) place = entry;
-        } else if (what.starts_with("laws: ") || what.starts_with("world: no law")) {
+        } else if (what.starts_with("laws: ") || what.starts_with("world: ")) {
             place = "/laws";
         } else if (what.starts_with("domain: ")) {
             place = "/domain";
         }
-        throw InvalidCase(c.source.placed(place.empty() ? what : place + ": " + what));
+        throw InvalidCase(c.source.with_location(place.empty() ? what : place + ": " + what));
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A granular case in JSON.
+/// Reader of a granular case file (JSON).
 
 #pragma once
 
@@ -9,37 +9,41 @@
 
 namespace hilda::granular {
 
-/// What a case file says, ready to run
+/// A case that is ready to run
 struct Case {
     CaseText source;
     std::string name = {};
     std::unique_ptr<World> world = {};
-    double h = 0, end = 0, every = 0;  ///< step, end, and time between rows [s]
-    double frames_every = 0;           ///< time between frames [s]
-    double anew = 0;                   ///< time between the steps at which a checkpoint may be written [s]
-    std::vector<std::string> boundaries = {};
-    std::vector<std::string> notices = {};  ///< what was mended on the way
-    std::string files_read = {};            ///< checksums of other files that it is made of
-    /// Ids of the first particles of entries, and their JSON pointers
+    double h = 0, end = 0;           ///< step and end time [s]
+    double interval = 0;             ///< time between rows of run.csv [s]
+    double frame_interval = 0;       ///< time between frames [s]
+    double checkpoint_interval = 0;  ///< time between the instants at which a checkpoint can be written [s]
+    std::vector<std::string> boundaries = {};  ///< names, by number
+    std::vector<std::string> notices = {};     ///< warnings, as "/pointer: text" or as text
+    std::string files_read = {};               ///< names and checksums of the other files that were read
+    /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};
 };
 
-/// What a case meets in the program that reads it
+/// Limits and options that the program passes to the reader
 struct Environment {
     static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
-    std::size_t memory = any, device_memory = any;  ///< that there is [bytes]
-    Compile compile = {};                           ///< of formulas; none: they are refused
+    std::size_t memory = any, device_memory = any;  ///< available memory of the host and of the GPU [bytes]
+    Compile compile = {};                           ///< compiler of formulas; without one they are rejected
     Device device = {};
-    std::vector<Setting> settings = {};      ///< in their order
-    std::optional<std::uint64_t> seed = {};  ///< of the first fill; the others have the numbers that follow
+    std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
+    std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...
 };
 
-/// InvalidCase, with line, column and JSON pointer of what is wrong; DeviceError. Nothing large is allocated before it is
-/// known that the memory will do.
+/// Reads a case and constructs its world. `file` is the name used in messages. The required memory is
+/// estimated and compared with the available memory before the particles are generated.
+///
+/// Throws InvalidCase with file, line, column and JSON pointer of the invalid entry, and DeviceError.
 Case read_case(const std::string& text, const std::string& file, const Environment& environment = {});
 
-/// Takes the particles into their cells. InvalidCase, with the entry of what cannot begin so
-void settle(const Case& c);
+/// Inserts the particles into the world. Throws InvalidCase with the place of the entry whose particles are
+/// invalid.
+void insert_particles(const Case& c);
 
 }  // namespace hilda::granular

@@ -14,7 +14,7 @@ namespace {
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state(seed) {}
-    double number()  ///< in [0, 1)
+    double number()  ///< uniform in [0, 1)
     {
         return static_cast<double>(SplitMix::mixed(state += SplitMix::step) >> 11) * 0x1p-53;
     }
@@ -29,18 +29,18 @@ private:
     std::uint64_t state;
 };
 
-/// Distances of centres in a row, of rows and of layers
-Vec3 distances(const Filling& f)
+/// Distances of centres within a row, of rows and of layers [m]
+Vec3 distances(const FillSpec& f)
 {
     const double a = f.spacing;
-    if (f.kind != Filling::Kind::hcp) return {a, a, a};
+    if (f.type != FillSpec::Type::hcp) return {a, a, a};
     return {a, a * std::sqrt(3.) / 2, a * std::sqrt(2. / 3)};
 }
 
-/// Rows along x, layers along z
-std::vector<Vec3> lattice(const Filling& f, const Vec3& low, const Vec3& high)
+/// Lattice points between low and high, with rows along x and layers along z
+std::vector<Vec3> lattice(const FillSpec& f, const Vec3& low, const Vec3& high)
 {
-    const bool hcp = f.kind == Filling::Kind::hcp;
+    const bool hcp = f.type == FillSpec::Type::hcp;
     const auto [a, row, layer] = distances(f);
     std::vector<Vec3> all;
     for (int k = 0; low.z + k * layer <= high.z; ++k)
@@ -50,22 +50,25 @@ std::vector<Vec3> lattice(const Filling& f, const Vec3& low, const Vec3& high)
             for (int i = 0;; ++i) {
                 const double x = low.x + i * a + (hcp && (j + k) % 2 == 1 ? a / 2 : 0);
                 if (!(x <= high.x)) break;
-                if (f.most > 0 && all.size() == f.most) return all;
+                if (f.max_count > 0 && all.size() == f.max_count) return all;
                 all.push_back({x, y, low.z + k * layer});
             }
         }
     return all;
 }
 
-/// Bridson's algorithm: from every point some tries at between one and two spacings
-std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, Random& random)
+/// Bridson's algorithm (2007): 30 candidates around each point, at a distance between one and two spacings. A
+/// background grid of cells with one point each limits the distance checks to 5³ cells.
+std::vector<Vec3> poisson(const FillSpec& f, const Vec3& low, const Vec3& high, Random& random)
 {
     const double cell = f.spacing / std::sqrt(3.);
     const auto cells = [&](double length) { return static_cast<long>(length / cell) + 1; };
     const long nx = cells(high.x - low.x), ny = cells(high.y - low.y), nz = cells(high.z - low.z);
     constexpr double most_cells = 4e8;
     if (static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz) > most_cells)
-        throw InvalidCase("the box has more than 4e8 cells for random places");
+        throw InvalidCase(
+            "the box must not have more than 4e8 cells of spacing/sqrt(3); increase the spacing or split the "
+            "box");
     std::vector<std::int32_t> in(static_cast<std::size_t>(nx * ny * nz), -1);
     std::vector<Vec3> all;
     const auto index = [&](const Vec3& r, long& x, long& y, long& z) {
@@ -90,16 +93,16 @@ std::vector<Vec3> poisson(const Filling& f, const Vec3& low, const Vec3& high, R
     };
     put({random.number(low.x, high.x), random.number(low.y, high.y), random.number(low.z, high.z)});
     constexpr int tries = 30;
-    for (std::size_t k = 0; k < all.size(); ++k)  // NOLINT(modernize-loop-convert): the list grows
+    for (std::size_t k = 0; k < all.size(); ++k)  // NOLINT(modernize-loop-convert): put() appends to the list
         for (int n = 0; n < tries; ++n)
             put(all[k] + random.number(f.spacing, 2 * f.spacing) * random.direction());
     return all;
 }
 
-Filling listed(Keys& keys)
+FillSpec read_table(Keys& keys)
 {
-    Filling f;
-    f.kind = Filling::Kind::listed;
+    FillSpec f;
+    f.type = FillSpec::Type::csv;
     const std::string file = keys.text("file");
     try {
         const std::string text = read_file(file, std::size_t{1} << 36);
@@ -116,30 +119,30 @@ Filling listed(Keys& keys)
 
 }  // namespace
 
-Filling read_filling(Keys& keys)
+FillSpec read_fill(Keys& keys)
 {
-    Filling f;
+    FillSpec f;
     const std::string kind = keys.text("type");
-    if (kind == "csv") return listed(keys);
+    if (kind == "csv") return read_table(keys);
     if (kind == "lattice")
-        f.kind = Filling::Kind::lattice;
+        f.type = FillSpec::Type::lattice;
     else if (kind == "hcp")
-        f.kind = Filling::Kind::hcp;
+        f.type = FillSpec::Type::hcp;
     else if (kind == "poisson")
-        f.kind = Filling::Kind::poisson;
+        f.type = FillSpec::Type::poisson;
     else
         keys.refuse("type", "must be one of lattice, hcp, poisson, csv", kind);
     f.low = keys.vector("low"), f.high = keys.vector("high");
     f.radius = keys.positive("radius");
     f.least_radius = keys.number("least_radius", f.radius);
     if (!(f.least_radius > 0 && f.least_radius <= f.radius))
-        keys.refuse("least_radius", "must be positive, and not above the radius", f.least_radius);
+        keys.refuse("least_radius", "must be positive and not greater than radius", f.least_radius);
     const double spacing = keys.number("spacing", 1.05);
     if (!(spacing >= 1)) keys.refuse("spacing", "must be at least one diameter", spacing);
     f.spacing = 2 * f.radius * spacing;
     f.jitter = keys.number("jitter", 0);
     if (!(f.jitter >= 0 && f.jitter <= 1)) keys.refuse("jitter", "must be in [0, 1]", f.jitter);
-    f.most = static_cast<std::size_t>(keys.count("count", 0));
+    f.max_count = static_cast<std::size_t>(keys.count("count", 0));
     f.seed = static_cast<std::uint64_t>(keys.count("seed", 1));
     f.v = keys.vector("v", {0, 0, 0});
     f.random_v = keys.not_negative("random_v");
@@ -150,20 +153,20 @@ Filling read_filling(Keys& keys)
     return f;
 }
 
-double estimate(const Filling& f)
+double estimated_count(const FillSpec& f)
 {
-    if (f.kind == Filling::Kind::listed) return static_cast<double>(f.particles.size());
+    if (f.type == FillSpec::Type::csv) return static_cast<double>(f.particles.size());
     const Vec3 size = f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius}, a = distances(f);
     const Vec3 n{size.x / a.x, size.y / a.y, size.z / a.z};
-    // Bridson's algorithm leaves 0.58 particles in a cube of the spacing
-    if (f.kind == Filling::Kind::poisson) return 0.58 * (n.x + 0.4) * (n.y + 0.4) * (n.z + 0.4);
+    // Bridson's algorithm generates about 0.58 particles per cube of the spacing
+    if (f.type == FillSpec::Type::poisson) return 0.58 * (n.x + 0.4) * (n.y + 0.4) * (n.z + 0.4);
     const double all = (std::floor(n.x) + 1) * (std::floor(n.y) + 1) * (std::floor(n.z) + 1);
-    return f.most > 0 ? std::min(all, static_cast<double>(f.most)) : all;
+    return f.max_count > 0 ? std::min(all, static_cast<double>(f.max_count)) : all;
 }
 
-std::vector<Particle> fill(const Filling& f)
+std::vector<Particle> fill(const FillSpec& f)
 {
-    if (f.kind == Filling::Kind::listed) {
+    if (f.type == FillSpec::Type::csv) {
         std::vector<Particle> all = f.particles;
         for (Particle& p : all) {
             p.replica = f.replica;
@@ -174,12 +177,12 @@ std::vector<Particle> fill(const Filling& f)
     const Vec3 margin{f.radius, f.radius, f.radius}, low = f.low + margin, high = f.high - margin;
     Random random(f.seed);
     std::vector<Vec3> places =
-        f.kind == Filling::Kind::poisson ? poisson(f, low, high, random) : lattice(f, low, high);
-    if (f.kind == Filling::Kind::poisson)  // from below, as they would be poured in
+        f.type == FillSpec::Type::poisson ? poisson(f, low, high, random) : lattice(f, low, high);
+    if (f.type == FillSpec::Type::poisson)  // from bottom to top, so that max_count keeps the lowest ones
         std::sort(places.begin(), places.end(), [](const Vec3& a, const Vec3& b) {
             return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
         });
-    if (f.most > 0 && places.size() > f.most) places.resize(f.most);
+    if (f.max_count > 0 && places.size() > f.max_count) places.resize(f.max_count);
     const double free = f.jitter * (f.spacing / 2 - f.radius) / std::sqrt(3.);
     std::vector<Particle> all;
     all.reserve(places.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where particles begin: on a lattice, packed, at random without touching, or as a table has them.
+/// Initial particles: on a lattice, close-packed, at random without contact, or from a table.
 
 #pragma once
 
@@ -7,39 +7,42 @@
 
 namespace hilda::granular {
 
-struct Filling {
-    enum class Kind {
+/// An entry of `fill`
+struct FillSpec {
+    enum class Type {
         lattice,  ///< simple cubic
-        hcp,      ///< hexagonal, close-packed where the spacing is a diameter
-        listed,   ///< by a table
-        poisson  ///< at random, no two nearer than the spacing                                        Bridson (2007)
-    } kind = Kind::lattice;
-    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< box of the particles with all of their volume [m]
-    double radius = 0, least_radius = 0;     ///< radii are even between the two [m]
-    double spacing = 0;                      ///< between centres [m]
-    double jitter = 0;     ///< of each coordinate, as a part of what is free between neighbours
-    std::size_t most = 0;  ///< particles; 0: as many as fit
+        hcp,      ///< hexagonal layers; close-packed if the spacing is one diameter
+        csv,      ///< read from a table
+        poisson   ///< Poisson disk sampling: random, no two centres closer than the spacing; Bridson (2007)
+    } type = Type::lattice;
+    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the box that contains the spheres [m]
+    double radius = 0, least_radius = 0;     ///< radii are uniformly distributed between the two [m]
+    double spacing = 0;                      ///< distance of neighbouring centres [m]
+    double jitter = 0;          ///< random displacement over the largest one without contact, in [0, 1]
+    std::size_t max_count = 0;  ///< largest number of particles; 0: no limit
     std::uint64_t seed = 1;
-    int material = 0;  ///< of those that are listed: -1 where the table says
+    int material = 0;  ///< index; -1 with Type::csv: as in the table
     std::uint16_t replica = 0;
     Vec3 v = {0, 0, 0};                    ///< [m/s]
-    double random_v = 0;                   ///< length of what is added at random [m/s]
-    std::vector<Particle> particles = {};  ///< that are listed
-    std::uint64_t checksum = 0;            ///< of the table
+    double random_v = 0;                   ///< magnitude of an added velocity of random direction [m/s]
+    std::vector<Particle> particles = {};  ///< particles of the table, with Type::csv
+    std::uint64_t checksum = 0;            ///< of the table file
 };
 
-/// InvalidCase
-Filling read_filling(Keys& keys);
+/// Reads an entry of `fill`, without material and replica. Throws InvalidCase.
+FillSpec read_fill(Keys& keys);
 
-/// The particles of a table: a line of names, among them x, y, z and radius, and a line for each particle. The columns
-/// material (its number), vx, vy, vz, omega_x, omega_y, omega_z, and e0 to e3 may be there too; others are not looked at.
-/// InvalidCase, with file and line.
+/// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
+/// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,
+/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws InvalidCase with
+/// file and line.
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
 
-/// About as many particles as that will be; a lattice less its count, for random places before it
-double estimate(const Filling& filling);
+/// Estimated number of particles. For Type::poisson max_count is ignored, because all positions are generated
+/// first.
+double estimated_count(const FillSpec& filling);
 
-/// The same particles on every machine: the random numbers are our own.
-std::vector<Particle> fill(const Filling& filling);
+/// Generates the particles. The result is the same on all platforms (see SplitMix). Throws InvalidCase.
+std::vector<Particle> fill(const FillSpec& filling);
 
 }  // namespace hilda::granular

@@ -8,7 +8,7 @@ namespace hilda::granular {
 
 namespace {
 
-Vec3 value(const Motion& m, const char* of, const VectorFormula& f, double t)
+Vec3 value(const BoundaryMotion& m, const char* of, const VectorFormula& f, double t)
 {
     const Vec3 at = f(t);
     if (std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z)) return at;
@@ -19,16 +19,16 @@ Vec3 value(const Motion& m, const char* of, const VectorFormula& f, double t)
 
 }  // namespace
 
-void drive(World& world, const std::vector<Motion>& motions, double h)
+void apply_motions(World& world, const std::vector<BoundaryMotion>& motions, double h)
 {
     const double t = world.t(), middle = t + h / 2;
-    for (const Motion& m : motions) {
+    for (const BoundaryMotion& m : motions) {
         Boundary& b = world.boundary(m.boundary);
         Vec3 v = b.v;
         if (m.r) v = (1 / h) * (value(m, "r", *m.r, t + h) - b.r);
         if (m.v) v = value(m, "v", *m.v, middle);
-        const auto told = [&](int axis) { return !(b.mass > 0 && b.free[axis]); };
-        b.v = {told(0) ? v.x : b.v.x, told(1) ? v.y : b.v.y, told(2) ? v.z : b.v.z};
+        const auto prescribed = [&](int axis) { return !(b.mass > 0 && b.free[axis]); };
+        b.v = {prescribed(0) ? v.x : b.v.x, prescribed(1) ? v.y : b.v.y, prescribed(2) ? v.z : b.v.z};
         if (m.omega) b.omega = value(m, "omega", *m.omega, middle);
         if (m.F) b.F = value(m, "F", *m.F, t);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Boundaries that move, and are loaded, as formulas in t say.
+/// Prescribed motions and loads of boundaries as formulas in the time t.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 namespace hilda::granular {
 
 using Formula = std::function<double(double t)>;
-/// Makes a formula of its text; InvalidCase where it is none. The room has no grammar of its own: who reads a case brings
-/// one.
+/// Compiles the text of a formula; throws InvalidCase. The grammar is supplied by the program that reads the
+/// case.
 using Compile = std::function<Formula(const std::string& text)>;
 
 struct VectorFormula {
@@ -19,25 +19,29 @@ struct VectorFormula {
     Vec3 operator()(double t) const { return {of[0](t), of[1](t), of[2](t)}; }
 };
 
-/// Of one boundary. Along axes on which it is free it moves by what touches it.
+/// Prescribed motion and load of one boundary, set before each step of size h:
 ///
-///     r:      v = (r(t + h) - r)/h, so that it is where r says after every step
-///     v, ω:   at the middle of the step, so that it is there to second order
-struct Motion {
+///     r given:     v = (r(t + h) - r)/h, so that the position after the step is exact
+///     v, ω given:  values at t + h/2, so that the position is accurate to second order
+///     F given:     value at t
+///
+/// The velocity of a boundary with a mass is not prescribed along its free axes.
+struct BoundaryMotion {
     int boundary = 0;
     std::string name;
     std::optional<VectorFormula> r, v, omega, F;
 
-    bool moves() const { return r || v || omega || F; }
+    bool is_prescribed() const { return r || v || omega || F; }
 };
 
-/// A formula that is not finite at this time. what() says which and when.
+/// The value of a formula is not finite. what() states the boundary, the key and the time.
 class NotFinite : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Before a step of h: what World::before_each_step is given. NotFinite.
-void drive(World& world, const std::vector<Motion>& motions, double h);
+/// Sets velocities and forces of the boundaries for the next step h [s]. To be called by
+/// World::before_each_step. Throws NotFinite.
+void apply_motions(World& world, const std::vector<BoundaryMotion>& motions, double h);
 
 }  // namespace hilda::granular

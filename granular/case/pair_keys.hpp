@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The laws of a case file: what acts between two materials.
+/// Reader of the contact laws of a case file.
 
 #pragma once
 
@@ -8,10 +8,11 @@
 
 namespace hilda::granular {
 
-/// The numbers of the two materials of a law. InvalidCase
+/// Indices of the two materials of a law, from the key `between`. Throws InvalidCase.
 std::array<std::size_t, 2> read_between(Keys& pair, const std::vector<Material>& materials);
 
-/// InvalidCase. What is mended is told in `notices`.
+/// Reads the laws between the materials i and j. Throws InvalidCase. A restitution of 0 is raised to 1e-7,
+/// with a warning in `notices`.
 PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<std::string>& notices);
 
 }  // namespace hilda::granular

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Random numbers that are the same everywhere: the standard library's distributions differ between compilers.
+/// Random numbers that are the same on all platforms. The distributions of the standard library differ
+/// between compilers.
 
 #pragma once
 
@@ -7,7 +8,7 @@
 
 namespace hilda::granular {
 
-/// SplitMix64: the number of a counter, or of a state that goes on by `step`        Steele, Lea and Flood (2014)
+/// SplitMix64: hash of a counter, or of a state that is advanced by `step`       Steele, Lea and Flood (2014)
 struct SplitMix {
     static constexpr std::uint64_t step = 0x9e3779b97f4a7c15u;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What particles are held by or meet: planes, cylinders, cones, spheres, moved as told or by what they carry.
+/// Boundaries: planes, cylinders, cones and spheres, with prescribed motion or moving as rigid bodies under
+/// their loads.
 
 #pragma once
 
@@ -12,69 +13,80 @@ namespace hilda::granular {
 
 using Vec3 = Vec<double>;
 
-/// A surface, at rest or in rigid motion. Particles are on the side that `side` says.
+/// A boundary surface in rigid motion. Vectors are in the global frame.
+///
+/// With mass = 0 the motion is prescribed by v and omega. With mass > 0 the boundary is a rigid body boundary
+/// (tool): it moves under its contact loads, gravity and the external force F.
 struct Boundary {
     enum class Shape : std::int32_t {
-        plane,     ///< through r, with the normal `axis` into the particles
-        cylinder,  ///< about the line through r along `axis`
-        cone,  ///< with its tip at r, opening along `axis` with the half angle whose cosine and sine are given
-        sphere  ///< about r
+        plane,     ///< plane through r; its normal `axis` points to the particles
+        cylinder,  ///< infinite cylinder; its axis is the line through r along `axis`
+        cone,      ///< infinite cone with apex r that opens along `axis`; half angle by `cosine` and `sine`
+        sphere     ///< sphere with centre r
     } shape = Shape::plane;
-    std::int32_t inside = 0;  ///< 1: particles are within a cylinder, cone or sphere; 0: around it
-    Vec3 r = {0, 0, 0};       ///< [m]
-    Vec3 axis = {0, 0, 1};    ///< unit
-    double radius = 0;        ///< [m]
-    double cosine = 1, sine = 0;
-    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< velocity of r [m/s], turning about it [rad/s]
+    std::int32_t inside = 0;      ///< 1: particles are inside the cylinder, cone or sphere; 0: outside
+    Vec3 r = {0, 0, 0};           ///< reference point [m]
+    Vec3 axis = {0, 0, 1};        ///< unit vector
+    double radius = 0;            ///< of a cylinder or sphere [m]
+    double cosine = 1, sine = 0;  ///< of the half angle of a cone
+    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< velocity of r [m/s], angular velocity [rad/s]
     std::int32_t material = 0;
 
-    // A tool: a body that moves by what touches it, its weight and F. A mass of 0 is one that moves as it is told.
-    std::array<bool, 3> free = {true, true, true};  ///< along x, y, z
-    bool unused = false;  ///< no byte is left to chance: boundaries are compared and written as they are
-    double mass = 0;      ///< [kg]
-    double inertia = 0;   ///< about r, whatever the axis [kg m²]; 0: does not turn
-    Vec3 F = {0, 0, 0};   ///< [N]
+    // members of a rigid body boundary
+    std::array<bool, 3> free = {true, true, true};  ///< whether it may translate along x, y, z
+    bool unused = false;  ///< explicit padding, because the bytes of boundaries are compared and stored
+    double mass = 0;      ///< [kg]; 0: prescribed motion
+    double inertia = 0;   ///< isotropic moment of inertia about r [kg m²]; 0: omega does not change
+    Vec3 F = {0, 0, 0};   ///< external force [N]
 
+    /// [1/kg]; 0 for prescribed motion
     HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };
 
-/// Distance of a point from a boundary [m], negative beyond it, and the unit normal there, towards the particles
+/// Signed distance of a point from a boundary [m], negative behind the surface, and the unit normal at the
+/// closest point, which points to the particles
 struct Nearest {
     double distance;
     Vec3 n;
 };
-HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& at)
+/// Closest point of a boundary: point - distance n is on the surface, and n is the gradient of the distance.
+///
+/// On the axis of a cylinder or cone and at the centre of a sphere the distance is exact and |n| < 1, because
+/// the closest point is not unique. Inside a cone, for points behind its apex, the distance is negative but
+/// not the true distance.
+HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
 {
-    const Vec3 d = at - b.r;
+    const Vec3 d = point - b.r;
     const double sign = b.inside != 0 ? -1 : 1;
     switch (b.shape) {
         case Boundary::Shape::plane:
             return {d.dot(b.axis), b.axis};
         case Boundary::Shape::cylinder: {
-            const Vec3 out = d - d.dot(b.axis) * b.axis;
-            const double far = out.norm();
-            return {sign * (far - b.radius), (sign / (far > 0 ? far : 1)) * out};
+            const Vec3 across = d - d.dot(b.axis) * b.axis;
+            const double rho = across.norm();
+            return {sign * (rho - b.radius), (sign / (rho > 0 ? rho : 1)) * across};
         }
         case Boundary::Shape::cone: {
             const double along = d.dot(b.axis);
-            const Vec3 out = d - along * b.axis;
-            const double far = out.norm();
-            const Vec3 radial = (1 / (far > 0 ? far : 1)) * out;
-            // across the slant line (sine, cosine) in the plane of the axis and the point; the tip where that is nearest
-            if (along * b.cosine + far * b.sine < 0 && b.inside == 0) {
-                const double from_tip = d.norm();
-                return {from_tip, (1 / (from_tip > 0 ? from_tip : 1)) * d};
+            const Vec3 across = d - along * b.axis;
+            const double rho = across.norm();
+            const Vec3 radial = (1 / (rho > 0 ? rho : 1)) * across;
+            // The meridian plane has the generator (sine, cosine). The apex is closest if the projection on
+            // it is negative.
+            if (along * b.cosine + rho * b.sine < 0 && b.inside == 0) {
+                const double from_apex = d.norm();
+                return {from_apex, (1 / (from_apex > 0 ? from_apex : 1)) * d};
             }
-            return {sign * (far * b.cosine - along * b.sine), sign * (b.cosine * radial - b.sine * b.axis)};
+            return {sign * (rho * b.cosine - along * b.sine), sign * (b.cosine * radial - b.sine * b.axis)};
         }
         case Boundary::Shape::sphere:
             break;
     }
-    const double far = d.norm();
-    return {sign * (far - b.radius), (sign / (far > 0 ? far : 1)) * d};
+    const double from_centre = d.norm();
+    return {sign * (from_centre - b.radius), (sign / (from_centre > 0 ? from_centre : 1)) * d};
 }
 
-/// Floor and four walls of a box without a lid
+/// Floor and four side walls of a box that is open at the top: planes through low and high
 inline std::array<Boundary, 5> open_box(const Vec3& low, const Vec3& high)
 {
     std::array<Boundary, 5> b;
@@ -84,7 +96,10 @@ inline std::array<Boundary, 5> open_box(const Vec3& low, const Vec3& high)
     return b;
 }
 
-/// Velocity of the boundary at a point [m/s]
-HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& at) { return b.v + b.omega.cross(at - b.r); }
+/// Velocity of the point of the rigid boundary that is at `point` [m/s]
+HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
+{
+    return b.v + b.omega.cross(point - b.r);
+}
 
 }  // namespace hilda::granular

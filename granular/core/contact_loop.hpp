@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The loop over contacts: who touches, what the laws answer, what is remembered. One evaluation per pair.
+/// The loop over pairs: contact detection, force laws, contact histories. Each pair is evaluated once.
 
 #pragma once
 
@@ -10,93 +10,107 @@
 
 namespace hilda::granular {
 
-/// What a contact does to its bodies: F on i and -F on j [N]; R M on each of them, with its own radius R and
-/// M = -n × F_t [N]
+/// Load of a contact: force F on body i and -F on body j [N]. The tangential force exerts the torque R M on
+/// either body, with its own radius R and M = -n × F_t [N].
 struct alignas(32) Load {
-    Four F, M;
+    Float4 F, M;
 };
 
-/// Pairs that may touch before neighbours are looked for again, and what they remember. j is a particle, or a boundary
-/// where its highest bit is set.
+/// The neighbour list with loads and histories. i is the index of a particle. j is the index of a particle,
+/// or that of a boundary with boundary_bit set.
 struct PairView {
-    static constexpr std::uint32_t boundary = 0x80000000u;
+    static constexpr std::uint32_t boundary_bit = 0x80000000u;
 
     const std::uint32_t *i, *j;
-    const std::uint8_t* law;  ///< index into the table of laws; nullptr where there is one
-    Four* history;            ///< u [m], age [s], negative while it slides; zero where they do not touch
-    Four* turning;            ///< psi and spin; nullptr where no law resists turning
+    const std::uint8_t* law;   ///< index into LawView::law; nullptr if there is a single law
+    Float4* history;           ///< u [m]; w: age [s], negative while sliding; zero without contact
+    Float4* rotation_history;  ///< psi [rad]; w: spin [rad]; nullptr without laws of rolling and spin
     Load* load;
-    Four* torque;  ///< of rolling and spin on i [N m]; nullptr with turning
-    std::uint8_t* touches;
-    std::uint32_t count;
+    Float4* torque;            ///< of rolling and spin on body i [N m]; nullptr if rotation_history is
+    std::uint8_t* in_contact;  ///< 1 if the bodies overlap
+    std::uint32_t count;       ///< number of pairs
 };
 
+/// The particle arrays that the contact loop reads
 struct ParticleView {
     CellGrid grid;
     const Position* position;
-    const Four* velocity;  ///< [m/s], radius [m]
-    const Four* omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
-    float radius = 0;      ///< of all [m]; 0 where they differ
+    const Float4* velocity;  ///< v [m/s]; w: radius [m]
+    const Float4* omega;     ///< ω [rad/s]; w: 1/m [1/kg], 0 for a fixed particle
+    float radius = 0;        ///< common radius of all particles [m]; 0 if they differ
 };
 
+/// The force laws and boundaries that the contact loop reads
 struct LawView {
     const PairLaw* law;
     int laws;
     const Boundary* boundary;
-    float h;  ///< [s]
+    float h;  ///< step size [s]
 };
 
-/// Loads of all pairs at t_n, and their histories from t_{n-1} to it
+/// Computes the loads of all pairs at t_n and advances their histories from t_{n-1} to t_n. A pair that is no
+/// longer in contact gets a zero load and a zero history.
 void find_loads(par::Cpu, const ParticleView& particles, const PairView& pairs, const LawView& laws);
 
-/// The same on another back end; see loops.hpp.
+/// The same for the other back ends; see loops.hpp.
 template <class Backend>
 void find_loads(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws);
 
-/// Two particles out of whole numbers: the overlap is q/(D + d), with q = D² - d² exact. All in units but for t.
+/// Overlap and normal of two particles.
+///
+///     delta = q/(D + d) unit,    q = D² - d²,    D = R_i + R_j,    d = |r_i - r_j|
+///
+/// q, d2 = d², D and the separation r_i - r_j are in CellGrid::unit, `unit` in m. The caller computes q in
+/// 64-bit integers without rounding error. The difference D - d in single precision would lose most digits of
+/// a small overlap.
 template <class R>
-HILDA_HD inline void set_overlap(ContactPoint<R>& t, const R& q, const R& d2, const R& D, const Vec<R>& apart,
-                                 const R& metre)
+HILDA_HD inline void set_overlap(ContactPoint<R>& contact, const R& q, const R& d2, const R& D,
+                                 const Vec<R>& separation, const R& unit)
 {
     const R d = sqrt(d2);
-    t.delta = q / (D + d) * metre;
-    t.n = (R(1.f) / d) * apart;
+    contact.delta = q / (D + d) * unit;
+    contact.n = (R(1.f) / d) * separation;
 }
 
+/// Effective radius R* and effective mass m* from the radii of the contact and the inverse masses [1/kg]
 template <class R>
-HILDA_HD inline void set_masses(ContactPoint<R>& t, R inverse_i, R inverse_j)
+HILDA_HD inline void set_masses(ContactPoint<R>& contact, R inverse_i, R inverse_j)
 {
-    t.R_eff = t.R_i * t.R_j / (t.R_i + t.R_j);
-    t.m_eff = R(1.f) / (inverse_i + inverse_j);
+    contact.R_eff = contact.R_i * contact.R_j / (contact.R_i + contact.R_j);
+    contact.m_eff = R(1.f) / (inverse_i + inverse_j);
 }
 
-/// Rates of overlap and slip from the velocities of the centres and the turning of the bodies
+/// Rate of the overlap, tangential velocity and relative angular velocity; see ContactPoint. v = v_i - v_j is
+/// the relative velocity of the centres [m/s].
 template <class R>
-HILDA_HD inline void set_rates(ContactPoint<R>& t, const Vec<R>& v, const Vec<R>& omega_i,
+HILDA_HD inline void set_rates(ContactPoint<R>& contact, const Vec<R>& v, const Vec<R>& omega_i,
                                const Vec<R>& omega_j)
 {
-    const R along = v.dot(t.n);
-    t.v_n = -along;
-    t.v_t = v - along * t.n - (t.R_i * omega_i + t.R_j * omega_j).cross(t.n);
-    t.omega = omega_i - omega_j;
+    const R normal_velocity = v.dot(contact.n);
+    contact.v_n = -normal_velocity;
+    contact.v_t =
+        v - normal_velocity * contact.n - (contact.R_i * omega_i + contact.R_j * omega_j).cross(contact.n);
+    contact.omega = omega_i - omega_j;
 }
 
-/// A particle and a boundary, but for the step; false where they do not touch
-HILDA_HD inline bool meet(ContactPoint<float>& t, const CellGrid& grid, const Position& p, const Four& v,
-                          const Four& w, const Boundary& b)
+/// Sets all of the contact of a particle with a boundary but the step size. The geometry is computed in
+/// double precision. Returns false if there is no overlap.
+HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const CellGrid& grid,
+                                           const Position& p, const Float4& v, const Float4& w,
+                                           const Boundary& b)
 {
-    const Vec3 r = place(grid, p);
+    const Vec3 r = global_position(grid, p);
     const Nearest near = nearest(b, r);
     const double delta = v.w - near.distance;
     if (!(delta > 0)) return false;
     const auto narrow = [](const Vec3& a) {
         return Vec<float>{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
     };
-    t.n = narrow(near.n);
-    t.delta = static_cast<float>(delta);
-    t.R_i = t.R_eff = v.w, t.R_j = 0;
-    t.m_eff = 1 / (w.w + b.inverse_mass());
-    set_rates(t, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
+    contact.n = narrow(near.n);
+    contact.delta = static_cast<float>(delta);
+    contact.R_i = contact.R_eff = v.w, contact.R_j = 0;
+    contact.m_eff = 1 / (w.w + b.inverse_mass());
+    set_rates(contact, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
               Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
     return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A contact as the laws of force see it.                                              Fang (2022), Sec. 2.2.1
+/// Contact kinematics, contact history and normal force, as used by the force laws.   Fang (2022), Sec. 2.2.1
 
 #pragma once
 
@@ -7,35 +7,44 @@
 
 namespace hilda::granular {
 
-/// Two bodies that overlap. Vectors are global. Against a wall, R_j is zero and the wall has no mass to share.
+/// Kinematics of the contact of body i with body j.                      Fang (2022), Eqs. 2.37 to 2.40, 2.43
+///
+///     n = (r_i - r_j)/|r_i - r_j|,    v_n = -(v_i - v_j) . n
+///     v_t = (v_i - v_j) + v_n n - (R_i omega_i + R_j omega_j) x n
+///
+/// Vectors are in the global frame. The normal and the relative velocities are opposite to those of Eqs. 2.38
+/// and 2.40: the normal points from j to i, and velocities are of i relative to j. The lever arm of the
+/// tangential force is the radius; the overlap is not subtracted. For a boundary as body j, R_j = 0.
 template <class R>
 struct ContactPoint {
     R delta;         ///< overlap [m], positive
-    R R_i, R_j;      ///< [m]; the levers of the tangential force
-    R R_eff, m_eff;  ///< R_i R_j/(R_i + R_j) [m], m_i m_j/(m_i + m_j) [kg]; R_i and m_i against a wall
-    Vec<R> n;        ///< out of j, into i
-    R v_n;           ///< rate of the overlap [m/s], positive in approach
-    Vec<R> v_t;      ///< velocity of the surface of i over that of j, across n [m/s]
+    R R_i, R_j;      ///< radii, the lever arms of the tangential force [m]
+    R R_eff, m_eff;  ///< R* = R_i R_j/(R_i + R_j) [m], m* = m_i m_j/(m_i + m_j) [kg]; wall: R_i, m_i
+    Vec<R> n;        ///< unit normal, from j to i
+    R v_n;           ///< rate of the overlap dδ/dt [m/s]; positive while the bodies approach
+    Vec<R> v_t;      ///< tangential velocity of the surface of i relative to that of j [m/s]
     Vec<R> omega;    ///< ω_i - ω_j [rad/s]
-    Number<R> h;     ///< step [s]
+    Number<R> h;     ///< step size [s]
 };
 
-/// What a contact keeps from step to step; zero where bodies meet
+/// Internal state of a contact, advanced once per step. All entries are zero when the contact begins.
 template <class R>
 struct History {
-    Vec<R> u;      ///< tangential displacement [m]
-    R age;         ///< [s]
+    Vec<R> u;      ///< tangential displacement [m]; `mindlin-incremental` stores its elastic force [N]
+    R age;         ///< time since the contact began [s]
     Vec<R> psi;    ///< rolling displacement [rad]
-    R spin;        ///< twist about n [rad]
-    Mask<R> slid;  ///< whether the surfaces slid in the step before
+    R spin;        ///< angle of relative rotation about n [rad]
+    Mask<R> slid;  ///< whether the contact was sliding in the previous step
 };
 
-/// The answer of a normal law
+/// Result of a normal force law
 template <class R>
 struct NormalForce {
-    R F;      ///< along n on body i [N]; damping may make it tensile at the end of a contact
-    R scale;  ///< what the tangential stiffness of this law goes by: √(R_eff δ), √(δ/R) or 1
-    Number<R> power = 0;  ///< scale goes with this power of δ
+    R F;  ///< component along n of the force on body i [N]; negative if damping makes it tensile
+    /// Factor of the tangential stiffness and damping: √(R* δ) [m] of `hertz`, √(δ/R) of `scaled-hooke`, 1 of
+    /// `hooke`
+    R scale;
+    Number<R> power = 0;  ///< exponent a of scale ∝ δ^a
 };
 
 }  // namespace hilda::granular

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How particles move by what acts on them.                                          Fang (2022), Sec. 6.1
+/// Time integration of particles under their loads.             Newton-Euler equations: Fang (2022), Eq. 2.17
+///
+/// Fang (2022) does not state the scheme of the particles. Chrono::GPU, the program of Ch. 6, offers the
+/// schemes below except velocity Verlet. All are explicit with a constant step size h.
 
 #pragma once
 
@@ -8,28 +11,38 @@
 
 namespace hilda::granular {
 
+/// Time integration schemes. The assignments are performed in the order in which they are written.
 enum class Scheme : std::int32_t {
-    symplectic_euler,  ///< v += h a,  x += h v
-    velocity_verlet,   ///< v += h/2 a,  x += h v,  a at the new x,  v += h/2 a
-    forward_euler,     ///< x += h v,  v += h a
-    extended_taylor,   ///< x += h v + h²/2 a,  v += h a
-    chung  ///< x += h v + h² (28/27 a - 29/54 a_before),  v += h (3/2 a - 1/2 a_before)      Chung and Lee (1994)
+    symplectic_euler,  ///< symplectic (semi-implicit) Euler:  v += h a,  x += h v
+    velocity_verlet,   ///< velocity Verlet:  v += h/2 a,  x += h v,  a = a(x),  v += h/2 a
+    forward_euler,     ///< forward (explicit) Euler:  x += h v,  v += h a
+    extended_taylor,   ///< second-order Taylor expansion of x:  x += h v + h²/2 a,  v += h a
+    /// Explicit method of Chung and Lee (1994) with β = 28/27; b is the acceleration of the previous step:
+    /// x += h v + h² (28/27 a - 29/54 b),  v += h (3/2 a - 1/2 b)
+    chung
 };
 
-/// What of a step is done: all of it; the part before and the part after the loads at t_{n+1}; or that loads become
-/// accelerations and nothing moves
-enum class Part : std::int32_t { whole, before_loads, after_loads, only_loads };
-
-/// What a step adds to a velocity and to a place, or to a turning and an angle
-template <class R>
-struct Change {
-    Vec<R> v, way;
+/// Parts of a step
+enum class Part : std::int32_t {
+    whole,         ///< the whole step
+    before_loads,  ///< velocity Verlet: first half kick and drift, before the loads at t_{n+1} are computed
+    after_loads,   ///< velocity Verlet: second half kick, with the loads at t_{n+1}
+    only_loads     ///< accelerations from loads; velocities and positions do not change
 };
 
-/// acc is that of t_n; of velocity_verlet, that of the node of the part
+/// Increments of velocity and position, or of angular velocity and rotation vector
 template <class R>
-HILDA_HD inline Change<R> change(Scheme scheme, Part part, const Vec<R>& v, const Vec<R>& acc,
-                                 const Vec<R>& before, Number<R> h)
+struct Increment {
+    Vec<R> dv, dx;
+};
+
+/// Increments of one step, or of a part of it.
+///
+/// v: velocity at t_n, for Part::after_loads after the first half kick. acc: acceleration at t_n, for
+/// Part::after_loads at t_{n+1}. previous: acceleration of the previous step, used by `chung`.
+template <class R>
+HILDA_HD inline Increment<R> increment(Scheme scheme, Part part, const Vec<R>& v, const Vec<R>& acc,
+                                       const Vec<R>& previous, Number<R> h)
 {
     const auto times = [](Number<R> s, const Vec<R>& a) { return R(s) * a; };
     switch (scheme) {
@@ -38,8 +51,8 @@ HILDA_HD inline Change<R> change(Scheme scheme, Part part, const Vec<R>& v, cons
         case Scheme::extended_taylor:
             return {times(h, acc), times(h, v) + times(h * h / 2, acc)};
         case Scheme::chung:
-            return {times(Number<R>(1.5) * h, acc) - times(Number<R>(0.5) * h, before),
-                    times(h, v) + times(h * h * 28 / 27, acc) - times(h * h * 29 / 54, before)};
+            return {times(Number<R>(1.5) * h, acc) - times(Number<R>(0.5) * h, previous),
+                    times(h, v) + times(h * h * 28 / 27, acc) - times(h * h * 29 / 54, previous)};
         case Scheme::velocity_verlet: {
             const Vec<R> dv = times(h / 2, acc);
             return {dv, part == Part::before_loads ? times(h, v + dv) : times(0, v)};
@@ -50,89 +63,102 @@ HILDA_HD inline Change<R> change(Scheme scheme, Part part, const Vec<R>& v, cons
     return {times(h, acc), times(h, v + times(h, acc))};
 }
 
-/// v + d, and in `rest` what rounding took from it: the gain by gravity of one step is below the last digits of a velocity
+/// Compensated addition v += d: the rounding error is stored in `compensation` and added in the next call.
+///
+/// TwoSum without a branch (Knuth). The increment of a velocity by gravity in one step may be smaller than
+/// the last digit of the velocity; plain addition would lose it.
 template <class R>
-HILDA_HD inline void add(R& v, R d, R& rest)
+HILDA_HD inline void add(R& v, R d, R& compensation)
 {
-    const R all = d + rest, sum = v + all, part = sum - v;
-    rest = (v - (sum - part)) + (all - part);
+    const R all = d + compensation, sum = v + all, part = sum - v;
+    compensation = (v - (sum - part)) + (all - part);
     v = sum;
 }
 template <class R>
-HILDA_HD inline void add(Vec<R>& v, const Vec<R>& d, Vec<R>& rest)
+HILDA_HD inline void add(Vec<R>& v, const Vec<R>& d, Vec<R>& compensation)
 {
-    add(v.x, d.x, rest.x), add(v.y, d.y, rest.y), add(v.z, d.z, rest.z);
+    add(v.x, d.x, compensation.x), add(v.y, d.y, compensation.y), add(v.z, d.z, compensation.z);
 }
 
-/// A particle as a step sees it
+/// State of a particle in a step
 template <class R>
-struct Moving {
-    Vec<R> v, omega;                  ///< [m/s, rad/s]
-    Vec<R> v_rest, omega_rest, rest;  ///< left by rounding, of velocities and of ways [units]
-    R radius, per_mass;               ///< [m, 1/kg]
+struct ParticleState {
+    Vec<R> v, omega;                            ///< [m/s, rad/s]
+    Vec<R> v_compensation, omega_compensation;  ///< rounding errors of v and omega [m/s, rad/s]
+    Vec<R> remainder;                           ///< rounding remainder of the position [units]
+    R radius, inverse_mass;                     ///< [m, 1/kg]; inverse_mass is 0 for a fixed particle
 };
 
-/// What is to go [units], with what was left of the step before, and to turn, as a rotation vector [rad]
+/// Displacement of a particle: translation [units] including the remainder of the previous step, and rotation
+/// vector in the global frame [rad]
 template <class R>
-struct Went {
-    Vec<R> way, angle;
+struct Displacement {
+    Vec<R> translation, rotation;
 };
 
-struct StepOf {
+/// Parameters of a step that are common to all particles
+struct StepParameters {
     Scheme scheme;
     Part part;
-    Vec<float> gravity;
-    float h, per_metre;
-    float turns;           ///< 0: torques do not turn particles
-    float even;            ///< dither of ways; see carried
-    std::uint32_t random;  ///< that of velocities and turnings; see upper_half
+    Vec<float> gravity;             ///< [m/s²]
+    float h, units_per_metre;       ///< step size [s]; 1/CellGrid::unit [1/m]
+    float torque_factor;            ///< 1; 0 if angular velocities are locked
+    float displacement_dither;      ///< of positions; see split_displacement
+    std::uint32_t velocity_dither;  ///< of v and omega; see round_to_bfloat16
 };
 
-/// One step, or part of one, under F and T. acc and turn are those of the step before and become those of this one.
+/// Advances a particle by one step, or by a part of it, under the force F [N] and the torque T [N m].
+///
+///     a = F/m + g,    alpha = T/(2/5 m R²)
+///
+/// acc and alpha are the accelerations of the previous step on entry and those of this step on return. A
+/// fixed particle keeps its position and velocities.
 template <class R>
-HILDA_HD inline Went<R> go(const StepOf& s, Moving<R>& m, const Vec<R>& F, const Vec<R>& T, Vec<R>& acc,
-                           Vec<R>& turn)
+HILDA_HD inline Displacement<R> advance_particle(const StepParameters& s, ParticleState<R>& m,
+                                                 const Vec<R>& F, const Vec<R>& T, Vec<R>& acc, Vec<R>& alpha)
 {
-    Vec<R> a = acc, b = turn;
-    const Mask<R> moves = m.per_mass > R(0.f);
+    Vec<R> a = acc, b = alpha;
+    const Mask<R> moves = m.inverse_mass > R(0.f);
     if (s.part != Part::before_loads) {
-        const R per_inertia = (R(2.5f) * m.per_mass) / (m.radius * m.radius);
-        a = m.per_mass * F + Vec<R>{R(s.gravity.x), R(s.gravity.y), R(s.gravity.z)};
-        b = (R(s.turns) * per_inertia) * T;
+        const R inverse_inertia = (R(2.5f) * m.inverse_mass) / (m.radius * m.radius);
+        a = m.inverse_mass * F + Vec<R>{R(s.gravity.x), R(s.gravity.y), R(s.gravity.z)};
+        b = (R(s.torque_factor) * inverse_inertia) * T;
     }
     const Vec<R> zero{R(0.f), R(0.f), R(0.f)};
     a = select(moves, a, zero);
     if (s.part == Part::only_loads) {
-        acc = a, turn = b;
-        return {m.rest, zero};
+        acc = a, alpha = b;
+        return {m.remainder, zero};
     }
-    const Change<R> of_v = change(s.scheme, s.part, m.v, a, acc, s.h);
-    const Change<R> of_omega = change(s.scheme, s.part, m.omega, b, turn, s.h);
-    add(m.v, of_v.v, m.v_rest), add(m.omega, of_omega.v, m.omega_rest);
-    acc = a, turn = b;
-    return {select(moves, R(s.per_metre) * of_v.way, zero) + m.rest, of_omega.way};
+    const Increment<R> linear = increment(s.scheme, s.part, m.v, a, acc, s.h);
+    const Increment<R> angular = increment(s.scheme, s.part, m.omega, b, alpha, s.h);
+    add(m.v, linear.dv, m.v_compensation), add(m.omega, angular.dv, m.omega_compensation);
+    acc = a, alpha = b;
+    return {select(moves, R(s.units_per_metre) * linear.dx, zero) + m.remainder, angular.dx};
 }
 
-/// The arrays that a step reads and writes
-struct Advance {
+/// The arrays that a step reads and writes; see Particles and Pairs.
+struct AdvanceView {
     Position* position;
-    Four *velocity, *omega;
-    Compensation* rest;
-    Four *acc, *turn;                      ///< of the step before; nullptr where the scheme needs none
-    Four *orientation, *orientation_rest;  ///< nullptr where it is not kept
+    Float4 *velocity, *omega;
+    Compensation* compensation;
+    Float4 *acc, *alpha;  ///< of the previous step; nullptr if the scheme does not use them
+    Float4 *orientation, *orientation_compensation;  ///< nullptr unless orientations are stored
     const std::uint32_t *start, *other_start, *other;
     const Load* load;
-    const std::uint8_t* touches;  ///< where not, loads are zero
-    const Four* torque;           ///< nullptr where no law resists turning
-    const Four* force;            ///< from outside, by id [N]; nullptr where there is none
+    const std::uint8_t* in_contact;  ///< the load of a pair without contact is zero
+    const Float4* torque;            ///< nullptr without laws of rolling and spin
+    const Float4* force;             ///< external forces by particle id [N]; nullptr if there are none
     const std::uint32_t* id;
-    StepOf step;
+    StepParameters step;
 };
 
-/// Advances all particles, each by the sum of its loads in the order of its pairs; returns the largest |v|² of them.
-float advance(par::Cpu, std::uint32_t particles, const Advance& arrays);
-/// The same on another back end; see loops.hpp.
+/// Advances all particles. The loads of a particle are summed in the order of its pairs, so that the result
+/// does not depend on the number of threads. Returns the largest |v|² of the particles that are not fixed
+/// [m²/s²]; NaN if one is NaN.
+float advance(par::Cpu, std::uint32_t particles, const AdvanceView& arrays);
+/// The same for the other back ends; see loops.hpp.
 template <class Backend>
-float advance(Backend on, std::uint32_t particles, const Advance& arrays);
+float advance(Backend on, std::uint32_t particles, const AdvanceView& arrays);
 
 }  // namespace hilda::granular

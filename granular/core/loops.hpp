@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over contacts and particles one by one, for back ends whose threads are their lanes. Same bits as the packs of
-// contact_loop_cpu.cpp and integrator_cpu.cpp.
+// The loops over pairs and particles with one scalar call per pair or particle, for the GPU. The results are
+// bitwise equal to those of the packs in contact_loop_cpu.cpp and integrator_cpu.cpp.
 #pragma once
 
 #include "granular/core/contact_loop.hpp"
@@ -10,130 +10,135 @@ namespace hilda::granular {
 
 namespace detail {
 
+/// Load and history of one pair
 struct FindLoad {
     ParticleView particles;
     PairView pairs;
     LawView laws;
-    float per_metre, metre;
+    float units_per_metre, unit;
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
         const std::uint32_t i = pairs.i[k], j = pairs.j[k];
         const Position p_i = particles.position[i];
-        ContactPoint<float> t{};
-        t.h = laws.h;
-        bool touches = false;
-        if ((j & PairView::boundary) != 0) {
-            touches = meet(t, particles.grid, p_i, particles.velocity[i], particles.omega[i],
-                           laws.boundary[j & ~PairView::boundary]);
+        ContactPoint<float> contact{};
+        contact.h = laws.h;
+        bool overlaps = false;
+        if ((j & PairView::boundary_bit) != 0) {
+            overlaps = find_boundary_contact(contact, particles.grid, p_i, particles.velocity[i],
+                                             particles.omega[i], laws.boundary[j & ~PairView::boundary_bit]);
         } else {
-            // most pairs do not touch, and of those no more is read than that takes
-            const float all = particles.radius;
-            const float R_i = all > 0 ? all : particles.velocity[i].w,
-                        R_j = all > 0 ? all : particles.velocity[j].w;
+            // Most listed pairs are not in contact: for these only positions and radii are read.
+            const float common = particles.radius;
+            const float R_i = common > 0 ? common : particles.velocity[i].w,
+                        R_j = common > 0 ? common : particles.velocity[j].w;
             const Difference d = difference(particles.grid, p_i, particles.position[j]);
-            const std::int64_t D = in_units(R_i, per_metre) + in_units(R_j, per_metre), x = d.x, y = d.y,
-                               z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;
-            touches = q > 0;
-            if (touches) {
-                const Four v_i = particles.velocity[i], v_j = particles.velocity[j];
+            const std::int64_t D = radius_in_units(R_i, units_per_metre) +
+                                   radius_in_units(R_j, units_per_metre),
+                               x = d.x, y = d.y, z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;
+            overlaps = q > 0;
+            if (overlaps) {
+                const Float4 v_i = particles.velocity[i], v_j = particles.velocity[j];
                 set_overlap(
-                    t, static_cast<float>(q), static_cast<float>(d2), static_cast<float>(D),
+                    contact, static_cast<float>(q), static_cast<float>(d2), static_cast<float>(D),
                     Vec<float>{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
-                    metre);
-                const Four w_i = particles.omega[i], w_j = particles.omega[j];
-                t.R_i = v_i.w, t.R_j = v_j.w;
-                set_masses(t, w_i.w, w_j.w);
-                set_rates(t, Vec<float>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
+                    unit);
+                const Float4 w_i = particles.omega[i], w_j = particles.omega[j];
+                contact.R_i = v_i.w, contact.R_j = v_j.w;
+                set_masses(contact, w_i.w, w_j.w);
+                set_rates(contact, Vec<float>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
                           Vec<float>{w_i.x, w_i.y, w_i.z}, Vec<float>{w_j.x, w_j.y, w_j.z});
             }
         }
-        const bool turning = pairs.turning != nullptr;
-        if (!touches) {
-            if (pairs.touches[k] == 0) return;
-            pairs.touches[k] = 0, pairs.history[k] = {}, pairs.load[k] = {};
-            if (turning) pairs.turning[k] = {}, pairs.torque[k] = {};
+        const bool rotation_laws = pairs.rotation_history != nullptr;
+        if (!overlaps) {
+            if (pairs.in_contact[k] == 0) return;
+            pairs.in_contact[k] = 0, pairs.history[k] = {}, pairs.load[k] = {};
+            if (rotation_laws) pairs.rotation_history[k] = {}, pairs.torque[k] = {};
             return;
         }
-        pairs.touches[k] = 1;
-        const Four u = pairs.history[k];
+        pairs.in_contact[k] = 1;
+        const Float4 u = pairs.history[k];
         History<float> history{{u.x, u.y, u.z}, abs(u.w) + laws.h, {0, 0, 0}, 0, u.w < 0};
-        if (turning) {
-            const Four psi = pairs.turning[k];
+        if (rotation_laws) {
+            const Float4 psi = pairs.rotation_history[k];
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
         const ContactForce<float> out =
-            evaluate(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], t, history, turning);
-        const Vec<float> M = -t.n.cross(out.F_t);
+            evaluate(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], contact, history, rotation_laws);
+        const Vec<float> M = -contact.n.cross(out.F_t);
         pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
         pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {M.x, M.y, M.z, 0}};
-        if (!turning) return;
-        pairs.turning[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
+        if (!rotation_laws) return;
+        pairs.rotation_history[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
         pairs.torque[k] = {out.T.x, out.T.y, out.T.z, 0};
     }
 };
 
-/// Advances a particle, and returns its |v|²; 0 of one that is fixed.
+/// Advances a particle; returns its |v|², or 0 if it is fixed.
 struct AdvanceOne {
-    Advance to;
+    AdvanceView arrays;
 
-    HILDA_HD static Vec<float> vec(const Four& f) { return {f.x, f.y, f.z}; }
-    HILDA_HD static void put(Four& to, const Vec<float>& v) { to.x = v.x, to.y = v.y, to.z = v.z; }
+    HILDA_HD static Vec<float> vec(const Float4& f) { return {f.x, f.y, f.z}; }
+    HILDA_HD static void put(Float4& to, const Vec<float>& v) { to.x = v.x, to.y = v.y, to.z = v.z; }
 
-    HILDA_HD void turn_one(std::uint32_t k, const Vec<float>& angle) const
+    HILDA_HD void rotate_one(std::uint32_t k, const Vec<float>& angle) const
     {
-        Four p = to.orientation[k], left = to.orientation_rest[k];
-        const EulerParameters<float> d = turn_by(angle, {p.x, {p.y, p.z, p.w}});
-        add(p.x, d.e0, left.x), add(p.y, d.e.x, left.y), add(p.z, d.e.y, left.z), add(p.w, d.e.z, left.w);
-        to.orientation[k] = p, to.orientation_rest[k] = left;
+        Float4 p = arrays.orientation[k], error = arrays.orientation_compensation[k];
+        const EulerParameters<float> d = rotation_increment(angle, {p.x, {p.y, p.z, p.w}});
+        add(p.x, d.e0, error.x), add(p.y, d.e.x, error.y), add(p.z, d.e.y, error.z), add(p.w, d.e.z, error.w);
+        arrays.orientation[k] = p, arrays.orientation_compensation[k] = error;
     }
 
     HILDA_HD float operator()(std::uint32_t k) const
     {
         Vec<float> F{0, 0, 0}, T{0, 0, 0};
-        Four v = to.velocity[k], w = to.omega[k];
-        if (to.step.part != Part::before_loads) {
+        Float4 v = arrays.velocity[k], w = arrays.omega[k];
+        if (arrays.step.part != Part::before_loads) {
             Vec<float> F_j{0, 0, 0}, M{0, 0, 0}, M_j{0, 0, 0};
-            for (std::uint32_t n = to.start[k]; n < to.start[k + 1]; ++n)
-                if (to.touches[n] != 0) F += vec(to.load[n].F), M += vec(to.load[n].M);
-            for (std::uint32_t m = to.other_start[k]; m < to.other_start[k + 1]; ++m) {
-                const Load& load = to.load[to.other[m]];
+            for (std::uint32_t n = arrays.start[k]; n < arrays.start[k + 1]; ++n)
+                if (arrays.in_contact[n] != 0) F += vec(arrays.load[n].F), M += vec(arrays.load[n].M);
+            for (std::uint32_t m = arrays.other_start[k]; m < arrays.other_start[k + 1]; ++m) {
+                const Load& load = arrays.load[arrays.other[m]];
                 F_j += vec(load.F), M_j += vec(load.M);
             }
             F -= F_j, M += M_j;
-            if (to.force != nullptr) F += vec(to.force[to.id[k]]);
-            if (to.torque != nullptr) {
-                for (std::uint32_t n = to.start[k]; n < to.start[k + 1]; ++n) T += vec(to.torque[n]);
-                for (std::uint32_t m = to.other_start[k]; m < to.other_start[k + 1]; ++m)
-                    T -= vec(to.torque[to.other[m]]);
+            if (arrays.force != nullptr) F += vec(arrays.force[arrays.id[k]]);
+            if (arrays.torque != nullptr) {
+                for (std::uint32_t n = arrays.start[k]; n < arrays.start[k + 1]; ++n)
+                    T += vec(arrays.torque[n]);
+                for (std::uint32_t m = arrays.other_start[k]; m < arrays.other_start[k + 1]; ++m)
+                    T -= vec(arrays.torque[arrays.other[m]]);
             }
             T = v.w * M + T;
         }
-        Compensation rest = to.rest[k];
-        Moving<float> m{.v = vec(v),
-                        .omega = vec(w),
-                        .v_rest = from_halves(rest.v),
-                        .omega_rest = from_halves(rest.omega),
-                        .rest = rest_of_way<float>(rest.way),
-                        .radius = v.w,
-                        .per_mass = w.w};
-        Vec<float> acc{0, 0, 0}, turn{0, 0, 0};
-        if (to.acc != nullptr) acc = vec(to.acc[k]), turn = vec(to.turn[k]);
-        const Went<float> all = go(to.step, m, F, T, acc, turn);
+        Compensation compensation = arrays.compensation[k];
+        ParticleState<float> m{.v = vec(v),
+                               .omega = vec(w),
+                               .v_compensation = load_bfloat16(compensation.v),
+                               .omega_compensation = load_bfloat16(compensation.omega),
+                               .remainder = unpack_remainder<float>(compensation.displacement),
+                               .radius = v.w,
+                               .inverse_mass = w.w};
+        Vec<float> acc{0, 0, 0}, alpha{0, 0, 0};
+        if (arrays.acc != nullptr) acc = vec(arrays.acc[k]), alpha = vec(arrays.alpha[k]);
+        const Displacement<float> moved = advance_particle(arrays.step, m, F, T, acc, alpha);
 
         put(v, m.v), put(w, m.omega);
-        to.velocity[k] = v, to.omega[k] = w;
-        const std::uint32_t dither = to.step.random;
-        const Carried<float> went = carried(all.way, to.step.even);
-        rest.way = went.word;
-        put_halves(rest.v, m.v_rest, dither), put_halves(rest.omega, m.omega_rest, dither);
-        to.rest[k] = rest;
-        if (to.acc != nullptr) put(to.acc[k], acc), put(to.turn[k], turn);
-        if (to.step.part == Part::whole || to.step.part == Part::before_loads) {
-            Position p = to.position[k];
-            p.x += went.x, p.y += went.y, p.z += went.z;
-            to.position[k] = p;
-            if (to.orientation != nullptr) turn_one(k, all.angle);
+        arrays.velocity[k] = v, arrays.omega[k] = w;
+        const std::uint32_t dither = arrays.step.velocity_dither;
+        const SplitDisplacement<float> units =
+            split_displacement(moved.translation, arrays.step.displacement_dither);
+        compensation.displacement = units.remainder;
+        store_bfloat16(compensation.v, m.v_compensation, dither),
+            store_bfloat16(compensation.omega, m.omega_compensation, dither);
+        arrays.compensation[k] = compensation;
+        if (arrays.acc != nullptr) put(arrays.acc[k], acc), put(arrays.alpha[k], alpha);
+        if (arrays.step.part == Part::whole || arrays.step.part == Part::before_loads) {
+            Position p = arrays.position[k];
+            p.x += units.x, p.y += units.y, p.z += units.z;
+            arrays.position[k] = p;
+            if (arrays.orientation != nullptr) rotate_one(k, moved.rotation);
         }
         return w.w > 0 ? m.v.dot(m.v) : 0;
     }
@@ -144,12 +149,12 @@ struct AdvanceOne {
 template <class Backend>
 void find_loads(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws)
 {
-    const auto metre = static_cast<float>(particles.grid.unit);
-    par::for_each(on, pairs.count, detail::FindLoad{particles, pairs, laws, 1 / metre, metre});
+    const auto unit = static_cast<float>(particles.grid.unit);
+    par::for_each(on, pairs.count, detail::FindLoad{particles, pairs, laws, 1 / unit, unit});
 }
 
 template <class Backend>
-float advance(Backend on, std::uint32_t particles, const Advance& arrays)
+float advance(Backend on, std::uint32_t particles, const AdvanceView& arrays)
 {
     return par::largest(on, particles, detail::AdvanceOne{arrays});
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Which pairs may touch: particles sorted by cell, and a list that holds until something has moved half the skin.
+/// Neighbour search: particles sorted by cell, and a Verlet list of the pairs whose surfaces are closer than
+/// the skin.
+///
+/// The list is valid until a particle or a boundary has moved by half of the skin.
 
 #pragma once
 
@@ -7,98 +10,104 @@
 
 namespace hilda::granular {
 
-/// Particles of a back end, in the order of their cells
+/// The particle arrays of a back end. A neighbour search sorts them by (replica, cell, id).
 template <class Backend>
 struct Particles {
     par::Array<Backend, Position> position;
-    par::Array<Backend, Four> velocity;  ///< [m/s], radius [m]
-    par::Array<Backend, Four> omega;     ///< [rad/s], 1/m [1/kg]: 0 for what is fixed
-    par::Array<Backend, Compensation> rest;
-    par::Array<Backend, Species> kind;
+    par::Array<Backend, Float4> velocity;  ///< v [m/s]; w: radius [m]
+    par::Array<Backend, Float4> omega;     ///< ω [rad/s]; w: 1/m [1/kg], 0 for a fixed particle
+    par::Array<Backend, Compensation> compensation;
+    par::Array<Backend, Species> species;
     par::Array<Backend, std::uint32_t> id;
-    par::Array<Backend, Four> acc, turn;  ///< of the step before; none where the scheme asks for none
-    par::Array<Backend, Four> orientation, orientation_rest;  ///< e0, e; none where it is not kept
-    par::Array<Backend, Position> before;                     ///< where neighbours were last looked for
+    par::Array<Backend, Float4> acc, alpha;  ///< of the previous step; empty if the scheme does not use them
+    par::Array<Backend, Float4> orientation, orientation_compensation;  ///< (e0, e); empty unless stored
+    par::Array<Backend, Position> position_at_build;  ///< positions at the last neighbour search
     std::uint32_t count = 0;
 
     void resize(std::uint32_t n)
     {
-        position.resize(n), velocity.resize(n), omega.resize(n), rest.resize(n), kind.resize(n);
+        position.resize(n), velocity.resize(n), omega.resize(n), compensation.resize(n), species.resize(n);
         id.resize(n);
         count = n;
     }
     std::size_t bytes() const
     {
-        return position.bytes() + velocity.bytes() + omega.bytes() + rest.bytes() + kind.bytes() +
-               id.bytes() + acc.bytes() + turn.bytes() + orientation.bytes() + orientation_rest.bytes() +
-               before.bytes();
+        return position.bytes() + velocity.bytes() + omega.bytes() + compensation.bytes() + species.bytes() +
+               id.bytes() + acc.bytes() + alpha.bytes() + orientation.bytes() +
+               orientation_compensation.bytes() + position_at_build.bytes();
     }
 };
 
-/// Pairs by rows: those of particle p are start[p] … start[p + 1] - 1, with p as i, and in `other` those with p as j
+/// The pair arrays of a back end; see PairView for their content.
+///
+/// Compressed sparse rows: the pairs with particle p as i are start[p] … start[p + 1] - 1. The pairs with p
+/// as j are other[other_start[p]] … other[other_start[p + 1] - 1].
 template <class Backend>
 struct Pairs {
     par::Array<Backend, std::uint32_t> start, i, j, other_start, other;
-    par::Array<Backend, std::uint8_t> law, touches;
-    par::Array<Backend, Four> history, turning, torque;
+    par::Array<Backend, std::uint8_t> law, in_contact;
+    par::Array<Backend, Float4> history, rotation_history, torque;
     par::Array<Backend, Load> load;
     std::uint32_t count = 0;
 
     std::size_t bytes() const
     {
         return start.bytes() + i.bytes() + j.bytes() + other_start.bytes() + other.bytes() + law.bytes() +
-               touches.bytes() + history.bytes() + turning.bytes() + torque.bytes() + load.bytes();
+               in_contact.bytes() + history.bytes() + rotation_history.bytes() + torque.bytes() +
+               load.bytes();
     }
 };
 
-/// A particle is outside a domain that is not periodic there.
+/// Exception: a particle is outside the domain along an axis that is not periodic.
 struct LeftDomain {
     std::uint32_t id;
 };
 
-/// More than 2^31 pairs: the largest particle is too large for so many small ones, or the skin too wide.
+/// Exception: the neighbour list has 2^31 pairs or more. The largest particle is too large for the number of
+/// small ones, or the skin is too wide.
 struct TooManyPairs {};
 
-/// Where particles are and how far neighbours are looked for
-struct Scene {
+/// The cell grid of the domain and the settings of the neighbour search
+struct Domain {
     CellGrid grid;
-    float skin = 0;              ///< [m]
-    float radius = 0;            ///< of all [m]; 0 where they differ
-    std::uint32_t replicas = 1;  ///< systems in the same place that do not see each other
-    std::uint32_t unused = 0;    ///< no byte of a scene is left to chance: it is written as it is
+    float skin = 0;              ///< largest distance of the surfaces of a listed pair [m]
+    float radius = 0;            ///< common radius of all particles [m]; 0 if they differ
+    std::uint32_t replicas = 1;  ///< number of systems that share the domain and do not interact
+    std::uint32_t unused = 0;    ///< explicit padding, because checkpoints store the bytes of a Domain
 };
 
 template <class Backend>
-ParticleView particle_view(const Scene& scene, const Particles<Backend>& p)
+ParticleView particle_view(const Domain& domain, const Particles<Backend>& p)
 {
-    return {scene.grid, p.position.data(), p.velocity.data(), p.omega.data(), scene.radius};
+    return {domain.grid, p.position.data(), p.velocity.data(), p.omega.data(), domain.radius};
 }
 
-/// What decides which pairs there are
-struct Reach {
-    Scene scene;
-    const std::uint8_t* law_of = nullptr;  ///< materials × materials
+/// Input of a neighbour search. Pointers refer to the memory of the back end.
+struct SearchInput {
+    Domain domain;
+    /// Law of each pair of materials, materials × materials; nullptr if there is a single law
+    const std::uint8_t* law_of = nullptr;
     std::uint32_t materials = 1;
     const Boundary* boundary = nullptr;
-    std::uint32_t boundaries = 0;
-    bool turning = false;  ///< whether a law keeps a history of turning
+    std::uint32_t boundaries = 0;  ///< number of boundaries
+    bool rotation_laws = false;    ///< whether a law of rolling or spin is in use
 };
 
 template <class Backend>
 class Neighbours {
 public:
-    /// Puts particles into the cells where they are, sorts them, finds pairs and gives them the histories of the pairs of
-    /// before. Throws LeftDomain, with the particles where they were, and TooManyPairs.
-    void find(const Reach& reach, Particles<Backend>& particles, Pairs<Backend>& pairs);
+    /// Assigns the particles to cells, sorts them, builds the pair list, and transfers the contact histories
+    /// of the previous list to it. Throws LeftDomain before the particles are sorted, and TooManyPairs.
+    void find(const SearchInput& input, Particles<Backend>& particles, Pairs<Backend>& pairs);
 
     std::size_t bytes() const;
 
 private:
-    void sort(const Reach& reach, Particles<Backend>& particles);
+    void sort(const SearchInput& input, Particles<Backend>& particles);
 
     par::Array<Backend, std::uint64_t> key;
-    par::Array<Backend, std::uint32_t> order, where, cell_start, counts;
-    par::Array<Backend, Four> scratch;
+    par::Array<Backend, std::uint32_t> order, new_index, cell_start, counts;
+    par::Array<Backend, Float4> scratch;
 };
 
 extern template class Neighbours<par::Cpu>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functors of Neighbours, for any back end.
+// The functors and member functions of Neighbours for any back end.
 #pragma once
 
 #include "granular/core/neighbours.hpp"
@@ -13,8 +13,8 @@ namespace hilda::granular {
 
 namespace detail {
 
-/// Adds one and returns what was there
-HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
+/// Atomic increment; returns the previous value.
+HILDA_HD inline std::uint32_t fetch_increment(std::uint32_t* counter)
 {
 #ifdef __CUDA_ARCH__
     return atomicAdd(counter, 1u);
@@ -23,21 +23,23 @@ HILDA_HD inline std::uint32_t take_next(std::uint32_t* counter)
 #endif
 }
 
-/// The cell a particle is in now; its place becomes that in the cell. Its sort key has the replica, the cell in order of
-/// z, y, x and then the id; all bits set where it has left the domain.
-struct Settle {
+/// Assigns a particle to the cell in which it is, and computes its sort key: replica, cell in the order z, y,
+/// x, then id. For a particle that has left the domain all bits of the key are set, and its position is not
+/// changed.
+struct AssignCell {
     CellGrid grid;
     Position* position;
-    const Species* kind;
+    const Species* species;
     const std::uint32_t* id;
     std::uint64_t* key;
     std::uint32_t* order;
 
+    /// Normalises one local coordinate; false if it is outside the domain.
     HILDA_HD bool move(std::int32_t& cell, std::int32_t& at, int axis) const
     {
         const std::int32_t width = grid.width[axis], cells = grid.cells[axis];
         std::int32_t steps = at / width;
-        if (at < 0 && steps * width != at) --steps;  // towards minus infinity
+        if (at < 0 && steps * width != at) --steps;  // round towards minus infinity
         at -= steps * width;
         cell += steps;
         if (grid.periodic[axis] != 0) {
@@ -60,19 +62,20 @@ struct Settle {
         p.cell = CellGrid::pack(x, y, z);
         position[k] = p;
         const std::uint64_t row =
-            (static_cast<std::uint64_t>(kind[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
+            (static_cast<std::uint64_t>(species[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
         const std::uint64_t number = row * grid.cells[0] + x;
         key[k] = number << 32 | id[k];
     }
 };
 
-/// start[c] is the first of the particles in cell c or a later one; one more entry than there are cells
-struct StartCells {
+/// start[c]: index of the first particle in cell c or a later cell, c = 0 … cells. One call per particle, for
+/// sequential access on the CPU.
+struct MarkCellStarts {
     const std::uint64_t* key;
     std::uint32_t particles, cells;
     std::uint32_t* start;
 
-    HILDA_HD void operator()(std::uint32_t k) const  // k up to and with the number of particles
+    HILDA_HD void operator()(std::uint32_t k) const  // k = 0 … particles
     {
         const std::uint32_t here = k < particles ? static_cast<std::uint32_t>(key[k] >> 32) : cells;
         for (std::uint32_t c = k > 0 ? static_cast<std::uint32_t>(key[k - 1] >> 32) + 1 : 0; c <= here; ++c)
@@ -80,8 +83,9 @@ struct StartCells {
     }
 };
 
-/// The same, a cell at a time: no thread has many empty ones to fill
-struct FindStart {
+/// The same as MarkCellStarts with one call per cell, by bisection. On a GPU a thread then does not loop over
+/// a long run of empty cells.
+struct FindCellStart {
     const std::uint64_t* key;
     std::uint32_t particles;
     std::uint32_t* start;
@@ -100,20 +104,23 @@ struct FindStart {
     }
 };
 
+/// Index after sorting of each particle before sorting
 struct Invert {
     const std::uint32_t* order;
-    std::uint32_t* where;
-    HILDA_HD void operator()(std::uint32_t k) const { where[order[k]] = k; }
+    std::uint32_t* new_index;
+    HILDA_HD void operator()(std::uint32_t k) const { new_index[order[k]] = k; }
 };
 
-/// Calls f(j) for the particles after k that are within reach of it, in a fixed order.
+/// Calls f(j) in a fixed order for the partners of particle k whose surfaces are closer than the skin:
+/// particles in the following half of the neighbouring cells, then boundaries with PairView::boundary_bit.
+/// Two fixed bodies are no pair.
 struct Search {
     CellGrid grid;
     const Position* position;
-    const Four *velocity, *omega;
-    const Species* kind;
+    const Float4 *velocity, *omega;
+    const Species* species;
     const std::uint32_t* cell_start;
-    float metre, skin;
+    float unit, skin;
     const Boundary* boundary;
     std::uint32_t boundaries;
 
@@ -121,13 +128,13 @@ struct Search {
     HILDA_HD void range(std::uint32_t k, std::uint32_t first, std::uint32_t last, const F& f) const
     {
         const Position at = position[k];
-        const float reach = velocity[k].w + skin;
+        const float radius_and_skin = velocity[k].w + skin;
         const bool fixed = omega[k].w == 0;
         for (std::uint32_t j = first; j < last; ++j) {
             const Difference d = difference(grid, at, position[j]);
-            const float x = metre * static_cast<float>(d.x), y = metre * static_cast<float>(d.y),
-                        z = metre * static_cast<float>(d.z), far = reach + velocity[j].w;
-            if (x * x + y * y + z * z < far * far && !(fixed && omega[j].w == 0)) f(j);
+            const float x = unit * static_cast<float>(d.x), y = unit * static_cast<float>(d.y),
+                        z = unit * static_cast<float>(d.z), limit = radius_and_skin + velocity[j].w;
+            if (x * x + y * y + z * z < limit * limit && !(fixed && omega[j].w == 0)) f(j);
         }
     }
 
@@ -137,9 +144,10 @@ struct Search {
         const std::uint32_t cell = position[k].cell;
         const std::int32_t x = CellGrid::x_of(cell), y = CellGrid::y_of(cell), z = CellGrid::z_of(cell);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
-        const std::uint32_t replica = kind[k].replica;
-        // Of the 27 cells around, those after this one in the order z, y, x of an endless grid: rows (y, z) of three
-        // cells, which are neighbours in memory but where the domain is periodic.
+        const std::uint32_t replica = species[k].replica;
+        // Half of the 27 cells: those that follow in the order z, y, x of an infinite grid, so that each pair
+        // is found once. The cells of a row (y, z) are contiguous in memory except across a periodic
+        // boundary.
         for (int row = 0; row < 5; ++row) {
             std::int32_t yy = y + (row == 0 ? 0 : row == 1 ? 1 : row - 3), zz = z + (row > 1 ? 1 : 0);
             if (yy < 0 || yy >= ny) {
@@ -161,11 +169,12 @@ struct Search {
         }
         for (std::uint32_t b = 0; b < boundaries; ++b)
             if (omega[k].w != 0 &&
-                nearest(boundary[b], place(grid, position[k])).distance < velocity[k].w + skin)
-                f(PairView::boundary | b);
+                nearest(boundary[b], global_position(grid, position[k])).distance < velocity[k].w + skin)
+                f(PairView::boundary_bit | b);
     }
 };
 
+/// Number of partners of a particle
 struct CountPairs {
     Search search;
     std::uint32_t* count;
@@ -177,10 +186,12 @@ struct CountPairs {
     }
 };
 
+/// Number of partners of a particle as a float, for par::largest
 struct AsFloat {
     const std::uint32_t* number;
     HILDA_HD float operator()(std::uint32_t k) const { return static_cast<float>(number[k]); }
 };
+/// Sum on the host
 template <class Backend>
 std::uint64_t sum(Backend on, const std::uint32_t* numbers, std::uint32_t n)
 {
@@ -189,13 +200,14 @@ std::uint64_t sum(Backend on, const std::uint32_t* numbers, std::uint32_t n)
     return std::accumulate(all.begin(), all.end(), std::uint64_t{0});
 }
 
+/// Writes the row of a particle: partners and laws.
 struct FillPairs {
     Search search;
     const std::uint32_t* start;
     std::uint32_t *i, *j;
-    std::uint32_t* others;  ///< counts those that have a particle as j
+    std::uint32_t* counts_as_j;  ///< number of pairs with a particle as j
     std::uint8_t* law;
-    const std::uint8_t* law_of;  ///< nullptr where there is one law
+    const std::uint8_t* law_of;  ///< nullptr if there is a single law
     std::uint32_t materials;
 
     HILDA_HD void operator()(std::uint32_t k) const
@@ -203,71 +215,76 @@ struct FillPairs {
         std::uint32_t n = start[k];
         search(k, [&](std::uint32_t other) {
             i[n] = k, j[n] = other;
-            const bool particle = (other & PairView::boundary) == 0;
-            if (particle) take_next(&others[other]);
+            const bool particle = (other & PairView::boundary_bit) == 0;
+            if (particle) fetch_increment(&counts_as_j[other]);
             if (law_of != nullptr)
-                law[n] = law_of[search.kind[k].material * materials +
-                                (particle ? search.kind[other].material
-                                          : search.boundary[other & ~PairView::boundary].material)];
+                law[n] = law_of[search.species[k].material * materials +
+                                (particle ? search.species[other].material
+                                          : search.boundary[other & ~PairView::boundary_bit].material)];
             ++n;
         });
     }
 };
 
-/// A pair that touches, where nobody looks until loads are found again
-struct Saved {
+/// A pair with its history. It is stored in the memory of the loads, which are not valid during a neighbour
+/// search.
+struct SavedContact {
     std::uint32_t i, j;
     float age, x;
     float y, z;
-    std::uint32_t touches, unused;
+    std::uint32_t in_contact, unused;
 };
-static_assert(sizeof(Saved) == sizeof(Load));
+static_assert(sizeof(SavedContact) == sizeof(Load));
 
-struct Save {
+/// Saves the history of a pair of the previous list; rotation_history is saved in `torque`.
+struct SaveContact {
     PairView pairs;
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const Four u = pairs.history[k];
-        auto* to = reinterpret_cast<Saved*>(&pairs.load[k]);
-        *to = {pairs.i[k], pairs.j[k], u.w, u.x, u.y, u.z, pairs.touches[k], 0};
-        if (pairs.turning != nullptr) pairs.torque[k] = pairs.turning[k];
+        const Float4 u = pairs.history[k];
+        auto* to = reinterpret_cast<SavedContact*>(&pairs.load[k]);
+        *to = {pairs.i[k], pairs.j[k], u.w, u.x, u.y, u.z, pairs.in_contact[k], 0};
+        if (pairs.rotation_history != nullptr) pairs.torque[k] = pairs.rotation_history[k];
     }
 };
 
-struct Restore {
-    const Saved* saved;
-    const Four* saved_turning;
-    const std::uint32_t* where;
+/// Restores a saved history in the new list. Vectors change their sign if the order of the two particles is
+/// reversed. A history whose pair is not in the new list is dropped.
+struct RestoreContact {
+    const SavedContact* saved;
+    const Float4* saved_rotation;
+    const std::uint32_t* new_index;
     const std::uint32_t *start, *j;
-    Four *history, *turning;
-    std::uint8_t* touches;
+    Float4 *history, *rotation_history;
+    std::uint8_t* in_contact;
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const Saved s = saved[k];
-        if (s.touches == 0) return;
-        std::uint32_t a = where[s.i], b = s.j;
+        const SavedContact s = saved[k];
+        if (s.in_contact == 0) return;
+        std::uint32_t a = new_index[s.i], b = s.j;
         float sign = 1;
-        if ((b & PairView::boundary) == 0) {
-            b = where[b];
+        if ((b & PairView::boundary_bit) == 0) {
+            b = new_index[b];
             if (b < a) {
                 const std::uint32_t c = a;
                 a = b, b = c, sign = -1;
             }
         }
-        if (put(a, b, sign, s, k)) return;
-        // across a periodic face the order may be the other way round
-        if ((b & PairView::boundary) == 0) put(b, a, -sign, s, k);
+        if (restore_to(a, b, sign, s, k)) return;
+        // across a periodic boundary the pair may be listed in the other order
+        if ((b & PairView::boundary_bit) == 0) restore_to(b, a, -sign, s, k);
     }
-    HILDA_HD bool put(std::uint32_t a, std::uint32_t b, float sign, const Saved& s, std::uint32_t k) const
+    HILDA_HD bool restore_to(std::uint32_t a, std::uint32_t b, float sign, const SavedContact& s,
+                             std::uint32_t k) const
     {
         for (std::uint32_t n = start[a]; n < start[a + 1]; ++n) {
             if (j[n] != b) continue;
             history[n] = {sign * s.x, sign * s.y, sign * s.z, s.age};
-            touches[n] = 1;
-            if (turning != nullptr) {
-                const Four t = saved_turning != nullptr ? saved_turning[k] : Four{};
-                turning[n] = {sign * t.x, sign * t.y, sign * t.z, t.w};
+            in_contact[n] = 1;
+            if (rotation_history != nullptr) {
+                const Float4 t = saved_rotation != nullptr ? saved_rotation[k] : Float4{};
+                rotation_history[n] = {sign * t.x, sign * t.y, sign * t.z, t.w};
             }
             return true;
         }
@@ -275,17 +292,18 @@ struct Restore {
     }
 };
 
+/// Fills the rows of the pairs in which a particle is j.
 struct FillOthers {
     const std::uint32_t *i, *j, *other_start;
     std::uint32_t *next, *other;
     HILDA_HD void operator()(std::uint32_t n) const
     {
-        if ((j[n] & PairView::boundary) != 0) return;
-        other[other_start[j[n]] + take_next(&next[j[n]])] = n;
+        if ((j[n] & PairView::boundary_bit) != 0) return;
+        other[other_start[j[n]] + fetch_increment(&next[j[n]])] = n;
     }
 };
 
-/// Rows that threads have filled in any order, into one order
+/// Sorts a row, because the threads fill it in an arbitrary order.
 struct SortRows {
     const std::uint32_t* start;
     std::uint32_t* value;
@@ -305,21 +323,22 @@ struct SortRows {
 template <class Backend>
 std::size_t Neighbours<Backend>::bytes() const
 {
-    return key.bytes() + order.bytes() + where.bytes() + cell_start.bytes() + counts.bytes() +
+    return key.bytes() + order.bytes() + new_index.bytes() + cell_start.bytes() + counts.bytes() +
            scratch.bytes();
 }
 
 template <class Backend>
-void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
+void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
 {
     const Backend on;
     const std::uint32_t n = p.count;
-    const CellGrid& g = reach.scene.grid;
+    const CellGrid& g = input.domain.grid;
     const auto cells =
-        static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * reach.scene.replicas;
-    key.resize(n), order.resize(n), where.resize(n), scratch.resize(n);
-    par::for_each(on, n,
-                  detail::Settle{g, p.position.data(), p.kind.data(), p.id.data(), key.data(), order.data()});
+        static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * input.domain.replicas;
+    key.resize(n), order.resize(n), new_index.resize(n), scratch.resize(n);
+    par::for_each(
+        on, n,
+        detail::AssignCell{g, p.position.data(), p.species.data(), p.id.data(), key.data(), order.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n, 32 + std::bit_width(cells));
     if (n > 0) {
         std::uint64_t last = 0;
@@ -333,71 +352,72 @@ void Neighbours<Backend>::sort(const Reach& reach, Particles<Backend>& p)
     }
     const auto permute = [&](auto& array) {
         using T = std::remove_reference_t<decltype(*array.data())>;
-        static_assert(sizeof(T) <= sizeof(Four));
+        static_assert(sizeof(T) <= sizeof(Float4));
         auto* to = reinterpret_cast<T*>(scratch.data());
         par::gather(on, to, array.data(), order.data(), n);
         par::copy_bytes(on, array.data(), to, n * sizeof(T));
     };
-    permute(p.position), permute(p.velocity), permute(p.omega), permute(p.rest), permute(p.kind),
+    permute(p.position), permute(p.velocity), permute(p.omega), permute(p.compensation), permute(p.species),
         permute(p.id);
-    if (p.acc.size() > 0) permute(p.acc), permute(p.turn);
-    if (p.orientation.size() > 0) permute(p.orientation), permute(p.orientation_rest);
-    p.before.resize(n);
-    par::copy_bytes(on, p.before.data(), p.position.data(), n * sizeof(Position));
-    par::for_each(on, n, detail::Invert{order.data(), where.data()});
+    if (p.acc.size() > 0) permute(p.acc), permute(p.alpha);
+    if (p.orientation.size() > 0) permute(p.orientation), permute(p.orientation_compensation);
+    p.position_at_build.resize(n);
+    par::copy_bytes(on, p.position_at_build.data(), p.position.data(), n * sizeof(Position));
+    par::for_each(on, n, detail::Invert{order.data(), new_index.data()});
 
     cell_start.resize(cells + 1);
     if constexpr (std::is_same_v<Backend, par::Cpu>)
-        par::for_each(on, n + 1, detail::StartCells{key.data(), n, cells, cell_start.data()});
+        par::for_each(on, n + 1, detail::MarkCellStarts{key.data(), n, cells, cell_start.data()});
     else
-        par::for_each(on, cells + 1, detail::FindStart{key.data(), n, cell_start.data()});
+        par::for_each(on, cells + 1, detail::FindCellStart{key.data(), n, cell_start.data()});
 }
 
 template <class Backend>
-void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<Backend>& pairs)
+void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, Pairs<Backend>& pairs)
 {
     const Backend on;
-    const std::uint32_t n = p.count, before = pairs.count;
-    const PairView old{pairs.i.data(),
-                       pairs.j.data(),
-                       nullptr,
-                       pairs.history.data(),
-                       reach.turning && pairs.turning.size() > 0 ? pairs.turning.data() : nullptr,
-                       pairs.load.data(),
-                       pairs.torque.data(),
-                       pairs.touches.data(),
-                       before};
-    par::for_each(on, before, detail::Save{old});
-    sort(reach, p);
+    const std::uint32_t n = p.count, previous_count = pairs.count;
+    const PairView old{
+        pairs.i.data(),
+        pairs.j.data(),
+        nullptr,
+        pairs.history.data(),
+        input.rotation_laws && pairs.rotation_history.size() > 0 ? pairs.rotation_history.data() : nullptr,
+        pairs.load.data(),
+        pairs.torque.data(),
+        pairs.in_contact.data(),
+        previous_count};
+    par::for_each(on, previous_count, detail::SaveContact{old});
+    sort(input, p);
 
-    const Scene& scene = reach.scene;
-    const detail::Search search{.grid = scene.grid,
+    const Domain& domain = input.domain;
+    const detail::Search search{.grid = domain.grid,
                                 .position = p.position.data(),
                                 .velocity = p.velocity.data(),
                                 .omega = p.omega.data(),
-                                .kind = p.kind.data(),
+                                .species = p.species.data(),
                                 .cell_start = cell_start.data(),
-                                .metre = static_cast<float>(scene.grid.unit),
-                                .skin = scene.skin,
-                                .boundary = reach.boundary,
-                                .boundaries = reach.boundaries};
+                                .unit = static_cast<float>(domain.grid.unit),
+                                .skin = domain.skin,
+                                .boundary = input.boundary,
+                                .boundaries = input.boundaries};
     counts.resize(n);
     pairs.start.resize(n + 1), pairs.other_start.resize(n + 1);
     par::for_each(on, n, detail::CountPairs{search, counts.data()});
-    // numbers of pairs are of 32 bits, the highest for boundaries
-    const double most = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
-    if (most >= PairView::boundary && detail::sum(on, counts.data(), n) >= PairView::boundary)
+    // Pair indices have 31 bits. The exact sum is computed only if the bound n * maximum exceeds the limit.
+    const double bound = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
+    if (bound >= PairView::boundary_bit && detail::sum(on, counts.data(), n) >= PairView::boundary_bit)
         throw TooManyPairs();
     pairs.count = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), pairs.start.data(), n));
     pairs.i.resize(pairs.count), pairs.j.resize(pairs.count), pairs.other.resize(pairs.count);
-    pairs.history.resize(pairs.count), pairs.touches.resize(pairs.count);
-    if (reach.turning) pairs.turning.resize(pairs.count);
-    if (reach.law_of != nullptr) pairs.law.resize(pairs.count);
+    pairs.history.resize(pairs.count), pairs.in_contact.resize(pairs.count);
+    if (input.rotation_laws) pairs.rotation_history.resize(pairs.count);
+    if (input.law_of != nullptr) pairs.law.resize(pairs.count);
 
     par::fill(on, counts.data(), n, 0u);
     par::for_each(on, n,
                   detail::FillPairs{search, pairs.start.data(), pairs.i.data(), pairs.j.data(), counts.data(),
-                                    pairs.law.data(), reach.law_of, reach.materials});
+                                    pairs.law.data(), input.law_of, input.materials});
     par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
     par::fill(on, counts.data(), n, 0u);
     par::for_each(on, pairs.count,
@@ -405,19 +425,21 @@ void Neighbours<Backend>::find(const Reach& reach, Particles<Backend>& p, Pairs<
                                      pairs.other.data()});
     par::for_each(on, n, detail::SortRows{pairs.other_start.data(), pairs.other.data()});
 
-    par::fill(on, pairs.history.data(), pairs.count, Four{});
-    par::fill(on, pairs.touches.data(), pairs.count, std::uint8_t{0});
-    if (reach.turning) par::fill(on, pairs.turning.data(), pairs.count, Four{});
-    par::for_each(on, before,
-                  detail::Restore{reinterpret_cast<const detail::Saved*>(pairs.load.data()),
-                                  old.turning != nullptr ? pairs.torque.data() : nullptr, where.data(),
-                                  pairs.start.data(), pairs.j.data(), pairs.history.data(),
-                                  reach.turning ? pairs.turning.data() : nullptr, pairs.touches.data()});
+    par::fill(on, pairs.history.data(), pairs.count, Float4{});
+    par::fill(on, pairs.in_contact.data(), pairs.count, std::uint8_t{0});
+    if (input.rotation_laws) par::fill(on, pairs.rotation_history.data(), pairs.count, Float4{});
+    par::for_each(
+        on, previous_count,
+        detail::RestoreContact{reinterpret_cast<const detail::SavedContact*>(pairs.load.data()),
+                               old.rotation_history != nullptr ? pairs.torque.data() : nullptr,
+                               new_index.data(), pairs.start.data(), pairs.j.data(), pairs.history.data(),
+                               input.rotation_laws ? pairs.rotation_history.data() : nullptr,
+                               pairs.in_contact.data()});
     pairs.load.resize(pairs.count);
     par::fill(on, pairs.load.data(), pairs.count, Load{});
-    if (reach.turning) {
+    if (input.rotation_laws) {
         pairs.torque.resize(pairs.count);
-        par::fill(on, pairs.torque.data(), pairs.count, Four{});
+        par::fill(on, pairs.torque.data(), pairs.count, Float4{});
     }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What holds between two materials: one law of each kind. Friction, rolling and spin are bounded by the force of the normal
-/// law, without the attraction.
+/// The force model of a pair of materials: one law each for normal force, friction, rolling, spin and
+/// cohesion.
+///
+/// The bounds of friction, rolling and spin use the normal force without the attraction of the cohesion law.
 
 #pragma once
 
@@ -9,6 +11,7 @@
 
 namespace hilda::granular {
 
+/// The laws of a pair of materials. The default is `none` for all but the normal law, which must be set.
 struct PairLaw {
     NormalLaws normal;
     TangentialLaws tangential;
@@ -16,10 +19,12 @@ struct PairLaw {
     SpinLaws spin;
     CohesionLaws cohesion;
 
-    bool turns() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
+    /// Whether there is a law of rolling or spin
+    bool resists_rotation() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
 };
 
-/// Hertz of a material on itself, and Mindlin where mu is positive
+/// Hertzian contact of a material with itself: `hertz`, and `mindlin` with the friction coefficient mu
+/// unless mu = 0. Stiffness and damping follow from E, nu and the coefficient of restitution.
 inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 0)
 {
     PairLaw law;
@@ -30,36 +35,42 @@ inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 
     return law;
 }
 
-/// What a contact does to body i, and the opposite of to body j but for the levers of F_t
+/// Force and torque of a contact on body i. Body j is subject to -F and -T, and to the torque of F_t with its
+/// own radius.
 template <class R>
 struct ContactForce {
-    Vec<R> F;    ///< [N]
-    Vec<R> F_t;  ///< of that the part across n
-    Vec<R> T;    ///< rolling and spin [N m]
+    Vec<R> F;    ///< total force [N]
+    Vec<R> F_t;  ///< its tangential part [N]
+    Vec<R> T;    ///< torque of rolling and spin [N m]
 };
 
-/// `turning`: whether any law of the world resists rolling or spin; else T is zero
+/// Evaluates the laws of a contact and advances its history by one step.
+///
+///     F = (F_n - F_c) n + F_t,    T = M_r + M_sp n
+///
+/// With rotation_laws = false the laws of rolling and spin are not evaluated, and T = 0.
 template <class R>
-HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<R>& t, History<R>& history,
-                                         bool turning)
+HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<R>& contact,
+                                         History<R>& history, bool rotation_laws)
 {
-    NormalForce<R> p{};
-    law.normal.visit([&](const auto& l) { p = l(t); });
+    NormalForce<R> normal{};
+    law.normal.visit([&](const auto& l) { normal = l(contact); });
     ContactForce<R> out{};
-    law.tangential.visit([&](const auto& l) { out.F_t = l(t, p, history); });
+    law.tangential.visit([&](const auto& l) { out.F_t = l(contact, normal, history); });
     R attraction{};
-    law.cohesion.visit([&](const auto& l) { attraction = l(t); });
-    out.F = (p.F - attraction) * t.n + out.F_t;
+    law.cohesion.visit([&](const auto& l) { attraction = l(contact); });
+    out.F = (normal.F - attraction) * contact.n + out.F_t;
     out.T = {R(0.f), R(0.f), R(0.f)};
-    if (!turning) return out;
+    if (!rotation_laws) return out;
     R k_t = R(0.f), gamma_t = R(0.f);
     law.tangential.visit([&](const auto& l) {
-        if constexpr (requires { l.spring; }) k_t = l.spring.stiffness(p), gamma_t = l.spring.damping(t, p);
+        if constexpr (requires { l.spring; })
+            k_t = l.spring.stiffness(normal), gamma_t = l.spring.damping(contact, normal);
     });
-    law.rolling.visit([&](const auto& l) { out.T += l(t, p, k_t, history); });
+    law.rolling.visit([&](const auto& l) { out.T += l(contact, normal, k_t, history); });
     R about_n{};
-    law.spin.visit([&](const auto& l) { about_n = l(t, p, k_t, gamma_t, history); });
-    out.T += about_n * t.n;
+    law.spin.visit([&](const auto& l) { about_n = l(contact, normal, k_t, gamma_t, history); });
+    out.T += about_n * contact.n;
     return out;
 }
 

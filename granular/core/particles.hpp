@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where particles are, in whole numbers, and how they move.                              Fang (2022), Secs. 6.1, 6.2
+/// Particle state: integer positions in a cell grid, rounding remainders.         Fang (2022), Secs. 6.1, 6.2
 
 #pragma once
 
@@ -9,92 +9,113 @@
 
 namespace hilda::granular {
 
-/// A cell of the grid and the place in it. Differences of near particles are exact, wherever in the domain they are.
+/// Position of a particle centre: owner cell and local integer coordinates.
+///
+/// The difference of two neighbouring positions is an exact integer, independent of their distance from the
+/// origin. The owner cell is assigned at a neighbour search. Between searches only the local coordinates
+/// change, and they may lie outside [0, CellGrid::width).
 struct alignas(16) Position {
-    std::uint32_t cell =
-        0;  ///< Grid::pack() of the cell that owned the particle when neighbours were last looked for
-    std::int32_t x = 0, y = 0, z = 0;  ///< from the low corner of that cell, in Grid::unit
+    std::uint32_t cell = 0;            ///< owner cell, packed by CellGrid::pack()
+    std::int32_t x = 0, y = 0, z = 0;  ///< relative to the low corner of the owner cell [CellGrid::unit]
 };
 
-struct alignas(16) Four {
+/// Four floats in one 16-byte word: a vector and one scalar.
+struct alignas(16) Float4 {
     float x = 0, y = 0, z = 0, w = 0;
 };
 
-/// What a particle is made of, and which system it belongs to
+/// Species of a particle: its material and its replica. Particles of different replicas do not interact.
 struct Species {
     std::uint16_t material = 0, replica = 0;
 };
 
-/// What rounding left of ways, velocities and turnings for the next step: three times ten bits of a unit, and numbers of
-/// single precision without their lower half.
+/// Compensation: the rounding remainders of one step, which are added in the next step (Kahan summation).
+///
+/// The remainder of the position is stored in 10 bits per axis. The remainders of the velocities are stored
+/// as bfloat16, the upper 16 bits of a float.
 struct alignas(16) Compensation {
-    std::int32_t way = 0;                                  ///< see carried
+    std::int32_t displacement = 0;                         ///< packed remainder; see SplitDisplacement
     std::uint16_t v[3] = {0, 0, 0}, omega[3] = {0, 0, 0};  ///< [m/s, rad/s]
 };
 
-/// Takes x to its upper half, to the next larger |x| as often as it is nearer to that one: `dither` is at random in
-/// [0, 2^16), so that what is small and the same in every step is not lost. Mirrored numbers become mirrored ones: two
-/// bodies that are mirror images keep their momentum of zero to the bit.
-constexpr std::uint32_t to_nearest = 1u << 15;
+/// The dither for which round_to_bfloat16() rounds to nearest
+constexpr std::uint32_t dither_to_nearest = 1u << 15;
+/// The bits of x rounded to bfloat16, in the upper 16 bits of the result.
+///
+/// Stochastic rounding: with `dither` uniformly distributed in [0, 2^16), |x| is rounded up with a
+/// probability equal to the discarded fraction. A small constant contribution per step is therefore preserved
+/// on average. The rounding is odd, round(-x) = -round(x), so that the total momentum of a mirror-symmetric
+/// system remains exactly zero.
 template <class R>
-HILDA_HD inline Int<R> upper_half(const R& x, std::uint32_t dither)
+HILDA_HD inline Int<R> round_to_bfloat16(const R& x, std::uint32_t dither)
 {
     return (as_int(x) + static_cast<std::int32_t>(dither)) & static_cast<std::int32_t>(0xFFFF0000);
 }
-HILDA_HD inline void put_halves(std::uint16_t* three, const Vec<float>& x, std::uint32_t dither)
+/// Stores the three components of x as bfloat16; see round_to_bfloat16().
+HILDA_HD inline void store_bfloat16(std::uint16_t* three, const Vec<float>& x, std::uint32_t dither)
 {
-    const auto half = [&](float of) {
-        return static_cast<std::uint16_t>(static_cast<std::uint32_t>(upper_half(of, dither)) >> 16);
+    const auto half = [&](float component) {
+        return static_cast<std::uint16_t>(static_cast<std::uint32_t>(round_to_bfloat16(component, dither)) >>
+                                          16);
     };
     three[0] = half(x.x), three[1] = half(x.y), three[2] = half(x.z);
 }
-HILDA_HD inline Vec<float> from_halves(const std::uint16_t* three)
+/// The inverse of store_bfloat16
+HILDA_HD inline Vec<float> load_bfloat16(const std::uint16_t* three)
 {
-    const auto whole = [](std::uint16_t half) {
+    const auto to_float32 = [](std::uint16_t half) {
         return as_float(static_cast<std::int32_t>(std::uint32_t{half} << 16));
     };
-    return {whole(three[0]), whole(three[1]), whole(three[2])};
+    return {to_float32(three[0]), to_float32(three[1]), to_float32(three[2])};
 }
 
-/// The whole units of a way, and a word of what is left of it, in 1024ths; `dither` goes evenly through (-1/2, 1/2).
+/// A displacement split into whole units x, y, z and the packed remainder: three signed 10-bit numbers of
+/// 1/1024 unit.
 template <class R>
-struct Carried {
-    Int<R> x, y, z, word;
+struct SplitDisplacement {
+    Int<R> x, y, z, remainder;
 };
+/// The remainder of a split displacement [units]
 template <class R>
-HILDA_HD inline Vec<R> rest_of_way(const Int<R>& word)  ///< [units]
+HILDA_HD inline Vec<R> unpack_remainder(const Int<R>& remainder)
 {
-    const auto part = [](const Int<R>& of) { return R(0x1p-10f) * to_float(of >> 22); };
-    return {part(word << 22), part(word << 12), part(word << 2)};
+    const auto part = [](const Int<R>& bits) { return R(0x1p-10f) * to_float(bits >> 22); };
+    return {part(remainder << 22), part(remainder << 12), part(remainder << 2)};
 }
+/// Splits a displacement [units]. The remainder is rounded to 1/1024 unit after `dither` is added to it;
+/// `dither` is distributed uniformly in (-1/2, 1/2) in units of 1/1024, so that a small constant velocity is
+/// not lost.
 template <class R>
-HILDA_HD inline Carried<R> carried(const Vec<R>& way, float dither)
+HILDA_HD inline SplitDisplacement<R> split_displacement(const Vec<R>& displacement, float dither)
 {
     const auto split = [&](const R& all, Int<R>& units) {
         const R whole = rint(all);
-        const Int<R> grains = to_int(rint(R(0x1p10f) * (all - whole) + R(dither)));
-        units = to_int(whole) + ((grains + 512) >> 10);  // grains are from -512 to 511 in a word
-        return grains & 1023;
+        const Int<R> parts = to_int(rint(R(0x1p10f) * (all - whole) + R(dither)));
+        units = to_int(whole) + ((parts + 512) >> 10);  // the stored part lies in [-512, 511]
+        return parts & 1023;
     };
-    Carried<R> out;
-    const Int<R> x = split(way.x, out.x), y = split(way.y, out.y), z = split(way.z, out.z);
-    out.word = x | (y << 10) | (z << 20);
+    SplitDisplacement<R> out;
+    const Int<R> x = split(displacement.x, out.x), y = split(displacement.y, out.y),
+                 z = split(displacement.z, out.z);
+    out.remainder = x | (y << 10) | (z << 20);
     return out;
 }
 
-/// Cells of a box-shaped domain, at least as wide as the largest particle and the skin
+/// Regular cell grid over a box-shaped domain. A cell is at least as wide as the largest particle diameter
+/// plus the skin, so that interacting particles lie in the same cell or in adjacent cells.
 struct CellGrid {
     static constexpr int bits_x = 11, bits_y = 11, bits_z = 10;
-    static constexpr std::int32_t widest = 1 << 29;  ///< cell, in units
+    static constexpr std::int32_t widest = 1 << 29;  ///< width of the widest cell [units]
 
-    double low[3] = {0, 0, 0};  ///< corner of the domain [m]
-    double unit = 1;            ///< [m]
-    std::int32_t cells[3] = {1, 1, 1};
-    std::int32_t width[3] = {widest, widest, widest};  ///< of a cell, in units
-    std::int32_t last[3] = {widest, widest,
-                            widest};       ///< how much of the last cell is in the domain, in units
-    std::int32_t periodic[3] = {0, 0, 0};  ///< 1 where what leaves on one side enters on the other
+    double low[3] = {0, 0, 0};                         ///< low corner of the domain [m]
+    double unit = 1;                                   ///< length unit of local coordinates [m]
+    std::int32_t cells[3] = {1, 1, 1};                 ///< number of cells along each axis
+    std::int32_t width[3] = {widest, widest, widest};  ///< of a cell [units]
+    /// Width of the part of the last cell that is in the domain [units]
+    std::int32_t last[3] = {widest, widest, widest};
+    std::int32_t periodic[3] = {0, 0, 0};  ///< 1 along a periodic axis
 
+    /// Cell indices packed into 11, 11 and 10 bits
     HILDA_HD static std::uint32_t pack(std::uint32_t x, std::uint32_t y, std::uint32_t z)
     {
         return x | y << bits_x | z << (bits_x + bits_y);
@@ -104,8 +125,10 @@ struct CellGrid {
     HILDA_HD static std::int32_t z_of(std::uint32_t cell) { return cell >> (bits_x + bits_y); }
 };
 
-/// i - j along one axis, in units; by the shorter way round where the domain is periodic. Steps over 2^31 on the way there
-/// cancel: what is near is less than that away.
+/// Difference of the positions i - j along one axis [units]; the minimum image along a periodic axis.
+///
+/// The arithmetic is modulo 2^32. Overflow of an intermediate result cancels as long as the difference itself
+/// is below 2^31 units, which is at least four cell widths.
 HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
                                         std::int32_t j, const CellGrid& g, int axis)
 {
@@ -117,6 +140,7 @@ HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j
                                      (static_cast<std::uint32_t>(i) - static_cast<std::uint32_t>(j)));
 }
 
+/// Difference of two positions [units]
 struct Difference {
     std::int32_t x, y, z;
 };
@@ -127,18 +151,18 @@ HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, cons
             difference(CellGrid::z_of(i.cell), CellGrid::z_of(j.cell), i.z, j.z, g, 2)};
 }
 
-/// [m]
-HILDA_HD inline Vec<double> place(const CellGrid& g, const Position& p)
+/// Position in the global frame [m]
+HILDA_HD inline Vec<double> global_position(const CellGrid& g, const Position& p)
 {
     return {g.low[0] + (static_cast<double>(CellGrid::x_of(p.cell)) * g.width[0] + p.x) * g.unit,
             g.low[1] + (static_cast<double>(CellGrid::y_of(p.cell)) * g.width[1] + p.y) * g.unit,
             g.low[2] + (static_cast<double>(CellGrid::z_of(p.cell)) * g.width[2] + p.z) * g.unit};
 }
 
-/// The radius in units, as both sides of a pair see it
-HILDA_HD inline std::int32_t in_units(float radius, float per_metre)
+/// The radius in units, truncated. Both particles of a pair use this value, so that the overlap is symmetric.
+HILDA_HD inline std::int32_t radius_in_units(float radius, float units_per_metre)
 {
-    return static_cast<std::int32_t>(radius * per_metre);
+    return static_cast<std::int32_t>(radius * units_per_metre);
 }
 
 }  // namespace hilda::granular

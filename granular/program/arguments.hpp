@@ -14,7 +14,7 @@ enum Exit {
     bad_case = 3,
     numerical = 4,
     io = 5,
-    not_met = 6,
+    check_failed = 6,
     no_device = 7,
     by_signal = 128
 };
@@ -22,16 +22,17 @@ enum Exit {
 struct Options {
     std::string file, output, device_name = "cpu", command_line;
     Device device = {};
-    double checkpoint = 0;  ///< [s] of the clock; 0: none
+    double checkpoint = 0;  ///< wall time between checkpoints [s]; 0: none are written
     int threads = 1;
-    std::vector<Setting> settings;  ///< of the case
+    std::vector<Setting> settings;  ///< changes of entries of the case
     std::optional<std::uint64_t> seed;
-    std::string for_cases;  ///< the first option that was given and that validations have no use for
-    bool full = false;      ///< of a validation
+    std::string case_only_option;  ///< the first given option that is valid for cases only; empty if none
+    bool full = false;             ///< full grid of a validation
     bool quiet = false, verbose = false, json = false, force = false, resume = false, no_vtk = false;
 };
 
-/// Into `options`, or the exit code of a program that has said what there was to say
+/// Reads the command line into `options`. Returns the exit code if the program must end: after --help,
+/// --version or an error, which has been reported then.
 std::optional<int> read_arguments(int argc, char** argv, Options& options);
 
 }  // namespace hilda::granular

@@ -2,7 +2,7 @@
 #include "granular/program/formula.hpp"
 
 #ifdef HILDA_FORMULAS
-// The one file of this room that knows of another: two grammars in one project would be one too many.
+// The only include of another room: models and cases share one grammar of formulas.
 #include "dae/expression.hpp"
 #endif
 
@@ -18,7 +18,7 @@ Formula compile(const std::string& text)
     }
 #else
     throw InvalidCase("must be a number, got \"" + text +
-                      "\": this program was built without dae/expression.cpp, which reads formulas");
+                      "\": this program was built without formulas (dae/expression.cpp)");
 #endif
 }
 

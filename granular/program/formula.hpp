@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Formulas of a case, in the grammar of the model files.
+/// Formulas of a case in the grammar of the model files.
 
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace hilda::granular {
 
-/// InvalidCase, also for all formulas where this program was built without dae/expression.cpp beside it.
+/// Compiles a formula in t. Throws InvalidCase; a build without dae/expression.cpp rejects all formulas.
 Formula compile(const std::string& text);
 
 }  // namespace hilda::granular

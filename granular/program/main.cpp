@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The program hilda-granular: runs a granular case. Of its own, because it may be built for a GPU and then links CUDA.
+/// The program hilda-granular: runs a granular case or a validation. It is separate from hilda because it may
+/// link the CUDA runtime, which must not be linked with GSL.
 
 #include "granular/files.hpp"
 #include "granular/program/formula.hpp"
@@ -22,7 +23,7 @@ int run_case(const Options& o)
                      .device = o.device,
                      .settings = o.settings,
                      .seed = o.seed};
-    make_engine(o.device);  // one that is not there is refused before the case is read
+    make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     std::string text;
     try {
@@ -38,7 +39,7 @@ void catch_signals()
     for (const int s : {SIGINT, SIGTERM})
         std::signal(s, [](int which) {
             caught = which;
-            std::signal(which, SIG_DFL);  // who asks twice does not want to wait
+            std::signal(which, SIG_DFL);  // a second signal ends the program at once
         });
     std::signal(SIGXFSZ, SIG_IGN);
 }
@@ -57,10 +58,11 @@ int main(int argc, char** argv)
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
     const Validation* const validation = find_validation(o.file);
-    if (validation != nullptr && !o.for_cases.empty())
-        return fail(usage, "granular: " + o.for_cases + ": is for cases, and " + o.file + " is a validation");
+    if (validation != nullptr && !o.case_only_option.empty())
+        return fail(usage, "granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
+                               " is a validation");
     if (o.full && validation == nullptr && std::filesystem::exists(o.file))
-        return fail(usage, "granular: --full: is for validations, and " + o.file + " is a file");
+        return fail(usage, "granular: --full: is valid for validations only, but " + o.file + " is a file");
     try {
         if (validation != nullptr)
             return validate(*validation, {.full = o.full, .device = o.device}, o.quiet);
@@ -73,7 +75,7 @@ int main(int argc, char** argv)
     } catch (const DeviceError& e) {
         return fail(no_device, "--device " + o.device_name + ": " + e.what());
     } catch (const std::bad_alloc&) {
-        return fail(bad_case, "not enough memory");
+        return fail(bad_case, "the memory is not sufficient for this case");
     } catch (const std::exception& e) {
         return fail(internal, e.what());
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto unlimited = std::numeric_limits<std::size_t>::max();
 
-/// The number after a word of a file, or at its beginning where the word is empty
+/// The number that follows a word in a file, or the number at the beginning of the file if the word is empty
 std::optional<std::size_t> number_in(const std::string& file, const std::string& word = "")
 {
     std::ifstream in(file);
@@ -28,18 +28,21 @@ std::optional<std::size_t> number_in(const std::string& file, const std::string&
     return {};
 }
 
-/// What is left of a limit; pages of files that nobody uses go when they are needed.
-std::size_t left(const std::string& limit, const std::string& usage, const std::string& stat,
-                 const std::string& idle)
+/// Limit minus usage, where inactive pages of the file cache do not count as used, since the kernel reclaims
+/// them
+std::size_t remaining(const std::string& limit, const std::string& usage, const std::string& stat,
+                      const std::string& inactive)
 {
-    const auto most = number_in(limit), used = number_in(usage);
-    if (!most || !used) return unlimited;  // no such file, or "max" in it
-    const std::size_t held = *used - std::min(*used, number_in(stat, idle).value_or(0));
-    return *most - std::min(*most, held);
+    const auto limit_bytes = number_in(limit), used_bytes = number_in(usage);
+    if (!limit_bytes || !used_bytes) return unlimited;  // the file does not exist, or contains "max"
+    const std::size_t active_bytes =
+        *used_bytes - std::min(*used_bytes, number_in(stat, inactive).value_or(0));
+    return *limit_bytes - std::min(*limit_bytes, active_bytes);
 }
 
-/// Of the control groups of this process and all above them, versions 1 and 2
-std::size_t left_by_groups()
+/// Smallest remaining memory of the control groups (versions 1 and 2) of this process and of their parents
+/// [bytes]
+std::size_t remaining_in_control_groups()
 {
     std::size_t least = unlimited;
     std::ifstream groups("/proc/self/cgroup");
@@ -51,11 +54,11 @@ std::size_t left_by_groups()
         const std::string root = kind.empty() ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
         for (std::filesystem::path group = line.substr(second + 1);; group = group.parent_path()) {
             const std::string in = root + group.string() + '/';
-            least = std::min(least, kind.empty()
-                                        ? left(in + "memory.max", in + "memory.current", in + "memory.stat",
-                                               "inactive_file")
-                                        : left(in + "memory.limit_in_bytes", in + "memory.usage_in_bytes",
-                                               in + "memory.stat", "total_inactive_file"));
+            least = std::min(
+                least, kind.empty() ? remaining(in + "memory.max", in + "memory.current", in + "memory.stat",
+                                                "inactive_file")
+                                    : remaining(in + "memory.limit_in_bytes", in + "memory.usage_in_bytes",
+                                                in + "memory.stat", "total_inactive_file"));
             if (!group.has_relative_path()) break;
         }
     }
@@ -66,7 +69,7 @@ std::size_t left_by_groups()
 
 std::size_t available_memory()
 {
-    std::size_t least = left_by_groups();
+    std::size_t least = remaining_in_control_groups();
     if (const auto free = number_in("/proc/meminfo", "MemAvailable:")) {
         least = std::min(least, 1024 * *free);
     } else if (const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
@@ -75,9 +78,9 @@ std::size_t available_memory()
     }
     rlimit space{};
     if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
-        const std::size_t used =
+        const std::size_t used_bytes =
             number_in("/proc/self/statm").value_or(0) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-        least = std::min(least, space.rlim_cur - std::min<std::size_t>(space.rlim_cur, used));
+        least = std::min(least, space.rlim_cur - std::min<std::size_t>(space.rlim_cur, used_bytes));
     }
     return least;
 }

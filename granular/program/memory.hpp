@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How much memory a run may take.
+/// Available memory.
 
 #pragma once
 
@@ -7,8 +7,9 @@
 
 namespace hilda::granular {
 
-/// The least of what the machine has free, what the control groups of this process leave it and what `ulimit -v` does
-/// [bytes]; the largest number where nothing tells
+/// Smallest of the available memory of the machine, the remaining memory of the control groups of this
+/// process and the remaining address space (`ulimit -v`) [bytes]. The largest number of the type if none of
+/// them can be read.
 std::size_t available_memory();
 
 }  // namespace hilda::granular

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How far a run is, for who looks on.
+/// Progress of a run on a terminal.
 
 #pragma once
 
@@ -18,7 +18,7 @@ inline double seconds_since(Clock::time_point t)
     return std::chrono::duration<double>(Clock::now() - t).count();
 }
 
-/// One line on a terminal, replaced as the run goes on
+/// One line on a terminal, rewritten at most five times a second
 class Progress {
 public:
     explicit Progress(bool quiet) : shown(!quiet && isatty(STDERR_FILENO) != 0) {}

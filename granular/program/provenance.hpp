@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What ran: the part of a summary that may differ between two runs of the same case.
+/// Provenance of a run: the part of the summary that may differ between two runs of the same case.
 
 #pragma once
 
@@ -7,8 +7,10 @@
 
 namespace hilda::granular {
 
-/// "hilda-granular VERSION (git state)"
+/// "hilda-granular VERSION (git STATE, BUILD TYPE)"
 std::string version_line();
+
+/// Version, build, libraries, command line, processor, threads and device
 
 nlohmann::ordered_json provenance(const std::string& command_line, int threads, const std::string& device);
 

@@ -9,8 +9,8 @@
 
 namespace hilda::granular {
 
-Rows::Rows(std::string directory, const Case& c, long every, long frames_every)
-    : directory(std::move(directory)), c(c), every(every), frames_every(frames_every)
+Rows::Rows(std::string directory, const Case& c, long interval, long frame_interval)
+    : directory(std::move(directory)), c(c), interval(interval), frame_interval(frame_interval)
 {
     csv = "t,kinetic_energy,contacts,pairs";
     for (const char a : {'x', 'y', 'z'})
@@ -23,12 +23,12 @@ Rows::Rows(std::string directory, const Case& c, long every, long frames_every)
 void Rows::record()
 {
     const World& w = *c.world;
-    if (frames_every > 0 && w.steps() % frames_every == 0) {
+    if (frame_interval > 0 && w.steps() % frame_interval == 0) {
         make_directory(directory + "/vtk");
         write_file(directory + "/vtk/" + frame(next_frame), particles_vtp(w));
         frames.emplace_back(w.t(), frame(next_frame++));
     }
-    if (w.steps() % every != 0) return;
+    if (w.steps() % interval != 0) return;
     const World::Totals totals = w.totals();
     char row[128];
     std::snprintf(row, sizeof row, "%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts,
@@ -52,18 +52,18 @@ void Rows::load()
 {
     const std::string name = directory + "/run.csv";
     csv = read_file(name, std::size_t{1} << 32);
-    rows = static_cast<std::size_t>(c.world->steps() / every) + 1;  // with that of t = 0
+    rows = static_cast<std::size_t>(c.world->steps() / interval) + 1;  // including t = 0
     std::size_t at = 0;
-    for (std::size_t k = 0; k <= rows; ++k) {  // and the names
+    for (std::size_t k = 0; k <= rows; ++k) {  // and the header line
         at = csv.find('\n', at);
         if (at++ == std::string::npos)
-            throw FileError(name + ": should have " + std::to_string(rows + 1) + " lines, got " +
+            throw FileError(name + ": must have at least " + std::to_string(rows + 1) + " lines, got " +
                             std::to_string(k));
     }
     csv.resize(at);
-    if (frames_every == 0) return;
-    // an earlier part may have run with --no-vtk
-    for (long step = 0; step <= c.world->steps(); step += frames_every, ++next_frame)
+    if (frame_interval == 0) return;
+    // frames may be missing if an earlier part of the run used --no-vtk
+    for (long step = 0; step <= c.world->steps(); step += frame_interval, ++next_frame)
         if (std::filesystem::exists(directory + "/vtk/" + frame(next_frame)))
             frames.emplace_back(static_cast<double>(step) * c.h, frame(next_frame));
 }

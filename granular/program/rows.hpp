@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.csv and the frames beside it, as a run goes on.
+/// Output of a run in progress: run.csv and the frames.
 
 #pragma once
 
@@ -9,15 +9,17 @@ namespace hilda::granular {
 
 class Rows {
 public:
-    /// In `directory`, a row and a frame every so many steps; no frames where that is 0
-    Rows(std::string directory, const Case& c, long every, long frames_every);
+    /// `interval`, `frame_interval`: numbers of steps between rows and between frames; frame_interval 0: no
+    /// frames
+    Rows(std::string directory, const Case& c, long interval, long frame_interval);
 
-    /// The row and the frame of this moment, where it is one for them
+    /// Records the row and the frame of the current step, if it is a multiple of their intervals
     void record();
-    /// Those of an earlier run up to this moment; later ones are made again. FileError
+    /// Reads the rows and frames of an interrupted run up to the current step. Throws FileError.
     void load();
+    /// Writes run.csv
     void write() const;
-    /// The collection of the frames
+    /// Writes the collection of the frames, vtk/run.pvd
     void write_frames() const;
     std::size_t count() const { return rows; }
 
@@ -26,7 +28,7 @@ private:
 
     const std::string directory;
     const Case& c;
-    const long every, frames_every;
+    const long interval, frame_interval;
     std::size_t rows = 0, next_frame = 0;
     std::string csv;
     std::vector<std::pair<double, std::string>> frames;

@@ -24,28 +24,29 @@ long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(
 class CaseRun {
 public:
     CaseRun(const Options& o, Case from)
-        : o(o), c(std::move(from)), text(c.source.text()), every(steps_in(c.every, c.h)),
-          frames_every(o.no_vtk ? 0 : steps_in(c.frames_every, c.h)), anew(steps_in(c.anew, c.h)),
-          steps(std::lround(c.end / c.h)), rows(o.output, c, every, frames_every)
+        : o(o), c(std::move(from)), text(c.source.text()), interval(steps_in(c.interval, c.h)),
+          frame_interval(o.no_vtk ? 0 : steps_in(c.frame_interval, c.h)),
+          checkpoint_interval(steps_in(c.checkpoint_interval, c.h)), steps(std::lround(c.end / c.h)),
+          rows(o.output, c, interval, frame_interval)
     {}
 
-    int go()
+    int execute()
     {
         std::error_code none;
         if (fs::is_directory(o.output, none) && !fs::is_empty(o.output, none) && !o.force && !o.resume) {
-            std::fprintf(stderr,
-                         "hilda: error: %s: is not empty; --force starts it again, --resume goes on\n",
-                         o.output.c_str());
+            std::fprintf(
+                stderr, "hilda: error: %s: is not empty; --force overwrites it, --resume continues its run\n",
+                o.output.c_str());
             return usage;
         }
-        for (const std::string& n : c.notices) warn(c.source.placed(n));
-        judge_step();
-        settle(c);  // which refuses what is wrong with the particles, while nothing is written
-        say("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(), c.boundaries.size(), steps,
+        for (const std::string& n : c.notices) warn(c.source.with_location(n));
+        check_step();
+        insert_particles(c);  // rejects invalid particles before files are written
+        log("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(), c.boundaries.size(), steps,
             c.h);
         make_directory(o.output);
         if (o.resume && done()) {
-            if (!o.quiet) std::fprintf(stderr, "hilda: %s: is done already\n", o.output.c_str());
+            if (!o.quiet) std::fprintf(stderr, "hilda: %s: the run is complete already\n", o.output.c_str());
             if (o.json) std::fputs(read_file(file("summary.json"), most_of_summary).c_str(), stdout);
             return ok;
         }
@@ -56,7 +57,7 @@ public:
         }
         resumed_at = c.world->steps();
         begin = saved = Clock::now();
-        const int code = march();
+        const int code = run_steps();
         finish(code);
         return code;
     }
@@ -71,7 +72,7 @@ private:
         if (!o.quiet) std::fprintf(stderr, "hilda: warning: %s\n", what.c_str());
     }
     template <class... Values>
-    void say(const char* format, const Values&... values) const
+    void log(const char* format, const Values&... values) const
     {
         if (!o.verbose || o.quiet) return;
         std::fputs("hilda: ", stderr);
@@ -79,45 +80,47 @@ private:
         std::fputc('\n', stderr);
     }
 
-    /// Above a fifth of the Rayleigh time or a fifteenth of a collision a step is coarse; above the one, or two pi-ths of
-    /// the other, it is not stable.
-    void judge_step() const
+    /// Compares the step with World::step_limits. Warns above 1/5 of the Rayleigh time or 1/15 of the
+    /// collision time. Rejects a step above the stability limit, the smaller of the Rayleigh time and 2/π of
+    /// the collision time, unless --force is given.
+    void check_step() const
     {
         const World::StepLimits limits = c.world->step_limits();
         const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
         char what[160];
         if (c.h > stable) {
-            std::snprintf(what, sizeof what, "/step: must not be above %.3g s, where it is stable, got %g",
+            std::snprintf(what, sizeof what, "/step: must not be above %.3g s, the stability limit, got %g",
                           stable, c.h);
-            if (!o.force) throw InvalidCase(c.source.placed(std::string(what) + "; --force overrides"));
-            warn(c.source.placed(what));
+            if (!o.force)
+                throw InvalidCase(c.source.with_location(std::string(what) + "; --force overrides"));
+            warn(c.source.with_location(what));
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
             std::snprintf(what, sizeof what,
-                          "/step: %g s is %.2g of the Rayleigh time and %.2g of a collision", c.h,
+                          "/step: %g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
                           c.h / limits.rayleigh, c.h / limits.collision);
-            warn(c.source.placed(what));
+            warn(c.source.with_location(what));
         }
         if (c.end < c.h) {
-            std::snprintf(what, sizeof what, "/end: must not be before the first step is done, got %g",
-                          c.end);
-            throw InvalidCase(c.source.placed(what));
+            std::snprintf(what, sizeof what, "/end: must be at least one step, got %g", c.end);
+            throw InvalidCase(c.source.with_location(what));
         }
     }
 
-    /// Whether this very case was run to its end here. FileError where another one was begun
+    /// Whether the output directory contains a completed run of this case. Throws FileError if it contains
+    /// another case.
     bool done() const
     {
         if (!fs::exists(file("case.json"))) return false;
         if (read_file(file("case.json"), std::size_t{1} << 28) != text)
             throw FileError(file("case.json") +
-                            ": is another case, or this one with other options; --force starts anew");
+                            ": is another case, or this case with other options; --force overwrites it");
         if (fs::exists(file("checkpoint")) || !fs::exists(file("summary.json"))) return false;
         const auto summary =
             nlohmann::json::parse(read_file(file("summary.json"), most_of_summary), nullptr, false);
         return summary.is_object() && summary.value("status", "") == "ok";
     }
 
-    /// Goes on from the last checkpoint, or where that is damaged from the one before. False where there is none.
+    /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.
     bool load()
     {
         std::string damage;
@@ -130,28 +133,29 @@ private:
                 if (damage.empty()) damage = e.what();
                 continue;
             }
-            if (!damage.empty()) warn(damage + "; going on from the one before");
+            if (!damage.empty()) warn(damage + "; the run continues from the one before");
             rows.load();
-            say("goes on from %s at t = %g s", file(name).c_str(), c.world->t());
+            log("continues from %s at t = %g s", file(name).c_str(), c.world->t());
             return true;
         }
         if (!damage.empty()) throw FileError(damage);
         return false;
     }
 
-    /// Files are written by the clock, but hold the world at times that the case sets: there the neighbours are looked for
-    /// anew, as by a world that was loaded, whether a file is written or not. So neither the clock nor a signal changes a
-    /// bit. For a signal between two of these times, the world of the last is kept in memory.
-    int march()
+    /// Computes the steps. Checkpoint files are written by wall time, but they hold the state at multiples of
+    /// checkpoint_interval. At each of these instants the neighbour list is rebuilt, whether or not a file is
+    /// written, as in a world that is restored. Neither the clock nor a signal therefore changes the results.
+    /// A snapshot of the last instant is held in memory, for a signal that arrives between two instants.
+    int run_steps()
     {
         Progress line(o.quiet);
         World& w = *c.world;
         try {
             if (rows.count() == 0) rows.record();
-            keep();
+            take_snapshot();
             while (w.steps() < steps && caught == 0) {
                 long next = steps;
-                for (const long between : {every, frames_every, anew})
+                for (const long between : {interval, frame_interval, checkpoint_interval})
                     if (between > 0) next = std::min(next, (w.steps() / between + 1) * between);
                 while (w.steps() < next && caught == 0) {
                     w.step();
@@ -159,7 +163,7 @@ private:
                 }
                 if (w.steps() < next) break;
                 rows.record();
-                if (w.steps() % anew == 0 && w.steps() < steps) fixed_time();
+                if (w.steps() % checkpoint_interval == 0 && w.steps() < steps) checkpoint_instant();
             }
         } catch (const ParticleLost& e) {
             line.clear();
@@ -182,42 +186,43 @@ private:
         save();
         if (!o.quiet)
             std::fprintf(stderr,
-                         "hilda: interrupted at t = %.6g s; --resume goes on from the checkpoint of t = %.6g "
-                         "s in %s\n",
-                         w.t(), kept_at, o.output.c_str());
+                         "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint at t = "
+                         "%.6g s in %s\n",
+                         w.t(), snapshot_time, o.output.c_str());
         return by_signal + caught;
     }
 
-    void fixed_time()
+    void checkpoint_instant()
     {
-        // where these times come fast, one in so many seconds is kept, and takes a twentieth of the time at most
-        const double seldom = std::max(0.2, 20 * keep_seconds);
+        // If the instants follow each other quickly, snapshots take at most about a twentieth of the wall
+        // time.
+        const double min_spacing = std::max(0.2, 20 * snapshot_seconds);
         c.world->invalidate_neighbours();
         const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint;
-        if (due || caught != 0 || seconds_since(kept_when) > seldom) keep();
+        if (due || caught != 0 || seconds_since(snapshot_taken) > min_spacing) take_snapshot();
         if (due) save();
     }
 
-    void keep()
+    void take_snapshot()
     {
-        kept.clear();
-        kept.shrink_to_fit();  // so that there are not two
+        snapshot.clear();
+        snapshot.shrink_to_fit();  // so that at most one snapshot is in memory
         const Clock::time_point from = Clock::now();
-        kept = c.world->to_bytes(text + c.files_read);
-        kept_at = c.world->t();
-        kept_when = Clock::now();
-        keep_seconds = seconds_since(from);
+        snapshot = c.world->to_bytes(text + c.files_read);
+        snapshot_time = c.world->t();
+        snapshot_taken = Clock::now();
+        snapshot_seconds = seconds_since(from);
     }
 
     void save()
     {
-        if (kept.empty()) return;  // a failure before or while it was taken: what is on the disk stays
+        if (snapshot.empty()) return;  // no valid snapshot: the files on the disk remain
         rows.write();
         std::rename(file("checkpoint").c_str(),
-                    file("checkpoint.1").c_str());  // there is none the first time
-        write_file(file("checkpoint"), kept);
+                    file("checkpoint.1").c_str());  // fails the first time, as intended
+        write_file(file("checkpoint"), snapshot);
         saved = Clock::now();
-        say("checkpoint of t = %g s, %zu bytes", kept_at, kept.size());
+        log("checkpoint at t = %g s, %zu bytes", snapshot_time, snapshot.size());
     }
 
     int failed(const char* how, const std::string& what)
@@ -237,19 +242,19 @@ private:
     {
         const World& w = *c.world;
         const double speed = rate(), seconds = seconds_since(begin);
-        kept.clear();
-        kept.shrink_to_fit();
+        snapshot.clear();
+        snapshot.shrink_to_fit();
         rows.write();
         write_file(file("particles.csv"), particles_csv(w));
         write_file(file("contacts.csv"), contacts_csv(w));
         rows.write_frames();
-        const std::string told = summary(code, speed, seconds);
-        write_file(file("summary.json"), told);
+        const std::string text_of_summary = summary(code, speed, seconds);
+        write_file(file("summary.json"), text_of_summary);
         if (code == ok)
             for (const char* old : {"checkpoint", "checkpoint.1", "checkpoint.new"})
                 std::remove(file(old).c_str());
         if (o.json)
-            std::fputs(told.c_str(), stdout);
+            std::fputs(text_of_summary.c_str(), stdout);
         else if (code == ok && !o.quiet)
             std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
                         c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * speed, o.output.c_str());
@@ -269,14 +274,14 @@ private:
                      {"boundaries", c.boundaries.size()},
                      {"step", c.h},
                      {"end", c.end},
-                     {"every", c.every},
-                     {"frames_every", c.frames_every},
-                     {"checkpoint_every", c.anew},
+                     {"interval", c.interval},
+                     {"frame_interval", c.frame_interval},
+                     {"checkpoint_interval", c.checkpoint_interval},
                      {"set", set},
                      {"warnings", c.notices}};
         s["counters"] = {
             {"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows.count()}, {"t", w.t()}};
-        if (status == "interrupted") s["counters"]["t_checkpoint"] = kept_at;
+        if (status == "interrupted") s["counters"]["t_checkpoint"] = snapshot_time;
         s["kinetic_energy"] = w.kinetic_energy();
         s["timing"] = {{"wall_seconds", seconds},
                        {"steps_per_second", static_cast<double>(w.steps() - resumed_at) / seconds},
@@ -291,17 +296,17 @@ private:
     const Options& o;
     const Case c;
     const std::string text;
-    const long every, frames_every, anew, steps;
+    const long interval, frame_interval, checkpoint_interval, steps;
     Rows rows;
     long resumed_at = 0;
-    std::string kept;                      ///< the world at the last time that may be a checkpoint's
-    double kept_at = 0, keep_seconds = 0;  ///< when [s], and what it takes of the clock [s]
+    std::string snapshot;                            ///< state at the last instant of a possible checkpoint
+    double snapshot_time = 0, snapshot_seconds = 0;  ///< its time, and the wall time to take it [s]
     std::string message, status = "ok";
-    Clock::time_point begin, saved, kept_when;
+    Clock::time_point begin, saved, snapshot_taken;
 };
 
 }  // namespace
 
-int run(const Options& options, Case c) { return CaseRun(options, std::move(c)).go(); }
+int run(const Options& options, Case c) { return CaseRun(options, std::move(c)).execute(); }
 
 }  // namespace hilda::granular

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A case run to its end: what is written on the way, and how it goes on after it was stopped.
+/// Run of a case: steps, output, checkpoints and resumption.
 
 #pragma once
 
@@ -9,10 +9,10 @@
 
 namespace hilda::granular {
 
-/// The signal that asks to stop, or 0
+/// Number of the signal that requested the end of the run, or 0
 extern volatile std::sig_atomic_t caught;
 
-/// Returns an exit code. InvalidCase, FileError.
+/// Runs a case to its end and returns the exit code. Throws InvalidCase, FileError, DeviceError.
 int run(const Options& options, Case c);
 
 }  // namespace hilda::granular

@@ -20,7 +20,7 @@ std::string shown(const ValidationTable::Cell& cell)
     return number;
 }
 
-/// Columns as wide as what is in them
+/// Prints lines of cells, each column as wide as its widest cell
 void print(const std::vector<std::vector<std::string>>& lines)
 {
     std::vector<std::size_t> width(lines[0].size(), 0);
@@ -48,7 +48,8 @@ void print(const ValidationTable& table)
 const Validation* find_validation(const std::string& name)
 {
     std::error_code error;
-    if (std::filesystem::is_regular_file(name, error)) return nullptr;  // a case of that name
+    // a case file with this name has precedence
+    if (std::filesystem::is_regular_file(name, error)) return nullptr;
     for (const Validation& v : validations())
         if (v.name == name) return &v;
     return nullptr;
@@ -77,25 +78,25 @@ int validate(const Validation& v, ValidationOptions options, bool quiet)
         return numerical;
     }
     clear();
-    std::vector<std::vector<std::string>> lines = {{"measured", "least", "most", "", "what"}};
+    std::vector<std::vector<std::string>> lines = {{"measured", "lower", "upper", "", "what"}};
     for (const ValidationCheck& c : result.checks)
         lines.push_back(
-            {shown(c.measured), shown(c.least), shown(c.most), c.met() ? "ok" : "FAILED", c.what});
-    const auto met = std::count_if(result.checks.begin(), result.checks.end(),
-                                   [](const ValidationCheck& c) { return c.met(); });
+            {shown(c.measured), shown(c.lower), shown(c.upper), c.passed() ? "ok" : "FAILED", c.what});
+    const auto passed = std::count_if(result.checks.begin(), result.checks.end(),
+                                      [](const ValidationCheck& c) { return c.passed(); });
     if (!quiet) {
-        std::printf("%s: %s\n", v.name.c_str(), v.answers.c_str());
+        std::printf("%s: %s\n", v.name.c_str(), v.description.c_str());
         for (const ValidationTable& t : result.tables) {
-            constexpr std::size_t most = 60;  // rows; a curve has more
-            const bool curve = &t != &result.tables.front() && t.rows.size() > most;
-            std::printf("\n%s%s\n", t.name.c_str(), curve ? ": a curve, left to the study" : "");
+            constexpr std::size_t max_rows = 60;  // rows; longer tables are curves
+            const bool curve = &t != &result.tables.front() && t.rows.size() > max_rows;
+            std::printf("\n%s%s\n", t.name.c_str(), curve ? ": a curve; see the study" : "");
             if (!curve) print(t);
         }
         std::printf("\n");
         print(lines);
-        std::printf("%ld of %zu met\n", static_cast<long>(met), result.checks.size());
+        std::printf("%ld of %zu passed\n", static_cast<long>(passed), result.checks.size());
     }
-    return met == static_cast<long>(result.checks.size()) ? ok : not_met;
+    return passed == static_cast<long>(result.checks.size()) ? ok : check_failed;
 }
 
 }  // namespace hilda::granular

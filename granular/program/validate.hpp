@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda-granular NAME: a validation instead of a case.
+/// hilda-granular NAME: runs a validation.
 
 #pragma once
 
@@ -7,13 +7,13 @@
 
 namespace hilda::granular {
 
-/// The validation of this name, unless a file has it; nullptr where there is none
+/// The validation with this name; nullptr if there is none or if a file with this name exists
 const Validation* find_validation(const std::string& name);
 
-/// "; validations: A, B", what may stand where a file is looked for in vain
+/// "; validations: A, B", a suffix for the message that a file does not exist
 std::string known_validations();
 
-/// Runs it and prints its tables and checks on stdout; an exit code. DeviceError
+/// Runs the validation, prints its tables and checks on stdout and returns the exit code. Throws DeviceError.
 int validate(const Validation& validation, ValidationOptions options, bool quiet);
 
 }  // namespace hilda::granular

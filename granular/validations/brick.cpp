@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A sphere that may not turn slides to rest as a brick does, over v²/(2 μ g).               Fang (2022), Sec. 7.1.2, Fig. 7.4
+/// Sliding distance of a sphere whose rotation is locked.        Fang (2022), Sec. 7.1.2, Fig. 7.4
 ///
-/// It goes a little further, because a spring stops it. Spring and dashpot together stay at the bound down to the speed
-/// 2 ζ μ g/ω and then swing free, so that
+/// A rigid brick with Coulomb friction slides over v²/(2 μ g). The sphere has a tangential spring and damper,
+/// whose force is at the Coulomb bound until the speed has fallen to 2 ζ μ g/ω. Below, the sphere performs a
+/// free damped oscillation. The total distance is
 ///
 ///     d = v²/(2 μ g) + (2 ζ² - 1) μ m g/k - h v/2,    ω² = k/m,  ζ = c/2
 ///
-/// where the last term is that of symplectic Euler.
+/// where k and c are the stiffness and the damping of the tangential law; the last term is the discretisation
+/// error of symplectic Euler.
 
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
@@ -20,9 +22,9 @@ namespace hilda::granular {
 namespace {
 
 constexpr double g = 9.81, v_i = 5, h = 2e-5, settle = 0.08;
-constexpr double slow = 1e-7;           // at rest [m/s]
-constexpr double restitution = 1e-7;    // what stands for 0
-constexpr long most_steps = 1'000'000;  // four times what the slowest needs
+constexpr double rest_speed = 1e-7;    // below this speed the sphere is at rest [m/s]
+constexpr double restitution = 1e-7;   // smallest allowed value, in place of 0
+constexpr long max_steps = 1'000'000;  // four times the number that is needed
 
 std::vector<double> frictions()
 {
@@ -31,16 +33,16 @@ std::vector<double> frictions()
     return all;
 }
 
-/// Overlap under its own weight [m]
-double rest_overlap()
+/// Static overlap under the weight of the sphere, from F = 4/3 E* √R δ^(3/2) [m]
+double static_overlap()
 {
     return std::pow(0.75 * g / (effective_modulus(soft(), soft()) * std::sqrt(0.5)), 2.0 / 3);
 }
 
-Particle resting()
+Particle sphere_at_rest()
 {
     Particle p = soft_sphere();
-    p.r = {0, 0, p.radius - rest_overlap()};
+    p.r = {0, 0, p.radius - static_overlap()};
     return p;
 }
 
@@ -63,30 +65,30 @@ PairLaw law(double mu, bool incremental)
     return law;
 }
 
-double with_spring(double mu)
+double distance_with_spring(double mu)
 {
     const TangentialSpring spring = TangentialSpring::of_materials(soft(), soft(), restitution);
-    const double k = spring.k_t * std::sqrt(0.5 * rest_overlap()), zeta = 0.5 * spring.c;
+    const double k = spring.k_t * std::sqrt(0.5 * static_overlap()), zeta = 0.5 * spring.c;
     return v_i * v_i / (2 * mu * g) + (2 * zeta * zeta - 1) * mu * g / k - 0.5 * h * v_i;
 }
 
 double in_double(double mu, bool incremental)
 {
     DoubleWorld world(world_options(), law(mu, incremental));
-    world.particle = {resting()};
+    world.particle = {sphere_at_rest()};
     world.boundary = {Boundary{}};
     world.turns = false;
     world.step(std::lround(settle / h));
     Particle& p = world.particle[0];
     p.v = {v_i, 0, 0};
     const double start = p.r.x;
-    for (long n = 0; n < most_steps && !(p.v.norm() < slow); ++n) world.step();
+    for (long n = 0; n < max_steps && !(p.v.norm() < rest_speed); ++n) world.step();
     return p.r.x - start;
 }
 
 struct Slide {
-    double way = std::nan("");  ///< [m]
-    double most_friction = 0;   ///< largest |F_t|/(μ |F_n|) of all steps
+    double distance = std::nan("");  ///< [m]
+    double friction_ratio = 0;       ///< largest |F_t|/(μ |F_n|) over all steps
 };
 
 Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
@@ -95,22 +97,23 @@ Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
     world.set_law(0, 0, law(mu, incremental));
     world.add(Boundary{});
     world.set_omega_locked(true);
-    world.add(resting());
+    world.add(sphere_at_rest());
     world.step(std::lround(settle / h));
     world.set_velocity(0, {v_i, 0, 0}, {0, 0, 0});
 
     const double start = world.particles()[0].r.x;
-    const long every = std::lround(0.02 / h);
+    const long interval = std::lround(0.02 / h);
     Slide out;
-    for (long n = 0; n < most_steps && std::isnan(out.way); ++n) {
+    for (long n = 0; n < max_steps && std::isnan(out.distance); ++n) {
         if (n > 0) world.step();
         const Particle p = world.particles()[0];
         const double x = p.r.x - start;
-        if (p.v.norm() < slow) out.way = x;
-        if (motion != nullptr && (n % every == 0 || !std::isnan(out.way)))
+        if (p.v.norm() < rest_speed) out.distance = x;
+        if (motion != nullptr && (n % interval == 0 || !std::isnan(out.distance)))
             motion->rows.push_back({mu, static_cast<double>(n) * h, x, p.v.x});
         for (const ContactRecord& c : world.contacts())
-            out.most_friction = worse(out.most_friction, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
+            out.friction_ratio =
+                max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
     return out;
 }
@@ -123,37 +126,43 @@ ValidationResult run(const ValidationOptions& options)
                              {}};
     ValidationTable motion = {"motion", {"mu", "t", "x", "v"}, {}};
     ValidationResult result;
-    double apart = 0, from_spring = 0, incremental = 0, friction = 0, done = 0;
-    for (const bool by_increments : {false, true})
+    double from_double = 0, from_spring = 0, incremental = 0, friction = 0, done = 0;
+    for (const bool is_incremental : {false, true})
         for (const double mu : frictions()) {
             options.progress(done++ / 18);
-            if (by_increments && !options.full && mu < 0.39) continue;  // the normal force rests: one law
-            const Slide s = slide(mu, by_increments, options.device, by_increments ? nullptr : &motion);
-            const double d = v_i * v_i / (2 * mu * g), of_double = in_double(mu, by_increments),
-                         spring = with_spring(mu), difference = s.way / d - 1;
-            table.rows.push_back({by_increments ? "mindlin-incremental" : "mindlin", mu, s.way, d, difference,
-                                  of_double, of_double / d - 1, spring, s.way / spring - 1, s.most_friction});
-            if (by_increments) {
-                incremental = worse(incremental, std::abs(difference));
+            // the normal force is constant, so both laws agree
+            if (is_incremental && !options.full && mu < 0.39) continue;
+            const Slide s = slide(mu, is_incremental, options.device, is_incremental ? nullptr : &motion);
+            const double d = v_i * v_i / (2 * mu * g), distance_double = in_double(mu, is_incremental),
+                         spring = distance_with_spring(mu), difference = s.distance / d - 1;
+            table.rows.push_back({is_incremental ? "mindlin-incremental" : "mindlin", mu, s.distance, d,
+                                  difference, distance_double, distance_double / d - 1, spring,
+                                  s.distance / spring - 1, s.friction_ratio});
+            if (is_incremental) {
+                incremental = max_or_nan(incremental, std::abs(difference));
             } else {
                 char what[64];
                 std::snprintf(what, sizeof what, "distance over v^2/(2 mu g) - 1: mu = %.2f", mu);
                 result.checks.push_back({what, difference, -3e-4, 3e-4});
             }
-            apart = worse(apart, std::abs(s.way / of_double - 1));
-            from_spring = worse(from_spring, std::abs(s.way / spring - 1));
-            friction = worse(friction, s.most_friction);
+            from_double = max_or_nan(from_double, std::abs(s.distance / distance_double - 1));
+            from_spring = max_or_nan(from_spring, std::abs(s.distance / spring - 1));
+            friction = max_or_nan(friction, s.friction_ratio);
         }
-    result.checks.push_back({"largest of these, incremental law", incremental, 0, 3e-4});
-    result.checks.push_back({"distance from the closed form with the spring", from_spring, 0, 1e-5});
-    result.checks.push_back({"distance from double precision", apart, 0, 1e-5});
+    result.checks.push_back(
+        {"distance over v^2/(2 mu g) - 1: largest, incremental law", incremental, 0, 3e-4});
+    result.checks.push_back(
+        {"relative difference from the closed form with the spring", from_spring, 0, 1e-5});
+    result.checks.push_back({"relative difference from double precision", from_double, 0, 1e-5});
     result.checks.push_back({"largest |F_t|/(mu |F_n|) of all steps", friction, 0.9999, 1 + 1e-6});
     result.tables = {table, motion};
     return result;
 }
 
-const bool registered = register_validation(
-    {.name = "brick", .answers = "how far a brick slides, over friction (Fig. 7.4)", .run = run});
+const bool registered =
+    register_validation({.name = "brick",
+                         .description = "sliding distance over the coefficient of friction (Fig. 7.4)",
+                         .run = run});
 
 }  // namespace
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Two spheres meet with 1 m/s each and part with the restitution that they are told.        Fang (2022), Sec. 7.1.1, Fig. 7.2
+/// Head-on collision of two spheres with 1 m/s each: coefficient of restitution by integrator and step.
+///                                                                       Fang (2022), Sec. 7.1.1, Fig. 7.2
 ///
-/// In the numbers of World and, beside it, in double precision. What a run is off by depends on where in a step the
-/// spheres meet: the order is that of the worst of several such places and of all restitutions.
+/// Each collision is computed by World and in double precision. The error depends on the instant within a
+/// step at which the contact begins. The order is therefore that of the largest error over several initial
+/// distances and all restitutions.
 
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
@@ -18,17 +20,17 @@ namespace {
 constexpr double R = 0.5, v_i = 1, end = 0.5, gap = 1e-3;
 constexpr double step_of_text = 3e-5;
 
-struct Named {
+struct NamedScheme {
     const char* name;
     Scheme scheme;
-    double most;       ///< difference to the restitution at the step of the text
-    bool first_order;  ///< seen in a line through all steps; where not, the error is too irregular
+    double tolerance;  ///< allowed error of the restitution at the step of the dissertation
+    bool first_order;  ///< whether the fitted order is checked; the error of chung is too irregular
 };
-constexpr Named schemes[] = {{"symplectic-euler", Scheme::symplectic_euler, 5e-4, true},
-                             {"velocity-verlet", Scheme::velocity_verlet, 5e-4, true},
-                             {"chung", Scheme::chung, 1.5e-4, false},
-                             {"extended-taylor", Scheme::extended_taylor, 5e-3, true},
-                             {"forward-euler", Scheme::forward_euler, 1e-2, true}};
+constexpr NamedScheme schemes[] = {{"symplectic-euler", Scheme::symplectic_euler, 5e-4, true},
+                                   {"velocity-verlet", Scheme::velocity_verlet, 5e-4, true},
+                                   {"chung", Scheme::chung, 1.5e-4, false},
+                                   {"extended-taylor", Scheme::extended_taylor, 5e-3, true},
+                                   {"forward-euler", Scheme::forward_euler, 1e-2, true}};
 
 std::vector<double> restitutions()
 {
@@ -37,13 +39,13 @@ std::vector<double> restitutions()
     return all;
 }
 
-struct Meeting {
+struct Collision {
     double restitution;
-    double before = 0;  ///< how much further apart they begin [m]
-    double drift = 0;   ///< velocity of their centre of mass [m/s]
+    double offset = 0;  ///< additional initial distance [m]
+    double drift = 0;   ///< velocity of the centre of mass [m/s]
 };
 
-WorldOptions weightless(double h, Scheme scheme, double wide, Device device = {})
+WorldOptions options_without_gravity(double h, Scheme scheme, double wide, Device device = {})
 {
     WorldOptions o;
     o.low = {-3, -3, -3}, o.high = {3, wide, 3};
@@ -52,10 +54,10 @@ WorldOptions weightless(double h, Scheme scheme, double wide, Device device = {}
     return o;
 }
 
-std::array<Particle, 2> approaching(const Meeting& m)
+std::array<Particle, 2> approaching(const Collision& m)
 {
     std::array<Particle, 2> p = {soft_sphere(), soft_sphere()};
-    p[0].r = {-(2 * R + gap) / 2 - m.before, 0, 0}, p[1].r = {(2 * R + gap) / 2, 0, 0};
+    p[0].r = {-(2 * R + gap) / 2 - m.offset, 0, 0}, p[1].r = {(2 * R + gap) / 2, 0, 0};
     p[0].v = {m.drift + v_i, 0, 0}, p[1].v = {m.drift - v_i, 0, 0};
     return p;
 }
@@ -71,10 +73,10 @@ PairLaw law(double restitution, bool clamped)
     return law;
 }
 
-/// |v_end/v_i|, in double precision
-double rebound(const Meeting& m, Scheme scheme, double h, bool clamped = false)
+/// |v_end/v_i| of one collision, in double precision
+double rebound(const Collision& m, Scheme scheme, double h, bool clamped = false)
 {
-    DoubleWorld world(weightless(h, scheme, 3), law(m.restitution, clamped));
+    DoubleWorld world(options_without_gravity(h, scheme, 3), law(m.restitution, clamped));
     const auto start = approaching(m);
     world.particle.assign(start.begin(), start.end());
     const std::vector<Particle>& p = world.particle;
@@ -82,14 +84,14 @@ double rebound(const Meeting& m, Scheme scheme, double h, bool clamped = false)
         world.step();
         if (p[1].r.x - p[0].r.x > 2 * R && p[1].v.x > p[0].v.x) break;
     }
-    world.step(2);  // some schemes look back
+    world.step(2);  // chung uses the previous acceleration
     return (p[1].v.x - p[0].v.x) / (2 * v_i);
 }
 
-/// A world with such meetings, 4 m apart; all of one restitution
-World world_of(const std::vector<Meeting>& all, Scheme scheme, double h, Device device)
+/// A world with several collisions side by side at a distance of 4 m, all with the restitution of the first
+World world_of(const std::vector<Collision>& all, Scheme scheme, double h, Device device)
 {
-    World world(weightless(h, scheme, 4 * static_cast<double>(all.size()), device), {soft()});
+    World world(options_without_gravity(h, scheme, 4 * static_cast<double>(all.size()), device), {soft()});
     world.set_law(0, 0, law(all[0].restitution, false));
     for (std::size_t k = 0; k < all.size(); ++k)
         for (Particle p : approaching(all[k])) {
@@ -99,29 +101,30 @@ World world_of(const std::vector<Meeting>& all, Scheme scheme, double h, Device 
     return world;
 }
 
-/// |v_end/v_i| of each
-std::vector<double> rebounds(const std::vector<Meeting>& all, Scheme scheme, double h, Device device)
+/// |v_end/v_i| of each collision, computed by World
+std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, double h, Device device)
 {
     World world = world_of(all, scheme, h, device);
     std::vector<double> out(all.size());
-    for (bool parted = false; !parted && world.t() < end;) {
+    for (bool separated = false; !separated && world.t() < end;) {
         world.step(std::lround(0.01 / h));
         const std::vector<Particle> p = world.particles();
         for (std::size_t k = 0; k < all.size(); ++k) out[k] = (p[2 * k + 1].v.x - p[2 * k].v.x) / (2 * v_i);
-        parted =
+        separated =
             world.contacts().empty() && std::all_of(out.begin(), out.end(), [](double v) { return v > 0; });
     }
     return out;
 }
 
-/// The largest change of the momentum of a pair in one step and since the first, in ulps of a float at 1 m/s
-struct Momentum {
+/// Largest change of the momentum of a pair in one step and since the first step, in units of the last place
+/// of a float at 1 m/s
+struct MomentumChange {
     double of_step = 0, of_all = 0;
 };
-Momentum lost(double drift, Device device)
+MomentumChange momentum_change(double drift, Device device)
 {
     const double ulp = std::ldexp(1, -23);
-    Momentum lost;
+    MomentumChange momentum_change;
     for (const double e : restitutions()) {
         World world =
             world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text, device);
@@ -129,17 +132,18 @@ Momentum lost(double drift, Device device)
         while (world.t() < 0.1) {
             world.step();
             const double now = world.momentum().x;
-            if (std::isnan(start)) start = last = now;  // as the velocities are in the numbers of the world
-            lost.of_step = worse(lost.of_step, std::abs(now - last) / ulp);
-            lost.of_all = worse(lost.of_all, std::abs(now - start) / ulp);
+            // after the first step, when the velocities are rounded to single precision
+            if (std::isnan(start)) start = last = now;
+            momentum_change.of_step = max_or_nan(momentum_change.of_step, std::abs(now - last) / ulp);
+            momentum_change.of_all = max_or_nan(momentum_change.of_all, std::abs(now - start) / ulp);
             last = now;
         }
     }
-    return lost;
+    return momentum_change;
 }
 
-/// Slope of the straight line through (log h, log e)
-double fitted(const std::vector<double>& h, const std::vector<double>& e)
+/// Slope of the least-squares line through the points (log h, log e)
+double fitted_slope(const std::vector<double>& h, const std::vector<double>& e)
 {
     double x_mean = 0, y_mean = 0, xx = 0, xy = 0;
     const auto n = static_cast<double>(h.size());
@@ -151,29 +155,30 @@ double fitted(const std::vector<double>& h, const std::vector<double>& e)
     return xy / xx;
 }
 
-/// One scheme at one step: the worst of all meetings, and how far World is from double precision in any of them
-struct Worst {
-    double world = 0, in_double = 0, apart = 0;
+/// Largest errors of one scheme at one step over all collisions: of World, in double precision, and the
+/// largest difference between the two
+struct SchemeErrors {
+    double world = 0, in_double = 0, difference = 0;
 };
-Worst worst(Scheme scheme, double h, int places, bool in_world, Device device)
+SchemeErrors scheme_errors(Scheme scheme, double h, int offsets, bool in_world, Device device)
 {
-    Worst out;
+    SchemeErrors out;
     if (!in_world) out.world = std::nan("");
     for (const double e : restitutions()) {
-        std::vector<Meeting> all;
-        all.reserve(places);
-        for (int k = 0; k < places; ++k)
-            all.push_back({.restitution = e, .before = 2 * h * v_i * k / places});
+        std::vector<Collision> all;
+        all.reserve(offsets);
+        for (int k = 0; k < offsets; ++k)
+            all.push_back({.restitution = e, .offset = 2 * h * v_i * k / offsets});
         std::vector<double> in_double;
-        for (const Meeting& m : all) {
+        for (const Collision& m : all) {
             in_double.push_back(rebound(m, scheme, h));
-            out.in_double = worse(out.in_double, std::abs(in_double.back() - e));
+            out.in_double = max_or_nan(out.in_double, std::abs(in_double.back() - e));
         }
         if (!in_world) continue;
         const std::vector<double> v = rebounds(all, scheme, h, device);
         for (std::size_t k = 0; k < all.size(); ++k) {
-            out.world = worse(out.world, std::abs(v[k] - e));
-            out.apart = worse(out.apart, std::abs(v[k] - in_double[k]));
+            out.world = max_or_nan(out.world, std::abs(v[k] - e));
+            out.difference = max_or_nan(out.difference, std::abs(v[k] - in_double[k]));
         }
     }
     return out;
@@ -181,7 +186,7 @@ Worst worst(Scheme scheme, double h, int places, bool in_world, Device device)
 
 ValidationResult run(const ValidationOptions& options)
 {
-    const int places = options.full ? 16 : 4;
+    const int offsets = options.full ? 16 : 4;
     const std::vector<double> steps = {3e-5, 1e-5, 3e-6, 1e-6};
     ValidationTable at_text = {
         "study",
@@ -191,8 +196,8 @@ ValidationResult run(const ValidationOptions& options)
         "refinement", {"integrator", "h", "worst", "worst_double", "order_double"}, {}};
     ValidationTable clamped = {"clamped", {"restitution", "rebound", "difference"}, {}};
     ValidationResult result;
-    double apart = 0, share = 0;
-    for (const Named& s : schemes) {
+    double difference = 0, progress = 0;
+    for (const NamedScheme& s : schemes) {
         for (const double e : restitutions()) {
             const double v = rebounds({{e}}, s.scheme, step_of_text, options.device)[0],
                          in_double = rebound({e}, s.scheme, step_of_text);
@@ -201,23 +206,23 @@ ValidationResult run(const ValidationOptions& options)
         std::vector<double> errors;
         for (const double h : steps) {
             const bool in_world = options.full || h > 2e-6 || s.scheme == Scheme::symplectic_euler;
-            const Worst w = worst(s.scheme, h, places, in_world, options.device);
+            const SchemeErrors w = scheme_errors(s.scheme, h, offsets, in_world, options.device);
             const auto n = errors.size();
             const double order =
                 n == 0 ? std::nan("") : std::log(w.in_double / errors[n - 1]) / std::log(h / steps[n - 1]);
             errors.push_back(w.in_double);
-            apart = worse(apart, w.apart);
+            difference = max_or_nan(difference, w.difference);
             refinement.rows.push_back({s.name, h, w.world, w.in_double, order});
             if (h == step_of_text)
                 result.checks.push_back(
-                    {std::string("largest |v_end/v_i| - COR at 3e-5 s: ") + s.name, w.world, 0, s.most});
-            options.progress(share += 1.0 / static_cast<double>(std::size(schemes) * steps.size()));
+                    {std::string("largest |v_end/v_i| - COR at 3e-5 s: ") + s.name, w.world, 0, s.tolerance});
+            options.progress(progress += 1.0 / static_cast<double>(std::size(schemes) * steps.size()));
         }
         if (s.first_order)
-            result.checks.push_back(
-                {std::string("its order, double precision: ") + s.name, fitted(steps, errors), 0.85, 1.15});
+            result.checks.push_back({std::string("order in double precision: ") + s.name,
+                                     fitted_slope(steps, errors), 0.85, 1.15});
     }
-    result.checks.push_back({"World from double precision, largest of all", apart, 0, 1e-4});
+    result.checks.push_back({"largest difference of World from double precision", difference, 0, 1e-4});
 
     for (const double e : restitutions()) {
         const double v = rebound({e}, Scheme::symplectic_euler, step_of_text, true);
@@ -225,21 +230,23 @@ ValidationResult run(const ValidationOptions& options)
         for (const auto& [of, gain] : {std::pair(0.1, 0.1526), std::pair(0.5, 0.050)})
             if (e == of)
                 result.checks.push_back(
-                    {"rebound without tension, above a COR of " + std::to_string(e).substr(0, 3), v - e,
+                    {"clamped law: rebound less COR, COR " + std::to_string(e).substr(0, 3), v - e,
                      gain - 1e-3, gain + 1e-3});
     }
-    const Momentum still = lost(0, options.device), drifting = lost(0.37, options.device);
-    result.checks.push_back({"momentum of a pair, largest change in a step [ulp]", drifting.of_step, 0, 1});
+    const MomentumChange still = momentum_change(0, options.device),
+                         drifting = momentum_change(0.37, options.device);
+    result.checks.push_back({"momentum of a pair, largest change in one step [ulp]", drifting.of_step, 0, 1});
     result.checks.push_back({"momentum of a pair, largest change in a run [ulp]", drifting.of_all, 0, 1});
-    result.checks.push_back({"momentum of a symmetric pair [ulp]", still.of_all, 0, 0});
+    result.checks.push_back(
+        {"momentum of a symmetric pair, largest change in a run [ulp]", still.of_all, 0, 0});
     result.tables = {at_text, refinement, clamped};
     return result;
 }
 
-const bool registered =
-    register_validation({.name = "head-on",
-                         .answers = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
-                         .run = run});
+const bool registered = register_validation(
+    {.name = "head-on",
+     .description = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
+     .run = run});
 
 }  // namespace
 

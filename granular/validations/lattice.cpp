@@ -10,13 +10,15 @@ namespace hilda::granular {
 namespace {
 
 constexpr double R = 0.05, density = 7800, g = 9.81, half_width = lattice::widest * R;
-/// Of the layers at the start, over R. From 0.1 on the lattice forgets it; when they touch at the start, the friction that
-/// the settling leaves in the contacts, and with it the middle at μ = 0.2, is another for each thousandth of R.
-constexpr double apart = 0.2;
+/// Initial gap between layers, over R. The results do not depend on it from 0.1 on. If the layers touch at
+/// the start, the friction forces after settling depend on the gap, and with them the force at the middle for
+/// μ = 0.2.
+constexpr double initial_gap = 0.2;
 const double m = 4. / 3 * M_PI * R * R * R * density;
 
-/// A linear contact with the damping of the text, 5e4 1/s, relaxes in 0.04 s, and the whole lattice in some seconds; what
-/// the scaled one has of it at √(δ/R) = 0.05 is taken instead. Where things come to rest, damping says nothing.
+/// Damping coefficient [1/s]. With the value of the dissertation, 5e4 1/s, a linear contact relaxes in 0.04 s
+/// and the lattice in some seconds. The linear law uses 2500 1/s instead, the value of the scaled law at
+/// √(δ/R) = 0.05. The static forces do not depend on the damping.
 float damping_of(Stiffness s) { return s == Stiffness::scaled ? 5e4f : 2500.f; }
 
 PairLaw law(Stiffness s, double mu, bool wall)
@@ -38,7 +40,7 @@ PairLaw law(Stiffness s, double mu, bool wall)
 
 class Lattices {
 public:
-    Lattices(const std::vector<Press>& all, const PressRun& run) : all(all), world(empty(all, run))
+    Lattices(const std::vector<LoadCase>& all, const LatticeRun& run) : all(all), world(make_world(all, run))
     {
         floor = world.add(Boundary{.material = walls});
         world.add(Boundary{.r = {-half_width, 0, 0}, .axis = {1, 0, 0}, .material = walls});
@@ -51,34 +53,34 @@ public:
             for (int row = 0; row < lattice::rows; ++row) {
                 const int count = lattice::widest - row % 2;
                 for (int k = 0; k < count; ++k) {
-                    p.r = {R * (2 * k - (count - 1)), 0, R + row * (std::sqrt(3.) + apart) * R};
+                    p.r = {R * (2 * k - (count - 1)), 0, R + row * (std::sqrt(3.) + initial_gap) * R};
                     world.add(p);
                 }
             }
         }
     }
 
-    /// The pressed sphere of a lattice: the middle one of the top
+    /// Id of the loaded sphere of a lattice, the middle one of the top layer
     static std::uint32_t pressed(std::size_t n)
     {
         return static_cast<std::uint32_t>(n * lattice::spheres + lattice::spheres - 1 - lattice::middle);
     }
 
-    void press_with(double part)
+    void apply_load(double part)
     {
         for (std::size_t n = 0; n < all.size(); ++n)
             world.set_force(pressed(n), {0, 0, -part * all[n].F * m * g});
     }
 
-    std::vector<Pressed::At> look() const
+    std::vector<LatticeResponse::BoundaryForces> boundary_forces() const
     {
-        std::vector<Pressed::At> at(all.size());
+        std::vector<LatticeResponse::BoundaryForces> at(all.size());
         for (const ContactRecord& c : world.contacts()) {
             if (!c.boundary) continue;
-            Pressed::At& of = at[c.replica];
+            LatticeResponse::BoundaryForces& of = at[c.replica];
             const std::uint32_t k = c.i % lattice::spheres;
             const bool on_floor = static_cast<int>(c.j) == floor;
-            (on_floor ? k < of.floor.size() ? of.floor[k] : of.others : of.sides) += c.F.z / (m * g);
+            (on_floor ? k < of.floor.size() ? of.floor[k] : of.upper_layers : of.sides) += c.F.z / (m * g);
         }
         for (const Particle& p : world.particles())
             at[p.replica].kinetic += 0.5 * (p.v.dot(p.v) + 0.4 * R * R * p.omega.dot(p.omega)) / (g * R);
@@ -93,12 +95,12 @@ public:
         return z;
     }
 
-    World& of() { return world; }
+    World& get() { return world; }
 
 private:
-    World empty(const std::vector<Press>& lattices, const PressRun& run)
+    World make_world(const std::vector<LoadCase>& lattices, const LatticeRun& run)
     {
-        for (const Press& p : lattices)
+        for (const LoadCase& p : lattices)
             materials.try_emplace({p.stiffness, p.mu}, static_cast<int>(materials.size()));
         walls = static_cast<int>(materials.size());
         WorldOptions options;
@@ -112,7 +114,7 @@ private:
         return world;
     }
 
-    const std::vector<Press>& all;
+    const std::vector<LoadCase>& all;
     std::map<std::pair<Stiffness, double>, int> materials;
     int walls = 0, floor = 0;
     World world;
@@ -120,40 +122,40 @@ private:
 
 }  // namespace
 
-std::array<double, lattice::widest> Pressed::share(double F) const
+std::array<double, lattice::widest> LatticeResponse::share(double F) const
 {
     std::array<double, lattice::widest> of{};
     for (int k = 0; k < lattice::widest; ++k) of[k] = (after.floor[k] - before.floor[k]) / F;
     return of;
 }
 
-std::vector<Pressed> press(const std::vector<Press>& all, const PressRun& run,
-                           const std::function<void(double)>& progress)
+std::vector<LatticeResponse> run_lattices(const std::vector<LoadCase>& all, const LatticeRun& run,
+                                          const std::function<void(double)>& progress)
 {
     Lattices lattices(all, run);
-    World& world = lattices.of();
+    World& world = lattices.get();
     const double end = run.settle + run.ramp + run.hold;
-    const auto go_to = [&](double t) {
+    const auto step_to = [&](double t) {
         while (world.t() < t - 0.5 * run.h) {
-            const double way = std::min(t, world.t() + end / 200) - world.t();
-            world.step(std::max(1L, std::lround(way / run.h)));
+            const double interval = std::min(t, world.t() + end / 200) - world.t();
+            world.step(std::max(1L, std::lround(interval / run.h)));
             progress(world.t() / end);
         }
     };
-    go_to(run.settle);
-    const std::vector<Pressed::At> before = lattices.look();
+    step_to(run.settle);
+    const std::vector<LatticeResponse::BoundaryForces> before = lattices.boundary_forces();
     const std::vector<double> high = lattices.heights();
     const double begin = world.t();
     world.before_each_step([&](World& w) {
         const double part = (w.t() - begin) / run.ramp;
-        if (part < 1 + run.h / run.ramp) lattices.press_with(std::min(part, 1.));
+        if (part < 1 + run.h / run.ramp) lattices.apply_load(std::min(part, 1.));
     });
-    go_to(end);
-    const std::vector<Pressed::At> after = lattices.look();
+    step_to(end);
+    const std::vector<LatticeResponse::BoundaryForces> after = lattices.boundary_forces();
     const std::vector<double> low = lattices.heights();
-    std::vector<Pressed> pressed(all.size());
+    std::vector<LatticeResponse> pressed(all.size());
     for (std::size_t n = 0; n < all.size(); ++n)
-        pressed[n] = {.before = before[n], .after = after[n], .sunk = (high[n] - low[n]) / R};
+        pressed[n] = {.before = before[n], .after = after[n], .displacement = (high[n] - low[n]) / R};
     return pressed;
 }
 

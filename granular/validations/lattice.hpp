@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Layers of equal spheres in one plane, pressed upon in the middle.                     Fang (2022), Sec. 7.2.1
+/// Two-dimensional lattice of equal spheres with a point load at the middle of the top.
+///                                                                       Fang (2022), Sec. 7.2.1
 
 #pragma once
 
@@ -11,46 +12,47 @@
 
 namespace hilda::granular {
 
-/// 15 layers of 61 and 60 spheres in turns, in a box as wide as 61 of them
+/// 15 layers of alternately 61 and 60 spheres, in a box whose width is 61 diameters
 namespace lattice {
 constexpr int rows = 15, widest = 61, middle = widest / 2;
 constexpr int spheres = rows / 2 * (2 * widest - 1) + widest;
 }  // namespace lattice
 
-/// How a contact answers: F = √(δ/R) (k_n δ + ...) with k_n = 30000 mg/R, or F = k_n δ + ... with 3000 mg/R. At the loads
-/// of a lattice that only weighs, both have about the same stiffness.
+/// Normal law: F = √(δ/R) (k_n δ + ...) with k_n = 30000 mg/R, or F = k_n δ + ... with k_n = 3000 mg/R. Under
+/// the weight of the lattice both have about the same stiffness.
 enum class Stiffness { scaled, linear };
 
-struct Press {
+struct LoadCase {
     Stiffness stiffness = Stiffness::scaled;
-    double mu = 0;  ///< of friction, at all contacts
-    double F = 0;   ///< on the sphere in the middle of the top, over its weight
+    double mu = 0;  ///< coefficient of friction of all contacts
+    double F = 0;   ///< load on the middle sphere of the top layer, over the weight of a sphere
 };
 
-struct PressRun {
+struct LatticeRun {
     double h = 1e-5;                        ///< [s]
-    double settle = 2, ramp = 2, hold = 2;  ///< without F, while it grows, and at its full size [s]
+    double settle = 2, ramp = 2, hold = 2;  ///< times without load, of increasing load and of full load [s]
     Device device = {};
 };
 
-/// Of one lattice before F and at the end; forces over the weight of a sphere
-struct Pressed {
-    struct At {
+/// Forces on the boundaries of one lattice before the load is applied and at the end, over the weight of a
+/// sphere
+struct LatticeResponse {
+    struct BoundaryForces {
         std::array<double, lattice::widest>
-            floor{};         ///< upward force of the floor on each of the lowest layer
-        double others = 0;   ///< upward force of the floor on spheres of other layers, pressed through to it
-        double sides = 0;    ///< upward force of the side walls
-        double kinetic = 0;  ///< kinetic energy [m g R]
+            floor{};              ///< upward force of the floor on each sphere of the lowest layer
+        double upper_layers = 0;  ///< upward force of the floor on spheres of other layers
+        double sides = 0;         ///< upward force of the side walls
+        double kinetic = 0;       ///< kinetic energy [m g R]
     } before, after;
-    double sunk = 0;  ///< way down of the pressed sphere, over the radius
+    double displacement = 0;  ///< downward displacement of the loaded sphere, over the radius
 
-    /// What F adds to the force of the floor on a sphere, counted from the middle one, over F
+    /// Increase of the floor force on each sphere of the lowest layer, over F
     std::array<double, lattice::widest> share(double F) const;
 };
 
-/// All lattices at once
-std::vector<Pressed> press(
-    const std::vector<Press>& lattices, const PressRun& run,
+/// Computes all lattices as replicas of one world.
+std::vector<LatticeResponse> run_lattices(
+    const std::vector<LoadCase>& lattices, const LatticeRun& run,
     const std::function<void(double)>& progress = [](double) {});
 
 }  // namespace hilda::granular

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The sphere that is tried alone or in pairs: 1 kg, R = 0.5 m, soft enough for steps of 1e-5 s.
-///                                                                                     Fang (2022), Secs. 7.1.1 to 7.1.3
+/// Sphere of the validations with one or two bodies: mass 1 kg, R = 0.5 m, E = 2e5 Pa, which allows steps of
+/// 1e-5 s.
+///
+/// Source: Fang (2022), Secs. 7.1.1 to 7.1.3.
 
 #pragma once
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The mass of a sphere that brings two others down, over the resistance to rolling (Fang 2022, Fig. 7.7).
+/// Critical mass of the upper sphere of a stack, over the coefficient of rolling friction.
+///                                                                       Fang (2022), Fig. 7.7
 ///
-/// The text gives no coefficient of friction. 0.158 is what the masses say where rolling does not matter: those of all
-/// five gaps, in the author's public data (GPU_postprocessing, pyramid_stack.csv), are demanded here.
+/// The dissertation does not state the coefficient of friction. μ = 0.158 follows from the critical masses
+/// for large μ_r, where the lower spheres slide and do not roll. These plateau values, for all five gaps, are
+/// in the author's public data (GPU_postprocessing, pyramid_stack.csv) and are checked here.
 
 #include "granular/validations/three_spheres.hpp"
 #include "granular/validations/validation.hpp"
@@ -17,20 +19,20 @@ namespace {
 
 constexpr double mu = 0.158, inf = std::numeric_limits<double>::infinity();
 
-struct Model {
+struct RollingModel {
     std::string name;
     StackRun run;
-    double lever_ground;  ///< of the torque that bounds rolling, over R; between spheres it is a half
+    double lever_ground;  ///< lever of the rolling torque bound at the ground, over R; 1/2 between spheres
 };
-const std::array<Model, 3> rolling_models = {
-    Model{"constant torque, R/2", {.rolling = StackRolling::half_radius}, 0.5},
-    Model{"EPSD, R/2", {.rolling = StackRolling::epsd, .ground = 0.5}, 0.5},
-    Model{"EPSD, R*", {.rolling = StackRolling::epsd}, 1}};
+const std::array<RollingModel, 3> rolling_models = {
+    RollingModel{"constant torque, R/2", {.rolling = StackRolling::half_radius}, 0.5},
+    RollingModel{"EPSD, R/2", {.rolling = StackRolling::epsd, .ground = 0.5}, 0.5},
+    RollingModel{"EPSD, R*", {.rolling = StackRolling::epsd}, 1}};
 
 struct Plateau {
     double gap, mass;  ///< [kg]
 };
-constexpr std::array<Plateau, 5> demanded = {
+constexpr std::array<Plateau, 5> expected_plateaus = {
     {{0.20, 1.00}, {0.25, 0.94}, {0.30, 0.90}, {0.35, 0.85}, {0.40, 0.81}}};
 
 std::vector<double> all_mu_r(bool full)
@@ -42,15 +44,15 @@ std::vector<double> all_mu_r(bool full)
     return all;
 }
 
-/// The smaller one; what is not a number is smaller than all numbers
-double lesser(double a, double b) { return -worse(-a, -b); }
+/// Minimum that propagates NaN
+double min_or_nan(double a, double b) { return -max_or_nan(-a, -b); }
 
-/// What one curve, critical mass over μ_r, says
+/// One curve, critical mass over μ_r
 struct Curve {
     std::vector<double> mu_r, mass;
 
     double plateau() const { return mass.back(); }
-    /// Where it comes to a step's width of its plateau, between two points on the line through them
+    /// μ_r at which the curve is 0.01 kg below its plateau, by linear interpolation
     double knee() const
     {
         const double level = plateau() - 0.01;
@@ -60,12 +62,12 @@ struct Curve {
                        (mu_r[k] - mu_r[k - 1]) * (level - mass[k - 1]) / (mass[k] - mass[k - 1]);
         return mu_r.front();
     }
-    /// Least rise from a point to the next, of those below the knee
+    /// Smallest increase between neighbouring points below the knee [kg]
     double least_rise() const
     {
         double least = mass[1] - mass[0];
         for (std::size_t k = 1; k < mass.size() && mu_r[k] <= knee(); ++k)
-            least = lesser(least, mass[k] - mass[k - 1]);
+            least = min_or_nan(least, mass[k] - mass[k - 1]);
         return least;
     }
 };
@@ -75,7 +77,7 @@ std::string of_gap(const std::string& what, double gap)
     return what + ", gap " + std::to_string(gap).substr(0, 4) + " R";
 }
 
-/// Where the masses at these coefficients of friction come to `mass`
+/// Coefficient of friction at which the interpolated critical mass is `mass`; NaN if it is not reached
 double friction_at(const std::vector<double>& mus, const std::vector<double>& masses, double mass)
 {
     for (std::size_t k = 1; k < mus.size(); ++k)
@@ -89,17 +91,17 @@ public:
     explicit Stacking(const ValidationOptions& options)
         : options(options), mu_r(all_mu_r(options.full)), models(rolling_models)
     {
-        for (Model& m : models) m.run.device = options.device;
+        for (RollingModel& m : models) m.run.device = options.device;
     }
 
     ValidationResult run()
     {
-        for (const Plateau& p : demanded)
+        for (const Plateau& p : expected_plateaus)
             if (options.full || std::lround(100 * p.gap) % 10 == 0) plateaus.push_back(p);
         find_masses();
-        judge_curves();
+        check_curves();
         find_friction();
-        judge_bisection();
+        check_bisection();
         return {.tables = {study, friction}, .checks = checks};
     }
 
@@ -111,7 +113,7 @@ private:
             for (const double r : mu_r) stacks.push_back({p.gap, mu, r});
         for (std::size_t m = 0; m < models.size(); ++m) {
             masses[m] = critical_masses(stacks, models[m].run,
-                                        [&](double share) { tell(0.25 * (double(m) + share)); });
+                                        [&](double share) { report_progress(0.25 * (double(m) + share)); });
             for (std::size_t k = 0; k < stacks.size(); ++k) {
                 const Stack& s = stacks[k];
                 study.rows.push_back({models[m].name, s.gap, s.mu_r, s.mu, masses[m][k],
@@ -126,26 +128,28 @@ private:
         return {mu_r, {first, first + static_cast<std::ptrdiff_t>(mu_r.size())}};
     }
 
-    void judge_curves()
+    void check_curves()
     {
-        double apart = 0, most = 0, more = inf, least = inf;
+        double difference = 0, max_ratio = 0, increase = inf, min_ratio = inf;
         for (std::size_t k = 0; k < plateaus.size(); ++k) {
             const auto [gap, mass] = plateaus[k];
             const Curve c = curve(0, k), same = curve(1, k), longer = curve(2, k);
             checks.push_back({of_gap("plateau [kg]", gap), c.plateau(), 0.97 * mass, 1.03 * mass});
             checks.push_back({of_gap("mu_r of the knee", gap), c.knee(), 0.13, 0.17});
-            checks.push_back({of_gap("least rise below the knee [kg]", gap), c.least_rise(), 0.005, 1});
-            more = lesser(more, longer.mass[0] - c.mass[0]);
+            checks.push_back(
+                {of_gap("smallest increase below the knee [kg]", gap), c.least_rise(), 0.005, 1});
+            increase = min_or_nan(increase, longer.mass[0] - c.mass[0]);
             for (std::size_t j = 0; j < mu_r.size(); ++j) {
-                apart = worse(apart, std::abs(same.mass[j] - c.mass[j]));
-                const double of_static = c.mass[j] / static_limit({gap, mu, mu_r[j]}, 0.5, 0.5);
-                least = lesser(least, of_static), most = worse(most, of_static);
+                difference = max_or_nan(difference, std::abs(same.mass[j] - c.mass[j]));
+                const double ratio = c.mass[j] / static_limit({gap, mu, mu_r[j]}, 0.5, 0.5);
+                min_ratio = min_or_nan(min_ratio, ratio), max_ratio = max_or_nan(max_ratio, ratio);
             }
         }
-        checks.push_back({"least mass over the static limit", least, 0.9, 1.05});
-        checks.push_back({"largest mass over the static limit", most, 0.9, 1.05});
-        checks.push_back({"EPSD with R* holds more at mu_r = 0.07, at least [kg]", more, 0.01, 3});
-        checks.push_back({"EPSD of the same bounds apart, at most [kg]", apart, 0, 0.0301});
+        checks.push_back({"smallest mass over the static limit", min_ratio, 0.9, 1.05});
+        checks.push_back({"largest mass over the static limit", max_ratio, 0.9, 1.05});
+        checks.push_back(
+            {"EPSD with R*: smallest increase of the mass at mu_r = 0.07 [kg]", increase, 0.01, 3});
+        checks.push_back({"EPSD with the same bounds: largest difference [kg]", difference, 0, 0.0301});
     }
 
     void find_friction()
@@ -154,8 +158,8 @@ private:
         std::vector<Stack> stacks;
         for (const Plateau& p : plateaus)
             for (const double m : mus) stacks.push_back({p.gap, m, 0.4});
-        const std::vector<double> found =
-            critical_masses(stacks, models[0].run, [&](double share) { tell(0.75 + 0.1 * share); });
+        const std::vector<double> found = critical_masses(
+            stacks, models[0].run, [&](double share) { report_progress(0.75 + 0.1 * share); });
         for (std::size_t k = 0; k < stacks.size(); ++k)
             friction.rows.push_back({stacks[k].gap, stacks[k].mu, found[k], static_limit(stacks[k], 0.5, 0.5),
                                      plateaus[k / mus.size()].mass});
@@ -163,12 +167,13 @@ private:
             const auto first = found.begin() + static_cast<std::ptrdiff_t>(k * mus.size());
             const double at =
                 friction_at(mus, {first, first + static_cast<std::ptrdiff_t>(mus.size())}, plateaus[k].mass);
-            checks.push_back({of_gap("mu of the plateau", plateaus[k].gap), at, 0.99 * mu, 1.01 * mu});
+            checks.push_back({of_gap("mu at the plateau mass", plateaus[k].gap), at, 0.99 * mu, 1.01 * mu});
         }
     }
 
-    /// More than the critical mass comes down and less is held, near it and far from it; half of the step changes nothing.
-    void judge_bisection()
+    /// Checks that masses above the critical mass collapse and masses below it do not, and that half the step
+    /// gives the same critical mass within one increment.
+    void check_bisection()
     {
         std::vector<Stack> stacks;
         std::vector<double> mass;
@@ -183,35 +188,35 @@ private:
         const std::vector<double> z = heights(stacks, mass, models[0].run);
         int wrong = 0;
         for (std::size_t k = 0; k < z.size(); ++k) {
-            const bool falls = z[k] < come_down;
-            fell += falls;
-            wrong += falls != (k % 4 >= 2);
+            const bool collapsed = z[k] < collapse_height;
+            fell += collapsed;
+            wrong += collapsed != (k % 4 >= 2);
         }
-        checks.push_back({"stacks that fell", double(fell), double(expected), double(expected)});
-        checks.push_back({"stacks on the wrong side of their critical mass", double(wrong), 0, 0});
-        tell(0.9);
+        checks.push_back({"number of collapsed stacks", double(fell), double(expected), double(expected)});
+        checks.push_back({"number of stacks on the wrong side of the critical mass", double(wrong), 0, 0});
+        report_progress(0.9);
 
         StackRun finer = models[0].run;
         finer.h /= 2;
         const double coarse[] = {masses[0][1], masses[0][mu_r.size() - 1]};
         const std::vector<double> fine =
             critical_masses({{plateaus[0].gap, mu, mu_r[1]}, {plateaus[0].gap, mu, mu_r.back()}}, finer,
-                            [&](double share) { tell(0.9 + 0.1 * share); });
+                            [&](double share) { report_progress(0.9 + 0.1 * share); });
         for (int k = 0; k < 2; ++k)
             checks.push_back(
-                {std::string("change by half of the step, ") + (k == 0 ? "rolling" : "sliding") + " [kg]",
+                {std::string("change with half the step, ") + (k == 0 ? "rolling" : "sliding") + " [kg]",
                  std::abs(fine[k] - coarse[k]), 0, 0.0101});
     }
 
-    void tell(double share) const { options.progress(share); }
+    void report_progress(double share) const { options.progress(share); }
 
     const ValidationOptions& options;
     std::vector<double> mu_r;
     std::vector<Plateau> plateaus;
-    std::array<Model, 3> models;
+    std::array<RollingModel, 3> models;
     std::array<std::vector<double>, 3> masses;
     ValidationTable study{"study", {"rolling", "gap", "mu_r", "mu", "critical_mass", "static_limit"}, {}},
-        friction{"friction", {"gap", "mu", "critical_mass", "static_limit", "demanded"}, {}};
+        friction{"friction", {"gap", "mu", "critical_mass", "static_limit", "required"}, {}};
     std::vector<ValidationCheck> checks;
 };
 

@@ -11,14 +11,14 @@ namespace hilda::granular {
 namespace {
 
 constexpr double R = 0.15, g = 9.81;
-constexpr int grams = 10, heaviest = 256;  // a step, and what brings every stack down, in steps
+constexpr int grams = 10, max_mass = 256;  // increment of the mass [g], and the largest mass in increments
 
-Material stuff(const std::string& name) { return {name, 1000, 2e6, 0.3}; }
+Material sphere_material(const std::string& name) { return {name, 1000, 2e6, 0.3}; }
 
 PairLaw law(const Stack& stack, const StackRun& run, bool ground)
 {
     const auto mu_r = static_cast<float>(stack.mu_r * (ground ? run.ground : 1));
-    PairLaw law = hertz_mindlin(stuff(""), 0.4, stack.mu);
+    PairLaw law = hertz_mindlin(sphere_material(""), 0.4, stack.mu);
     if (run.rolling == StackRolling::half_radius)
         law.rolling = ConstantTorque{.mu_r = mu_r, .slow = 1e-4f, .half_radius = 1};
     else
@@ -26,7 +26,7 @@ PairLaw law(const Stack& stack, const StackRun& run, bool ground)
     return law;
 }
 
-/// A material for every pair of coefficients, and the ground after them
+/// One material for each pair (μ, μ_r), and the last one for the ground
 class Materials {
 public:
     explicit Materials(const std::vector<Stack>& stacks)
@@ -38,7 +38,7 @@ public:
 
     World world(const WorldOptions& options, const StackRun& run) const
     {
-        World world(options, std::vector<Material>(number.size() + 1, stuff("sphere")));
+        World world(options, std::vector<Material>(number.size() + 1, sphere_material("sphere")));
         for (const auto& [of, k] : number) {
             const Stack s{.gap = 0, .mu = of.first, .mu_r = of.second};
             for (int other = 0; other <= k; ++other) world.set_law(k, other, law(s, run, false));
@@ -74,7 +74,7 @@ std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<
     }
     world.step(std::lround(run.settle / run.h));
 
-    // it touches both, and presses on neither
+    // the upper sphere is placed in contact with both, without overlap
     const std::vector<Particle> settled = world.particles();
     for (std::size_t k = 0; k < n; ++k) {
         const Vec3 left = settled[2 * k].r, right = settled[2 * k + 1].r;
@@ -95,27 +95,23 @@ std::vector<double> critical_masses(const std::vector<Stack>& stacks, const Stac
                                     const std::function<void(double)>& progress)
 {
     const std::size_t n = stacks.size();
-    std::vector<int> holds(n, 0), falls(n, heaviest);
+    std::vector<int> stable(n, 0), collapsed(n, max_mass);
     std::vector<double> mass(n);
-    for (int width = heaviest; width > 1; width /= 2) {
-        for (std::size_t k = 0; k < n; ++k) mass[k] = (holds[k] + falls[k]) / 2 * grams / 1000.;
+    for (int width = max_mass; width > 1; width /= 2) {
+        for (std::size_t k = 0; k < n; ++k) mass[k] = (stable[k] + collapsed[k]) / 2 * grams / 1000.;
         const std::vector<double> z = heights(stacks, mass, run);
         for (std::size_t k = 0; k < n; ++k)
-            (z[k] < come_down ? falls[k] : holds[k]) = (holds[k] + falls[k]) / 2;
-        progress(1 - std::log2(width / 2.) / std::log2(heaviest));
+            (z[k] < collapse_height ? collapsed[k] : stable[k]) = (stable[k] + collapsed[k]) / 2;
+        progress(1 - std::log2(width / 2.) / std::log2(max_mass));
     }
-    for (std::size_t k = 0; k < n; ++k) mass[k] = falls[k] * grams / 1000.;
+    for (std::size_t k = 0; k < n; ++k) mass[k] = collapsed[k] * grams / 1000.;
     return mass;
 }
 
-/// With W half of the weight of the upper sphere, θ the slope of the line of centres against the vertical and the friction
-/// between the spheres at its bound, what presses the spheres together is N = W/(cos θ + μ sin θ). The ground holds
-/// N (sin θ - μ cos θ), or the lower spheres slide away; and they roll away when that, on the lever R, is more than
-/// μ N R and the torques of rolling.
 double static_limit(const Stack& s, double lever_ground, double lever_top)
 {
     const double sine = (1 + s.gap / 2) / 2, cosine = std::sqrt(1 - sine * sine);
-    const double N = 1 / (cosine + s.mu * sine);  // of W = 1
+    const double N = 1 / (cosine + s.mu * sine);  // for W = 1
     const double pushes = N * (sine - s.mu * cosine);
     const double slides = pushes > s.mu ? s.mu / (pushes - s.mu) : std::numeric_limits<double>::infinity();
     const double torque = s.mu_r * lever_ground;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Validations: small experiments whose answer is known, in closed form, from another code or from measurements.
+/// Validations: small simulations whose result is known in closed form, from another code or from
+/// measurements.
 ///
-/// What they compute is here, so that it can be run beside a GPU with nothing else there; the study of the same name adds
-/// files, figures and the record of where a result comes from.
+/// The computations depend on this room only, so that they can be run on a GPU machine. The study of the same
+/// name writes files and figures.
 
 #pragma once
 
@@ -16,30 +17,32 @@
 namespace hilda::granular {
 
 struct ValidationOptions {
-    bool full = false;   ///< every value of the dissertation; else those that say most, in less time
-    Device device = {};  ///< of every World
-    std::function<void(double)> progress = [](double) {};  ///< told the share that is done
+    /// All parameter values of the dissertation; otherwise a selection that takes less time
+    bool full = false;
+    Device device = {};                                    ///< device of all worlds
+    std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
 };
 
-/// Rows under named columns. The first of a result is what study.csv has; the others are curves.
+/// A table with named columns. The first table of a result is written to study.csv, each other one to
+/// NAME.csv.
 struct ValidationTable {
     using Cell = std::variant<std::string, double>;
 
-    std::string name;  ///< of the file, without .csv
+    std::string name;  ///< name of the file without .csv
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
 };
 
-/// What came out, and between which bounds it must be; NaN is between none.
+/// An acceptance criterion: a measured value and its bounds. NaN is not within any bounds.
 struct ValidationCheck {
     std::string what;
-    double measured = 0, least = 0, most = 0;
+    double measured = 0, lower = 0, upper = 0;
 
-    bool met() const { return measured >= least && measured <= most; }
+    bool passed() const { return measured >= lower && measured <= upper; }
 };
 
-/// The larger one; what is not a number is larger than all numbers, so that it is not lost where a worst is collected.
-inline double worse(double a, double b) { return a != a || b <= a ? a : b; }
+/// Maximum that propagates NaN: the result is NaN if a or b is NaN.
+inline double max_or_nan(double a, double b) { return a != a || b <= a ? a : b; }
 
 struct ValidationResult {
     std::vector<ValidationTable> tables;
@@ -47,12 +50,14 @@ struct ValidationResult {
 };
 
 struct Validation {
-    std::string name;     ///< head-on, ...
-    std::string answers;  ///< the figure it answers, one line
+    std::string name;         ///< for example head-on
+    std::string description;  ///< what is validated, with the figure, in one line
     ValidationResult (*run)(const ValidationOptions&) = nullptr;
 };
 
+/// All registered validations, ordered by name
 const std::vector<Validation>& validations();
+/// Registers a validation during static initialisation. Returns true.
 bool register_validation(Validation validation);
 
 }  // namespace hilda::granular

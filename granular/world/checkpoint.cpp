@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A world written down between two steps. A world that goes on looks for its neighbours anew at the same step, so that
-// it and one that was loaded have the same bits from then on.
+// Serialisation of a world between two steps. Writing a checkpoint invalidates the neighbour list, so that
+// the world that continues and a world that is restored build it at the same step and give bitwise identical
+// results from then on.
+//
+// Layout, little endian: magic, format, length in bytes; run id, scalars, lists (length and elements);
+// checksum.
 #include "granular/files.hpp"
 #include "granular/world/world.hpp"
 
@@ -15,9 +19,10 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
 constexpr std::uint64_t format = 5;
-constexpr std::size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint64_t);
+constexpr std::size_t header_size = sizeof magic + 2 * sizeof(std::uint64_t),
+                      trailer_size = sizeof(std::uint64_t);
 
-struct Pack {
+struct Writer {
     std::string bytes;
     template <class T>
     void operator()(const T& value)
@@ -33,14 +38,14 @@ struct Pack {
     }
 };
 
-struct Unpack {
+struct Reader {
     const char *at, *end;
     const std::string& file;
 
     void raw(void* to, std::size_t n)
     {
         if (static_cast<std::size_t>(end - at) < n)
-            throw FileError(file + ": the checkpoint is damaged: it ends too early");
+            throw FileError(file + ": the checkpoint is damaged: it is truncated");
         if (n > 0) std::memcpy(to, at, n);
         at += n;
     }
@@ -57,7 +62,7 @@ struct Unpack {
         using T = std::remove_reference_t<decltype(*to.data())>;
         const auto n = one<std::uint64_t>();
         if (n > static_cast<std::size_t>(end - at) / sizeof(T))
-            throw FileError(file + ": the checkpoint is damaged: a list is too long");
+            throw FileError(file + ": the checkpoint is damaged: a list is longer than the file");
         to.resize(n);
         raw(static_cast<void*>(to.data()), n * sizeof(T));
         return n;
@@ -66,14 +71,14 @@ struct Unpack {
 
 }  // namespace
 
-std::string World::to_bytes(const std::string& of_run)
+std::string World::to_bytes(const std::string& run_id)
 {
     insert_pending();
-    Pack a;
+    Writer a;
     a.bytes.append(magic, sizeof magic);
     a(format), a(std::uint64_t{0});
-    a.list(of_run.data(), of_run.size());
-    a(number), a(found), a(fastest), a(scene);
+    a.list(run_id.data(), run_id.size());
+    a(step_count), a(rebuild_count), a(max_speed), a(domain);
     a.list(boundaries.data(), boundaries.size());
     a.list(forces.data(), forces.size());
     const Arrays<par::Cpu>& all = engine->arrays();
@@ -82,81 +87,82 @@ std::string World::to_bytes(const std::string& of_run)
     const auto array = [&](const auto& values, std::size_t n) { a.list(values.data(), n); };
     const std::uint32_t n = particle.count;
     array(particle.position, n), array(particle.velocity, n), array(particle.omega, n),
-        array(particle.rest, n), array(particle.kind, n);
+        array(particle.compensation, n), array(particle.species, n);
     array(particle.id, n), array(particle.acc, particle.acc.size()),
-        array(particle.turn, particle.turn.size());
+        array(particle.alpha, particle.alpha.size());
     array(particle.orientation, particle.orientation.size());
-    array(particle.orientation_rest, particle.orientation_rest.size());
-    // pairs that touch, and no others: the rest is found again
+    array(particle.orientation_compensation, particle.orientation_compensation.size());
+    // Only pairs in contact have a history. The others are found when the neighbour list is rebuilt.
     std::vector<std::uint32_t> i, j;
-    std::vector<Four> history, turning;
+    std::vector<Float4> history, rotation_history;
     for (std::uint32_t k = 0; k < pairs.count; ++k) {
-        if (pairs.touches.data()[k] == 0) continue;
+        if (pairs.in_contact.data()[k] == 0) continue;
         i.push_back(pairs.i.data()[k]), j.push_back(pairs.j.data()[k]);
         history.push_back(pairs.history.data()[k]);
-        if (pairs.turning.size() > 0) turning.push_back(pairs.turning.data()[k]);
+        if (pairs.rotation_history.size() > 0) rotation_history.push_back(pairs.rotation_history.data()[k]);
     }
-    array(i, i.size()), array(j, j.size()), array(history, history.size()), array(turning, turning.size());
-    const std::uint64_t length = a.bytes.size() + tail;
+    array(i, i.size()), array(j, j.size()), array(history, history.size()),
+        array(rotation_history, rotation_history.size());
+    const std::uint64_t length = a.bytes.size() + trailer_size;
     std::memcpy(a.bytes.data() + sizeof magic + sizeof format, &length, sizeof length);
     a(checksum(a.bytes.data(), a.bytes.size()));
     invalidate_neighbours();
     return std::move(a.bytes);
 }
 
-void World::from_bytes(const std::string& bytes, const std::string& of_run, const std::string& file)
+void World::from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file)
 {
     const auto damaged = [&](const std::string& how) {
         return FileError(file + ": the checkpoint is damaged: " + how);
     };
-    if (bytes.size() < head + tail || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-        throw damaged("it does not begin as one");
-    Unpack a{bytes.data() + sizeof magic, bytes.data() + bytes.size() - tail, file};
+    if (bytes.size() < header_size + trailer_size || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+        throw damaged("the header is missing");
+    Reader a{bytes.data() + sizeof magic, bytes.data() + bytes.size() - trailer_size, file};
     std::uint64_t sum = 0;
     std::memcpy(&sum, a.end, sizeof sum);
     const auto version = a.one<std::uint64_t>(), length = a.one<std::uint64_t>();
     if (length != bytes.size())
-        throw damaged("it should have " + std::to_string(length) + " bytes, got " +
+        throw damaged("it must have " + std::to_string(length) + " bytes, got " +
                       std::to_string(bytes.size()));
-    if (sum != checksum(bytes.data(), bytes.size() - tail)) throw damaged("its checksum is wrong");
+    if (sum != checksum(bytes.data(), bytes.size() - trailer_size)) throw damaged("the checksum is wrong");
     if (version != format)
         throw FileError(file + ": the checkpoint has format " + std::to_string(version) +
                         "; this program reads format " + std::to_string(format));
     std::string run;
     a.list(run);
-    if (run != of_run) throw FileError(file + ": the checkpoint belongs to another run");
+    if (run != run_id) throw FileError(file + ": the checkpoint belongs to another run");
     insert_pending();
-    number = a.one<long>(), found = a.one<long>();
-    fastest = a.one<float>(), scene = a.one<Scene>();
+    step_count = a.one<long>(), rebuild_count = a.one<long>();
+    max_speed = a.one<float>(), domain = a.one<Domain>();
     a.list(boundaries), a.list(forces);
     forces_changed = true;
     Arrays<par::Cpu>& all = engine->arrays();
     Particles<par::Cpu>& particle = all.particle;
     Pairs<par::Cpu>& pairs = all.pairs;
     const auto n = a.list(particle.position);
-    a.list(particle.velocity), a.list(particle.omega), a.list(particle.rest), a.list(particle.kind),
-        a.list(particle.id);
-    a.list(particle.acc), a.list(particle.turn);
+    a.list(particle.velocity), a.list(particle.omega), a.list(particle.compensation),
+        a.list(particle.species), a.list(particle.id);
+    a.list(particle.acc), a.list(particle.alpha);
     a.list(particle.orientation);
-    if (a.list(particle.orientation_rest) != (options.orientation ? n : 0))
-        throw FileError(file +
-                        ": the checkpoint is of a world that keeps orientations where this one does not, or "
-                        "the other way round");
+    if (a.list(particle.orientation_compensation) != (options.orientation ? n : 0))
+        throw FileError(file + ": the checkpoint " + (options.orientation ? "has no" : "has") +
+                        " orientations, but /orientation of this case is " +
+                        (options.orientation ? "true" : "false"));
     particle.count = static_cast<std::uint32_t>(n);
-    particles_in = n;
+    inserted_count = n;
     pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));
     a.list(pairs.j), a.list(pairs.history);
-    const bool turning = a.list(pairs.turning) > 0;
-    if (a.at != a.end) throw damaged("it is too long");
-    pairs.touches.resize(pairs.count), pairs.load.resize(pairs.count);
-    par::fill(par::Cpu(), pairs.touches.data(), pairs.count, std::uint8_t{1});
+    const bool rotation_laws = a.list(pairs.rotation_history) > 0;
+    if (a.at != a.end) throw damaged("it has trailing bytes");
+    pairs.in_contact.resize(pairs.count), pairs.load.resize(pairs.count);
+    par::fill(par::Cpu(), pairs.in_contact.data(), pairs.count, std::uint8_t{1});
     par::fill(par::Cpu(), pairs.load.data(), pairs.count, Load{});
-    if (turning) {
+    if (rotation_laws) {
         pairs.torque.resize(pairs.count);
-        par::fill(par::Cpu(), pairs.torque.data(), pairs.count, Four{});
+        par::fill(par::Cpu(), pairs.torque.data(), pairs.count, Float4{});
     }
-    engine->written();
-    time = static_cast<double>(number) * options.h;
+    engine->arrays_modified();
+    time = static_cast<double>(step_count) * options.h;
     invalidate_neighbours();
 }
 

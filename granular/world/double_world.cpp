@@ -8,16 +8,16 @@ void DoubleWorld::find_loads()
     const int n = static_cast<int>(particle.size());
     F.assign(n, {0, 0, 0}), T.assign(n, {0, 0, 0});
     const auto inverse = [](const Particle& p) { return p.fixed ? 0 : 1 / p.mass; };
-    const auto meet = [&](int i, int j, ContactPoint<double>& t, double delta) {
+    const auto add_contact = [&](int i, int j, ContactPoint<double>& t, double delta) {
         if (!(delta > 0)) {
             history.erase({i, j});
             return;
         }
         t.delta = delta, t.h = options.h;
-        History<double>& kept =
+        History<double>& state =
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
-        kept.age += t.h;
-        const ContactForce<double> out = evaluate(law, t, kept, law.turns());
+        state.age += t.h;
+        const ContactForce<double> out = evaluate(law, t, state, law.resists_rotation());
         const Vec3 M = -t.n.cross(out.F_t);
         F[i] += out.F, T[i] += t.R_i * M + out.T;
         if (j >= 0) F[j] -= out.F, T[j] += t.R_j * M - out.T;
@@ -28,11 +28,11 @@ void DoubleWorld::find_loads()
         for (int j = i + 1; j < n; ++j) {
             const Particle& q = particle[j];
             const Vec3 d = p.r - q.r;
-            const double far = d.norm();
-            t.R_i = p.radius, t.R_j = q.radius, t.n = (1 / far) * d;
+            const double distance = d.norm();
+            t.R_i = p.radius, t.R_j = q.radius, t.n = (1 / distance) * d;
             set_masses(t, inverse(p), inverse(q));
             set_rates(t, p.v - q.v, p.omega, q.omega);
-            meet(i, j, t, p.radius + q.radius - far);
+            add_contact(i, j, t, p.radius + q.radius - distance);
         }
         for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
             const Nearest near = nearest(boundary[b], p.r);
@@ -40,7 +40,7 @@ void DoubleWorld::find_loads()
             t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
             set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega,
                       boundary[b].omega);
-            if (!p.fixed) meet(i, -1 - b, t, p.radius - near.distance);
+            if (!p.fixed) add_contact(i, -1 - b, t, p.radius - near.distance);
         }
     }
 }
@@ -51,7 +51,7 @@ void DoubleWorld::step(long count)
     const Scheme scheme = options.scheme;
     if (a.size() != n) a.assign(n, {0, 0, 0}), alpha.assign(n, {0, 0, 0});
     const bool verlet = scheme == Scheme::velocity_verlet;
-    const auto go_all = [&](Part part) {
+    const auto advance_all = [&](Part part) {
         for (std::size_t k = 0; k < n; ++k) {
             Particle& p = particle[k];
             if (p.fixed) continue;
@@ -61,10 +61,11 @@ void DoubleWorld::step(long count)
                 turn = (turns ? 2.5 / (p.mass * p.radius * p.radius) : 0) * T[k];
             }
             if (part != Part::only_loads) {
-                const Change<double> moves = change(scheme, part, p.v, acc, a[k], options.h),
-                                     turns_by = change(scheme, part, p.omega, turn, alpha[k], options.h);
-                p.r += moves.way, p.v += moves.v, p.omega += turns_by.v;
-                const auto d = turn_by<double>(turns_by.way, {p.e[0], {p.e[1], p.e[2], p.e[3]}});
+                const Increment<double> translation = increment(scheme, part, p.v, acc, a[k], options.h),
+                                        rotation =
+                                            increment(scheme, part, p.omega, turn, alpha[k], options.h);
+                p.r += translation.dx, p.v += translation.dv, p.omega += rotation.dv;
+                const auto d = rotation_increment<double>(rotation.dx, {p.e[0], {p.e[1], p.e[2], p.e[3]}});
                 p.e[0] += d.e0, p.e[1] += d.e.x, p.e[2] += d.e.y, p.e[3] += d.e.z;
             }
             a[k] = acc, alpha[k] = turn;
@@ -73,16 +74,16 @@ void DoubleWorld::step(long count)
     const auto move_boundaries = [&] {
         for (Boundary& b : boundary) b.r += options.h * b.v;
     };
-    for (; count > 0; --count, ++number) {
-        if (number == 0 || !verlet) find_loads();
-        if (number == 0) go_all(Part::only_loads);
+    for (; count > 0; --count, ++step_count) {
+        if (step_count == 0 || !verlet) find_loads();
+        if (step_count == 0) advance_all(Part::only_loads);
         if (verlet) {
-            go_all(Part::before_loads);
+            advance_all(Part::before_loads);
             move_boundaries();
             find_loads();
-            go_all(Part::after_loads);
+            advance_all(Part::after_loads);
         } else {
-            go_all(Part::whole);
+            advance_all(Part::whole);
             move_boundaries();
         }
     }

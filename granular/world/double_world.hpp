@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The same laws and schemes in double precision, for few particles: what World is compared with.
+/// Double-precision reference of World: the same laws and schemes for few particles, for comparison in tests
+/// and validations.
 
 #pragma once
 
@@ -8,17 +9,18 @@
 #include <map>
 
 namespace hilda::granular {
-
-/// All pairs are looked at, one by one. Not periodic.
+/// Tests all pairs for contact, so a step takes O(n²) operations. The domain is unbounded and not periodic.
+/// Boundaries move with their prescribed velocities; contact forces do not accelerate them.
 class DoubleWorld {
 public:
     DoubleWorld(const WorldOptions& options, const PairLaw& law) : options(options), law(law) {}
 
+    /// Computes n steps.
     void step(long n = 1);
 
-    std::vector<Particle> particle;  ///< with their masses set; a fixed one keeps its velocity
+    std::vector<Particle> particle;  ///< masses must be set; the velocities of fixed particles stay constant
     std::vector<Boundary> boundary;
-    bool turns = true;
+    bool turns = true;  ///< false: torques do not accelerate the rotation of particles
 
 private:
     void find_loads();
@@ -26,9 +28,9 @@ private:
     WorldOptions options;
     PairLaw law;
     std::map<std::pair<int, int>, History<double>>
-        history;  ///< of those that touch; boundaries as -1 - number
+        history;  ///< of the pairs in contact, i < j; boundary b has the index -1 - b
     std::vector<Vec3> F, T, a, alpha;
-    long number = 0;
+    long step_count = 0;
 };
 
 }  // namespace hilda::granular

@@ -26,7 +26,7 @@ void append(std::string& to, const Vec3& v)
 
 std::string particles_csv(const World& world)
 {
-    const bool orientation = world.keeps_orientation();
+    const bool orientation = world.has_orientation();
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
     csv += orientation ? ",e0,e1,e2,e3\n" : "\n";
     csv.reserve((orientation ? 300 : 220) * world.count());
@@ -85,8 +85,8 @@ std::string particles_vtp(const World& world)
     add("<PointData>\n", "Float32", "radius", 1, radius);
     add("", "Float64", "velocity", 3, v);
     add("", "Float64", "angular velocity", 3, omega);
-    // in the order of the quaternions of vtkGlyph3DMapper, which draws the representation 3D Glyphs
-    if (world.keeps_orientation()) add("", "Float64", "orientation", 4, e);
+    // Order e0, e1, e2, e3, as vtkGlyph3DMapper (representation 3D Glyphs) expects quaternions
+    if (world.has_orientation()) add("", "Float64", "orientation", 4, e);
     add("", "Int32", "material", 1, material);
     add("", "Int32", "id", 1, id);
     add("</PointData>\n<Points>\n", "Float64", "Points", 3, r);
@@ -116,7 +116,7 @@ std::array<double, 9> stress(const World& world, const std::vector<ContactRecord
     std::array<double, 9> sum{};
     const std::vector<Particle> all = world.particles();
     for (const ContactRecord& c : contacts) {
-        // the branch from the centre of j, or from the boundary, to that of i
+        // length of the branch vector, which is parallel to n
         const double length = all[c.i].radius + (c.boundary ? 0 : all[c.j].radius) - c.delta;
         const double l[] = {length * c.n.x, length * c.n.y, length * c.n.z}, F[] = {c.F.x, c.F.y, c.F.z};
         for (int a = 0; a < 3; ++a)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a run leaves: tables for plots, particles for ParaView.
+/// Output of a world: tables (CSV) and frames for ParaView (VTK), as strings.
 
 #pragma once
 
@@ -7,16 +7,23 @@
 
 namespace hilda::granular {
 
-/// id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z: a line a particle, by id
+/// One line per particle, ordered by id: id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z, and
+/// e0,e1,e2,e3 if the world integrates orientations. SI units, global frame.
 std::string particles_csv(const World& world);
-/// i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz: a line a contact
+/// One line per contact: i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz. See ContactRecord.
 std::string contacts_csv(const World& world);
-/// Particles as points with radius, velocity, angular velocity, material and id (VTK XML PolyData, raw appended)
+/// The particles as points with radius, velocity, angular velocity, material, id and, if integrated,
+/// orientation. VTK XML PolyData with raw appended data.
 std::string particles_vtp(const World& world);
-/// The collection of a run: times and files
+/// A ParaView collection. `frames`: time [s] and file name of each frame.
 std::string pvd(const std::vector<std::pair<double, std::string>>& frames);
 
-/// The Love-Weber stress of the contacts over a volume [Pa]: σ = 1/V Σ l ⊗ F, pressure positive; row by row
+/// Love-Weber stress of the contacts over a volume V [m³]:
+///
+///     σ = 1/V Σ l ⊗ F
+///
+/// l is the branch vector from the centre of j, or from the contact point on a boundary, to the centre of i;
+/// F is the force on i. Returns the 9 components by rows [Pa]; compression is positive.
 std::array<double, 9> stress(const World& world, const std::vector<ContactRecord>& contacts, double volume);
 
 }  // namespace hilda::granular

@@ -11,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-/// Time since it was last taken [s]
+/// Stopwatch: take() returns the time since the previous call [s].
 class Lap {
 public:
     double take()
@@ -39,9 +39,9 @@ World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<E
             refuse("domain", std::string("the high end along ") + axis + " must be above the low one", high);
     if (!(o.h > 0) || !std::isfinite(o.h)) refuse("step", "must be positive", o.h);
     if (!(o.skin > 0 && o.skin <= 1)) refuse("skin", "must be in (0, 1] diameters", o.skin);
-    constexpr std::size_t most = 4096;  // whose table of pairs takes 16 MB
-    if (materials.size() > most)
-        refuse("materials", "there must not be more than " + std::to_string(most), materials.size());
+    constexpr std::size_t max_materials = 4096;  // the table of pairs then takes 16 MB
+    if (materials.size() > max_materials)
+        refuse("materials", "there must not be more than " + std::to_string(max_materials), materials.size());
     for (const Material& m : materials) {
         const std::string where = "material '" + m.name + "'";
         if (!(m.density > 0) || !std::isfinite(m.density))
@@ -71,12 +71,12 @@ int World::add(const Boundary& b)
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
     if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
-        refuse("boundary", "place, velocities and force must be finite", b.r.norm() + b.v.norm());
+        refuse("boundary", "position, velocities and force must be finite", b.r.norm() + b.v.norm());
     const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
     if (round && !(b.radius > 0 && std::isfinite(b.radius)))
         refuse("boundary", "the radius must be positive", b.radius);
     if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
-        refuse("boundary", "axis must be a unit vector; its length", b.axis.norm());
+        refuse("boundary", "the length of axis must be 1", b.axis.norm());
     if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
         refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
     boundaries.push_back(b);
@@ -93,12 +93,12 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
     Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (p.id.data()[k] == id) {
-            p.velocity.data()[k] = to_four(v, p.velocity.data()[k].w);
-            put_halves(p.rest.data()[k].v, left_of(v), to_nearest);
-            put_halves(p.rest.data()[k].omega, left_of(omega), to_nearest);
-            p.omega.data()[k] = to_four(omega, p.omega.data()[k].w);
+            p.velocity.data()[k] = to_float4(v, p.velocity.data()[k].w);
+            store_bfloat16(p.compensation.data()[k].v, rounding_error(v), dither_to_nearest);
+            store_bfloat16(p.compensation.data()[k].omega, rounding_error(omega), dither_to_nearest);
+            p.omega.data()[k] = to_float4(omega, p.omega.data()[k].w);
         }
-    engine->written();
+    engine->arrays_modified();
 }
 
 void World::set_force(std::uint32_t id, const Vec3& F)
@@ -106,12 +106,12 @@ void World::set_force(std::uint32_t id, const Vec3& F)
     if (id >= count()) refuse("force", "no particle has this id", id);
     if (!finite(F)) refuse("force on " + name_of(id), "must be finite", F.norm());
     forces.resize(count());
-    forces[id] = to_four(F, 0);
+    forces[id] = to_float4(F, 0);
     forces_changed = true;
 }
 
-/// The particle at k of the arrays is lost: where, when and how fast.
-void World::lose(std::uint32_t k, const std::string& how) const
+/// Throws ParticleLost for the particle with the index k of the arrays, with id, time and velocity.
+void World::throw_lost(std::uint32_t k, const std::string& how) const
 {
     const Particles<par::Cpu>& p = engine->arrays().particle;
     const std::uint32_t id = p.id.data()[k];
@@ -122,23 +122,26 @@ void World::lose(std::uint32_t k, const std::string& how) const
     throw ParticleLost(what.str(), id, time);
 }
 
-/// The list of pairs holds until two have come nearer to each other by the skin.
-void World::keep_neighbours()
+/// Rebuilds the neighbour list if a pair outside it may be in contact: if a particle or a boundary may have
+/// moved by more than half the skin since the list was built.
+void World::update_neighbours()
 {
-    const double far = 0.5 * scene.skin;
-    if (moved <= far && moved_boundaries <= far) return;
-    // The sum of the longest ways of each step is a bound; the longest way of one particle may be less.
-    if (std::isfinite(moved) && moved_boundaries <= far) {
-        const double measured = engine->longest_way() * scene.grid.unit;
-        if (measured <= 0.8 * far) {
-            moved = measured;
+    const double allowed = 0.5 * domain.skin;
+    if (particle_displacement <= allowed && boundary_displacement <= allowed) return;
+    // particle_displacement is the sum of the largest displacements of each step, an upper bound. It is
+    // replaced by the measured largest displacement of one particle, which may be smaller, before the list is
+    // rebuilt.
+    if (std::isfinite(particle_displacement) && boundary_displacement <= allowed) {
+        const double measured = engine->largest_displacement() * domain.grid.unit;
+        if (measured <= 0.8 * allowed) {
+            particle_displacement = measured;
             return;
         }
     }
-    look_for_neighbours();
+    rebuild_neighbours();
 }
 
-void World::look_for_neighbours() const
+void World::rebuild_neighbours() const
 {
     if (laws_changed) {
         check_laws(particles());
@@ -147,74 +150,82 @@ void World::look_for_neighbours() const
     laws_changed = false;
     engine->set_boundaries(boundaries);
     try {
-        engine->find_neighbours(scene);
+        engine->find_neighbours(domain);
     } catch (const LeftDomain& lost) {
         const Particles<par::Cpu>& p = engine->arrays().particle;
         const auto* at = std::find(p.id.data(), p.id.data() + p.count, lost.id);
-        one_is_lost = true;
-        lose(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
+        particle_lost = true;
+        throw_lost(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
     } catch (const TooManyPairs&) {
-        refuse("particles", "there must not be more than 2^31 pairs within the skin, of particles", count());
+        refuse("particles",
+               "the neighbour list must not have more than 2^31 pairs; reduce the skin or the ratio of "
+               "radii; particles",
+               count());
     }
-    moved = moved_boundaries = 0;
-    ++found;
+    particle_displacement = boundary_displacement = 0;
+    ++rebuild_count;
 }
 
-StepOf World::step_of(Part part) const
+StepParameters World::step_parameters(Part part) const
 {
-    // both parts of a step have one of their own
-    const auto count = static_cast<std::uint64_t>(2 * number + (part == Part::after_loads ? 2 : 1));
-    const double golden = 0.6180339887498949 * static_cast<double>(count);  // fills an interval most evenly
+    // The dither of the two parts of a velocity Verlet step differs.
+    const auto count = static_cast<std::uint64_t>(2 * step_count + (part == Part::after_loads ? 2 : 1));
+    const double golden =
+        0.6180339887498949 * static_cast<double>(count);  // low-discrepancy (golden-ratio) sequence
     return {.scheme = options.scheme,
             .part = part,
             .gravity = {static_cast<float>(options.gravity.x), static_cast<float>(options.gravity.y),
                         static_cast<float>(options.gravity.z)},
             .h = static_cast<float>(options.h),
-            .per_metre = static_cast<float>(1 / scene.grid.unit),
-            .turns = locked_turning ? 0.f : 1.f,
-            .even = static_cast<float>(golden - std::floor(golden) - 0.5),
-            .random = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
+            .units_per_metre = static_cast<float>(1 / domain.grid.unit),
+            .torque_factor = rotation_locked ? 0.f : 1.f,
+            .displacement_dither = static_cast<float>(golden - std::floor(golden) - 0.5),
+            .velocity_dither = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
 }
 
-/// Loads give tools their velocities of the step.
-void World::push_tools()
+/// Integrates the velocities of tools, boundaries with a mass m and a moment of inertia I, by symplectic
+/// Euler:
+///
+///     v += h ((F_contact + F)/m + g) along the free axes,    ω += h T/I
+void World::accelerate_tools()
 {
     if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
         return;
-    const std::vector<Wrench>& on = engine->on_free_boundaries(scene);
+    const std::vector<Wrench>& load = engine->free_boundary_wrenches(domain);
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
         if (!(b.mass > 0)) continue;
-        const Vec3 a = (1 / b.mass) * (on[k].F + b.F) + options.gravity;
+        const Vec3 a = (1 / b.mass) * (load[k].F + b.F) + options.gravity;
         b.v += options.h * Vec3{b.free[0] ? a.x : 0, b.free[1] ? a.y : 0, b.free[2] ? a.z : 0};
-        if (b.inertia > 0) b.omega += (options.h / b.inertia) * on[k].T;
+        if (b.inertia > 0) b.omega += (options.h / b.inertia) * load[k].T;
     }
 }
 
-/// By their velocities; the longest way of a point on one of them within the domain
+/// Moves the boundaries by h v and rotates their axes by h ω (Rodrigues' formula). Returns an upper bound of
+/// the displacement of a boundary point within the domain [m].
 double World::move_boundaries()
 {
     const double h = options.h;
-    double longest = 0;
+    double largest = 0;
     for (Boundary& b : boundaries) {
         b.r += h * b.v;
-        double way = h * b.v.norm();
+        double displacement = h * b.v.norm();
         const double angle = h * b.omega.norm();
         if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * b.omega;
             const Vec3 turned = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
                                 ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
             b.axis = (1 / turned.norm()) * turned;
-            // the corner of the domain that is farthest from it
+            // distance from r to the farthest corner of the domain
             const Vec3 a = options.low - b.r, c = options.high - b.r;
-            way +=
+            displacement +=
                 angle * Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
                              std::max(std::abs(a.z), std::abs(c.z))}
                             .norm();
         }
-        longest = std::max(longest, way);
+        largest = std::max(largest, displacement);
     }
-    return longest;
+    return largest;
 }
 
 void World::before_each_step(std::function<void(World&)> f) { callbacks.push_back(std::move(f)); }
@@ -226,7 +237,7 @@ void World::step(long n)
         for (const auto& f : callbacks) f(*this);
         insert_pending();
         one_step();
-        time = static_cast<double>(++number) * options.h;
+        time = static_cast<double>(++step_count) * options.h;
     }
 }
 
@@ -241,47 +252,47 @@ void World::one_step()
     };
     const auto find_loads = [&] {
         take(times.advance);
-        keep_neighbours();
+        update_neighbours();
         engine->set_boundaries(boundaries);
         take(times.neighbours);
-        engine->find_loads(scene, h);
+        engine->find_loads(domain, h);
         take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
     forces_changed = false;
-    const auto limit = [&](double way) {
-        if (way < scene.grid.unit * CellGrid::widest) return;
+    const auto check_displacement = [&](double displacement) {
+        if (displacement < domain.grid.unit * CellGrid::widest) return;
         const Particles<par::Cpu>& p = engine->arrays().particle;
-        std::uint32_t worst = 0;
-        double most = -1;
-        for (std::uint32_t k = 0; k < p.count && !std::isnan(most); ++k) {
+        std::uint32_t fastest = 0;
+        double max_speed_found = -1;
+        for (std::uint32_t k = 0; k < p.count && !std::isnan(max_speed_found); ++k) {
             const double speed = to_double(p.velocity.data()[k]).norm();
-            if (!(speed <= most)) most = speed, worst = k;
+            if (!(speed <= max_speed_found)) max_speed_found = speed, fastest = k;
         }
-        lose(worst, "moves more than a cell in a step");
+        throw_lost(fastest, "moves by more than a cell in one step");
     };
-    // Some schemes go with the velocity of before, some with that of after.
-    const auto go = [&](Part part) {
-        const float before = std::exchange(fastest, std::sqrt(engine->advance(step_of(part))));
-        const double way = options.h * static_cast<double>(par::worse(before, fastest));
-        limit(way);
-        return way;
+    // The displacement of a step uses the velocity before or after the update, depending on the scheme.
+    const auto advance = [&](Part part) {
+        const float before = std::exchange(max_speed, std::sqrt(engine->advance(step_parameters(part))));
+        const double displacement = options.h * static_cast<double>(par::nan_max(before, max_speed));
+        check_displacement(displacement);
+        return displacement;
     };
-    if (number == 0 && keeps_accelerations(options.scheme)) {
+    if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads();
-        engine->advance(step_of(Part::only_loads));
+        engine->advance(step_parameters(Part::only_loads));
     }
     if (verlet) {
-        moved += go(Part::before_loads);
-        moved_boundaries += move_boundaries();
+        particle_displacement += advance(Part::before_loads);
+        boundary_displacement += move_boundaries();
         find_loads();
-        push_tools();
-        go(Part::after_loads);
+        accelerate_tools();
+        advance(Part::after_loads);
     } else {
-        if (number > 0 || !keeps_accelerations(options.scheme)) find_loads();
-        push_tools();
-        moved += go(Part::whole);
-        moved_boundaries += move_boundaries();
+        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads();
+        accelerate_tools();
+        particle_displacement += advance(Part::whole);
+        boundary_displacement += move_boundaries();
     }
     take(times.advance);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What the user of the granular room holds: particles, boundaries, materials, and time.
+/// The discrete element simulation: spheres, boundaries, materials, contact laws and time.
+///                                                                           Fang (2022), Chapter 6
 
 #pragma once
 
@@ -17,15 +18,15 @@
 #include <vector>
 
 namespace hilda::granular {
-
-/// Input that makes no sense. what() says where, what and the value.
+/// Invalid input. what() states the place, the violated rule and the value.
 class InvalidCase : public std::invalid_argument {
 public:
     using std::invalid_argument::invalid_argument;
 };
 
-/// A particle left the domain, was faster than a cell in a step, or has no finite velocity; the world stands where the
-/// step began or in its middle, and is not to be stepped on.
+/// A particle has left the domain, moved by more than a cell in one step, or has a velocity that is not
+/// finite. The state of the world is then that at the beginning of the step or within the step. Do not
+/// continue the run with it.
 class ParticleLost : public std::runtime_error {
 public:
     ParticleLost(const std::string& what, std::uint32_t id, double t) : runtime_error(what), id(id), t(t) {}
@@ -35,124 +36,155 @@ public:
 };
 
 struct Particle {
-    Vec3 r = {0, 0, 0};  ///< [m]
-    double radius = 0;   ///< [m]
-    int material = 0;
-    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< [m/s, rad/s]
-    bool fixed = false;                     ///< keeps its place; turns on with omega
-    double mass = 0;                        ///< [kg]; 0: from its density
-    std::uint16_t replica = 0;              ///< meets those of the same replica alone
-    /// Euler parameters e0, e1, e2, e3 from its frame to the global one, made of length 1; kept where WorldOptions say so
+    Vec3 r = {0, 0, 0};                     ///< centre, in the global frame [m]
+    double radius = 0;                      ///< [m]
+    int material = 0;                       ///< index into the materials of the world
+    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m/s, rad/s]
+    bool fixed = false;                     ///< the centre does not move; omega stays constant
+    double mass = 0;                        ///< [kg]; 0: computed from radius and density
+    std::uint16_t replica = 0;              ///< index of the replica it belongs to
+    /// Euler parameters e0, e1, e2, e3 of the rotation from the body frame to the global frame; normalised on
+    /// insertion. They are integrated only if WorldOptions::orientation is set.
     std::array<double, 4> e = {1, 0, 0, 0};
 };
 
 struct ContactRecord {
-    std::uint32_t i = 0, j = 0;  ///< ids; j a boundary's number where `boundary`
+    std::uint32_t i = 0, j = 0;  ///< ids; j is the number of a boundary if `boundary` is true
     bool boundary = false;
-    Vec3 C = {0, 0, 0};  ///< point where F acts on i, at its radius [m]; on the boundary where it is one
-    Vec3 n = {0, 0, 0};  ///< into i
+    Vec3 C = {0, 0, 0};  ///< point of application of F [m]: on the surface of i, or on the boundary
+    Vec3 n = {0, 0, 0};  ///< unit normal, directed into i
     double delta = 0;    ///< overlap [m]
-    Vec3 F = {0, 0, 0};  ///< on i [N]
-    Vec3 T = {0, 0, 0};  ///< of rolling and spin on i [N m]
-    Vec3 u = {0, 0, 0};  ///< tangential displacement [m]; of mindlin-incremental its elastic force [N]
+    Vec3 F = {0, 0, 0};  ///< force on i [N]
+    Vec3 T = {0, 0, 0};  ///< rolling and spin torque on i [N m]
+    Vec3 u = {0, 0, 0};  ///< tangential displacement [m]; with mindlin-incremental the elastic force [N]
     std::uint16_t replica = 0;
 };
 
 struct WorldOptions {
-    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< of the domain [m]
+    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the domain [m]
     std::array<bool, 3> periodic = {false, false, false};
     Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
     double h = 0;                  ///< step [s]
-    double skin = 0.1;             ///< of the neighbour list, in diameters of the largest particle
+    double skin = 0.1;  ///< skin of the neighbour list, in diameters of the largest particle, in (0, 1]
     Scheme scheme = Scheme::symplectic_euler;
-    bool orientation = false;  ///< of particles is kept: 32 bytes for each
+    bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
     Device device = {};
 };
 
-/// Particles, on the CPU or a GPU. All that a run depends on is in the arguments of its functions: the same calls give the
-/// same bits, for any number of threads.
+/// Particles and boundaries with explicit time integration, on the CPU or on a GPU.
 ///
-/// Replicas are systems side by side: each has its particles, and all have the same boundaries.
+/// A run depends only on the arguments of the member functions. The same calls give bitwise identical results
+/// for any number of threads and on every device.
+///
+/// Replicas are independent systems that share one domain and one set of boundaries. Particles of different
+/// replicas do not interact.
 class World {
 public:
-    /// InvalidCase; DeviceError
+    /// Throws InvalidCase, and DeviceError if the device of the options is not available.
     World(const WorldOptions& options, std::vector<Material> materials);
-    /// On an engine of the caller's
+    /// Uses an engine supplied by the caller.
     World(const WorldOptions& options, std::vector<Material> materials, std::unique_ptr<Engine> engine);
     World(World&&) = default;
     ~World();
 
-    /// The law between two materials; for boundaries, of the materials that they are given
+    /// Sets the contact law between two materials. A boundary has the law of its material. At most 255 laws
+    /// can be set. Throws InvalidCase.
     void set_law(int material_i, int material_j, const PairLaw& law);
+    /// Adds a boundary and returns its number. Throws InvalidCase.
     int add(const Boundary& boundary);
-    /// Its id. One that is added to a running world must overlap nothing by more than 5 % of a radius, and begins with the
-    /// acceleration of gravity.
+    /// Adds a particle and returns its id. Throws InvalidCase. The particle is inserted at the next step: its
+    /// place and its overlaps (at most 5 % of a radius) are checked then. Schemes that use the previous
+    /// acceleration start the particle with the acceleration of gravity.
     std::uint32_t add(const Particle& particle);
 
-    /// n steps. InvalidCase for particles that cannot begin so, also with n = 0; ParticleLost; DeviceError.
+    /// Inserts pending particles and computes n ≥ 0 steps. Throws InvalidCase if a pending particle cannot be
+    /// inserted (with n = 0 as well), ParticleLost, DeviceError.
     void step(long n = 1);
     double t() const { return time; }
-    long steps() const { return number; }
+    long steps() const { return step_count; }
 
-    std::vector<Particle> particles() const;      ///< by id, at t
-    std::vector<ContactRecord> contacts() const;  ///< by ids, at t
-    /// On a boundary, at t; by the particles of one replica where that is given
+    std::vector<Particle> particles() const;  ///< state at t, ordered by id, pending particles last
+    /// Contacts at t, those with boundaries last, each group ordered by ids
+    std::vector<ContactRecord> contacts() const;
+    /// Resultant of the contact forces on a boundary at t, about Boundary::r [N, N m]. With `replica` ≥ 0
+    /// only the contacts of that replica are included.
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
-    /// Out of contacts() that are at hand
+    /// The same, computed from a result of contacts()
     Wrench wrench(const std::vector<ContactRecord>& contacts, int boundary, int replica = -1) const;
-    /// Sums over all contacts at t, in a sixth of the time that contacts() takes
+    /// Sums over all contacts at t. totals() takes about a sixth of the time of contacts().
     struct Totals {
         std::size_t contacts = 0;
-        std::array<double, 9> stress = {};  ///< Love-Weber, over the domain [Pa]; see stress()
-        std::vector<Wrench> on_boundary;    ///< by their numbers
+        std::array<double, 9> stress = {};  ///< stress() over the volume of the domain [Pa]
+        std::vector<Wrench> on_boundary;    ///< resultants of the contact forces, by number of the boundary
     };
     Totals totals() const;
 
-    /// What f does at the beginning of every step, at t(): it may set velocities of boundaries and forces, and add
-    /// particles. Those that were told first are called first; none is told within f. They are no part of a checkpoint.
+    /// Registers a callback that is called at the beginning of each step, at t(). It may set velocities of
+    /// boundaries and applied forces, and add particles. It must not register further callbacks. Callbacks
+    /// are called in the order of registration. They are not part of a checkpoint.
     void before_each_step(std::function<void(World&)> f);
-    /// To be moved through its v and omega; one with a mass moves by what touches it.
+    /// Access to a boundary, to prescribe v, omega and F. A boundary with a mass is accelerated by contact
+    /// forces.
     Boundary& boundary(int number) { return boundaries[number]; }
-    void set_force(std::uint32_t id, const Vec3& F);  ///< from outside [N], until it is set anew
+    /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
+    void set_force(std::uint32_t id, const Vec3& F);
+    /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws InvalidCase.
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
-    void set_omega_locked(bool locked) { locked_turning = locked; }
+    /// If true, torques do not accelerate the rotation of particles.
+    void set_omega_locked(bool locked) { rotation_locked = locked; }
 
-    /// All that the next step depends on; `of_run` tells runs apart. The world looks for its neighbours anew before its
-    /// next step, as one does that was loaded, so that both have the same bits from then on.
-    std::string to_bytes(const std::string& of_run);
-    /// Into a world made as that one was, by the same calls. FileError, naming the file.
-    void from_bytes(const std::string& bytes, const std::string& of_run, const std::string& file);
+    /// Serialises the state. `run_id` identifies the run; from_bytes rejects another value. The neighbour
+    /// list is rebuilt before the next step, as in a world that is restored. Both then continue with bitwise
+    /// identical results.
+    std::string to_bytes(const std::string& run_id);
+    /// Restores the state into a world that was constructed by the same calls. Throws FileError, whose
+    /// message begins with `file`.
+    void from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file);
 
-    double kinetic_energy() const;  ///< [J]
-    /// Of the domain [m³]
+    double kinetic_energy() const;  ///< translational and rotational [J]
+    /// Volume of the domain [m³]
     double volume() const
     {
-        const Vec3 wide = options.high - options.low;
-        return wide.x * wide.y * wide.z;
+        const Vec3 size = options.high - options.low;
+        return size.x * size.y * size.z;
     }
-    Vec3 momentum() const;  ///< [kg m/s]
-    std::size_t count() const { return particles_in + pending.size(); }
+    Vec3 momentum() const;  ///< linear momentum of the particles [kg m/s]
+    /// Number of particles, pending ones included
+    std::size_t count() const { return inserted_count + pending.size(); }
+    /// Number of pairs in the neighbour list
     std::size_t candidates() const { return engine->arrays().pairs.count; }
-    long rebuilds() const { return found; }
-    /// Seconds that went into each part of the steps since the last call
+    /// Number of times the neighbour list was built
+    long rebuilds() const { return rebuild_count; }
+    /// Wall time spent in the parts of the steps since the last call [s]
     struct Times {
         double neighbours = 0, loads = 0, advance = 0;
     };
     Times take_times() { return std::exchange(times, {}); }
-    /// A GPU is waited for between the parts, so that their times are their own; the whole is then slower.
+    /// With `on`, the device is synchronised between the parts of a step, so that take_times() attributes the
+    /// time correctly. Steps take longer then.
     void set_timed(bool on) { timed = on; }
-    double copy_rate() { return engine->copy_rate(); }  ///< of its memory [B/s], read and written
+    /// Memory bandwidth of a copy on the device, bytes read plus bytes written [B/s]
+    double copy_rate() { return engine->copy_rate(); }
+    /// Memory of all arrays on the device [bytes]
     std::size_t bytes() const { return engine->bytes(); }
-    /// About what so many particles in a dense bed will take, with what it takes to make them
+    /// Estimate of the memory that a dense bed needs [bytes], including the temporary memory of the insertion
     static std::size_t bytes_needed(std::size_t particles, bool orientation = false);
-    bool keeps_orientation() const { return options.orientation; }
-    /// Looks for neighbours before the next step, as a world does that was loaded from a file
-    void invalidate_neighbours() { moved = std::numeric_limits<double>::infinity(); }
+    bool has_orientation() const { return options.orientation; }
+    /// Forces a rebuild of the neighbour list before the next step, as in a world restored from a checkpoint
+    void invalidate_neighbours() { particle_displacement = std::numeric_limits<double>::infinity(); }
 
-    /// What an explicit step is measured by
+    /// Time scales that limit the step of an explicit scheme; infinite if there is no movable particle or no
+    /// law.
+    ///
+    ///     rayleigh:   π R √(ρ/G) / (0.1631 ν + 0.8766)
+    ///     collision:  the smaller of π √(m*/k_n) and π/γ_n with a given stiffness
+    ///                 2.87 (m*²/(R* E*² v))^(1/5) with the Hertz law   Johnson (1985), Sec. 11.4
+    ///
+    /// The collision is one of two equal particles with v the largest speed, at least 0.1 m/s. All laws are
+    /// applied to all particles, whether or not their materials occur together.
     struct StepLimits {
-        double rayleigh = std::numeric_limits<double>::infinity();  ///< least Rayleigh time of a particle [s]
-        double collision = std::numeric_limits<double>::infinity();  ///< least time of a collision of two [s]
+        double rayleigh = std::numeric_limits<double>::infinity();   ///< smallest Rayleigh time [s]
+        double collision = std::numeric_limits<double>::infinity();  ///< shortest duration of a collision [s]
     };
     StepLimits step_limits() const;
 
@@ -160,48 +192,48 @@ private:
     static constexpr std::uint8_t no_law = 255;
 
     void insert_pending();
-    Scene scene_of(const std::vector<Particle>& all) const;
-    struct Placed {
+    Domain domain_of(const std::vector<Particle>& all) const;
+    struct CellPosition {
         Position position;
-        Vec<float> left;  ///< that whole units do not tell [units]
+        Vec<float> remainder;  ///< position minus its whole units [units]
     };
-    std::vector<Placed> places(const Scene& in, const std::vector<Particle>& all) const;
+    std::vector<CellPosition> cell_positions(const Domain& in, const std::vector<Particle>& all) const;
     void check_laws(const std::vector<Particle>& all) const;
     void check_overlaps(std::uint32_t first) const;
-    struct LoadsNow;
-    LoadsNow loads_now() const;
-    ContactRecord contact(const LoadsNow& now, std::uint32_t pair) const;
-    void keep_neighbours();
-    void look_for_neighbours() const;
+    struct CurrentLoads;
+    CurrentLoads current_loads() const;
+    ContactRecord contact(const CurrentLoads& now, std::uint32_t pair) const;
+    void update_neighbours();
+    void rebuild_neighbours() const;
     void one_step();
     double move_boundaries();
-    void push_tools();
-    StepOf step_of(Part part) const;
-    [[noreturn]] void lose(std::uint32_t k, const std::string& how) const;
+    void accelerate_tools();
+    StepParameters step_parameters(Part part) const;
+    [[noreturn]] void throw_lost(std::uint32_t k, const std::string& how) const;
 
     WorldOptions options;
     std::vector<Material> materials;
     std::vector<PairLaw> laws;
     std::vector<std::uint8_t> law_of;
     std::vector<Boundary> boundaries;
-    std::vector<Four> forces;       ///< from outside, by id [N]
-    std::vector<Particle> pending;  ///< added since the last step
+    std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
+    std::vector<Particle> pending;  ///< particles added since the last insertion
     std::vector<std::function<void(World&)>> callbacks;
 
     std::unique_ptr<Engine> engine;
-    Scene scene;
-    std::size_t particles_in = 0;
+    Domain domain;
+    std::size_t inserted_count = 0;
     double time = 0;
-    /// Bounds of the ways of particles and of boundaries since neighbours were looked for [m]. Which pairs are known is no
-    /// part of what a world is.
-    mutable double moved = std::numeric_limits<double>::infinity(), moved_boundaries = 0;
-    mutable long found = 0;
+    /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
+    /// [m]. The list is a cache: the members that describe it are mutable.
+    mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
+    mutable long rebuild_count = 0;
     mutable bool laws_changed = true;
-    mutable bool one_is_lost = false;  ///< out of the domain: the pairs of before are the last that there are
-    float fastest = 0;                 ///< of the particles after the last step [m/s]
-    long number = 0;
-    bool locked_turning = false, forces_changed = false, timed = false;
-    std::string refused;  ///< why this world cannot be stepped on
+    mutable bool particle_lost = false;  ///< a particle is outside the domain, so the list cannot be rebuilt
+    float max_speed = 0;                 ///< largest speed of the particles after the last step [m/s]
+    long step_count = 0;
+    bool rotation_locked = false, forces_changed = false, timed = false;
+    std::string insertion_error;  ///< message of a failed overlap check; further steps throw it again
     Times times;
 };
 

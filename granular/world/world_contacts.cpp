@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a world tells of its contacts, at t: loads are found anew, on copies, so that telling changes nothing.
+// Queries of contacts at t. Loads are computed again from copies of the histories, so that a query does not
+// change the state.
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-/// What a contact with a boundary does to it
+/// Adds the force and the torque of a contact on its boundary, about Boundary::r.
 void add_wrench(Wrench& to, const ContactRecord& c, const Boundary& b)
 {
     to.F -= c.F;
@@ -19,20 +20,20 @@ void add_wrench(Wrench& to, const ContactRecord& c, const Boundary& b)
 
 }  // namespace
 
-/// Loads at t, by pairs
-struct World::LoadsNow {
+/// Loads at t of all pairs in the neighbour list
+struct World::CurrentLoads {
     const Arrays<par::Cpu>& of;
-    par::Array<par::Cpu, Four> history, turning, torque;
+    par::Array<par::Cpu, Float4> history, rotation_history, torque;
     par::Array<par::Cpu, Load> load;
-    par::Array<par::Cpu, std::uint8_t> touches;
+    par::Array<par::Cpu, std::uint8_t> in_contact;
 };
 
-World::LoadsNow World::loads_now() const
+World::CurrentLoads World::current_loads() const
 {
-    if (!std::isfinite(moved) && particles_in > 0 && !one_is_lost) {
-        look_for_neighbours();
-        moved = std::numeric_limits<
-            double>::infinity();  // and once more before the next step, as it was asked for
+    if (!std::isfinite(particle_displacement) && inserted_count > 0 && !particle_lost) {
+        rebuild_neighbours();
+        // The requested rebuild before the next step still has to take place.
+        particle_displacement = std::numeric_limits<double>::infinity();
     }
     const Arrays<par::Cpu>& a = engine->arrays();
     const Pairs<par::Cpu>& pairs = a.pairs;
@@ -42,52 +43,53 @@ World::LoadsNow World::loads_now() const
         par::copy_bytes(par::Cpu(), copy.data(), array.data(), copy.size() * sizeof(T));
         return copy;
     };
-    LoadsNow now{.of = a,
-                 .history = copy_of(pairs.history),
-                 .turning = copy_of(pairs.turning),
-                 .torque = par::Array<par::Cpu, Four>(pairs.turning.size()),
-                 .load = par::Array<par::Cpu, Load>(pairs.count),
-                 .touches = copy_of(pairs.touches)};
-    const bool turns = now.turning.size() > 0;
-    // histories of velocity Verlet are those of t; of the others, those of the step before
+    CurrentLoads now{.of = a,
+                     .history = copy_of(pairs.history),
+                     .rotation_history = copy_of(pairs.rotation_history),
+                     .torque = par::Array<par::Cpu, Float4>(pairs.rotation_history.size()),
+                     .load = par::Array<par::Cpu, Load>(pairs.count),
+                     .in_contact = copy_of(pairs.in_contact)};
+    const bool rotation_laws = now.rotation_history.size() > 0;
+    // With velocity Verlet the histories belong to t already. With the other schemes they belong to the
+    // previous step.
     const float h =
-        options.scheme == Scheme::velocity_verlet && number > 0 ? 0 : static_cast<float>(options.h);
-    find_loads(par::Cpu(), particle_view(scene, a.particle),
+        options.scheme == Scheme::velocity_verlet && step_count > 0 ? 0 : static_cast<float>(options.h);
+    find_loads(par::Cpu(), particle_view(domain, a.particle),
                {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr,
-                now.history.data(), turns ? now.turning.data() : nullptr, now.load.data(),
-                turns ? now.torque.data() : nullptr, now.touches.data(), pairs.count},
+                now.history.data(), rotation_laws ? now.rotation_history.data() : nullptr, now.load.data(),
+                rotation_laws ? now.torque.data() : nullptr, now.in_contact.data(), pairs.count},
                {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
     return now;
 }
 
-/// Of pair n, which touches, with the lower id as i
-ContactRecord World::contact(const LoadsNow& now, std::uint32_t n) const
+/// Record of the pair n, which is in contact. i is the particle with the lower id.
+ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
 {
     const Particles<par::Cpu>& particle = now.of.particle;
     const std::uint32_t i = now.of.pairs.i.data()[n], j = now.of.pairs.j.data()[n];
     ContactRecord c;
-    c.boundary = (j & PairView::boundary) != 0;
+    c.boundary = (j & PairView::boundary_bit) != 0;
     c.i = particle.id.data()[i];
-    c.j = c.boundary ? j & ~PairView::boundary : particle.id.data()[j];
-    c.replica = particle.kind.data()[i].replica;
+    c.j = c.boundary ? j & ~PairView::boundary_bit : particle.id.data()[j];
+    c.replica = particle.species.data()[i].replica;
     const Position at = particle.position.data()[i];
     const double R = particle.velocity.data()[i].w;
-    const Vec3 r = place(scene.grid, at);
+    const Vec3 r = global_position(domain.grid, at);
     if (c.boundary) {
         const Nearest near = nearest(boundaries[c.j], r);
         c.n = near.n, c.delta = R - near.distance;
         c.C = r - near.distance * near.n;
     } else {
-        const Vec3 apart = apart_of(scene.grid, at, particle.position.data()[j]);
+        const Vec3 apart = separation(domain.grid, at, particle.position.data()[j]);
         c.n = (1 / apart.norm()) * apart;
         c.delta = R + particle.velocity.data()[j].w - apart.norm();
         c.C = r - R * c.n;
     }
-    if (now.turning.size() > 0) c.T = to_double(now.torque.data()[n]);
+    if (now.rotation_history.size() > 0) c.T = to_double(now.torque.data()[n]);
     c.F = to_double(now.load.data()[n].F), c.u = to_double(now.history.data()[n]);
     if (!c.boundary && c.j < c.i) {
         std::swap(c.i, c.j);
-        c.C += c.delta * c.n;  // at the radius of the other
+        c.C += c.delta * c.n;  // from the surface of one particle to that of the other
         c.n = -c.n, c.F = -c.F, c.T = -c.T, c.u = -c.u;
     }
     return c;
@@ -95,14 +97,14 @@ ContactRecord World::contact(const LoadsNow& now, std::uint32_t n) const
 
 std::vector<ContactRecord> World::contacts() const
 {
-    const LoadsNow now = loads_now();
+    const CurrentLoads now = current_loads();
     const std::uint32_t* id = now.of.particle.id.data();
     std::vector<std::uint32_t> pair;
     std::vector<std::uint64_t> key;
     for (std::uint32_t n = 0; n < now.of.pairs.count; ++n) {
-        if (now.touches.data()[n] == 0) continue;
+        if (now.in_contact.data()[n] == 0) continue;
         std::uint32_t i = id[now.of.pairs.i.data()[n]], j = now.of.pairs.j.data()[n];
-        const bool boundary = (j & PairView::boundary) != 0;
+        const bool boundary = (j & PairView::boundary_bit) != 0;
         if (!boundary) j = id[j];
         if (!boundary && j < i) std::swap(i, j);
         constexpr std::uint64_t last = std::uint64_t{1} << 63;
@@ -127,19 +129,19 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
 
 World::Totals World::totals() const
 {
-    const LoadsNow now = loads_now();
+    const CurrentLoads now = current_loads();
     const Pairs<par::Cpu>& pairs = now.of.pairs;
     const Position* position = now.of.particle.position.data();
     Totals all{.contacts = 0, .stress = {}, .on_boundary = std::vector<Wrench>(boundaries.size())};
 
-    // sums of pieces that are the same for any number of threads, in their order
+    // Partial sums over fixed blocks, added in order: the result does not depend on the number of threads.
     constexpr std::uint32_t piece = 4096;
     struct Sum {
         std::size_t contacts = 0;
         std::array<double, 9> stress = {};
     };
     std::vector<Sum> sums((pairs.count + piece - 1) / piece);
-    const auto add_stress = [](Sum& to, const Vec3& l, const Four& F) {
+    const auto add_stress = [](Sum& to, const Vec3& l, const Float4& F) {
         const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) to.stress[3 * a + b] += from_j[a] * on_i[b];
@@ -148,8 +150,8 @@ World::Totals World::totals() const
     const auto particles = [&](std::uint32_t k) {
         for (std::uint32_t n = k * piece; n < std::min((k + 1) * piece, pairs.count); ++n) {
             const std::uint32_t j = pairs.j.data()[n];
-            if (now.touches.data()[n] != 0 && (j & PairView::boundary) == 0)
-                add_stress(sums[k], apart_of(scene.grid, position[pairs.i.data()[n]], position[j]),
+            if (now.in_contact.data()[n] != 0 && (j & PairView::boundary_bit) == 0)
+                add_stress(sums[k], separation(domain.grid, position[pairs.i.data()[n]], position[j]),
                            now.load.data()[n].F);
         }
     };
@@ -157,7 +159,7 @@ World::Totals World::totals() const
     Sum sum;
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         const std::uint32_t j = pairs.j.data()[n];
-        if (now.touches.data()[n] == 0 || (j & PairView::boundary) == 0) continue;
+        if (now.in_contact.data()[n] == 0 || (j & PairView::boundary_bit) == 0) continue;
         const ContactRecord c = contact(now, n);
         add_wrench(all.on_boundary[c.j], c, boundaries[c.j]);
         const double R = now.of.particle.velocity.data()[pairs.i.data()[n]].w;

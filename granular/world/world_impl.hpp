@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of World have in common.
+/// Functions shared by the source files of World.
+
 #pragma once
 
 #include "granular/world/world.hpp"
@@ -11,8 +12,11 @@ namespace hilda::granular::detail {
 
 inline std::string name_of(std::uint32_t id) { return "particle " + std::to_string(id); }
 
-/// Schemes that want the accelerations of the step before
-inline bool keeps_accelerations(Scheme s) { return s == Scheme::chung || s == Scheme::velocity_verlet; }
+/// Whether the scheme uses the accelerations of the previous step
+inline bool uses_previous_acceleration(Scheme s)
+{
+    return s == Scheme::chung || s == Scheme::velocity_verlet;
+}
 
 template <class Value>
 [[noreturn]] void refuse(const std::string& where, const std::string& what, const Value& value)
@@ -30,22 +34,26 @@ inline double sphere_mass(double radius, double density)
     return 4.0 / 3 * M_PI * radius * radius * radius * density;
 }
 
-inline Vec3 to_double(const Four& v) { return {v.x, v.y, v.z}; }
+inline Vec3 to_double(const Float4& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 /// From the centre of j to that of i [m]
-inline Vec3 apart_of(const CellGrid& g, const Position& i, const Position& j)
+inline Vec3 separation(const CellGrid& g, const Position& i, const Position& j)
 {
     const Difference d = difference(g, i, j);
     return g.unit * Vec3{double(d.x), double(d.y), double(d.z)};
 }
-/// What single precision leaves of x. Written to memory on the way: GCC 12 with -O3 and AVX takes a row of such numbers to
-/// single precision and back as if nothing had happened.
-inline float left_of(double x)
+/// Rounding error of the conversion to single precision, x - float(x). The volatile store is needed: GCC 12
+/// with -O3 and AVX optimises the conversion to float and back away when it vectorises the function, and the
+/// result is zero.
+inline float rounding_error(double x)
 {
     const volatile float near = static_cast<float>(x);
     return static_cast<float>(x - near);
 }
-inline Vec<float> left_of(const Vec3& v) { return {left_of(v.x), left_of(v.y), left_of(v.z)}; }
+inline Vec<float> rounding_error(const Vec3& v)
+{
+    return {rounding_error(v.x), rounding_error(v.y), rounding_error(v.z)};
+}
 inline double length(const std::array<double, 4>& e)
 {
     return std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
@@ -55,7 +63,7 @@ inline std::array<double, 4> unit(const std::array<double, 4>& e)
     const double l = length(e);
     return {e[0] / l, e[1] / l, e[2] / l, e[3] / l};
 }
-inline Four to_four(const Vec3& v, double w)
+inline Float4 to_float4(const Vec3& v, double w)
 {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
 }

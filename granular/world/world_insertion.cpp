@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How particles come into a world: into cells that are wide enough, with laws for all that may meet.
+// Insertion of particles into a world: choice of the cell grid, conversion of positions, checks of laws and
+// overlaps.
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -14,13 +15,13 @@ std::uint32_t World::add(const Particle& p)
     const std::string where = "particle " + std::to_string(id);
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
     if (!finite(p.r) || !finite(p.v) || !finite(p.omega))
-        refuse(where, "place and velocities must be finite", p.r.x);
+        refuse(where, "position and velocities must be finite", p.r.x);
     if (p.material < 0 || p.material >= static_cast<int>(materials.size()))
         refuse(where, "no material has this number", p.material);
     if (!(std::abs(length(p.e) - 1) < 1e-3))
-        refuse(where, "Euler parameters must have the length 1, to a thousandth", length(p.e));
+        refuse(where, "Euler parameters must have the length 1 within 1e-3", length(p.e));
     if (!options.orientation && p.e != Particle().e)
-        refuse(where, "has an orientation, and this world keeps none; e0", p.e[0]);
+        refuse(where, "an orientation requires a world that integrates orientations; e0", p.e[0]);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
     pending.push_back(p);
     if (!(p.mass > 0))
@@ -28,10 +29,10 @@ std::uint32_t World::add(const Particle& p)
     return id;
 }
 
-/// Cells for particles as large as the largest of these
-Scene World::scene_of(const std::vector<Particle>& all) const
+/// Cell grid for particles up to the largest of these. Throws InvalidCase.
+Domain World::domain_of(const std::vector<Particle>& all) const
 {
-    Scene in;
+    Domain in;
     CellGrid& grid = in.grid;
     double largest = 0;
     in.radius = static_cast<float>(all[0].radius);
@@ -50,19 +51,23 @@ Scene World::scene_of(const std::vector<Particle>& all) const
         grid.periodic[k] = options.periodic[k];
         const double length = high[k] - low[k];
         const double cells = options.periodic[k] ? std::floor(length / edge) : std::ceil(length / edge);
-        const int most = k == 2 ? 1 << CellGrid::bits_z : 1 << CellGrid::bits_y;
-        if (cells > most)
+        const int max_cells = k == 2 ? 1 << CellGrid::bits_z : 1 << CellGrid::bits_y;
+        if (cells > max_cells)
             refuse("domain",
-                   "is more cells wide than " + std::to_string(most) + "; a cell is a diameter and the skin",
+                   "must not be wider than " + std::to_string(max_cells) +
+                       " cells along one axis; a cell is as wide as the largest diameter and the skin; cells",
                    cells);
         if (options.periodic[k] && cells < 3)
-            refuse("domain", "must be three largest diameters wide, with the skin, where it is periodic",
+            refuse("domain",
+                   "must be at least three cells wide along a periodic axis; a cell is as wide as the "
+                   "largest diameter and the "
+                   "skin; width [m]",
                    length);
         grid.cells[k] = static_cast<std::int32_t>(cells);
         if (options.periodic[k]) widest = std::max(widest, length / cells);
     }
     const double cells = double(in.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
-    if (cells > 0x7fffffff) refuse("domain", "has more than 2^31 cells, with all of its replicas", cells);
+    if (cells > 0x7fffffff) refuse("domain", "must not have more than 2^31 cells in all replicas", cells);
     grid.unit = widest / CellGrid::widest;
     for (int k = 0; k < 3; ++k) {
         const double length = high[k] - low[k];
@@ -74,14 +79,16 @@ Scene World::scene_of(const std::vector<Particle>& all) const
     return in;
 }
 
-/// Cells and places in them. ParticleLost for one that had left the domain; InvalidCase for one that was never in it.
-std::vector<World::Placed> World::places(const Scene& in, const std::vector<Particle>& all) const
+/// Cell and position within the cell of each particle. Throws ParticleLost if a particle that was inserted
+/// earlier is outside the domain, and InvalidCase if a new one is.
+std::vector<World::CellPosition> World::cell_positions(const Domain& in,
+                                                       const std::vector<Particle>& all) const
 {
     const CellGrid& grid = in.grid;
-    std::vector<Placed> placed(all.size());
+    std::vector<CellPosition> located(all.size());
     for (std::uint32_t k = 0; k < all.size(); ++k) {
         std::int32_t cell[3], at[3];
-        float left[3];
+        float remainder[3];
         const double r[] = {all[k].r.x, all[k].r.y, all[k].r.z};
         for (int c = 0; c < 3; ++c) {
             double units = (r[c] - grid.low[c]) / grid.unit;
@@ -89,92 +96,95 @@ std::vector<World::Placed> World::places(const Scene& in, const std::vector<Part
             if (grid.periodic[c] != 0) {
                 units -= length * std::floor(units / length);
             } else if (!(units >= 0 && units <= length)) {
-                if (k >= particles_in)
+                if (k >= inserted_count)
                     refuse(name_of(k), std::string("is outside the domain along ") + "xyz"[c], r[c]);
                 const std::uint32_t* id = engine->arrays().particle.id.data();
-                lose(static_cast<std::uint32_t>(std::find(id, id + particles_in, k) - id),
-                     "has left the domain");
+                throw_lost(static_cast<std::uint32_t>(std::find(id, id + inserted_count, k) - id),
+                           "has left the domain");
             }
-            const double whole = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
-            cell[c] = static_cast<std::int32_t>(whole);
-            const double in_cell = units - whole * grid.width[c];
+            const double cell_index = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
+            cell[c] = static_cast<std::int32_t>(cell_index);
+            const double in_cell = units - cell_index * grid.width[c];
             at[c] = static_cast<std::int32_t>(std::lround(in_cell));
-            left[c] = static_cast<float>(in_cell - at[c]);
+            remainder[c] = static_cast<float>(in_cell - at[c]);
         }
-        placed[k] = {{CellGrid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
-                     {left[0], left[1], left[2]}};
+        located[k] = {{CellGrid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
+                      {remainder[0], remainder[1], remainder[2]}};
     }
-    return placed;
+    return located;
 }
 
-/// Those that were added since the last step become part of the arrays, which are then in the order of the ids. What is
-/// refused before that leaves the world as it was.
+/// Inserts the pending particles into the arrays, which are then in the order of the ids. An exception that
+/// is thrown before the arrays are changed leaves the world unchanged. After a failed overlap check the world
+/// cannot be used.
 void World::insert_pending()
 {
-    if (!refused.empty()) throw InvalidCase(refused);
+    if (!insertion_error.empty()) throw InvalidCase(insertion_error);
     if (pending.empty()) return;
-    if (laws.empty()) refuse("world", "no law is set for its materials", "none");
+    if (laws.empty()) refuse("world", "at least one law must be set", "none");
     const std::vector<Particle> all = particles();
-    const Scene next = scene_of(all);
-    const std::vector<Placed> placed = places(next, all);
+    const Domain next = domain_of(all);
+    const std::vector<CellPosition> located = cell_positions(next, all);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
-    const auto first = static_cast<std::uint32_t>(particles_in);
-    scene = next;
+    const auto first = static_cast<std::uint32_t>(inserted_count);
+    domain = next;
 
-    // contacts and accelerations of those that are there go on
+    // contacts and accelerations of the particles that are in the arrays already are preserved
     Particles<par::Cpu>& p = a.particle;
     const auto id = [&](std::uint32_t k) { return p.id.data()[k]; };
     for (std::uint32_t n = 0; n < a.pairs.count; ++n) {
         std::uint32_t &i = a.pairs.i.data()[n], &j = a.pairs.j.data()[n];
         i = id(i);
-        if ((j & PairView::boundary) == 0) j = id(j);
+        if ((j & PairView::boundary_bit) == 0) j = id(j);
     }
-    std::vector<Four> acc_of(all.size(), to_four(options.gravity, 0)), turn_of(all.size());
+    std::vector<Float4> acc_of(all.size(), to_float4(options.gravity, 0)), alpha_of(all.size());
     for (std::uint32_t k = 0; k < p.acc.size(); ++k)
-        acc_of[id(k)] = p.acc.data()[k], turn_of[id(k)] = p.turn.data()[k];
+        acc_of[id(k)] = p.acc.data()[k], alpha_of[id(k)] = p.alpha.data()[k];
 
     p.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < p.count; ++k) {
-        const Particle& one = all[k];
-        const Carried<float> left = carried(placed[k].left, 0);
-        const Position at = placed[k].position;
-        p.position.data()[k] = {at.cell, at.x + left.x, at.y + left.y, at.z + left.z};
-        p.velocity.data()[k] = to_four(one.v, one.radius);
-        p.omega.data()[k] = to_four(one.omega, one.fixed ? 0 : 1 / one.mass);
-        p.kind.data()[k] = {.material = static_cast<std::uint16_t>(one.material), .replica = one.replica};
-        Compensation& rest = p.rest.data()[k] = {.way = left.word};
-        put_halves(rest.v, left_of(one.v), to_nearest);
-        put_halves(rest.omega, left_of(one.omega), to_nearest);
+        const Particle& particle = all[k];
+        const SplitDisplacement<float> split = split_displacement(located[k].remainder, 0);
+        const Position at = located[k].position;
+        p.position.data()[k] = {at.cell, at.x + split.x, at.y + split.y, at.z + split.z};
+        p.velocity.data()[k] = to_float4(particle.v, particle.radius);
+        p.omega.data()[k] = to_float4(particle.omega, particle.fixed ? 0 : 1 / particle.mass);
+        p.species.data()[k] = {.material = static_cast<std::uint16_t>(particle.material),
+                               .replica = particle.replica};
+        Compensation& compensation = p.compensation.data()[k] = {.displacement = split.remainder};
+        store_bfloat16(compensation.v, rounding_error(particle.v), dither_to_nearest);
+        store_bfloat16(compensation.omega, rounding_error(particle.omega), dither_to_nearest);
         p.id.data()[k] = k;
     }
-    if (keeps_accelerations(options.scheme)) {
-        p.acc.resize(p.count), p.turn.resize(p.count);
+    if (uses_previous_acceleration(options.scheme)) {
+        p.acc.resize(p.count), p.alpha.resize(p.count);
         std::copy(acc_of.begin(), acc_of.end(), p.acc.data());
-        std::copy(turn_of.begin(), turn_of.end(), p.turn.data());
+        std::copy(alpha_of.begin(), alpha_of.end(), p.alpha.data());
     }
     if (options.orientation) {
-        p.orientation.resize(p.count), p.orientation_rest.resize(p.count);
+        p.orientation.resize(p.count), p.orientation_compensation.resize(p.count);
         for (std::uint32_t k = 0; k < p.count; ++k) {
             const auto [e0, e1, e2, e3] = unit(all[k].e);
-            p.orientation.data()[k] = to_four({e0, e1, e2}, e3);
-            p.orientation_rest.data()[k] = {left_of(e0), left_of(e1), left_of(e2), left_of(e3)};
+            p.orientation.data()[k] = to_float4({e0, e1, e2}, e3);
+            p.orientation_compensation.data()[k] = {rounding_error(e0), rounding_error(e1),
+                                                    rounding_error(e2), rounding_error(e3)};
         }
     }
     pending.clear();
-    particles_in = all.size();
+    inserted_count = all.size();
     if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
-    engine->written();
-    look_for_neighbours();
+    engine->arrays_modified();
+    rebuild_neighbours();
     try {
         check_overlaps(first);
     } catch (const InvalidCase& e) {
-        refused = e.what();
+        insertion_error = e.what();
         throw;
     }
 }
 
-/// All materials that may meet have a law.
+/// Checks that each pair of materials that can be in contact has a law. Throws InvalidCase.
 void World::check_laws(const std::vector<Particle>& particles) const
 {
     const std::size_t n = materials.size();
@@ -186,24 +196,27 @@ void World::check_laws(const std::vector<Particle>& particles) const
     for (const Boundary& b : boundaries) {
         all[static_cast<std::size_t>(b.material)] = 1;
         if (b.mass > 0 && replica > 0)
-            refuse("boundary", "one that is free cannot be in all replicas, of which the last is", replica);
+            refuse("boundary",
+                   "a boundary with a mass requires that all particles are in replica 0; largest replica",
+                   replica);
     }
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j)
             if (of_particles[i] != 0 && all[j] != 0 && law_of[i * n + j] == no_law)
-                refuse("laws", "there is none between two materials that may meet",
+                refuse("laws", "no law is set between two materials that can be in contact",
                        "'" + materials[i].name + "' and '" + materials[j].name + "'");
 }
 
-/// Where particles begin, they are not pressed into each other or into a boundary: those from the first new one on.
+/// Checks that the particles with ids from `first` on overlap other particles and boundaries by at most 5 %
+/// of the smaller radius. Throws InvalidCase.
 void World::check_overlaps(std::uint32_t first) const
 {
-    constexpr double deepest = 0.05;  // of the smaller radius
+    constexpr double max_overlap = 0.05;  // overlap over the smaller radius
     const std::vector<Particle> all = particles();
     for (const ContactRecord& c : contacts()) {
         if (c.i < first && (c.boundary || c.j < first)) continue;
         const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
-        if (c.delta > deepest * R)
+        if (c.delta > max_overlap * R)
             refuse(name_of(c.i) + " and " + (c.boundary ? "boundary " + std::to_string(c.j) : name_of(c.j)),
                    "must not overlap by more than 5 % of a radius at the start", c.delta);
     }

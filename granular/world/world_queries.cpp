@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a world tells of itself.
+// Queries of a world: particles, energy, momentum, step limits, memory.
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -11,27 +11,28 @@ using namespace detail;
 std::vector<Particle> World::particles() const
 {
     const Particles<par::Cpu>& in = engine->arrays().particle;
-    const CellGrid& grid = scene.grid;
+    const CellGrid& grid = domain.grid;
     std::vector<Particle> all(in.count);
     for (std::uint32_t k = 0; k < in.count; ++k) {
-        const Four v = in.velocity.data()[k], w = in.omega.data()[k];
-        const Compensation& rest = in.rest.data()[k];
-        const Species kind = in.kind.data()[k];
+        const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
+        const Compensation& compensation = in.compensation.data()[k];
+        const Species species = in.species.data()[k];
         Particle& p = all[in.id.data()[k]];
-        p.r = place(grid, in.position.data()[k]) + grid.unit * to_double(rest_of_way<float>(rest.way));
-        p.v = to_double(v) + to_double(from_halves(rest.v));
-        p.omega = to_double(w) + to_double(from_halves(rest.omega));
+        p.r = global_position(grid, in.position.data()[k]) +
+              grid.unit * to_double(unpack_remainder<float>(compensation.displacement));
+        p.v = to_double(v) + to_double(load_bfloat16(compensation.v));
+        p.omega = to_double(w) + to_double(load_bfloat16(compensation.omega));
         if (in.orientation.size() > 0) {
-            const Four e = in.orientation.data()[k], left = in.orientation_rest.data()[k];
-            p.e = unit(
-                {double(e.x) + left.x, double(e.y) + left.y, double(e.z) + left.z, double(e.w) + left.w});
+            const Float4 e = in.orientation.data()[k], remainder = in.orientation_compensation.data()[k];
+            p.e = unit({double(e.x) + remainder.x, double(e.y) + remainder.y, double(e.z) + remainder.z,
+                        double(e.w) + remainder.w});
         }
         p.radius = v.w;
-        p.material = kind.material;
-        p.replica = kind.replica;
+        p.material = species.material;
+        p.replica = species.replica;
         p.fixed = w.w == 0;
-        p.mass =
-            p.fixed ? sphere_mass(p.radius, materials[kind.material].density) : 1 / static_cast<double>(w.w);
+        p.mass = p.fixed ? sphere_mass(p.radius, materials[species.material].density)
+                         : 1 / static_cast<double>(w.w);
     }
     all.insert(all.end(), pending.begin(), pending.end());
     return all;
@@ -56,8 +57,8 @@ World::StepLimits World::step_limits() const
 {
     StepLimits limits;
     const std::vector<Particle> all = particles();
-    double fastest = 0;
-    for (const Particle& p : all) fastest = std::max(fastest, p.v.norm());
+    double max_speed = 0;
+    for (const Particle& p : all) max_speed = std::max(max_speed, p.v.norm());
     for (const Particle& p : all) {
         const Material& m = materials[static_cast<std::size_t>(p.material)];
         const double G = m.E / (2 * (1 + m.nu));
@@ -66,15 +67,15 @@ World::StepLimits World::step_limits() const
             std::min(limits.rayleigh, M_PI * p.radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766));
         for (const PairLaw& law : laws)
             law.normal.visit([&](const auto& l) {
-                // of two of its kind, at 0.1 m/s or faster
+                // collision of two equal particles
                 const double mass = p.mass / 2, R = p.radius / 2;
                 if constexpr (requires { l.k_n; }) {
                     limits.collision =
                         std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
-                    if (l.gamma_n > 0)  // a dashpot alone is stable up to 2/γ
+                    if (l.gamma_n > 0)  // a damper alone is stable up to h = 2/γ
                         limits.collision = std::min(limits.collision, M_PI / static_cast<double>(l.gamma_n));
                 } else {
-                    const double E_eff = l.E_eff, v = std::max(fastest, 0.1);
+                    const double E_eff = l.E_eff, v = std::max(max_speed, 0.1);
                     limits.collision = std::min(limits.collision,
                                                 2.87 * std::pow(mass * mass / (R * E_eff * E_eff * v), 0.2));
                 }
@@ -85,11 +86,12 @@ World::StepLimits World::step_limits() const
 
 std::size_t World::bytes_needed(std::size_t n, bool orientation)
 {
-    // with laws of rolling and spin
-    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Four) + sizeof(Compensation) +
+    // arrays of a world with rolling and spin laws; 6 pairs per particle
+    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Float4) + sizeof(Compensation) +
                                         sizeof(Species) + 40,
-                          of_pair = 3 * sizeof(Four) + sizeof(Load) + 14, pairs = 6;
-    return n * (of_particle + (orientation ? 2 * sizeof(Four) : 0) + pairs * of_pair + 2 * sizeof(Particle));
+                          of_pair = 3 * sizeof(Float4) + sizeof(Load) + 14, pairs = 6;
+    return n *
+           (of_particle + (orientation ? 2 * sizeof(Float4) : 0) + pairs * of_pair + 2 * sizeof(Particle));
 }
 
 }  // namespace hilda::granular

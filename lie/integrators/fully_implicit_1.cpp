@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Fully implicit Lie-group scheme of first order (backward Euler).                 Fang (2022), Sec. 3.4
+/// rA-full-1: backward Euler on the Lie group, index 3.                            Fang (2022), Sec. 3.4
 ///
 ///     M r̈ + Φ_rᵀ λ = F,   J̄ ω̄̇ + Π̄ᵀ λ = τ̄,   Φ / h² = 0       all at t_{n+1}                          (3.16)
 ///     ṙ = ṙ_n + h r̈,   r = r_n + h ṙ,   ω̄ = ω̄_n + h ω̄̇,   A = A_n exp(h ω̄)                            (3.19)
 ///
-/// The unknowns are z = (r̈, ω̄̇, λ) at t_{n+1}. The Newton matrix is 3.23 without the sensitivities of the
-/// loads: K at t_n. That costs iterations, never accuracy; a load whose stiffness k passes about m/h² needs a
-/// smaller step.
+/// With algebraic variables, Φ_αᵀ λ = 0 at t_{n+1} in addition. The unknowns are z = (r̈, ω̄̇, λ) at t_{n+1}.
+///
+/// The Newton matrix is (3.23) without the sensitivities of the loads: K at t_n, frozen. The neglected terms
+/// cost iterations, not accuracy. The iteration diverges if a load has a stiffness of about m/h² or a damping
+/// of about m/h, or more.
+///
+/// r, A, ṙ, ω̄ and λ are of order 1. Exception: if the system moves at the start, the multipliers of the first
+/// computed node contain half of the centripetal term only, and have an error of O(1). From the second node
+/// on their error is O(h).
 
-#include "lie/steps/newton_step.hpp"
+#include "lie/schemes.hpp"
+#include "lie/steps/saddle_step.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -42,6 +50,7 @@ public:
     }
 
 private:
+    /// Initial guess: accelerations and multipliers of t_n
     void predict()
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -52,7 +61,7 @@ private:
         K.algebraic_part(z).setZero();
     }
 
-    /// Eq. 3.19
+    /// The state x at t_{n+1} from z (Eq. 3.19)
     void place(State& x, double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -69,7 +78,7 @@ private:
         x.lambda = K.constraint_part(z);
     }
 
-    /// Eq. 3.20
+    /// The residual e in the state x (Eq. 3.20)
     void set_residual(const State& x, double h)
     {
         model.loads(x, loads);
@@ -89,13 +98,15 @@ private:
     Rows C;  ///< Φ_r, Π̄ at the iterate
 };
 
-const bool registered = register_scheme<FullyImplicit1>({.name = "rA-full-1",
-                                                         .order = 1,
-                                                         .order_lambda = 1,
-                                                         .formulation = "rA",
-                                                         .unknowns = "r'', omega', lambda",
-                                                         .source = "Fang (2022), Sec. 3.4",
-                                                         .algebraic = true});
+const bool registered = register_scheme<FullyImplicit1>(
+    {.name = "rA-full-1",
+     .description = "backward Euler on SO(3), index 3, with a frozen Newton matrix",
+     .order = 1,
+     .order_lambda = 1,
+     .formulation = "rA",
+     .unknowns = "r'', omega', lambda",
+     .source = "Fang (2022), Sec. 3.4",
+     .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The fully implicit scheme of first order with its exact Newton matrix.          Fang (2022), Sec. 3.4
+/// rA-full-1-exact: backward Euler on the Lie group with the exact Newton matrix.   Fang (2022), Sec. 3.4
 ///
-/// The equations and unknowns z = (r̈, ω̄̇, λ) are those of rA-full-1; the Newton matrix is their derivative:
+///     M r̈ + Φ_rᵀ λ = F,   J̄ ω̄̇ + Π̄ᵀ λ = τ̄,   Φ / h² = 0       all at t_{n+1}                          (3.16)
+///     ṙ = ṙ_n + h r̈,   r = r_n + h ṙ,   ω̄ = ω̄_n + h ω̄̇,   A = A_n exp(h ω̄)                            (3.19)
 ///
-///     | M + h² K_rr - ∂F     h² K_rθ J_r - ∂F                              Φ_rᵀ |
-///     | h² K_θr - ∂n̄         J̄ + h (ω̄̃ J̄ - (J̄ω̄)~) + h² K_θθ J_r - ∂n̄       Π̄ᵀ   |      J_r = J_r(h ω̄)
+/// The equations and the unknowns z = (r̈, ω̄̇, λ) are those of rA-full-1, and so are the errors. The Newton
+/// matrix is the derivative of the residual:
+///
+///     | M + h² H_rr - ∂F     h² H_rθ J_r - ∂F                              Φ_rᵀ |
+///     | h² H_θr - ∂n̄         J̄ + h (ω̄̃ J̄ - (J̄ω̄)~) + h² H_θθ J_r - ∂n̄       Π̄ᵀ   |      J_r = J_r(h ω̄)
 ///     | Φ_r                  Π̄ J_r                                         0    |
 ///
-/// K is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k / ∂(δr, δθ), and ∂F of the loads is h² ∂F/∂(δr, δθ) J + h
-/// ∂F/∂(δṙ, δω̄). (3.21-3.23) drop K, J_r and the loads' part: that costs about twice the iterations, but each
-/// of these here takes a factorisation. Dropping J_r alone would already lose quadratic convergence in spatial
-/// motion.
+/// H is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k/∂(δr, δθ̄). ∂F is h² ∂F/∂(δr, δθ̄), with J_r in the columns of
+/// δθ̄, plus h ∂F/∂(δṙ, δω̄).
+///
+/// Convergence is quadratic, and each iteration takes a factorisation. (3.21-3.23) neglect H, J_r and the
+/// derivatives of the loads; the number of iterations is then about twice as large. Neglecting J_r alone
+/// loses quadratic convergence in spatial motion.
 
+#include "lie/schemes.hpp"
 #include "lie/solver/newton_matrix.hpp"
 #include "lie/steps/newton_step.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -69,6 +77,7 @@ public:
     }
 
 private:
+    /// Initial guess: accelerations and multipliers of t_n
     void predict()
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -78,7 +87,7 @@ private:
         z.tail(model.rows()) = x_n.lambda;
     }
 
-    /// Eq. 3.19
+    /// The state x at t_{n+1} from z (Eq. 3.19)
     void place(State& x, double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -94,7 +103,7 @@ private:
         x.lambda = z.tail(model.rows());
     }
 
-    /// Eq. 3.20
+    /// The residual e in the state x (Eq. 3.20)
     void set_residual(const State& x, double h)
     {
         model.loads(x, loads);
@@ -109,6 +118,7 @@ private:
         e.tail(model.rows()) /= h * h;
     }
 
+    /// The Newton matrix N in the state x
     void assemble(const State& x, double h)
     {
         model.second_variation(x, H);
@@ -145,7 +155,7 @@ private:
         }
     }
 
-    /// ∂/∂(δr, δθ) turned into what δr = h² δr̈, δθ = h² J_r δω̄̇ make of it, over h²
+    /// From derivatives by (δr, δθ̄) to derivatives by (δr̈, δω̄̇) over h²: δr = h² δr̈, δθ̄ = h² J_r δω̄̇
     static Mat6 by_accelerations(const Mat6& block, const Mat3& J_r)
     {
         Mat6 out = block;
@@ -158,16 +168,18 @@ private:
     LoadVariation dF;
     std::vector<Mat3> J_r;  ///< J_r(h ω̄) of each body
     NewtonMatrix N;
+    // handles of the blocks of N
     std::vector<int> body_at, row_at, column_at, second_at, load_at;
 };
 
-const bool registered =
-    register_scheme<FullyImplicit1Exact>({.name = "rA-full-1-exact",
-                                          .order = 1,
-                                          .order_lambda = 1,
-                                          .formulation = "rA",
-                                          .unknowns = "r'', omega', lambda",
-                                          .source = "Fang (2022), Sec. 3.4, all of the Newton matrix"});
+const bool registered = register_scheme<FullyImplicit1Exact>(
+    {.name = "rA-full-1-exact",
+     .description = "backward Euler on SO(3), index 3, with the exact Newton matrix",
+     .order = 1,
+     .order_lambda = 1,
+     .formulation = "rA",
+     .unknowns = "r'', omega', lambda",
+     .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix"});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Half-implicit Lie-group scheme of second order.                                  Fang (2022), Sec. 3.6
+/// rA-half-2: Adams-Bashforth 2 for velocities, trapezoidal rule for positions.      Fang (2022), Sec. 3.6
 ///
 ///     M r̈_n + Φ_rᵀ λ_n = F_n,   J̄ ω̄̇_n + Π̄ᵀ λ_n = τ̄_n        all at t_n                      (3.39, 3.40)
 ///     ṙ_{n+1} = ṙ_n + h (3 r̈_n - r̈_{n-1}) / 2,   r_{n+1} = r_n + h (ṙ_n + ṙ_{n+1}) / 2        (3.35, 3.36)
@@ -7,12 +7,18 @@
 ///     A_{n+1} = A_n exp(h ω̄_n / 2) exp(h ω̄_{n+1} / 2)                                        (3.38)
 ///     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0                                                       (3.41)
 ///
-/// With the unknowns z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n) and the constraint rows doubled, the Newton
-/// matrix 3.51 is K itself. r̈_{-1} = r̈_0, ω̄̇_{-1} = ω̄̇_0 from the consistent start. The multipliers carry an
-/// alternating error of O(h) unless the start is at rest: the trapezoid rule never damps the velocity
-/// residual's parasitic root -1.
+/// Start: r̈_{-1} = r̈_0, ω̄̇_{-1} = ω̄̇_0 from the consistent start.
+///
+/// The unknowns are z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n). With the constraint rows doubled, the Newton
+/// matrix (3.51) is K(t_n).
+///
+/// r, A, ṙ, ω̄ are of order 2, λ of order 1. The residual of the velocity constraints, g = C v - ν, satisfies
+/// g_{n+1} + g_n = O(h²). The recursion has the parasitic root -1, which is not damped. The multipliers have
+/// an alternating error of O(h), unless the system starts at rest. rA-half-2-bdf2 is free of it.
 
+#include "lie/schemes.hpp"
 #include "lie/steps/half_implicit_step.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -24,7 +30,7 @@ public:
     {}
 
 private:
-    /// Â of Eq. 3.44
+    /// Â = A_n exp(½h ω̄_n) (Eq. 3.44)
     void begin(double h) override
     {
         half_h = 0.5 * h;
@@ -44,13 +50,15 @@ private:
     double half_h = 0;
 };
 
-const bool registered = register_scheme<HalfImplicit2>({.name = "rA-half-2",
-                                                        .order = 2,
-                                                        .order_lambda = 1,
-                                                        .formulation = "rA",
-                                                        .unknowns = "r, h omega, h^2 lambda",
-                                                        .source = "Fang (2022), Sec. 3.6",
-                                                        .algebraic = true});
+const bool registered = register_scheme<HalfImplicit2>(
+    {.name = "rA-half-2",
+     .description = "Adams-Bashforth 2 for velocities, trapezoidal rule for positions",
+     .order = 2,
+     .order_lambda = 1,
+     .formulation = "rA",
+     .unknowns = "r, h omega, h^2 lambda",
+     .source = "Fang (2022), Sec. 3.6",
+     .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

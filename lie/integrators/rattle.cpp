@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// RATTLE on the Lie group: variational, second order, no drift of energy.
+/// rA-rattle: RATTLE (Andersen 1983) on the Lie group, RATTLie.                      Hante, Arnold (2021)
 ///
 ///     ½-step    M ṙ_{n+½} + ½h Φ_rᵀ λ⁺ = M ṙ_n + ½h F_n
 ///               J_r(θ)⁻¹ J̄ ω̄_{n+½} + ½h Π̄ᵀ λ⁺ = J̄ ω̄_n + ½h n̄_n,     θ = h ω̄_{n+½}
-///     node      r_{n+1} = r_n + h ṙ_{n+½},   A_{n+1} = A_n exp(θ),   Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0
+///     node      r_{n+1} = r_n + h ṙ_{n+½},   A_{n+1} = A_n exp(θ̃),   Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0
 ///     ½-step    M ṙ_{n+1} + ½h Φ_rᵀ λ⁻ = M ṙ_{n+½} + ½h F_{n+1}
 ///               J̄ ω̄_{n+1} + ½h Π̄ᵀ λ⁻ = J_r(θ)⁻ᵀ J̄ ω̄_{n+½} + ½h n̄_{n+1},   Φ_r ṙ_{n+1} + Π̄ ω̄_{n+1} = ν
 ///
-/// Hante, Arnold (2021), J. Comput. Appl. Math. 387, 112492, with the discrete Lagrangian h T(log(A_nᵀ
-/// A_{n+1})/h): its two Legendre transforms J_r(θ)⁻¹ J̄ ω̄_{n+½} and J_r(θ)⁻ᵀ J̄ ω̄_{n+½} hold the gyroscopic
-/// torque, so that for loads with a potential the step is symplectic and keeps momentum exactly. Loads that
-/// depend on velocity see ṙ_n, ω̄_n in the first half and 2 ṙ_{n+½} - ṙ_n in the second.
+/// Source: Hante, Arnold (2021), J. Comput. Appl. Math. 387, 112492. Φ_r, Π̄ are those of t_n in the first
+/// half and of t_{n+1} in the second. The discrete Lagrangian is h T(log(A_nᵀ A_{n+1})/h). Its two Legendre
+/// transforms J_r(θ)⁻¹ J̄ ω̄_{n+½} and J_r(θ)⁻ᵀ J̄ ω̄_{n+½} contain the gyroscopic torque. For loads with a
+/// potential the step is symplectic and conserves momentum exactly. Loads that depend on velocities use ṙ_n,
+/// ω̄_n in the first half and 2 ṙ_{n+½} - ṙ_n, 2 ω̄_{n+½} - ω̄_n in the second.
 ///
-/// Positions are found by Newton's method with K at t_n, velocities by one solve with K at t_{n+1}; so are the
-/// accelerations and multipliers reported, from the equations of motion at the node.
+/// r, A, ṙ, ω̄ and λ are of order 2. The multipliers reported are not λ⁺ and λ⁻: accelerations and multipliers
+/// are computed from the saddle system at the node.
+///
+/// The unknowns are z = (r_{n+1} - r_n, θ, ½h² λ⁺) with the Newton matrix K(t_n), where J_r(θ)⁻¹ J̄ θ - J̄ θ is
+/// part of the residual. Velocities and accelerations take one solve each with K(t_{n+1}), which is the
+/// Newton matrix of the next step.
 
+#include "lie/schemes.hpp"
 #include "lie/steps/node_step.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -70,6 +77,7 @@ private:
         K.algebraic_part(b).setZero();
     }
 
+    /// Initial guess: constant accelerations, and the multipliers of t_n
     void predict(double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -81,6 +89,7 @@ private:
         K.algebraic_part(z).setZero();
     }
 
+    /// The pose x at t_{n+1} from z
     void place(State& x)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -90,6 +99,7 @@ private:
         place_algebraic(x, 1);
     }
 
+    /// The second half step: ṙ, ω̄ at t_{n+1}
     void set_velocities(State& x, double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -114,13 +124,15 @@ private:
     }
 };
 
-const bool registered = register_scheme<Rattle>({.name = "rA-rattle",
-                                                 .order = 2,
-                                                 .order_lambda = 2,
-                                                 .formulation = "rA",
-                                                 .unknowns = "r, h omega, h^2 lambda / 2",
-                                                 .source = "Hante, Arnold (2021)",
-                                                 .algebraic = true});
+const bool registered =
+    register_scheme<Rattle>({.name = "rA-rattle",
+                             .description = "RATTLE on the Lie group (RATTLie), variational",
+                             .order = 2,
+                             .order_lambda = 2,
+                             .formulation = "rA",
+                             .unknowns = "r, h omega, h^2 lambda / 2",
+                             .source = "Hante, Arnold (2021)",
+                             .algebraic = true});
 
 }  // namespace
 }  // namespace hilda::lie

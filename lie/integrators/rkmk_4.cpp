@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Runge-Kutta-Munthe-Kaas of fourth order on the index-1 equations, with positions and velocities put back
-/// onto their constraints after each step.
+/// rA-rkmk-4: Runge-Kutta-Munthe-Kaas method of fourth order on the index-1 equations, with projection.
 ///
-///     A = A_n exp(θ),   θ̇ = J_r(θ)⁻¹ ω̄,   (r̈, ω̄̇, λ) from K (r̈, ω̄̇, λ) = (F, τ̄, γ)
+///     A = A_n exp(θ̃),   θ̇ = J_r(θ)⁻¹ ω̄,   (r̈, ω̄̇, λ) from K (r̈, ω̄̇, λ) = (F, τ̄, γ)
 ///
-/// by the classical tableau, in r, θ, ṙ, ω̄.     Munthe-Kaas (1998), BIT 38, 92-111; Kutta (1901)
+/// is integrated in (r, θ, ṙ, ω̄) with the classical tableau.  Munthe-Kaas (1998), BIT 38, 92-111; Kutta
+/// (1901)
 ///
-/// The projection is the shortest in the metric of the mass, as dae::project_positions. It moves a state by no
-/// more than the step's own error, so that the order stays (Hairer, Lubich, Wanner 2006, Sec. IV.4), and a node
-/// satisfies Φ and its derivative to rounding. Iterations counted are those of the projection of positions,
-/// which uses K as it stands at the last stage.
+/// After each step the positions are projected onto Φ = 0 by Newton steps with K of the last stage, then the
+/// velocities onto Φ_r ṙ + Π̄ ω̄ = ν. The corrections are the shortest in the metric of the mass. They are of
+/// the size of the local error, so the order remains 4 (Hairer, Lubich, Wanner 2006, Sec. IV.4). λ is of
+/// order 4 as well. The number of iterations reported is that of the projection of positions.
+///
+/// The scheme is explicit: a stiff load limits the step.
 
+#include "lie/schemes.hpp"
 #include "lie/steps/node_step.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -27,7 +31,7 @@ public:
     {
         x_n = x;
         Attempt attempt(x, x_n);
-        // The first stage is the node, whose accelerations are known.
+        // The first stage is the node; its accelerations are known.
         theta.setZero();
         set_slope(x_n);
         sum = slope;
@@ -62,7 +66,7 @@ private:
         }
     }
 
-    /// x = x_n moved by h times these slopes
+    /// x = x_n advanced by h times the slopes `by`
     void place(State& x, double h, const Eigen::VectorXd& by)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -77,7 +81,7 @@ private:
         }
     }
 
-    /// Onto Φ = 0, by Newton steps with the K of the last stage
+    /// Projection onto Φ = 0 by Newton steps with K of the last stage. Returns their number.
     int project_positions(State& x)
     {
         for (int k = 1; k <= settings.max_iterations; ++k) {
@@ -95,7 +99,7 @@ private:
         no_convergence("rA-rkmk-4", correction, x);
     }
 
-    /// Onto Φ_r ṙ + Π̄ ω̄ = ν
+    /// Projection onto Φ_r ṙ + Π̄ ω̄ = ν: K (v, ·) = (M v, ν)
     void project_velocities(State& x)
     {
         assemble_once(x);
@@ -114,14 +118,16 @@ private:
     Eigen::VectorXd sum, slope, theta;  ///< θ of each body at the stage
 };
 
-const bool registered = register_scheme<Rkmk4>({.name = "rA-rkmk-4",
-                                                .order = 4,
-                                                .order_lambda = 4,
-                                                .formulation = "rA",
-                                                .unknowns = "none; projection",
-                                                .source = "Munthe-Kaas (1998), with projection",
-                                                .algebraic = true,
-                                                .nonholonomic = true});
+const bool registered = register_scheme<Rkmk4>(
+    {.name = "rA-rkmk-4",
+     .description = "Runge-Kutta-Munthe-Kaas of fourth order on the index-1 equations, with projection",
+     .order = 4,
+     .order_lambda = 4,
+     .formulation = "rA",
+     .unknowns = "none; projection",
+     .source = "Munthe-Kaas (1998), with projection",
+     .algebraic = true,
+     .nonholonomic = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -9,13 +9,14 @@ namespace hilda::lie {
 
 namespace {
 
-// A pivot below this part of its diagonal entry has lost eleven digits; KLU, which pivots, does better.
-constexpr double worst_pivot = 1e-11;
+// Smallest accepted ratio of a pivot to its diagonal entry. Below it, eleven digits are lost; KLU with
+// pivoting is more accurate.
+constexpr double smallest_accepted_pivot = 1e-11;
 
-// Small products with sizes known to the compiler where they are three, the rows of a ball joint; else as they
-// come. All blocks are stored by columns.
+// Small dense operations on blocks stored by columns. `fixed` = 3 (the rows of a ball joint) makes the size
+// known to the compiler; `fixed` = 0 uses the size given.
 
-/// S (m × n) += A Bᵀ over `inner` columns, A m × inner, B n × inner
+/// S += sign A Bᵀ; S m × n, A m × inner, B n × inner
 template <int fixed>
 void add_product(double* S, const double* A, const double* B, int rows, int columns, int inner, double sign)
 {
@@ -37,8 +38,9 @@ void add_product(double* S, const double* A, const double* B, int m, int n, int 
         add_product<0>(S, A, B, m, n, inner, sign);
 }
 
-/// Cholesky factor in the lower triangle of D, with the reciprocals of its diagonal on the diagonal. The
-/// smallest pivot as a part of `original`; negative or NaN where there is none.
+/// Cholesky factor L of D, in the lower triangle of D, with the reciprocals of the diagonal of L on the
+/// diagonal. Returns the smallest ratio of a pivot to its entry of `original`; negative or NaN if D has no
+/// factor.
 template <int fixed>
 double cholesky(double* D, int rows, const double* original)
 {
@@ -56,7 +58,7 @@ double cholesky(double* D, int rows, const double* original)
     return smallest;
 }
 
-/// B (n × m) ← B L⁻ᵀ
+/// B ← B L⁻ᵀ; B n × m, L with reciprocal diagonal
 template <int fixed>
 void divide(double* B, const double* L, int columns, int n)
 {
@@ -68,7 +70,7 @@ void divide(double* B, const double* L, int columns, int n)
     }
 }
 
-/// y += sign A x, A m × n
+/// y += sign A x; A m × n
 template <int fixed>
 void add_times(double* y, const double* A, const double* x, int rows, int n, double sign)
 {
@@ -87,7 +89,7 @@ void add_times(double* y, const double* A, const double* x, int m, int n, double
         add_times<0>(y, A, x, m, n, sign);
 }
 
-/// y -= Aᵀ x, A m × n
+/// y -= Aᵀ x; A m × n
 template <int fixed>
 void subtract_transposed_times(double* y, const double* A, const double* x, int rows, int n)
 {
@@ -145,20 +147,21 @@ void Condensed::find_groups(const Rows& pattern)
 
 void Condensed::analyse(const Rows& pattern)
 {
-    // which groups meet in which bodies
+    // groups are neighbours if they share a body
     const int n = static_cast<int>(group.size());
-    std::map<int, std::vector<std::pair<int, int>>> at_body;  // body: (group, its how-manieth body)
+    std::map<int, std::vector<std::pair<int, int>>> at_body;  // (group, index of the body in the group)
     for (int g = 0; g < n; ++g)
         for (int s = 0; s < group[g].bodies; ++s)
             at_body[pattern.entry[pattern.start[group[g].first] + s].body].emplace_back(g, s);
     std::vector<std::set<int>> neighbours(n);
-    long met = 0;
+    long couplings = 0;
     for (const auto& [body, all] : at_body)
         for (const auto& [g, s] : all)
             for (const auto& [h, t] : all)
-                if (g != h) met += neighbours[g].insert(h).second;
+                if (g != h) couplings += neighbours[g].insert(h).second;
 
-    // elimination in order of minimum degree; what it couples is a block of the factor
+    // Elimination in minimum-degree order. The neighbours of a group at its elimination are the blocks of its
+    // column.
     std::vector<std::vector<int>> below(n);  // by group
     std::set<std::pair<size_t, int>> queue;
     for (int g = 0; g < n; ++g) queue.emplace(neighbours[g].size(), g);
@@ -178,7 +181,7 @@ void Condensed::analyse(const Rows& pattern)
     std::vector<int> position(n);
     for (int p = 0; p < n; ++p) position[order[p]] = p;
 
-    // places of the blocks, column after column
+    // storage of the blocks, column by column
     int size = 0;
     std::map<std::pair<int, int>, int> place;  // (row group, column group)
     for (const int g : order) {
@@ -200,7 +203,7 @@ void Condensed::analyse(const Rows& pattern)
             for (const Group& g : group)
                 if (k >= g.first && k < g.first + g.rows)
                     regularised.push_back({k, g.diagonal + (k - g.first) * (g.rows + 1)});
-    fill = static_cast<long>(block.size()) - met / 2;
+    fill = static_cast<long>(block.size()) - couplings / 2;
 
     for (const auto& [body, all] : at_body)
         for (const auto& [g, s] : all)
@@ -259,7 +262,7 @@ bool Condensed::factor(const Rows& C)
         double* L = &value[g.diagonal];
         const double part =
             g.rows == 3 ? cholesky<3>(L, 3, &diagonal[g.first]) : cholesky<0>(L, g.rows, &diagonal[g.first]);
-        if (!(part > worst_pivot)) return false;
+        if (!(part > smallest_accepted_pivot)) return false;
         smallest = std::min(smallest, part);
         for (int n = column[p]; n < column[p + 1]; ++n)
             if (g.rows == 3)

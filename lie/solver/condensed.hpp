@@ -1,65 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The saddle system condensed to its multipliers.
+/// The saddle system condensed to its multipliers (Schur complement).
 ///
-///     | M  Cᵀ | | x |   | f |        S λ = C M⁻¹ f - g,   x = M⁻¹ (f - Cᵀ λ),        S = C M⁻¹ Cᵀ,  C = (Φ_r, Π̄)
+///     | M  Cᵀ | | x |   | f |      S λ = C M⁻¹ f - g,   x = M⁻¹ (f - Cᵀ λ),   S = C M⁻¹ Cᵀ,  C = (Φ_r, Π̄)
 ///     | C  0  | | λ | = | g |
 ///
-/// M is block diagonal and never changes, so it is factored once and for all, M = L Lᵀ, and S = W Wᵀ with W = C
-/// L⁻ᵀ. Rows between the same bodies form a group; S is a matrix of blocks, one for each pair of groups that
-/// share a body, and its Cholesky factors are found by blocks in an order of minimum degree that is fixed with
-/// the pattern. For a chain or a tree of joints nothing fills in: a chain is block tridiagonal. The softness of rows that give way stands on
-/// the diagonal of S besides.
+/// M stands for diag(M, J̄). It is block diagonal and constant, and is factored once: M = L Lᵀ. Then S = W Wᵀ
+/// with W = C L⁻ᵀ. The compliance of regularised rows is added to the diagonal of S.
+///
+/// Consecutive rows between the same bodies form a group. S has a block for each pair of groups that share a
+/// body. Its Cholesky factor is computed by blocks, in a minimum-degree order that is determined once from
+/// the pattern. A chain or a tree of joints has no fill-in.
 
 #pragma once
 
-#include "lie/system.hpp"
+#include "lie/loads.hpp"
+#include "lie/rows.hpp"
 
 namespace hilda::lie {
 
 class Condensed {
 public:
-    /// Analyses the pattern. `mass` with unit metric gives the least-squares problem in the rows alone.
+    /// Analyses the pattern. For the metric `unit` of Saddle, `mass` is the identity.
     Condensed(const Mass& mass, const Rows& pattern);
 
-    /// Factors S of these rows. False when a pivot has lost so many digits that the factors would not be worth
-    /// having: rows that are nearly dependent, or not finite.
+    /// Factors S of these rows. Returns false if the smallest pivot is below 1e-11 of its diagonal entry, or
+    /// not finite: the rows are nearly dependent or not finite.
     bool factor(const Rows& C);
 
-    /// In place: b holds f and g, then x and λ
+    /// Solves in place: (f, g) on entry, (x, λ) on return.
     void solve(Eigen::VectorXd& b);
-    /// The same for f = 0, whatever b holds there
+    /// The same for f = 0; the f in b is not read.
     void solve_constraints(Eigen::VectorXd& b);
 
-    /// Smallest part of a diagonal entry of S that elimination left
+    /// The smallest ratio of a pivot to its diagonal entry of S
     double smallest_pivot() const { return smallest; }
-    /// Multiplications of one factorisation, with the assembly of S
+    /// Number of multiplications of one factorisation, including the assembly of S
     double operations() const { return flops; }
-    /// Entries of the factor outside its diagonal blocks, beyond those of S
+    /// Number of off-diagonal blocks of the factor that are not blocks of S
     long fill_in() const { return fill; }
 
 private:
     /// Rows first … first + rows - 1, all with entries for the same bodies in the same order
     struct Group {
         int first = 0, rows = 0, bodies = 0;
-        int body = 0;      ///< where its bodies begin in `body_of`
-        int w = 0;         ///< where its part of W begins: for each body 6 columns of `rows` numbers
-        int diagonal = 0;  ///< where its diagonal block stands in `value`
+        int body = 0;      ///< index of its first body in `body_of`
+        int w = 0;         ///< index of its part of W: for each body 6 columns of `rows` numbers
+        int diagonal = 0;  ///< index of its diagonal block in `value`
     };
-    /// A block of S or of its factor, below the diagonal: rows of group `of`
+    /// An off-diagonal block of S and its factor: the rows of group `of`, at index `at` of `value`
     struct Block {
         int of = 0, at = 0;
     };
-    /// A product of the parts of W that two groups have for one body, added to a block of S
+    /// Contribution of one body to a block of S: the product of the parts of W of two groups
     struct Term {
         int of, by, w_of, w_by, at;
     };
-    /// Block `to` loses the product of two blocks of the same column
+    /// Elimination of a column: the product of two of its blocks is subtracted from block `to`
     struct Update {
         int of, by, at_of, at_by, to;
     };
 
-    void solve_multipliers();               ///< S y = y
-    void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (f - Wᵀ y), λ = y, with f where x will be
+    void solve_multipliers();               ///< y ← S⁻¹ y
+    void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (L⁻¹ f - Wᵀ y), λ = y; b holds L⁻¹ f on entry
 
     void find_groups(const Rows& pattern);
     void analyse(const Rows& pattern);
@@ -68,16 +70,17 @@ private:
     std::vector<Mat3> L_inverse;    ///< L⁻¹ of J̄ = L Lᵀ
     std::vector<Group> group;
     std::vector<int> body_of;
-    std::vector<int> order;                 ///< groups as they are eliminated
+    std::vector<int> order;                 ///< of elimination, of the groups
     std::vector<Term> term;                 ///< of S
-    std::vector<int> column, update_start;  ///< by position in `order`, into `block` and `update`
+    std::vector<int> column, update_start;  ///< first index into `block` and `update`, by position in `order`
     std::vector<Block> block;
     std::vector<Update> update;
-    struct Soft {
-        int row, at;  ///< a row that gives way, its diagonal entry in `value`
+    /// A regularised row, and the index of its diagonal entry in `value`
+    struct RegularisedRow {
+        int row, at;
     };
-    std::vector<Soft> regularised;
-    std::vector<double> W, value, diagonal;  ///< diagonal: of S, to judge pivots
+    std::vector<RegularisedRow> regularised;
+    std::vector<double> W, value, diagonal;  ///< diagonal: of S, the reference of the pivots
     Eigen::VectorXd y;
     double smallest = 1, flops = 0;
     long fill = 0;

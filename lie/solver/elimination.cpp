@@ -9,68 +9,71 @@ namespace hilda::lie {
 
 namespace {
 
-// Diagonal of R, as a part of its largest entry: below, the unknowns are not determined to any digit worth having.
-constexpr double worst_diagonal = 1e-13;
+// Smallest accepted ratio of two diagonal entries of R. Below it, the algebraic variables are indeterminate
+// in double precision.
+constexpr double smallest_diagonal_ratio = 1e-13;
 
 }  // namespace
 
 Elimination::Elimination(const Rows& pattern, const std::vector<char>& inactive)
 {
     int row = 0, alpha = 0;
-    const auto plain_until = [&](int end) {
+    const auto append_rows_until = [&](int end) {
         bool begun = false;
         for (; row < end; ++row) {
             if (inactive[row]) {
-                left_out.push_back({row, 1, 0, 0});
+                inactive_rows.push_back({row, 1, 0, 0});
                 begun = false;
                 continue;
             }
-            if (!begun) group.push_back({row, 0, 0, left.rows(), 0, -1, {}, {}, {}, {}});
+            if (!begun) group.push_back({row, 0, 0, remaining.rows(), 0, -1, {}, {}, {}, {}});
             begun = true;
             ++group.back().rows;
-            left.entry.insert(left.entry.end(), pattern.entry.begin() + pattern.start[row],
-                              pattern.entry.begin() + pattern.start[row + 1]);
-            left.start.push_back(static_cast<int>(left.entry.size()));
+            remaining.entry.insert(remaining.entry.end(), pattern.entry.begin() + pattern.start[row],
+                                   pattern.entry.begin() + pattern.start[row + 1]);
+            remaining.start.push_back(static_cast<int>(remaining.entry.size()));
         }
     };
     for (size_t n = 0; n < pattern.algebraic.size(); ++n) {
         const Rows::AlgebraicGroup& m = pattern.algebraic[n];
-        plain_until(m.first);
+        append_rows_until(m.first);
         if (inactive[m.first + m.rows - 1]) {
-            left_out.push_back({m.first, m.rows, alpha, m.count});
+            inactive_rows.push_back({m.first, m.rows, alpha, m.count});
             row += m.rows;
             alpha += m.count;
             continue;
         }
-        group.push_back({m.first, m.rows, m.count, left.rows(), alpha, static_cast<int>(n), {}, {}, {}, {}});
+        group.push_back(
+            {m.first, m.rows, m.count, remaining.rows(), alpha, static_cast<int>(n), {}, {}, {}, {}});
         Group& g = group.back();
         g.QR.setZero(m.rows, m.count);
         g.Z.setZero(m.rows, m.rows - m.count);
         g.beta.setZero(m.count);
-        g.of_p.setZero(m.rows);
+        g.lambda_p.setZero(m.rows);
         for (int k = 0; k < m.rows - m.count; ++k) {
-            // the bodies of all rows of the group, in the order in which they appear
+            // Zᵀ B has entries for the bodies of all rows of the group, in order of their first occurrence.
             for (int e = pattern.start[m.first]; e < pattern.start[m.first + m.rows]; ++e) {
                 const int body = pattern.entry[e].body;
-                const bool known = std::any_of(left.entry.begin() + left.start.back(), left.entry.end(),
-                                               [&](const Rows::Entry& other) { return other.body == body; });
+                const bool known =
+                    std::any_of(remaining.entry.begin() + remaining.start.back(), remaining.entry.end(),
+                                [&](const Rows::Entry& other) { return other.body == body; });
                 if (!known)
-                    left.entry.push_back(
+                    remaining.entry.push_back(
                         {.body = body, .nonzero = 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
             }
-            left.start.push_back(static_cast<int>(left.entry.size()));
+            remaining.start.push_back(static_cast<int>(remaining.entry.size()));
         }
         row += m.rows;
         alpha += m.count;
     }
-    plain_until(pattern.rows());
-    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) left.velocity_rows += !inactive[k];
+    append_rows_until(pattern.rows());
+    for (int k = pattern.position_rows(); k < pattern.rows(); ++k) remaining.velocity_rows += !inactive[k];
     for (size_t n = 0; n < pattern.regularised.size(); ++n)
         for (const Group& g : group)
             if (const int k = pattern.regularised[n].first - g.first; k >= 0 && k < g.rows) {
                 regularised.push_back(static_cast<int>(n));
-                left.regularised.push_back(pattern.regularised[n]);
-                left.regularised.back().first = g.reduced_first + k;
+                remaining.regularised.push_back(pattern.regularised[n]);
+                remaining.regularised.back().first = g.reduced_first + k;
             }
 }
 
@@ -89,12 +92,12 @@ void Elimination::reflect(const Group& g, Few& v, bool transpose)
 void Elimination::factor(const Rows& full)
 {
     for (size_t n = 0; n < regularised.size(); ++n)
-        left.regularised[n].compliance = full.regularised[regularised[n]].compliance;
+        remaining.regularised[n].compliance = full.regularised[regularised[n]].compliance;
     for (Group& g : group) {
         if (g.count == 0) {
             std::copy(full.entry.begin() + full.start[g.first],
                       full.entry.begin() + full.start[g.first + g.rows],
-                      left.entry.begin() + left.start[g.reduced_first]);
+                      remaining.entry.begin() + remaining.start[g.reduced_first]);
             continue;
         }
         const Rows::AlgebraicGroup& m = full.algebraic[g.algebraic];
@@ -118,15 +121,15 @@ void Elimination::factor(const Rows& full)
                 for (int r = k + 1; r < g.rows; ++r) g.QR(r, c) -= sum * g.QR(r, k);
             }
         }
-        if (!(smallest > worst_diagonal * largest))
-            throw SingularMatrix("the rows of a contact do not determine its contact points",
+        if (!(smallest > smallest_diagonal_ratio * largest))
+            throw SingularMatrix("the constraint rows of a contact do not determine its contact points",
                                  smallest / largest);
         for (int k = 0; k < g.rows - g.count; ++k) {
             Few z = Few::Unit(g.rows, g.count + k);
             reflect(g, z, false);
             g.Z.col(k) = z;
-            const auto first = left.entry.begin() + left.start[g.reduced_first + k];
-            const auto last = left.entry.begin() + left.start[g.reduced_first + k + 1];
+            const auto first = remaining.entry.begin() + remaining.start[g.reduced_first + k];
+            const auto last = remaining.entry.begin() + remaining.start[g.reduced_first + k + 1];
             for (auto entry = first; entry != last; ++entry) entry->r.setZero(), entry->pi.setZero();
             for (int r = 0; r < g.rows; ++r)
                 for (int e = full.start[g.first + r]; e < full.start[g.first + r + 1]; ++e)
@@ -142,14 +145,14 @@ void Elimination::factor(const Rows& full)
 void Elimination::reduce(const Rows& full, const Eigen::VectorXd& whole, bool only_g,
                          Eigen::VectorXd& reduced)
 {
-    const auto body_part = static_cast<int>(whole.size()) - full.rows() - full.unknowns();
+    const auto body_part = static_cast<int>(whole.size()) - full.rows() - full.algebraic_variables();
     bodies = body_part / 6;
     if (only_g)
         reduced.head(body_part).setZero();
     else
         reduced.head(body_part) = whole.head(body_part);
     const auto g_part = whole.segment(body_part, full.rows());
-    const auto p_part = whole.tail(full.unknowns());
+    const auto p_part = whole.tail(full.algebraic_variables());
     for (Group& g : group) {
         if (g.count == 0) {
             reduced.segment(body_part + g.reduced_first, g.rows) = g_part.segment(g.first, g.rows);
@@ -160,18 +163,18 @@ void Elimination::reduce(const Rows& full, const Eigen::VectorXd& whole, bool on
             for (int r = 0; r < g.rows; ++r) sum += g.Z(r, k) * g_part[g.first + r];
             reduced[body_part + g.reduced_first + k] = sum;
         }
-        g.of_p.setZero();
+        g.lambda_p.setZero();
         if (only_g || p_part.segment(g.alpha, g.count).isZero(0)) continue;
         for (int c = 0; c < g.count; ++c) {  // R⁻ᵀ p
             double sum = p_part[g.alpha + c];
-            for (int r = 0; r < c; ++r) sum -= g.QR(r, c) * g.of_p[r];
-            g.of_p[c] = sum / g.QR(c, c);
+            for (int r = 0; r < c; ++r) sum -= g.QR(r, c) * g.lambda_p[r];
+            g.lambda_p[c] = sum / g.QR(c, c);
         }
-        reflect(g, g.of_p, false);
+        reflect(g, g.lambda_p, false);
         for (int r = 0; r < g.rows; ++r)
             for (int e = full.start[g.first + r]; e < full.start[g.first + r + 1]; ++e) {
-                reduced.segment<3>(6 * full.entry[e].body) -= g.of_p[r] * full.entry[e].r;
-                reduced.segment<3>(6 * full.entry[e].body + 3) -= g.of_p[r] * full.entry[e].pi;
+                reduced.segment<3>(6 * full.entry[e].body) -= g.lambda_p[r] * full.entry[e].r;
+                reduced.segment<3>(6 * full.entry[e].body + 3) -= g.lambda_p[r] * full.entry[e].pi;
             }
     }
 }
@@ -181,8 +184,8 @@ void Elimination::expand(const Rows& full, const Eigen::VectorXd& reduced, Eigen
     const int body_part = 6 * bodies;
     whole.head(body_part) = reduced.head(body_part);
     auto g_part = whole.segment(body_part, full.rows());
-    auto alpha_part = whole.tail(full.unknowns());
-    for (const LeftOut& l : left_out) {
+    auto alpha_part = whole.tail(full.algebraic_variables());
+    for (const InactiveRows& l : inactive_rows) {
         g_part.segment(l.first, l.rows).setZero();
         alpha_part.segment(l.alpha, l.count).setZero();
     }
@@ -191,16 +194,16 @@ void Elimination::expand(const Rows& full, const Eigen::VectorXd& reduced, Eigen
             g_part.segment(g.first, g.rows) = reduced.segment(body_part + g.reduced_first, g.rows);
             continue;
         }
-        Few rest(g.rows);
-        for (int r = 0; r < g.rows; ++r) rest[r] = g_part[g.first + r] - full.dot(g.first + r, reduced);
-        reflect(g, rest, true);
+        Few residual(g.rows);
+        for (int r = 0; r < g.rows; ++r) residual[r] = g_part[g.first + r] - full.dot(g.first + r, reduced);
+        reflect(g, residual, true);
         for (int c = g.count - 1; c >= 0; --c) {
-            double sum = rest[c];
+            double sum = residual[c];
             for (int d = c + 1; d < g.count; ++d) sum -= g.QR(c, d) * alpha_part[g.alpha + d];
             alpha_part[g.alpha + c] = sum / g.QR(c, c);
         }
         for (int r = 0; r < g.rows; ++r) {
-            double sum = g.of_p[r];
+            double sum = g.lambda_p[r];
             for (int k = 0; k < g.rows - g.count; ++k)
                 sum += g.Z(r, k) * reduced[body_part + g.reduced_first + k];
             g_part[g.first + r] = sum;

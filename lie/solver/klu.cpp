@@ -11,11 +11,12 @@ namespace hilda::lie {
 
 namespace {
 
-// Below this the last digits of a solution are noise; KLU itself reports success. Only a matrix that has been
-// scaled on both sides is judged by it: with columns of other units than the rows any number is healthy.
+// Below this reciprocal condition a scaled matrix is singular to working precision, although KLU reports
+// success. It is not applied to a matrix without two-sided scaling: its reciprocal condition depends on the
+// units.
 constexpr double singular_when_scaled = 1e-14;
-// Pivots are chosen anew when the old ones have lost this much of the condition they were chosen for.
-constexpr double worn_out = 1e-3;
+// New pivots are chosen if the reciprocal condition is below this fraction of its value at the last choice.
+constexpr double pivot_loss_limit = 1e-3;
 
 }  // namespace
 
@@ -27,8 +28,8 @@ struct Klu::Library {
     explicit Library(Scaling scaling)
     {
         klu_defaults(&common);
-        common.ordering = 0;  // AMD: our matrices are symmetric in pattern
-        common.btf = 0;       // and one block
+        common.ordering = 0;  // AMD, for a symmetric pattern
+        common.btf = 0;       // no block triangular form
         common.scale = scaling == Scaling::none ? -1 : 2;
     }
     ~Library()
@@ -54,14 +55,15 @@ void Klu::analyse(std::vector<int> columns, std::vector<int> rows)
     klu->symbolic = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
     if (klu->symbolic == nullptr)
         throw SingularMatrix(
-            "the pattern of the matrix is singular: more constraint rows than motions, or a "
-            "row that no body enters",
+            "the matrix is singular for all values: there are more constraint rows than degrees of freedom, "
+            "or a "
+            "row has no body",
             0);
 }
 
 double Klu::operations() const
 {
-    // the estimate of AMD for a symmetric pattern; -1 where there is none
+    // the estimate of AMD; -1 if there is none
     return klu->symbolic->est_flops >= 0 ? klu->symbolic->est_flops : 0;
 }
 
@@ -70,10 +72,10 @@ bool Klu::refactor()
     if (!have_pivots || klu_refactor(column_start.data(), row_index.data(), value.data(), klu->symbolic,
                                      klu->numeric, &klu->common) == 0)
         return false;
-    ++again;
+    ++refactor_count;
     klu_rcond(klu->symbolic, klu->numeric, &klu->common);
     rcond = klu->common.rcond;
-    return klu->common.status == KLU_OK && rcond > worn_out * rcond_of_full;  // false for NaN
+    return klu->common.status == KLU_OK && rcond > pivot_loss_limit * rcond_of_pivots;  // false for NaN
 }
 
 void Klu::factor(const char* what)
@@ -83,7 +85,7 @@ void Klu::factor(const char* what)
     klu_free_numeric(&klu->numeric, &klu->common);
     klu->numeric =
         klu_factor(column_start.data(), row_index.data(), value.data(), klu->symbolic, &klu->common);
-    ++full;
+    ++full_count;
     rcond = 0;
     if (klu->numeric != nullptr && klu->common.status == KLU_OK) {
         klu_rcond(klu->symbolic, klu->numeric, &klu->common);
@@ -92,7 +94,7 @@ void Klu::factor(const char* what)
     have_pivots = rcond > (klu->common.scale < 0 ? singular_when_scaled : 0);
     if (!have_pivots)
         throw SingularMatrix(std::string(what) + " is singular: redundant or singular constraints?", rcond);
-    rcond_of_full = rcond;
+    rcond_of_pivots = rcond;
 }
 
 void Klu::solve(double* b) const { klu_solve(klu->symbolic, klu->numeric, size(), 1, b, &klu->common); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A sparse matrix of fixed pattern and its LU factors by KLU: analysed once, pivots chosen rarely, factored
-/// often.
+/// A sparse matrix of fixed pattern and its LU factors by KLU. The pattern is analysed once. A factorisation
+/// reuses the pivots of an earlier one as long as they are accurate.
 
 #pragma once
 
@@ -12,45 +12,48 @@ namespace hilda::lie {
 
 class Klu {
 public:
-    /// Whether rows are scaled inside KLU. Whoever has scaled the matrix on both sides saves the time, and is told
-    /// where it is singular to working precision, not only where it is singular.
+    /// Whether KLU scales the rows. `none` is for a matrix that has been scaled on both sides. Its reciprocal
+    /// condition is meaningful: factor() also rejects matrices that are singular to working precision.
     enum class Scaling { none, rows };
 
     explicit Klu(Scaling scaling);
     ~Klu();
 
-    /// Compressed columns, rows ascending or not, none twice. Throws SingularMatrix where no values could
-    /// make the pattern regular.
+    /// Sets the pattern in compressed columns. The rows of a column are distinct, in any order. Throws
+    /// SingularMatrix if the matrix is singular for all values.
     void analyse(std::vector<int> column_start, std::vector<int> row_index);
 
-    /// By the order in which the pattern was given
+    /// The values, in the order of row_index
     std::vector<double> value;
 
-    /// Factors the values with the pivots of the last full factorisation; where there is none, or the
-    /// reciprocal condition says that its pivots no longer serve, does nothing more and returns false.
+    /// Factors the values with the pivots of the last full factorisation. Returns false if there is none, or
+    /// if the reciprocal condition is below 1e-3 of its value then: factor() is needed.
     bool refactor();
-    /// Factors the values with pivots chosen anew. Throws SingularMatrix, and NonFinite for values that are
-    /// not finite; `what` is the matrix, for the message.
+    /// Factors the values with new pivots. Throws SingularMatrix, and NonFinite for values that are not
+    /// finite. `what` is the name of the matrix for the message.
     void factor(const char* what);
 
-    /// Solves in place; size() numbers
+    /// Solves in place; b has size() components.
     void solve(double* b) const;
 
     int size() const { return static_cast<int>(column_start.size()) - 1; }
     const std::vector<int>& columns() const { return column_start; }
     const std::vector<int>& rows() const { return row_index; }
     double reciprocal_condition() const { return rcond; }
-    long factorizations() const { return full; }     ///< with new pivots
-    long refactorizations() const { return again; }  ///< with the pivots of the last full one
-    double operations() const;                       ///< estimate of one factorisation, multiplications
+    /// Number of factorisations with new pivots
+    long factorizations() const { return full_count; }
+    /// Number of factorisations with the pivots of an earlier one
+    long refactorizations() const { return refactor_count; }
+    /// Estimated number of multiplications of one factorisation
+    double operations() const;
 
 private:
     struct Library;
 
     std::vector<int> column_start, row_index;
     std::unique_ptr<Library> klu;
-    double rcond = 1, rcond_of_full = 1;
-    long full = 0, again = 0;
+    double rcond = 1, rcond_of_pivots = 1;  ///< of the last factorisation, of the last full one
+    long full_count = 0, refactor_count = 0;
     bool have_pivots = false;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A Newton matrix put together from small dense blocks: declare the blocks, analyse once, then add values and
-/// factor as often as needed.
+/// A sparse Newton matrix, assembled from small dense blocks. The blocks are declared and analysed once. For
+/// each factorisation their values are added.
 ///
-///     const int at = N.declare(row, column, 6, 6);      // blocks may overlap: values add up
+///     const int at = N.declare(row, column, 6, 6);      // overlapping blocks are summed
 ///     N.analyse();
 ///     N.set_zero();  N.add(at, 0.5 * h * B);  N.factor();  N.solve(b);
 
@@ -16,9 +16,9 @@ namespace hilda::lie {
 
 class NewtonMatrix {
 public:
-    /// Returns a handle of the block whose first entry is (row, column).
+    /// Declares the rows × columns block with the first entry (row, column). Returns its handle for add().
     int declare(int row, int column, int rows, int columns);
-    /// `n` unknowns; every entry of the diagonal is declared by the way.
+    /// Analyses the pattern of the n × n matrix. All diagonal entries are part of it.
     void analyse(int n);
 
     void set_zero() { std::fill(klu.value.begin(), klu.value.end(), 0.0); }
@@ -31,12 +31,12 @@ public:
     }
     void add(int handle, double entry) { klu.value[slot[handle]] += entry; }
 
-    /// Keeps pivots while they serve. Throws SingularMatrix, NonFinite.
+    /// Reuses pivots as long as they are accurate (Klu::refactor). Throws SingularMatrix, NonFinite.
     void factor();
-    /// In place. Throws NonFinite when the solution is not finite.
+    /// Solves in place. Throws NonFinite if the solution is not finite.
     void solve(Eigen::VectorXd& b) const;
 
-    /// Compressed columns and their values, for whoever solves elsewhere
+    /// The matrix in compressed columns, for another solver
     const Klu& compressed() const { return klu; }
     long factorizations() const { return klu.factorizations(); }
     long refactorizations() const { return klu.refactorizations(); }
@@ -44,7 +44,7 @@ public:
 private:
     Klu klu{Klu::Scaling::rows};
     std::vector<int> row, column;  ///< of each declared entry
-    std::vector<int> slot;         ///< where it stands in klu.value
+    std::vector<int> slot;         ///< its index in klu.value
 };
 
 }  // namespace hilda::lie

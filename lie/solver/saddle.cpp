@@ -1,17 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/solver/saddle.hpp"
 
+#include "lie/check.hpp"
+#include "lie/solver/condensed.hpp"
+#include "lie/solver/elimination.hpp"
+#include "lie/system.hpp"
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
     : system(system), metric(metric), solver(solver), bodies(system.bodies()), m(system.rows()),
-      unknowns(system.pattern().unknowns()), C(system.pattern()), inactive(m, 0), work(size()), residual(size()),
-      right_side(size())
+      unknowns(system.pattern().algebraic_variables()), C(system.pattern()), inactive(m, 0), work(size()),
+      residual(size()), right_side(size())
 {
-    // which of the rows are empty is known with the first state
+    // Otherwise the inactive rows are known only with the first state.
     if (solver == LinearSolver::klu || unknowns == 0 || C.unilateral.empty()) choose_solver();
+}
+
+Saddle::~Saddle() = default;
+
+const Rows& Saddle::solved() const { return elimination ? elimination->reduced() : C; }
+
+double Saddle::reciprocal_condition() const
+{
+    return by_condensed ? condensed->smallest_pivot() : klu.reciprocal_condition();
 }
 
 void Saddle::choose_solver()
@@ -33,7 +49,7 @@ void Saddle::choose_solver()
     if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
 }
 
-/// Rows that are empty in the state last evaluated are not part of what is factored.
+/// Excludes from the factorisation the rows that are inactive in the state last evaluated.
 void Saddle::leave_out_inactive()
 {
     bool changed = false;
@@ -53,8 +69,8 @@ void Saddle::analyse()
     const Rows& R = solved();
     const int rows = R.rows();
     slot.clear(), mass_slot.clear(), unilateral_slot.clear(), regularised_slot.clear();
-    // columns of body b: its 3 + 9 mass entries, then one entry per row that moves with it
-    std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // per column: row, index into slot
+    // Columns of body b: its 3 + 9 mass entries, then one entry for each row that depends on the body.
+    std::vector<std::vector<std::pair<int, int>>> lower(6 * bodies);  // of each column: row, index into slot
     std::vector<std::vector<std::pair<int, int>>> of_row(rows), of_alpha(unknowns);
     for (int k = 0; k < rows; ++k)
         for (int n = R.start[k]; n < R.start[k + 1]; ++n)
@@ -116,9 +132,10 @@ void Saddle::analyse()
     klu.analyse(std::move(column_start), std::move(row_index));
 }
 
-// S = diag(M, J̄)^(-1/2) on the bodies, and on row k what brings (Φ_r, Π̄) S to length one. Then K is about as
-// well conditioned as the mechanism is, whatever its units, and the reciprocal condition means something. The rows of
-// a group with massless unknowns, whose Φ_α is of length one, share one factor, and the unknowns have its reciprocal.
+// S = diag(M, J̄)^(-1/2) for the bodies. For row k the scale is 1/|(Φ_r, Π̄) S|, so that the scaled row has
+// length one. The condition number of the scaled matrix then depends on the mechanism only and not on its
+// units, and its estimate can be compared with a limit. The rows of an algebraic group, whose Φ_α is of
+// length one, share one scale, and the variables of the group have its reciprocal.
 void Saddle::scale_rows()
 {
     const Rows& R = solved();
@@ -152,7 +169,7 @@ void Saddle::scale_rows()
             for (int c = 0; c < 6; ++c)
                 if (R.entry[n].nonzero >> c & 1)
                     slot[s++].factor = scale[6 * bodies + k] * scale[6 * R.entry[n].body + c];
-    // Φ_α keeps factor 1
+    // The factor of Φ_α remains 1.
     s = 0;
     for (int b = 0; b < bodies; ++b)
         for (int c = 0; c < 6; ++c)
@@ -181,9 +198,10 @@ void Saddle::fill()
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
     const Rows& R = solved();
-    for (size_t n = 0; n < unilateral_slot.size(); ++n)  // an empty row leaves its multiplier alone
+    for (size_t n = 0; n < unilateral_slot.size(); ++n)  // an inactive row does not change its multiplier
         klu.value[unilateral_slot[n]] = C.is_inactive(C.unilateral[n]) ? -1 : 0;
-    if (R.unilateral.empty())  // what gives way is left out where it is empty
+    if (R.unilateral
+            .empty())  // then the loop above has not reset the diagonal entries of the regularised rows
         for (const int at : regularised_slot) klu.value[at] = 0;
     for (size_t n = 0; n < regularised_slot.size(); ++n) {
         const Rows::Regularised& c = R.regularised[n / 2];
@@ -212,7 +230,7 @@ void Saddle::factor_rows(const State& x)
     if (elimination) elimination->factor(C);
     by_condensed = condensed != nullptr && condensed->factor(solved());
     if (by_condensed) {
-        ++by_blocks;
+        ++condensed_factorizations;
         return;
     }
     if (!scaled) scale_rows();

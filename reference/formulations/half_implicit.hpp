@@ -1,41 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The half-implicit idea on generalised coordinates q = p or ε of the rotation.    Fang (2022), Secs. 3.5, 3.9
+/// Half-implicit schemes in the rotational coordinates q = p (Euler parameters) or q = ε (Euler angles).
+///                                                                             Fang (2022), Secs. 3.5, 3.9
 ///
 ///     M r̈_n + Φ_rᵀ λ_n = F_n                                                                      (a)
 ///     Tᵀ J̄ T q̈_n + Φ_qᵀ λ_n (+ p λ^P_n) = Tᵀ (n̄ - ω̄ × J̄ ω̄ - J̄ Ṫ q̇)_n,   Φ_q = Π̄ T              (b)
 ///     ṙ_{n+1/2} = ṙ_{n-1/2} + h r̈_n,    r_{n+1} = r_n + h ṙ_{n+1/2},    likewise q                    (c)
 ///     Φ(r_{n+1}, q_{n+1}, t_{n+1}) = 0,    (pᵀp - 1)/2 = 0 at t_{n+1}                               (d)
 ///
-/// with δπ̄ = T δq: T = 2G for p, T = B for ε. The gyroscopic term of p is 2Gᵀ(-ω̄ × J̄ ω̄) and not the
-/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25: the two differ by a multiple of p, which λ^P takes up; as it stands here λ^P is
-/// zero. The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n), the Newton matrix is that of (a),
-/// (b), (d) frozen at t_n:
+/// with δπ̄ = T δq: T = 2G for p, T = B for ε. The gyroscopic term of p is 2Gᵀ(-ω̄ × J̄ ω̄) instead of the
+/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25. The two differ by a multiple of p, which changes λ^P only; with the form above λ^P is zero.
+/// The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n). The Newton matrix is that of (a), (b), (d),
+/// evaluated once per step at t_n:
 ///
 ///     | M    0     Φ_rᵀ  0 |
 ///     | 0   TᵀJ̄T   Φ_qᵀ  p |
 ///     | Φ_r Φ_q    0     0 |
 ///     | 0    pᵀ    0     0 |
 ///
-/// Plain start: ṙ_{-1/2} = ṙ_0; the half-step velocities are reported as those of the node that follows and
-/// stand in its loads. Order 1. With a kick: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0; node velocities are the means of the
-/// two half steps beside them, and what the loads see of them, one step early, is 1.5 ṙ_{n-1/2} - 0.5
-/// ṙ_{n-3/2}. Order 2 in everything.
+/// Plain start: ṙ_{-1/2} = ṙ_0. The half-step velocities are stored as those of the following node, and its loads are
+/// evaluated with them. Order 1.
 ///
-/// On p the scheme is rA-half-1 with another retraction: since G(a) b = -G(b) a, the body vector
-/// ω̄_{n+1/2} = 2G(p_n) ṗ_{n+1/2} = 2G(p_{n+1}) ṗ_{n+1/2}, (b) times ½G reads J̄ (ω̄_{n+1/2} - ω̄_{n-1/2})/h +
-/// Π̄ᵀλ = τ̄, and the angle of the step is 2 asin(h|ω̄|/2) instead of h|ω̄|.
+/// Start with a half step: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0. The velocities of a node are the means of those half a step before
+/// and after it. The loads at t_n are evaluated, one step earlier, with 1.5 ṙ_{n-1/2} - 0.5 ṙ_{n-3/2}. Order 2 in all
+/// quantities.
+///
+/// In p the scheme is rA-half-1 with another map from the velocity to the rotation. Since G(a) b = -G(b) a,
+///
+///     ω̄_{n+1/2} = 2G(p_n) ṗ_{n+1/2} = 2G(p_{n+1}) ṗ_{n+1/2}
+///
+/// and ½G times (b) is J̄ (ω̄_{n+1/2} - ω̄_{n-1/2})/h + Π̄ᵀλ = τ̄. The rotation angle of the step is 2 asin(h|ω̄|/2) instead
+/// of h|ω̄|.
 
 #pragma once
 
+#include "lie/check.hpp"
+#include "lie/rows.hpp"
 #include "lie/solver/newton_matrix.hpp"
 #include "lie/steps/newton_step.hpp"
+#include "lie/system.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace hilda::reference {
 
 using lie::Mat3;
 using lie::Vec3;
 
-/// Euler angles have come to where they do not determine a motion.
+/// The Euler angles of a body are near their singularity.
 class SingularParametrisation : public lie::NumericalFailure {
 public:
     SingularParametrisation(const std::string& what, double phi)
@@ -45,7 +60,7 @@ public:
     double phi;  ///< the second of the angles [rad]
 };
 
-/// Coordinates: EulerParameters or EulerAngles
+/// The scheme for Coordinates = EulerParameters or EulerAngles
 template <class Coordinates>
 class HalfImplicit : public lie::NewtonStep {
 public:
@@ -78,8 +93,8 @@ public:
     {
         x_n = x;
         Attempt attempt(x, x_n);
-        recall(h);
-        assemble();  // frozen at t_n
+        restore(h);
+        assemble();  // at t_n
         set_known_part(h);
         predict(h);
         x.t = x_n.t + h;
@@ -115,7 +130,7 @@ private:
     using Vector = Eigen::Matrix<double, k, 1>;
     using Map = Eigen::Matrix<double, 3, k>;
 
-    /// One body in a step from t_n
+    /// Data of one body in the step from t_n
     struct Part {
         Coordinates at, after;  ///< q at t_n and at the iterate
         Vector qdot;            ///< q̇_{n-1/2}
@@ -130,11 +145,12 @@ private:
     int at_lambda() const { return width * model.bodies(); }
     int at_norm(int i) const { return at_lambda() + model.rows() + i; }
 
-    // What the state carries of each body: ṙ, ω̄ of the node that the last step has left, both at that node;
-    // ṙ_{n-1/2}; q_n, its frame where it has one, and q̇_{n-1/2}. Carrying q keeps p from changing its sign.
+    // State::history holds for each body: ṙ, ω̄ at t_{n-1}; ṙ_{n-1/2}; q_n, its frame (0 for p), and q̇_{n-1/2}. q is
+    // stored because A does not determine the sign of p.
     static constexpr int stride = 6 + 3 + k + 1 + k;
 
-    void recall(double h)
+    /// Sets the data of each body from x_n and its history.
+    void restore(double h)
     {
         const bool at_start = x_n.history.size() != stride * model.bodies();
         for (int i = 0; i < model.bodies(); ++i) {
@@ -143,11 +159,11 @@ private:
             if (at_start)
                 p.at = Coordinates(body.A);
             else {
-                const auto carried = x_n.history.template segment<stride>(stride * i);
-                p.rdot = carried.template segment<3>(6);
-                p.at.q = carried.template segment<k>(9);
-                if constexpr (Coordinates::singular_somewhere) p.at.frame = static_cast<int>(carried[9 + k]);
-                p.qdot = carried.template segment<k>(10 + k);
+                const auto stored = x_n.history.template segment<stride>(stride * i);
+                p.rdot = stored.template segment<3>(6);
+                p.at.q = stored.template segment<k>(9);
+                if constexpr (Coordinates::singular_somewhere) p.at.frame = static_cast<int>(stored[9 + k]);
+                p.qdot = stored.template segment<k>(10 + k);
             }
             if constexpr (Coordinates::singular_somewhere) keep_off_singular_set(i, h, at_start);
             if (at_start) {
@@ -160,22 +176,23 @@ private:
         }
     }
 
-    /// At a distance δ from the singular set two of the angles turn 1/δ times as fast as the body, so their
-    /// truncation error is that of a step 1/δ times as long. Without another frame the run may come as near
-    /// as 0.1: a step that turns the body by 0.01 rad then turns the angles by 0.1, and beyond that neither
-    /// Newton's method with a frozen B nor the order can be relied on. With one there is no reason to wait;
-    /// at 0.5 the
-    /// new frame is nearly twice as far from its own set, so the angles do not flutter between two.
+    /// Limits the distance of the angles from the singular set: changes the frame, or throws SingularParametrisation.
+    ///
+    /// At the distance δ two of the angles change 1/δ times as fast as the orientation. Their truncation error is that
+    /// of a step 1/δ times as long. Without reparametrisation the limit is 0.1: a step that rotates the body by
+    /// 0.01 rad changes the angles by 0.1 there, and below it neither the convergence of Newton's method with a
+    /// constant B nor the order is reliable. With reparametrisation the limit is 0.5. The new frame is then nearly
+    /// twice as far from its singular set, so that the frame does not alternate between two choices.
     void keep_off_singular_set(int i, double h, bool at_start)
     {
         Part& p = part[i];
         const double near = settings.reparametrise ? 0.5 : 0.1;
         if (p.at.distance_to_singular_set() >= near) return;
-        if (!settings.reparametrise) singular(i, p.at.q[1], "is too near a singular value");
+        if (!settings.reparametrise) singular(i, p.at.q[1], "is too close to a singular value");
         const Coordinates from = p.at;
         p.at = from.in_best_frame();
         if (at_start) return;
-        // q_{n-1} and q_n stay the same two rotations: that is exact for the scheme
+        // q̇ is defined such that q_{n-1} and q_n remain the same two orientations. This is exact for the scheme.
         Coordinates before = from;
         before.q -= h * p.qdot;
         p.qdot = p.at.since(before) / h;
@@ -186,8 +203,8 @@ private:
         std::ostringstream text;
         text.precision(4);
         text << "body '" << model.body_name(i) << "': the Euler angle phi = " << phi << " rad " << what
-             << " (0 or pi); " << (settings.reparametrise ? "a smaller step" : "--reparametrise")
-             << " or an rA scheme goes through";
+             << " (0 or pi); use " << (settings.reparametrise ? "a smaller step" : "--reparametrise")
+             << " or an rA scheme";
         throw SingularParametrisation(text.str(), phi);
     }
 
@@ -212,7 +229,7 @@ private:
         N.factor();
     }
 
-    /// What does not change in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} + h² Tᵀ(τ̄ - J̄ Ṫq̇)
+    /// The part of the residual that is constant in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} + h² Tᵀ(τ̄ - J̄ Ṫq̇)
     void set_known_part(double h)
     {
         model.loads(x_n, loads);
@@ -227,7 +244,7 @@ private:
         }
     }
 
-    /// Guess with the accelerations and multipliers of the step before                               Eq. 3.34
+    /// Initial guess from the accelerations and multipliers of the previous step                      Eq. 3.34
     void predict(double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {
@@ -250,7 +267,7 @@ private:
         }
     }
 
-    /// Minus the residual, into e
+    /// Sets e to the negative residual.
     void set_residual(const lie::State& x)
     {
         Ct_lambda.setZero();
@@ -270,7 +287,7 @@ private:
         e.segment(at_lambda(), model.rows()) *= -1;
     }
 
-    /// Of a correction: rotations count by the angle that the body turns, for p that is 2 |δp|
+    /// Norm of a correction in r and in the rotation angle of the bodies, which is 2 |δp| for p
     double length_of_motion(const Eigen::VectorXd& dz) const
     {
         double sum = 0;
@@ -289,8 +306,7 @@ private:
         for (int i = 0; i < model.bodies(); ++i) {
             Part& p = part[i];
             if constexpr (Coordinates::singular_somewhere)
-                if (p.after.crossed_singular_set())
-                    singular(i, p.after.q[1], "has gone over a singular value");
+                if (p.after.crossed_singular_set()) singular(i, p.after.q[1], "has passed a singular value");
             p.after.settle();
             lie::Motion& body = x.body[i];
             body.A = p.after.A();
@@ -304,14 +320,14 @@ private:
             body.rdot = rdot + ahead * (rdot - p.rdot);
             body.omega_bar = p.after.T() * (qdot + ahead * (qdot - p.qdot));
 
-            auto carried = x.history.template segment<stride>(stride * i);
-            carried.template head<3>() = 0.5 * (p.rdot + rdot);
-            carried.template segment<3>(3) = 0.5 * (p.T * (p.qdot + qdot));
-            carried.template segment<3>(6) = rdot;
-            carried.template segment<k>(9) = p.after.q;
-            carried[9 + k] = 0;
-            if constexpr (Coordinates::singular_somewhere) carried[9 + k] = p.after.frame;
-            carried.template segment<k>(10 + k) = qdot;
+            auto stored = x.history.template segment<stride>(stride * i);
+            stored.template head<3>() = 0.5 * (p.rdot + rdot);
+            stored.template segment<3>(3) = 0.5 * (p.T * (p.qdot + qdot));
+            stored.template segment<3>(6) = rdot;
+            stored.template segment<k>(9) = p.after.q;
+            stored[9 + k] = 0;
+            if constexpr (Coordinates::singular_somewhere) stored[9 + k] = p.after.frame;
+            stored.template segment<k>(10 + k) = qdot;
         }
     }
 

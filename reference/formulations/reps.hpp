@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rε formulation: a body turned by its Euler angles ε = (θ, φ, ψ).      Fang (2022), Eq. 2.1b, Sec. 2.1.6
+/// The rε formulation: orientation by Euler angles ε = (θ, φ, ψ).            Fang (2022), Eq. 2.1b, Sec. 2.1.6
 
 #pragma once
 
@@ -9,18 +9,19 @@
 
 namespace hilda::reference {
 
-/// ε of one body as coordinates, taken relative to a frame that is fixed in the body: A = R(ε) Cᵀ with C one
-/// of the three cyclic permutations of the axes. Then δπ̄ = C B(ε) δε and ω̄ = C B ε̇.
+/// The Euler angles ε of one body as coordinates, for a frame fixed in the body: A = R(ε) Cᵀ, where C is one of the three
+/// cyclic permutations of the axes. δπ̄ = C B(ε) δε and ω̄ = C B ε̇.
 ///
-/// The singular set is sin φ = 0, where the third axis of that frame lies along the global z. Of three
-/// orthogonal axes one is at least acos(1/√3) = 0.955 rad away from any line, so there is always a good frame.
+/// The angles are singular for sin φ = 0: the third axis of the frame is then parallel to the global z axis. One of three
+/// orthogonal axes makes an angle of at least acos(1/√3) = 0.955 rad with any line, so one of the three frames is always
+/// at least that far from its singular set.
 struct EulerAngles {
     static constexpr int size = 3;
     static constexpr bool unit_length = false;
     static constexpr bool singular_somewhere = true;
 
     lie::Vec3 q;
-    int frame = 0;  ///< C puts the axes (1,2,3), (2,3,1) or (3,1,2) of the body first to third
+    int frame = 0;  ///< 0, 1 or 2: the axes of the frame are the body axes (1,2,3), (2,3,1) or (3,1,2)
 
     EulerAngles() = default;
     explicit EulerAngles(const lie::Mat3& A, int frame = 0)
@@ -64,10 +65,10 @@ struct EulerAngles {
     void settle() {}
 
     double distance_to_singular_set() const { return lie::distance_to_singular_set(q); }
-    /// A step that leaves 0 < φ < π has gone over the singular set.
+    /// Whether φ is outside 0 < φ < π: the step has passed the singular set.
     bool crossed_singular_set() const { return !(q[1] > 0 && q[1] < 3.14159265358979323846); }
 
-    /// The same rotation in the frame that is farthest from its singular set
+    /// The same orientation in the frame that is farthest from its singular set
     EulerAngles in_best_frame() const
     {
         const lie::Mat3 A = this->A();
@@ -79,7 +80,7 @@ struct EulerAngles {
         return best;
     }
 
-    /// The way from an earlier rotation to this one, in these angles
+    /// Difference of the angles from an earlier orientation to this one, each in [-π, π]
     lie::Vec3 since(const EulerAngles& before) const
     {
         lie::Vec3 d = q - EulerAngles(before.A(), frame).q;

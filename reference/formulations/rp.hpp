@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rp formulation: a body turned by its Euler parameters p.                   Fang (2022), Sec. 2.1.6
+/// The rp formulation: orientation by Euler parameters p.                         Fang (2022), Sec. 2.1.6
 
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace hilda::reference {
 
-/// Q(w) with G(p)ᵀ w = Q(w) p: how Gᵀ w changes with p. Skew-symmetric.
+/// The skew-symmetric matrix Q(w) with G(p)ᵀ w = Q(w) p, the derivative of G(p)ᵀ w by p
 inline Eigen::Matrix4d Q(const lie::Vec3& w)
 {
     Eigen::Matrix4d Q;
@@ -15,14 +15,14 @@ inline Eigen::Matrix4d Q(const lie::Vec3& w)
     return Q;
 }
 
-/// p of one body as coordinates: δπ̄ = 2G δp, ω̄ = 2G ṗ, ω̄̇ = 2G p̈ (since Ġ ṗ = 0), and |p| = 1.
+/// The Euler parameters p of one body as coordinates: δπ̄ = 2G δp, ω̄ = 2G ṗ, ω̄̇ = 2G p̈ (since Ġ ṗ = 0), and |p| = 1.
 /// G(a) b = -G(b) a.                                                                 Eqs. 2.20 to 2.22
 ///
-/// A(p) is the rotation of p/|p|, so that it is one for every p of an iteration, and its variation is exactly
+/// A(p) is the rotation of p/|p|. It is a rotation for every iterate p, and its variation is exactly
 /// δπ̄ = 2G δp / |p|².
 struct EulerParameters {
     static constexpr int size = 4;
-    static constexpr bool unit_length = true;  ///< one more constraint a body, (pᵀp - 1)/2 = 0
+    static constexpr bool unit_length = true;  ///< one additional constraint per body, (pᵀp - 1)/2 = 0
     static constexpr bool singular_somewhere = false;
 
     lie::Vec4 q;
@@ -35,16 +35,16 @@ struct EulerParameters {
     lie::Mat34 T() const { return 2 * lie::G(q); }
     lie::Vec3 Tdot_qdot(const lie::Vec4&) const { return lie::Vec3::Zero(); }
 
-    /// ṗ of an angular velocity
+    /// ṗ for the angular velocity ω̄
     lie::Vec4 qdot(const lie::Vec3& omega_bar) const { return 0.5 * lie::G(q).transpose() * omega_bar; }
-    /// p̈ of an angular acceleration, on the unit sphere: pᵀp̈ = -ṗᵀṗ
+    /// p̈ for the angular acceleration ω̄̇, on the unit sphere: pᵀp̈ = -ṗᵀṗ
     lie::Vec4 qddot(const lie::Vec4& qdot, const lie::Vec3& omegadot_bar) const
     {
         return 0.5 * lie::G(q).transpose() * omegadot_bar - qdot.squaredNorm() * q;
     }
-    /// The square of the angle that a small change of p turns the body by
+    /// Squared rotation angle of a small change δp
     double turn2(const lie::Vec4& dq) const { return 4 * dq.squaredNorm(); }
-    /// What rounding and the tolerance have left of |p| - 1 goes
+    /// Removes the deviation of |p| from 1 after a step.
     void settle() { q.normalize(); }
 };
 

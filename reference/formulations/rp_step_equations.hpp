@@ -1,36 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rp equations at one instant, and their full Newton matrix.        Fang (2022), Eqs. 2.23 to 2.27, 2.30 to 2.32
+/// The rp equations at one time, and their exact Newton matrix.       Fang (2022), Eqs. 2.23 to 2.27, 2.30 to 2.32
 ///
 ///     e_r = M r̈ + Φ_rᵀ λ - F
 ///     e_p = 2Gᵀ w + p λ^P,    w = J̄ ω̄̇ + ω̄ × J̄ ω̄ + Π̄ᵀ λ - n̄,    ω̄ = 2G ṗ,  ω̄̇ = 2G p̈
 ///     e_λ = Φ(r, p, t) / g_q
 ///     e_P = (pᵀp - 1) / 2g_q
 ///
-/// in the unknowns (r̈, p̈, λ, λ^P), of which a time-stepping formula makes velocities and positions:
+/// The unknowns are (r̈, p̈, λ, λ^P). A time-stepping formula gives velocities and positions:
 ///
 ///     q̇ = q̇* + g_v q̈,    q = q* + g_q q̈
 ///
-/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) in the place of -8 Ġᵀ J̄ Ġ p. The two differ by a multiple of p, which
-/// λ^P takes up; as it stands here λ^P is zero.
+/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) instead of -8 Ġᵀ J̄ Ġ p. The two terms differ by a multiple of p, which changes
+/// λ^P only. With the form above λ^P is zero.
 ///
-/// The Newton matrix is the exact derivative of e, with the second variations of the constraints and the
-/// sensitivities of the loads. An iterate is off |p| = 1; A is the rotation of p/|p| there, so that
-/// Φ_p = 2Π̄G/|p|² is exact. Of G: G(a) b = -G(b) a, and G(p)ᵀw = Q(w) p. So, per body,
+/// The Newton matrix is the exact derivative of e. It contains the second variations of the constraints and the
+/// derivatives of the loads. An iterate does not satisfy |p| = 1. A is the rotation of p/|p|, so that
+/// Φ_p = 2Π̄G/|p|² is exact. With G(a) b = -G(b) a and G(p)ᵀw = Q(w) p, for each body
 ///
 ///     ∂e_p = 2Q(w) ∂p + 2Gᵀ ∂w + λ^P ∂p + p ∂λ^P
 ///     ∂w   = 2J̄ (G ∂p̈ - G(p̈) ∂p) + (ω̄~ J̄ - (J̄ω̄)~) ∂ω̄ + ∂(Π̄ᵀλ - n̄),    ∂ω̄ = 2G ∂ṗ - 2G(ṗ) ∂p
 ///
-/// and ∂(Φ_rᵀλ - F, Π̄ᵀλ - n̄) from the system, in δθ = 2G ∂p/|p|².
+/// ∂(Φ_rᵀλ - F) and ∂(Π̄ᵀλ - n̄) are the variations of the system with δθ̄ = 2G ∂p/|p|².
 
 #pragma once
 
+#include "lie/loads.hpp"
+#include "lie/rows.hpp"
 #include "lie/solver/newton_matrix.hpp"
-#include "lie/system.hpp"
 #include "reference/formulations/rp.hpp"
+
+#include <vector>
+
+namespace hilda::lie {
+class System;
+}
 
 namespace hilda::reference {
 
-/// q = (r, p), seven numbers a body
+/// The time-stepping formula, with q = (r, p): seven components per body
 struct RpFormula {
     Eigen::VectorXd q, qdot;  ///< q*, q̇*
     double g_q = 0, g_v = 0;  ///< [s²], [s]
@@ -38,158 +45,41 @@ struct RpFormula {
 
 class RpStepEquations {
 public:
-    explicit RpStepEquations(const lie::System& model)
-        : model(model), bodies(model.bodies()), rows(model.rows()), C(model.pattern()), H(model.pattern()),
-          D(model.load_pattern()), loads(bodies), w(bodies), q(7 * bodies), qdot(7 * bodies),
-          Ct_lambda(6 * bodies), V(bodies)
-    {
-        for (int i = 0; i < bodies; ++i) pair_of(i, i);
-        for (int row = 0; row < rows; ++row)
-            for (int a = C.start[row]; a < C.start[row + 1]; ++a)
-                for (int b = C.start[row]; b < C.start[row + 1]; ++b)
-                    pair_of_variation.push_back(pair_of(C.entry[a].body, C.entry[b].body));
-        for (const auto& block : D.block) pair_of_load.push_back(pair_of(block.on, block.by));
-
-        for (Pair& pair : pairs) pair.at = N.declare(7 * pair.on, 7 * pair.by, 7, 7);
-        for (int row = 0; row < rows; ++row)
-            for (int n = C.start[row]; n < C.start[row + 1]; ++n) {
-                upper.push_back(N.declare(7 * C.entry[n].body, at_lambda() + row, 7, 1));
-                lower.push_back(N.declare(at_lambda() + row, 7 * C.entry[n].body, 1, 7));
-            }
-        for (int i = 0; i < bodies; ++i) {
-            norm_column.push_back(N.declare(7 * i + 3, at_norm() + i, 4, 1));
-            norm_row.push_back(N.declare(at_norm() + i, 7 * i + 3, 1, 4));
-        }
-        N.analyse(size());
-    }
+    explicit RpStepEquations(const lie::System& model);
 
     int size() const { return 8 * bodies + rows; }
     int at_lambda() const { return 7 * bodies; }
     int at_norm() const { return 7 * bodies + rows; }
 
-    /// Positions, velocities and accelerations of z in the state x; then p, ṗ can be read from q and qdot
-    void place(const RpFormula& formula, const Eigen::VectorXd& z, lie::State& x)
-    {
-        q = formula.q + formula.g_q * z.head(7 * bodies);
-        qdot = formula.qdot + formula.g_v * z.head(7 * bodies);
-        for (int i = 0; i < bodies; ++i) {
-            lie::Motion& body = x.body[i];
-            const lie::Mat34 G = lie::G(p(i));
-            body.r = q.segment<3>(7 * i), body.rdot = qdot.segment<3>(7 * i),
-            body.rddot = z.segment<3>(7 * i);
-            body.A = lie::rotation(lie::Vec4(p(i).normalized()));
-            body.omega_bar = 2 * G * pdot(i);
-            body.omegadot_bar = 2 * G * z.segment<4>(7 * i + 3);
-        }
-        x.lambda = z.segment(at_lambda(), rows);
-    }
+    /// Sets the positions, velocities and accelerations of x from z. p(i) and pdot(i) are then those of body i.
+    void place(const RpFormula& formula, const Eigen::VectorXd& z, lie::State& x);
     lie::Vec4 p(int i) const { return q.segment<4>(7 * i + 3); }
     lie::Vec4 pdot(int i) const { return qdot.segment<4>(7 * i + 3); }
 
-    /// e at z, which place() has put into x
-    void residual(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x, Eigen::VectorXd& e)
-    {
-        model.loads(x, loads);
-        model.variation(x, C);
-        Ct_lambda.setZero();
-        C.add_transpose(1, x.lambda, Ct_lambda);
-        for (int i = 0; i < bodies; ++i) {
-            const lie::Motion& body = x.body[i];
-            const lie::Mat3& J_bar = model.mass().J_bar[i];
-            w[i] = J_bar * body.omegadot_bar + body.omega_bar.cross(J_bar * body.omega_bar) +
-                   Ct_lambda.segment<3>(6 * i + 3) - loads.n_bar[i];
-            e.segment<3>(7 * i) = model.mass().m[i] * body.rddot + Ct_lambda.segment<3>(6 * i) - loads.F[i];
-            e.segment<4>(7 * i + 3) = 2 * lie::G(p(i)).transpose() * w[i] + z[at_norm() + i] * p(i);
-            e[at_norm() + i] = (p(i).squaredNorm() - 1) / (2 * formula.g_q);
-        }
-        model.phi(x, e.segment(at_lambda(), rows));
-        e.segment(at_lambda(), rows) /= formula.g_q;
-    }
+    /// Computes the residual e of z. x is the result of place().
+    void residual(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x,
+                  Eigen::VectorXd& e);
 
-    /// N = ∂e/∂z where residual() was last called                                                Eq. 2.32
-    void assemble(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x)
-    {
-        set_variations(x);
-        N.set_zero();
-        for (int i = 0; i < bodies; ++i) set_map(i, formula);
-        Mat7 block;
-        for (const Pair& pair : pairs) {
-            const Eigen::Matrix<double, 6, 7> S = pair.S * V[pair.by];
-            block << S.topRows<3>(), 2 * lie::G(p(pair.on)).transpose() * S.bottomRows<3>();
-            if (pair.on == pair.by) add_inertia(pair.on, formula, z, x.body[pair.on], block);
-            N.add(pair.at, block);
-        }
-        Eigen::Matrix<double, 7, 1> Phi_q;
-        for (size_t n = 0; n < C.entry.size(); ++n) {
-            const int i = C.entry[n].body;
-            Phi_q << C.entry[n].r, 2 * lie::G(p(i)).transpose() * C.entry[n].pi;
-            N.add(upper[n], Phi_q);
-            Phi_q.tail<4>() /= p(i).squaredNorm();
-            N.add(lower[n], Phi_q.transpose());
-        }
-        for (int i = 0; i < bodies; ++i) {
-            N.add(norm_column[i], p(i));
-            N.add(norm_row[i], p(i).transpose());
-        }
-    }
+    /// Sets N = ∂e/∂z, for the arguments of the last residual().                                                Eq. 2.32
+    void assemble(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x);
 
     lie::NewtonMatrix N;
 
 private:
     using Mat7 = Eigen::Matrix<double, 7, 7>;
 
-    /// ∂(Φ_rᵀλ - F, Π̄ᵀλ - n̄) on one body by (δr, δθ, δṙ, δω̄) of one
+    /// S = ∂(Φ_rᵀλ - F, Π̄ᵀλ - n̄ of body `on`)/∂(δr, δθ̄, δṙ, δω̄ of body `by`); `at` is its block of N
     struct Pair {
         int on = 0, by = 0, at = 0;
         Eigen::Matrix<double, 6, 12> S = Eigen::Matrix<double, 6, 12>::Zero();
     };
 
-    int pair_of(int on, int by)
-    {
-        for (size_t n = 0; n < pairs.size(); ++n)
-            if (pairs[n].on == on && pairs[n].by == by) return static_cast<int>(n);
-        pairs.push_back({on, by});
-        return static_cast<int>(pairs.size()) - 1;
-    }
-
-    void set_variations(const lie::State& x)
-    {
-        for (Pair& pair : pairs) pair.S.setZero();
-        model.second_variation(x, H);
-        size_t n = 0;
-        for (int row = 0; row < rows; ++row)
-            for (int a = 0; a < H.entries[row]; ++a)
-                for (int b = 0; b < H.entries[row]; ++b)
-                    pairs[pair_of_variation[n++]].S.leftCols<6>() += x.lambda[row] * H.at(row, a, b);
-        if (D.block.empty()) return;
-        model.load_variation(x, D);
-        for (size_t k = 0; k < D.block.size(); ++k) pairs[pair_of_load[k]].S -= D.block[k].d;
-    }
-
-    /// (δr, δθ, δṙ, δω̄) of body i by its (∂r̈, ∂p̈)
-    void set_map(int i, const RpFormula& f)
-    {
-        const lie::Mat34 G = lie::G(p(i));
-        V[i].setZero();
-        V[i].block<3, 3>(0, 0) = f.g_q * lie::Mat3::Identity();
-        V[i].block<3, 4>(3, 3) = 2 * f.g_q / p(i).squaredNorm() * G;
-        V[i].block<3, 3>(6, 0) = f.g_v * lie::Mat3::Identity();
-        V[i].block<3, 4>(9, 3) = 2 * f.g_v * G - 2 * f.g_q * lie::G(pdot(i));
-    }
-
+    int pair_of(int on, int by);  ///< index of the pair, which is added if it does not exist
+    void set_variations(const lie::State& x);
+    /// Sets V[i], the derivative of (δr, δθ̄, δṙ, δω̄) of body i by its (∂r̈, ∂p̈).
+    void set_map(int i, const RpFormula& f);
     void add_inertia(int i, const RpFormula& f, const Eigen::VectorXd& z, const lie::Motion& body,
-                     Mat7& block) const
-    {
-        const lie::Mat3& J_bar = model.mass().J_bar[i];
-        const lie::Mat34 G = lie::G(p(i));
-        const lie::Vec3 J_omega = J_bar * body.omega_bar;
-        block.topLeftCorner<3, 3>() += model.mass().m[i] * lie::Mat3::Identity();
-        const lie::Mat34 dw =
-            2 * J_bar * (G - f.g_q * lie::G(lie::Vec4(z.segment<4>(7 * i + 3)))) +
-            (lie::tilde(body.omega_bar) * J_bar - lie::tilde(J_omega)) * V[i].block<3, 4>(9, 3);
-        block.bottomRightCorner<4, 4>() += 2 * G.transpose() * dw + 2 * f.g_q * Q(w[i]) +
-                                           f.g_q * z[at_norm() + i] * Eigen::Matrix4d::Identity();
-    }
+                     Mat7& block) const;
 
     const lie::System& model;
     const int bodies, rows;

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Half-implicit schemes on Euler parameters, plain and with a half-step kick. See
-/// formulations/half_implicit.hpp
+/// Half-implicit schemes on Euler parameters.                                     Fang (2022), Secs. 3.5, 3.9
+///
+///     rp-half-1        half-implicit (symplectic) Euler, order 1
+///     rp-half-1-kick   leapfrog (SHAKE): velocities at half steps, started with half a step, order 2
+///
+/// Equations: formulations/half_implicit.hpp with the coordinates of formulations/rp.hpp.
+
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/system.hpp"
 #include "reference/formulations/half_implicit.hpp"
 #include "reference/formulations/rp.hpp"
 
@@ -21,15 +29,18 @@ public:
     {}
 };
 
-const bool registered = lie::register_scheme<RpHalf1>({.name = "rp-half-1",
-                                                       .order = 1,
-                                                       .order_lambda = 1,
-                                                       .formulation = "rp",
-                                                       .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
-                                                       .source = "Fang (2022), Secs. 3.5, 3.9"});
+const bool registered =
+    lie::register_scheme<RpHalf1>({.name = "rp-half-1",
+                                   .description = "half-implicit (symplectic) Euler on Euler parameters",
+                                   .order = 1,
+                                   .order_lambda = 1,
+                                   .formulation = "rp",
+                                   .unknowns = "r, p, h^2 lambda, h^2 lambda_P",
+                                   .source = "Fang (2022), Secs. 3.5, 3.9"});
 
 const bool registered_kick =
     lie::register_scheme<RpHalf1Kick>({.name = "rp-half-1-kick",
+                                       .description = "leapfrog (SHAKE) on Euler parameters",
                                        .order = 2,
                                        .order_lambda = 2,
                                        .formulation = "rp",

@@ -18,7 +18,7 @@ void check(const BallInGroove& groove)
             lie::reject("reference::BallInGroove", "radius, mass and inertia must be positive", positive);
     if (!(groove.R < groove.a && groove.a < groove.R_t))
         lie::reject("reference::BallInGroove",
-                    "the ball must fit into the tube, and the tube into the ring, R < a < R_t",
+                    "the ball must fit into the tube and the tube into the ring: R < a < R_t; R, a, R_t [m]",
                     Vec3(groove.R, groove.a, groove.R_t).transpose());
 }
 
@@ -46,19 +46,18 @@ ContactInstant instant(const BallInGroove& groove, const Vec3& omega, double t, 
     x.body.rdot = P * y[phidot] * e_phi + q * y[betadot] * e_beta;
     x.body.rddot = x.F_N / groove.m * x.n - groove.g * Vec3::UnitZ();
     x.body.A = lie::exp(t * omega);
-    x.body.omega_bar = omega;  // Aᵀω, since A turns about ω
+    x.body.omega_bar = omega;  // Aᵀω = ω, because A is a rotation about ω
     x.a_bar = -groove.R * (x.body.A.transpose() * x.n);
     return x;
 }
 
 }  // namespace
 
-double BallInGroove::steady(double beta) const
+double BallInGroove::steady_rate(double beta) const
 {
     check(*this);
     if (!(beta >= 0 && beta < std::acos(0.0)))
-        lie::reject("reference::BallInGroove", "a steady orbit is between the bottom and the outer side",
-                    beta);
+        lie::reject("reference::BallInGroove", "a steady orbit requires 0 <= beta < pi/2", beta);
     return std::sqrt(g * std::tan(beta) / (R_t + (a - R) * std::sin(beta)));
 }
 

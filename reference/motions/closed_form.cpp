@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/motions/closed_form.hpp"
 
+#include "lie/check.hpp"
 #include "reference/solvers/gsl_errors.hpp"
 
 #include <gsl/gsl_sf_elljac.h>
@@ -10,10 +11,10 @@ namespace hilda::reference {
 
 namespace {
 
-// Moments of inertia that differ by less are the same: rounding of a file's decimals.
+// Relative tolerance for equal moments of inertia. It covers the rounding of decimal input.
 constexpr double same_moment = 1e-12;
 
-/// What of a planar chain does not change, and its accelerations
+/// Constant coefficients of a planar chain (c, S, m, J) and its angular accelerations
 class ChainEquations {
 public:
     explicit ChainEquations(const PlanarChain& chain)
@@ -22,8 +23,8 @@ public:
         for (int k = 0; k < n; ++k) {
             const PlanarBar& bar = chain.bar[k];
             if (!(bar.length > 0 && bar.m > 0 && bar.J > 0))
-                lie::reject("reference::PlanarChain", "length, mass and inertia of a bar must be positive",
-                            k);
+                lie::reject("reference::PlanarChain",
+                            "length, mass and inertia of a bar must be positive; index of the bar", k);
             m[k] = bar.m, J[k] = bar.J;
             for (int j = 0; j < k; ++j) c(k, j) = chain.bar[j].length;
             c(k, k) = bar.length / 2;
@@ -53,7 +54,7 @@ public:
 
     lie::State state(double t, const ConstVectorRef& theta, const ConstVectorRef& thetadot) const
     {
-        const Eigen::VectorXd theta_2 = thetaddot(theta, thetadot);
+        const Eigen::VectorXd acceleration = thetaddot(theta, thetadot);
         lie::State x;
         x.t = t;
         x.body.resize(n);
@@ -64,11 +65,11 @@ public:
                 const Vec3 u_j = u(theta[j]), n_j = chain.axis.cross(u_j);
                 body.r += c(k, j) * u_j;
                 body.rdot += c(k, j) * thetadot[j] * n_j;
-                body.rddot += c(k, j) * (theta_2[j] * n_j - thetadot[j] * thetadot[j] * u_j);
+                body.rddot += c(k, j) * (acceleration[j] * n_j - thetadot[j] * thetadot[j] * u_j);
             }
             body.A << u(theta[k]), chain.axis.cross(u(theta[k])), chain.axis;
             body.omega_bar = Vec3(0, 0, thetadot[k]);
-            body.omegadot_bar = Vec3(0, 0, theta_2[k]);
+            body.omegadot_bar = Vec3(0, 0, acceleration[k]);
         }
         return x;
     }
@@ -125,7 +126,8 @@ FreeTop::FreeTop(const Vec3& J_bar, const Motion& start, const Vec3& gravity, do
         precession.b_bar = (J_1 - J_3) / J_1 * start.omega_bar[axis] * Vec3::Unit(axis);
         return;
     }
-    lie::reject("reference::FreeTop", "two principal moments must be equal", J_bar.transpose());
+    lie::reject("reference::FreeTop", "two principal moments must be equal; moments [kg m²]",
+                J_bar.transpose());
 }
 
 Motion FreeTop::at(double t) const
@@ -159,22 +161,23 @@ Vec3 asymmetric_top(const Vec3& J_bar, double w_1, double w_3, double t)
 {
     const double J_1 = J_bar.x(), J_2 = J_bar.y(), J_3 = J_bar.z();
     if (!(0 < J_1 && J_1 < J_2 && J_2 < J_3))
-        lie::reject("reference::asymmetric_top", "the moments must be positive and ascend",
-                    J_bar.transpose());
+        lie::reject("reference::asymmetric_top",
+                    "the principal moments must be positive and in ascending order", J_bar.transpose());
     if (!(w_1 > 0 && w_3 > 0))
         lie::reject("reference::asymmetric_top", "w_1 and w_3 must be positive",
                     Vec3(w_1, 0, w_3).transpose());
     const double k_squared = w_1 * w_1 * J_1 * (J_2 - J_1) / (w_3 * w_3 * J_3 * (J_3 - J_2));
     if (k_squared > 1)
-        lie::reject("reference::asymmetric_top", "the axis of J_3 must be the one it circles: k² at most one",
-                    k_squared);
+        lie::reject("reference::asymmetric_top",
+                    "the polhode must encircle the axis of J_3: k² at most one; k²", k_squared);
     const double w_2 = w_1 * std::sqrt(J_1 * (J_3 - J_1) / (J_2 * (J_3 - J_2)));
     const double tau = t * w_3 * std::sqrt((J_3 - J_2) * (J_3 - J_1) / (J_1 * J_2));
     double sn = 0, cn = 0, dn = 0;
-    silence_gsl();
+    disable_gsl_error_handler();
     if (const int code = gsl_sf_elljac_e(tau, k_squared, &sn, &cn, &dn); code != GSL_SUCCESS)
-        throw lie::NumericalFailure("gsl_failed", "Jacobi's elliptic functions at " + std::to_string(tau) +
-                                                      ": " + gsl_strerror(code));
+        throw lie::NumericalFailure(
+            "gsl_failed", "reference::asymmetric_top: Jacobi's elliptic functions failed at tau = " +
+                              std::to_string(tau) + ": " + gsl_strerror(code));
     return {w_1 * cn, w_2 * sn, w_3 * dn};
 }
 

@@ -11,31 +11,33 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-constexpr int most_nodes = 1 << 14;
+constexpr int max_nodes = 1 << 14;
 constexpr double converged = 1e-14;
 
 }  // namespace
 
 double swing_period(double q_0, const std::function<double(double)>& M,
-                    const std::function<double(double, double)>& fall)
+                    const std::function<double(double, double)>& drop)
 {
     if (!(q_0 > 0)) lie::reject("reference::swing_period", "the amplitude must be positive", q_0);
-    double before = 0;
-    for (int N = 16; N <= most_nodes; N *= 2) {
+    double previous = 0;
+    for (int N = 16; N <= max_nodes; N *= 2) {
         double sum = 0;
         for (int k = 0; k < N; ++k) {
-            const double chi = (k + 0.5) * pi / (2 * N), half = std::sin((pi / 2 - chi) / 2);
-            const double q = q_0 * std::sin(chi), fallen = fall(q, 2 * q_0 * half * half);
-            if (!(fallen > 0))
-                lie::reject("reference::swing_period", "the potential must be below that of the end", q);
-            sum += std::cos(chi) * std::sqrt(M(q) / (2 * fallen));
+            const double chi = (k + 0.5) * pi / (2 * N), half_sine = std::sin((pi / 2 - chi) / 2);
+            const double q = q_0 * std::sin(chi), dropped = drop(q, 2 * q_0 * half_sine * half_sine);
+            if (!(dropped > 0))
+                lie::reject("reference::swing_period",
+                            "the potential must be lower than at the amplitude; coordinate", q);
+            sum += std::cos(chi) * std::sqrt(M(q) / (2 * dropped));
         }
         const double T = 4 * q_0 * sum * pi / (2 * N);
-        if (std::abs(T - before) < converged * T) return T;
-        before = T;
+        if (std::abs(T - previous) < converged * T) return T;
+        previous = T;
     }
-    throw lie::NumericalFailure("quadrature_failed", "the period of a swing of amplitude " +
-                                                         std::to_string(q_0) + " did not converge");
+    throw lie::NumericalFailure(
+        "quadrature_failed", "reference::swing_period: the quadrature does not converge for the amplitude " +
+                                 std::to_string(q_0) + "; the amplitude must not be an equilibrium");
 }
 
 }  // namespace hilda::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Integration up to where something happens: a ball stops, slips, leaves.
+/// Integration of an ordinary differential equation up to an event: a ball stops, slips or lifts off.
 
 #pragma once
 
@@ -7,13 +7,18 @@
 
 namespace hilda::reference {
 
-/// What happens where this falls through zero; continuous along the motion
+/// Event function g(t, y). The event is the zero of g with decreasing g. g is continuous along the solution.
 using Event = std::function<double(double t, const ConstVectorRef& y)>;
 
-/// As ode.advance, but ends at the first instant at which g is no longer positive after it has been; true then.
-/// Where g is not positive at the start, it must first become so. g is looked at every `look` seconds, so that
-/// two falls nearer than that can be missed; between two looks the instant is found by regula falsi, each
-/// trial integrated from the earlier look, to 1e-15 of t or where g is zero. InvalidInput for look ≤ 0.
-bool advance_to_event(Ode& ode, double& t, VectorRef y, double t_end, double look, const Event& g);
+/// Integrates as ode.advance(t, y, t_end) does, but stops at the first event. Returns true if it stopped
+/// there.
+///
+/// g is evaluated every `interval` seconds. An event lies between two evaluations with g > 0 and then g ≤ 0;
+/// if g ≤ 0 at the start, g must first become positive. Two events within one interval can be missed. The
+/// event is located by regula falsi (Illinois variant), and each trial integrates from the start of the
+/// interval. The search stops at g = 0 or when the bracket is a few units of rounding of t wide.
+///
+/// Throws lie::InvalidInput if interval ≤ 0, and the exceptions of Ode::advance().
+bool advance_to_event(Ode& ode, double& t, VectorRef y, double t_end, double interval, const Event& g);
 
 }  // namespace hilda::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// GSL reports errors to us instead of ending the program.
+/// Error handling of GSL: by return codes. The default handler of GSL aborts the program.
 
 #pragma once
 
@@ -7,8 +7,9 @@
 
 namespace hilda::reference {
 
-/// Call before anything of GSL that can fail; every return code is then ours to look at.
-inline void silence_gsl()
+/// Turns off the error handler of GSL. Call it before a GSL function that can fail, and check its return
+/// code.
+inline void disable_gsl_error_handler()
 {
     static const auto before = gsl_set_error_handler_off();
     static_cast<void>(before);

@@ -2,6 +2,8 @@
 #include "reference/solvers/ida_solver.hpp"
 
 #include "dae/start.hpp"
+#include "lie/check.hpp"
+#include "lie/solver/saddle.hpp"
 #include "reference/solvers/consistent.hpp"
 
 #include <ida/ida.h>
@@ -19,18 +21,20 @@ namespace hilda::reference {
 
 namespace {
 
-// A run that needs more steps than this between two nodes does not get anywhere; nor does one that comes less
-// far than this part of the way in so many steps.
-constexpr long most_steps = 5'000'000, some_steps = 1000;
-constexpr double crawl = 1e-9;
+// Limits of the internal steps between two nodes. IDA has failed after max_steps, and also if check_interval
+// steps cover less than the fraction min_progress of the distance between the nodes.
+constexpr long max_steps = 5'000'000, check_interval = 1000;
+constexpr double min_progress = 1e-9;
 
-// IDA bounds the error of a step, and a run adds up thousands of them: a step gets a tenth of what is asked
-// for. Below the least, rounding decides on the steps: ten times as many, and no digit won.
-constexpr double part_of_step = 0.1, least = 2e-14;
+// IDA bounds the local error of a step, and a run accumulates thousands of steps. IDA therefore gets a tenth
+// of the tolerance of the caller. Below min_tolerance rounding determines the step size: IDA takes ten times
+// as many steps and the error does not decrease.
+constexpr double step_fraction = 0.1, min_tolerance = 2e-14;
 
-// What Newton's method may leave, as a part of what a step may be off by. IDA's own 0.33 disturbs its estimates
-// of the error, on which it decides: twice the steps at 1e-12, and a larger error. But never below rounding.
-constexpr double newton_part = 0.01, rounding = 3e-15;
+// Newton tolerance, as a fraction of the error tolerance of a step. IDA's default of 0.33 disturbs the error
+// estimates: twice as many steps at 1e-12 and a larger error. The Newton tolerance is not below the rounding
+// level.
+constexpr double newton_fraction = 0.01, rounding_level = 3e-15;
 
 template <auto destroy>
 struct Destroy {
@@ -42,13 +46,13 @@ struct Destroy {
 };
 
 void free_context(SUNContext context) { SUNContext_Free(&context); }
-void free_ida(void* memory) { IDAFree(&memory); }
+void free_ida(void* ida_memory) { IDAFree(&ida_memory); }
 
 template <class Handle, auto destroy>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy<destroy>>;
 
 template <class Handle>
-Handle some(Handle handle)
+Handle allocated(Handle handle)
 {
     if (handle == nullptr) throw std::bad_alloc();
     return handle;
@@ -82,19 +86,19 @@ const lie::Settings& checked(const lie::Settings& settings)
 
 }  // namespace
 
-/// All that belongs to SUNDIALS. Members are freed from the last to the first.
+/// The objects of SUNDIALS and their use. C++ destroys members in reverse order, which is the order SUNDIALS
+/// needs.
 class IdaSolver::Ida {
 public:
     Ida(const lie::System& system, const lie::State& start, const lie::Settings& settings, RpForm form)
         : equations(system, start, form), system(system), K(system), stop(settings.stop),
-          rtol(std::max(least, part_of_step * settings.rtol)),
-          atol(settings.atol > 0 ? std::max(least, part_of_step * settings.atol) : rtol),
+          rtol(std::max(min_tolerance, step_fraction * settings.rtol)),
+          atol(settings.atol > 0 ? std::max(min_tolerance, step_fraction * settings.atol) : rtol),
           context(new_context()), y(new_vector()), ydot(new_vector()), tolerance(new_vector()),
-          at_node(new_vector()),
-          matrix(
-              some(SUNSparseMatrix(equations.size(), equations.size(), entries(), CSC_MAT, context.get()))),
-          linear(some(SUNLinSol_KLU(y.get(), matrix.get(), context.get()))),
-          memory(some(IDACreate(context.get())))
+          at_node(new_vector()), matrix(allocated(SUNSparseMatrix(equations.size(), equations.size(),
+                                                                  entries(), CSC_MAT, context.get()))),
+          linear(allocated(SUNLinSol_KLU(y.get(), matrix.get(), context.get()))),
+          ida_memory(allocated(IDACreate(context.get())))
     {}
 
     int advance(lie::State& x, double t_end)
@@ -103,49 +107,50 @@ public:
             lie::reject("reference::IdaSolver", "the end must be finite and after t = " + number(x.t) + " s",
                         t_end);
         if (!x.internal_state.empty())
-            lie::reject("reference::IdaSolver",
-                        "what remembers real numbers from step to step jumps there, and needs a scheme of "
-                        "fixed steps; numbers remembered",
-                        x.internal_state.size());
+            lie::reject(
+                "reference::IdaSolver",
+                "a model with continuous internal states (friction histories) cannot be integrated with "
+                "adaptive steps; use an integrator with a fixed step; number of internal states",
+                x.internal_state.size());
         const long before = statistics().iterations;
-        const bool goes_on = valid && is_left(x);
-        valid = false;  // until it is reached
+        const bool continues = has_last && is_last(x);
+        has_last = false;  // set again at the end, unless an exception is thrown
         nonfinite.clear();
-        if (!goes_on) start(x, t_end);
-        double mark = t;
+        if (!continues) start(x, t_end);
+        double t_checked = t;
         for (long n = 1; t < t_end; ++n) {
             if (stop != nullptr && stop()) throw lie::Interrupted();
-            if (to_restart) start(inner, t_end);
-            inner_step(t_end);
-            if (n % some_steps != 0) continue;
-            if (n >= most_steps || t - mark < crawl * (t_end - x.t)) give_up(n);
-            mark = t;
+            if (to_restart) start(internal, t_end);
+            internal_step(t_end);
+            if (n % check_interval != 0) continue;
+            if (n >= max_steps || t - t_checked < min_progress * (t_end - x.t)) fail_without_progress(n);
+            t_checked = t;
             nonfinite.clear();
         }
 
-        left = x;
+        last = x;
         if (t == t_end) {
-            equations.read(t_end, map(y.get()), left);
+            equations.read(t_end, map(y.get()), last);
         } else {
-            check(IDAGetDky(memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
-            equations.read(t_end, map(at_node.get()), left);
+            check(IDAGetDky(ida_memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
+            equations.read(t_end, map(at_node.get()), last);
         }
-        left.discrete_state = inner.discrete_state;
-        left.discrete_state = updated_internal_state(left).discrete_state;
-        dae::solve_accelerations(system, K, left);
-        valid = true;
-        x = left;
+        last.discrete_state = internal.discrete_state;
+        last.discrete_state = updated_internal_state(last).discrete_state;
+        dae::solve_accelerations(system, K, last);
+        has_last = true;
+        x = last;
         return static_cast<int>(statistics().iterations - before);
     }
 
     lie::Statistics statistics() const
     {
-        lie::Statistics s = finished;
+        lie::Statistics s = earlier;
         if (!initialised) return s;
         long steps = 0, iterations = 0, setups = 0;
-        IDAGetNumSteps(memory.get(), &steps);
-        IDAGetNumNonlinSolvIters(memory.get(), &iterations);
-        IDAGetNumLinSolvSetups(memory.get(), &setups);
+        IDAGetNumSteps(ida_memory.get(), &steps);
+        IDAGetNumNonlinSolvIters(ida_memory.get(), &iterations);
+        IDAGetNumLinSolvSetups(ida_memory.get(), &setups);
         s.steps += steps;
         s.iterations += iterations;
         s.factorizations += setups;
@@ -158,95 +163,102 @@ public:
 private:
     using Vector = Owned<N_Vector, N_VDestroy>;
 
-    Vector new_vector() const { return Vector(some(N_VNew_Serial(equations.size(), context.get()))); }
+    Vector new_vector() const { return Vector(allocated(N_VNew_Serial(equations.size(), context.get()))); }
     sunindextype entries() const { return static_cast<sunindextype>(equations.pattern().value.size()); }
 
-    /// Whether x is the state that the last call left. Its multipliers may have been changed for another branch
-    /// of a driver, and its time been rounded.
-    bool is_left(const lie::State& x) const
+    /// Whether x is the state that the last call returned. The multipliers may differ, because a change of
+    /// the branch of a driver changes them. The time may differ by rounding.
+    bool is_last(const lie::State& x) const
     {
-        if (std::abs(x.t - left.t) > 1e-13 * std::max(1.0, std::abs(x.t)) ||
-            x.discrete_state != left.discrete_state || x.body.size() != left.body.size())
+        if (std::abs(x.t - last.t) > 1e-13 * std::max(1.0, std::abs(x.t)) ||
+            x.discrete_state != last.discrete_state || x.body.size() != last.body.size())
             return false;
         for (size_t b = 0; b < x.body.size(); ++b) {
-            const lie::Motion &a = x.body[b], &c = left.body[b];
+            const lie::Motion &a = x.body[b], &c = last.body[b];
             if (a.r != c.r || a.A != c.A || a.rdot != c.rdot || a.omega_bar != c.omega_bar) return false;
         }
         return true;
     }
 
-    /// The state as it is once the system has been told of it, on its constraints. Without memory: as it is.
+    /// x projected onto the constraints, with updated internal states. A copy of x if there are no discrete
+    /// states.
     const lie::State& updated_internal_state(const lie::State& x)
     {
-        told = x;
-        if (x.discrete_state.empty()) return told;
-        project(system, K, told);
-        if (told.lambda.size() != system.rows()) told.lambda.setZero(system.rows());
-        const lie::State before = told;
-        system.accepted(before, told);
-        return told;
+        updated = x;
+        if (x.discrete_state.empty()) return updated;
+        project(system, K, updated);
+        if (updated.lambda.size() != system.rows()) updated.lambda.setZero(system.rows());
+        const lie::State before = updated;
+        system.accepted(before, updated);
+        return updated;
     }
 
     void start(const lie::State& x, double t_end)
     {
-        lie::State from = x;
-        project(system, K, from);
-        dae::solve_accelerations(system, K, from);
-        equations.write(from, map(y.get()), map(ydot.get()));
-        inner = from;
-        t = from.t;
+        lie::State consistent = x;
+        project(system, K, consistent);
+        dae::solve_accelerations(system, K, consistent);
+        equations.write(consistent, map(y.get()), map(ydot.get()));
+        internal = consistent;
+        t = consistent.t;
         to_restart = false;
-        finished = statistics();
+        earlier = statistics();
         if (initialised) {
-            check(IDAReInit(memory.get(), t, y.get(), ydot.get()), "IDAReInit");
+            check(IDAReInit(ida_memory.get(), t, y.get(), ydot.get()), "IDAReInit");
         } else {
-            set_up(from);
+            set_up(consistent);
         }
-        check(IDASetInitStep(memory.get(), first_step(t_end - t)), "IDASetInitStep");
+        check(IDASetInitStep(ida_memory.get(), first_step(t_end - t)), "IDASetInitStep");
     }
 
-    void set_up(const lie::State& from)
+    void set_up(const lie::State& consistent)
     {
-        // Multipliers are in the Newton test, but not in the error test, which would stall on them at index 2.
+        // Multipliers take part in the Newton test. They are excluded from the error test, in which index-2
+        // systems stall because of them. Their absolute tolerance is 1e-4 of the largest load.
         double weight = 0;
         lie::Loads load(system.bodies());
-        system.loads(from, load);
+        system.loads(consistent, load);
         for (int b = 0; b < system.bodies(); ++b)
             weight = std::max({weight, load.F[b].norm(), load.n_bar[b].norm(),
-                               system.mass().m[b] * std::max(1.0, from.body[b].rddot.norm())});
-        check(IDASetErrHandlerFn(memory.get(), complain, this), "IDASetErrHandlerFn");
-        check(IDAInit(memory.get(), residual, t, y.get(), ydot.get()), "IDAInit");
+                               system.mass().m[b] * std::max(1.0, consistent.body[b].rddot.norm())});
+        check(IDASetErrHandlerFn(ida_memory.get(), error_handler, this), "IDASetErrHandlerFn");
+        check(IDAInit(ida_memory.get(), residual, t, y.get(), ydot.get()), "IDAInit");
         initialised = true;
-        check(IDASetUserData(memory.get(), this), "IDASetUserData");
+        check(IDASetUserData(ida_memory.get(), this), "IDASetUserData");
         Vector id = new_vector();
         auto differential = map(id.get()), tolerances = map(tolerance.get());
         for (int k = 0; k < equations.size(); ++k) {
-            const RpEquations::Kind kind = equations.kind(k);
-            const bool moves = kind == RpEquations::Kind::position || kind == RpEquations::Kind::velocity;
-            differential[k] = moves ? 1 : 0;
-            tolerances[k] = moves ? atol : kind == RpEquations::Kind::lambda ? 1e-4 * weight : 1;
+            const RpEquations::UnknownType type = equations.unknown_type(k);
+            const bool is_differential =
+                type == RpEquations::UnknownType::position || type == RpEquations::UnknownType::velocity;
+            differential[k] = is_differential ? 1 : 0;
+            tolerances[k] = is_differential                            ? atol
+                            : type == RpEquations::UnknownType::lambda ? 1e-4 * weight
+                                                                       : 1;
         }
-        check(IDASVtolerances(memory.get(), rtol, tolerance.get()), "IDASVtolerances");
-        check(IDASetId(memory.get(), id.get()), "IDASetId");
-        check(IDASetSuppressAlg(memory.get(), SUNTRUE), "IDASetSuppressAlg");
-        check(IDASetNonlinConvCoef(memory.get(), std::max(newton_part, rounding / rtol)),
+        check(IDASVtolerances(ida_memory.get(), rtol, tolerance.get()), "IDASVtolerances");
+        check(IDASetId(ida_memory.get(), id.get()), "IDASetId");
+        check(IDASetSuppressAlg(ida_memory.get(), SUNTRUE), "IDASetSuppressAlg");
+        check(IDASetNonlinConvCoef(ida_memory.get(), std::max(newton_fraction, rounding_level / rtol)),
               "IDASetNonlinConvCoef");
-        check(IDASetLinearSolver(memory.get(), linear.get(), matrix.get()), "IDASetLinearSolver");
-        check(IDASetJacFn(memory.get(), jacobian), "IDASetJacFn");
-        // The pattern is symmetric, and a single block. COLAMD, which SUNDIALS would take, fills twice as much.
+        check(IDASetLinearSolver(ida_memory.get(), linear.get(), matrix.get()), "IDASetLinearSolver");
+        check(IDASetJacFn(ida_memory.get(), jacobian), "IDASetJacFn");
+        // The pattern is symmetric and irreducible. COLAMD, the default of SUNDIALS, produces twice the
+        // fill-in of AMD.
         constexpr int amd = 0;
         SUNLinSol_KLUGetCommon(linear.get())->btf = 0;
         if (SUNLinSol_KLUSetOrdering(linear.get(), amd) != 0) throw std::bad_alloc();
     }
 
-    /// With which the first step, an implicit Euler step, is off by about the tolerance. IDA's own choice moves
-    /// by half the tolerance, which at 1e-12 is a step of 1e-14 s: its multipliers drown in rounding.
+    /// Size of the first step [s], for which the error of backward Euler is about the tolerance. IDA's own
+    /// choice changes y by half the tolerance. At 1e-12 that is a step of 1e-14 s, whose multipliers consist
+    /// of rounding errors.
     double first_step(double h) const
     {
         const auto at_start = map(y.get()), rate = map(ydot.get());
         double sum = 0;
         for (int k = 0; k < equations.size(); ++k)
-            if (equations.kind(k) == RpEquations::Kind::velocity) {
+            if (equations.unknown_type(k) == RpEquations::UnknownType::velocity) {
                 const double e = rate[k] / (rtol * std::abs(at_start[k - 7]) + atol);
                 sum += e * e;
             }
@@ -254,46 +266,48 @@ private:
         return std::min({0.5 / std::sqrt(std::max(norm, 1e-300)), 1e-3, h});
     }
 
-    void inner_step(double t_end)
+    void internal_step(double t_end)
     {
-        const int code = IDASolve(memory.get(), t_end, &t, y.get(), ydot.get(), IDA_ONE_STEP);
+        const int code = IDASolve(ida_memory.get(), t_end, &t, y.get(), ydot.get(), IDA_ONE_STEP);
         if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
         if (code < 0 && !nonfinite.empty()) throw lie::NonFinite(nonfinite);
         check(code, "IDASolve");
-        if (inner.discrete_state.empty()) return;
-        equations.read(t, map(y.get()), inner);
-        const lie::State& now = updated_internal_state(inner);
-        if (now.discrete_state == inner.discrete_state) return;
-        inner = now;
-        to_restart = !equations.set_discrete_state(inner.discrete_state, t, map(y.get()), map(ydot.get()));
+        if (internal.discrete_state.empty()) return;
+        equations.read(t, map(y.get()), internal);
+        const lie::State& now = updated_internal_state(internal);
+        if (now.discrete_state == internal.discrete_state) return;
+        internal = now;
+        to_restart = !equations.set_discrete_state(internal.discrete_state, t, map(y.get()), map(ydot.get()));
     }
 
-    [[noreturn]] void give_up(long steps) const
+    [[noreturn]] void fail_without_progress(long steps) const
     {
         if (!nonfinite.empty()) throw lie::NonFinite(nonfinite);
-        throw lie::NumericalFailure("ida_failed",
-                                    "IDA does not get on: after " + std::to_string(steps) +
-                                        " steps from one node to the next it is at t = " + number(t) +
-                                        " s, with a step of " + number(last_step()) + " s");
+        throw lie::NumericalFailure(
+            "ida_failed", "reference::IdaSolver: IDA makes no progress: after " + std::to_string(steps) +
+                              " steps between two nodes t = " + number(t) + " s, step size " +
+                              number(last_step()) +
+                              " s; use a larger rtol, or check the loads for discontinuities");
     }
 
     double last_step() const
     {
         double h = 0;
-        IDAGetCurrentStep(memory.get(), &h);
+        IDAGetCurrentStep(ida_memory.get(), &h);
         return h;
     }
 
     void check(int code, const char* function)
     {
         if (code >= 0) {
-            complaint.clear();
+            ida_message.clear();
             return;
         }
         const std::unique_ptr<char, Destroy<std::free>> name(IDAGetReturnFlagName(code));
-        std::string text = std::string("IDA gave up at t = ") + number(t) + " s with step " +
-                           number(last_step()) + " s: " + name.get() + " in " + function;
-        if (!complaint.empty()) text += ": " + std::exchange(complaint, {});
+        std::string text = std::string("reference::IdaSolver: IDA failed at t = ") + number(t) +
+                           " s with a step of " + number(last_step()) + " s: " + name.get() + " in " +
+                           function;
+        if (!ida_message.empty()) text += ": " + std::exchange(ida_message, {});
         throw lie::NumericalFailure("ida_failed", text);
     }
 
@@ -310,7 +324,7 @@ private:
                         "the residual is not finite at t = " + number(t) + " s: " + ida.equations.name(k);
                     break;
                 }
-            return 1;  // a shorter step may do
+            return 1;  // recoverable: IDA retries with a shorter step
         } catch (...) {
             ida.failure = std::current_exception();
             return -1;
@@ -333,11 +347,11 @@ private:
         }
     }
 
-    static void complain(int code, const char*, const char*, char* message, void* self) noexcept
+    static void error_handler(int code, const char*, const char*, char* message, void* self) noexcept
     {
         if (code >= 0) return;  // a warning
         try {
-            std::string& text = static_cast<Ida*>(self)->complaint;
+            std::string& text = static_cast<Ida*>(self)->ida_message;
             text = message;
             std::replace(text.begin(), text.end(), '\n', ' ');
         } catch (...) {
@@ -352,30 +366,31 @@ private:
     Vector y, ydot, tolerance, at_node;
     Owned<SUNMatrix, SUNMatDestroy> matrix;
     Owned<SUNLinearSolver, SUNLinSolFree> linear;
-    std::unique_ptr<void, Destroy<free_ida>> memory;
+    std::unique_ptr<void, Destroy<free_ida>> ida_memory;
 
-    double t = 0;  // how far IDA has come
+    double t = 0;  // time that the internal steps have reached [s]
     bool initialised = false;
-    lie::State left;          // what the last call returned
-    bool valid = false;       // whether there is one
-    lie::State inner;         // where IDA stands; kept up to date only where there is memory
-    bool to_restart = false;  // from `inner`, once the nodes before it are served
-    lie::State told;
-    lie::Statistics finished;  // of the runs before the last start
+    lie::State last;        // state that the last call returned
+    bool has_last = false;  // whether `last` is valid
+    lie::State
+        internal;  // state at the end of the last internal step; updated only if there are discrete states
+    bool to_restart = false;  // restart from `internal` after the nodes before it have been interpolated
+    lie::State updated;
+    lie::Statistics earlier;  // counts up to the last restart
     std::exception_ptr failure;
-    std::string nonfinite;  // where the residual was, among the last some_steps steps
-    std::string complaint;  // IDA's
+    std::string nonfinite;    // message of the last residual that was not finite, within check_interval steps
+    std::string ida_message;  // last error message of IDA
 };
 
 IdaSolver::IdaSolver(const lie::System& system, const lie::Settings& settings, RpForm form)
-    : of(system), settings(checked(settings)), form(form)
+    : mechanism(system), settings(checked(settings)), form(form)
 {}
 
 IdaSolver::~IdaSolver() = default;
 
 int IdaSolver::advance(lie::State& x, double t_end)
 {
-    if (!ida) ida = std::make_unique<Ida>(of, x, settings, form);
+    if (!ida) ida = std::make_unique<Ida>(mechanism, x, settings, form);
     return ida->advance(x, t_end);
 }
 
@@ -393,7 +408,8 @@ lie::Trajectory ida(const lie::System& system, const lie::State& start, const st
     for (const double instant : instants) {
         if (!(instant >= x.t))
             lie::reject("reference::ida",
-                        "instants must ascend and not be before the start; after " + std::to_string(x.t),
+                        "the instants must ascend and must not precede the start; instant after t = " +
+                            std::to_string(x.t),
                         instant);
         if (instant > x.t) solver.advance(x, instant);
         run.row.push_back(x);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/solvers/index1.hpp"
 
+#include "dae/model.hpp"
 #include "dae/start.hpp"
 #include "lie/euler_parameters.hpp"
+#include "lie/solver/saddle.hpp"
 
 namespace hilda::reference {
 
 namespace {
 
-/// y holds 13 numbers a body: r, p, ṙ, ω̄. The length of p is a constant of the exact solution and has no
-/// meaning.
+/// Number of unknowns of a body: r, p, ṙ, ω̄. The exact solution preserves |p|, and A does not depend on it.
 constexpr int size = 13;
 
 void write(const lie::State& x, VectorRef y)
@@ -41,13 +42,13 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
 {
     if (6 * model.bodies() == model.rows())
         lie::reject("reference::index1",
-                    "a mechanism needs a degree of freedom to have equations of motion; where every one is "
-                    "driven, use kinematic analysis (dae::Kinematics)",
+                    "the model must have at least one degree of freedom; for a fully driven mechanism use "
+                    "kinematic analysis (dae::Kinematics); degrees of freedom",
                     0);
     if (!start.internal_state.empty())
         lie::reject("reference::index1",
-                    "what remembers real numbers from step to step has no equations of motion between the "
-                    "steps; numbers remembered",
+                    "a model with continuous internal states (friction histories) cannot be integrated with "
+                    "adaptive steps; use an integrator with a fixed step; number of internal states",
                     start.internal_state.size());
     lie::Saddle K(model);
     lie::State x = start, stage = start;
@@ -80,7 +81,8 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
     for (const double instant : instants) {
         if (!(instant >= t))
             lie::reject("reference::index1",
-                        "instants must ascend and not be before the start; after " + std::to_string(t),
+                        "the instants must ascend and must not precede the start; instant after t = " +
+                            std::to_string(t),
                         instant);
         write(x, y);
         ode.advance(t, y, instant, accepted);

@@ -3,24 +3,32 @@
 
 #pragma once
 
-#include "dae/model.hpp"
 #include "lie/trajectory.hpp"
 #include "reference/solvers/ode.hpp"
 
+namespace hilda::dae {
+class Model;
+}
+
 namespace hilda::reference {
 
-/// States at these instants [s], ascending, none before x.t; x is a state that dae::start() has readied.
+/// Integrates the index-1 equations of motion and returns the states at the given instants.
 ///
 ///     | M  0  Φ_rᵀ | | r̈  |   | F |
 ///     | 0  J̄  Π̄ᵀ   | | ω̄̇  | = | τ̄ |,    ṗ = ½ Gᵀ ω̄,    p the Euler parameters of A
 ///     | Φ_r Π̄  0   | | λ  |   | γ |
 ///
-/// integrated by rk8pd. Only the second derivative of Φ is held at zero, so positions and velocities are put
-/// back on their constraints at every instant; drivers are swapped, and forces remember, at every step of the
-/// integrator. States are complete: with accelerations and multipliers.
+/// by rk8pd. The equations impose Φ̈ = 0 only. Positions and velocities are therefore projected onto the
+/// constraints at every instant. Discrete states (branches of drivers, turn counts) are updated after every
+/// accepted step of the integrator. The states returned include accelerations and multipliers.
 ///
-/// Refuses a model without degrees of freedom (lie::InvalidInput): its motion is kinematics. Refuses a model
-/// that remembers real numbers: what they are depends on the steps, which nobody here chooses.
+/// @param x         initial state, made consistent by dae::start()
+/// @param instants  [s], ascending, none before x.t
+/// @param tolerance tolerance of a step for r [m], p, ṙ [m/s] and ω̄ [rad/s]
+///
+/// Throws lie::InvalidInput for instants out of order, for a model without degrees of freedom (its motion
+/// follows from kinematics) and for a model with continuous internal states (friction histories): their
+/// values depend on the step size, which is adaptive here.
 lie::Trajectory index1(const dae::Model& model, const lie::State& x, const std::vector<double>& instants,
                        const OdeTolerance& tolerance = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Ordinary differential equations to the last digits: GSL's Runge-Kutta Prince-Dormand 8(9), "rk8pd".
+/// Ordinary differential equations: GSL's adaptive Runge-Kutta method of Prince and Dormand, 8(9), "rk8pd".
 
 #pragma once
 
@@ -13,29 +13,31 @@ namespace hilda::reference {
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 
-/// What a step may add to the error of each component: absolute + relative |y_k|.
+/// Tolerance of the local error of each component in a step: absolute + relative |y_k|.
 struct OdeTolerance {
     double relative = 1e-13, absolute = 1e-14;
 };
 
-/// ẏ = f(t, y), integrated by steps of adaptive size.
+/// Initial-value problem ẏ = f(t, y) of n unknowns, integrated with adaptive step size.
 class Ode {
 public:
-    /// ydot = f(t, y), all of it written
-    using RightSide = std::function<void(double t, const ConstVectorRef& y, VectorRef ydot)>;
-    /// Told of every accepted step
-    using Accepted = std::function<void(double t, const ConstVectorRef& y)>;
+    /// ydot = f(t, y). The function must set every component of ydot.
+    using RightHandSide = std::function<void(double t, const ConstVectorRef& y, VectorRef ydot)>;
+    /// Called after every accepted step with its end
+    using Observer = std::function<void(double t, const ConstVectorRef& y)>;
 
-    /// n unknowns. InvalidInput for n < 1 and for tolerances that are not positive.
-    Ode(int n, RightSide f, const OdeTolerance& tolerance = {});
+    /// n is the number of unknowns. Throws lie::InvalidInput if n < 1 or a tolerance is not positive.
+    Ode(int n, RightHandSide f, const OdeTolerance& tolerance = {});
     ~Ode();
 
-    /// Takes y from t to t_end ≥ t, where it stops exactly, and sets t to t_end. Throws what f throws;
-    /// lie::NonFinite when f is not finite; lie::NumericalFailure with the time when GSL gives up. t and y
-    /// are then where it got to.
-    void advance(double& t, VectorRef y, double t_end, const Accepted& accepted = {});
+    /// Integrates y from t to t_end ≥ t and sets t = t_end exactly.
+    ///
+    /// Throws lie::InvalidInput if t_end < t, lie::NonFinite if f is not finite, lie::NumericalFailure
+    /// "ode_failed" if GSL fails, and rethrows exceptions of f. After an exception t and y are those of the
+    /// last accepted step.
+    void advance(double& t, VectorRef y, double t_end, const Observer& observer = {});
 
-    long evaluations() const;  ///< of f, so far
+    long evaluations() const;  ///< number of evaluations of f
 
 private:
     struct Gsl;

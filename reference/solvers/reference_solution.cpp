@@ -11,8 +11,9 @@ namespace hilda::reference {
 
 namespace {
 
-// Far above the rounding of a closed form and far below what any change of a model does to it. Relative to
-// the size of the velocities and of the loads, absolute in m and rad.
+// Tolerance of the check of a closed form. It is far above the rounding errors of a closed form and far below
+// the effect of a change of the model. Relative to the scale of velocities and loads; absolute for positions
+// [m, rad].
 constexpr double agreement = 1e-9;
 
 double distance(const lie::State& x, const lie::State& y)
@@ -27,15 +28,16 @@ double distance(const lie::State& x, const lie::State& y)
     return std::sqrt(sum);
 }
 
-/// The largest velocity, at least 1 [m/s or rad/s]
+/// Scale of the velocities: the largest |ṙ| or |ω̄|, at least 1 [m/s, rad/s]
 double velocity_scale(const lie::State& x)
 {
-    double most = 1;
-    for (const lie::Motion& body : x.body) most = std::max({most, body.rdot.norm(), body.omega_bar.norm()});
-    return most;
+    double largest = 1;
+    for (const lie::Motion& body : x.body)
+        largest = std::max({largest, body.rdot.norm(), body.omega_bar.norm()});
+    return largest;
 }
 
-/// What the loads that move the bodies amount to [N and N m]
+/// Scale of the loads: sum of the norms of inertia forces, weights and gyroscopic moments [N, N m]
 double load_scale(const dae::Model& model, const lie::State& x)
 {
     double sum = 0;
@@ -48,39 +50,42 @@ double load_scale(const dae::Model& model, const lie::State& x)
     return sum;
 }
 
-/// Gives x its multipliers, if there is a motion of the model that passes through it.
-bool complete(const dae::Model& model, lie::State& x)
+/// Sets the multipliers of x by inverse dynamics. Returns false if x does not satisfy the constraints or the
+/// equations of motion.
+bool set_multipliers(const dae::Model& model, lie::State& x)
 {
-    if (!(model.largest_residual(x).value <= agreement)) return false;  // also what is not a number
+    if (!(model.largest_residual(x).value <= agreement)) return false;  // false for NaN as well
     if (!(model.largest_velocity_residual(x).value <= agreement * velocity_scale(x))) return false;
-    std::vector<dae::Reaction> missing;
-    x.lambda = dae::inverse_dynamics(model, x, &missing);
-    double lack = 0;
-    for (const dae::Reaction& r : missing) lack += r.F.norm() + r.T.norm();
-    return lack <= agreement * load_scale(model, x);
+    std::vector<dae::Reaction> unbalanced;
+    x.lambda = dae::inverse_dynamics(model, x, &unbalanced);
+    double imbalance = 0;
+    for (const dae::Reaction& r : unbalanced) imbalance += r.F.norm() + r.T.norm();
+    return imbalance <= agreement * load_scale(model, x);
 }
 
-std::optional<lie::Trajectory> completed(const dae::Model& model, const lie::State& x,
-                                         std::vector<double> instants, const ClosedForm& closed_form)
+std::optional<lie::Trajectory> from_closed_form(const dae::Model& model, const lie::State& x,
+                                                std::vector<double> instants, const ClosedForm& closed_form)
 {
     instants.insert(instants.begin(), x.t);
     lie::Trajectory run = closed_form(instants);
     if (!(distance(x, run.row.front()) <= agreement * velocity_scale(x))) return std::nullopt;
     for (lie::State& y : run.row)
-        if (!complete(model, y)) return std::nullopt;
+        if (!set_multipliers(model, y)) return std::nullopt;
     run.row.erase(run.row.begin());
     return run;
 }
 
 }  // namespace
 
-lie::Trajectory trusted(const dae::Model& model, const lie::State& start, const std::vector<double>& instants)
+lie::Trajectory reference_solution(const dae::Model& model, const lie::State& start,
+                                   const std::vector<double>& instants)
 {
     if (!start.internal_state.empty())
         lie::reject(
-            "reference::trusted",
-            "what contacts remember from step to step leaves no equations of motion between the steps: "
-            "let an integrator be the reference (--reference NAME); numbers remembered",
+            "reference::reference_solution",
+            "a model with continuous internal states (friction histories) has no reference solution with "
+            "adaptive steps; select an integrator as the reference (--reference NAME); number of internal "
+            "states",
             start.internal_state.size());
     if (6 * model.bodies() != model.rows()) return index1(model, start, instants);
     dae::Kinematics kinematics(model);
@@ -93,17 +98,17 @@ lie::Trajectory trusted(const dae::Model& model, const lie::State& start, const 
     return run;
 }
 
-lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std::vector<double>& instants,
-                        const ClosedForm& closed_form)
+lie::Trajectory reference_solution(const dae::Model& model, const lie::State& x,
+                                   const std::vector<double>& instants, const ClosedForm& closed_form)
 {
     try {
-        // What drives or remembers is beyond the closed forms here.
+        // The closed forms do not cover models with drivers or internal states.
         if (x.discrete_state.empty() && x.internal_state.empty())
-            if (auto run = completed(model, x, instants, closed_form)) return *std::move(run);
-    } catch (const lie::InvalidInput&) {  // a closed form that does not cover the model
+            if (auto run = from_closed_form(model, x, instants, closed_form)) return *std::move(run);
+    } catch (const lie::InvalidInput&) {  // the closed form does not cover the model
     } catch (const lie::NumericalFailure&) {
     }
-    return trusted(model, x, instants);
+    return reference_solution(model, x, instants);
 }
 
 }  // namespace hilda::reference

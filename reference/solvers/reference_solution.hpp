@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The motion of any model, by the road that is trusted most for it.
+/// Reference solution of a model: closed form, kinematic analysis or index-1 equations.
 
 #pragma once
 
@@ -7,18 +7,27 @@
 
 namespace hilda::reference {
 
-/// States at these instants [s], ascending; bodies only, multipliers may be empty.
+/// Closed-form solution: states of the bodies at ascending instants [s]. The multipliers may be empty.
 using ClosedForm = std::function<lie::Trajectory(const std::vector<double>& instants)>;
 
-/// Complete states at these instants, ascending, none before x.t; x is a state that dae::start() has readied.
-/// Kinematic analysis where nothing is free, index1() otherwise. InvalidInput where real numbers are remembered.
-lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std::vector<double>& instants);
+/// States at the given instants, with accelerations and multipliers: by kinematic analysis if the model has
+/// no degree of freedom, otherwise by index1().
+///
+/// @param x         initial state, made consistent by dae::start()
+/// @param instants  [s], ascending, none before x.t
+///
+/// Throws lie::InvalidInput if the state has continuous internal states (friction histories).
+lie::Trajectory reference_solution(const dae::Model& model, const lie::State& x,
+                                   const std::vector<double>& instants);
 
-/// The same by a closed form where it is a motion of the model, with multipliers by inverse dynamics: where
-/// it starts at x, its states satisfy the constraints, and the multipliers make up for all that the loads
-/// lack. As above where it is none, or the closed form throws InvalidInput or NumericalFailure: a model can
-/// be changed in ways that it does not cover.
-lie::Trajectory trusted(const dae::Model& model, const lie::State& x, const std::vector<double>& instants,
-                        const ClosedForm& closed_form);
+/// States at the given instants by a closed form, with multipliers from inverse dynamics.
+///
+/// The closed form is used only if it is a solution of this model: it starts at x, its states satisfy the
+/// constraints on positions and velocities, and loads, inertia and constraint forces are in balance, each
+/// within a relative tolerance of 1e-9. Otherwise, and if the closed form throws lie::InvalidInput or
+/// lie::NumericalFailure, the function above is used: a user can change a model such that its closed form no
+/// longer applies.
+lie::Trajectory reference_solution(const dae::Model& model, const lie::State& x,
+                                   const std::vector<double>& instants, const ClosedForm& closed_form);
 
 }  // namespace hilda::reference

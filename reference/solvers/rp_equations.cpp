@@ -16,7 +16,7 @@ using lie::Vec4;
 using Mat4 = Eigen::Matrix4d;
 using Row4 = Eigen::RowVector4d;
 
-/// Q with G(p)ᵀ R = Q(R) p
+/// Q(R) with G(p)ᵀ R = Q(R) p, R in the body frame
 Mat4 Q(const Vec3& R)
 {
     Mat4 Q;
@@ -25,13 +25,13 @@ Mat4 Q(const Vec3& R)
 }
 
 /// ∂(T(p) a)/∂p for a fixed a; Ta is T a
-Mat34 T_change(const Vec4& p, double p2, const Vec4& a, const Vec3& Ta)
+Mat34 dT_dp(const Vec4& p, double p2, const Vec4& a, const Vec3& Ta)
 {
     return (-2 / p2) * (lie::G(a) + Ta * p.transpose());
 }
 
 /// ∂(T(p)ᵀ R)/∂p for a fixed R
-Mat4 T_transpose_change(const Vec4& p, double p2, const Mat34& T, const Vec3& R)
+Mat4 dT_transpose_dp(const Vec4& p, double p2, const Mat34& T, const Vec3& R)
 {
     return (2 / p2) * (Q(R) - (T.transpose() * R) * p.transpose());
 }
@@ -43,21 +43,21 @@ constexpr unsigned rotation_bits = 0b111000;
 RpEquations::RpEquations(const lie::System& system, const lie::State& start, RpForm form, double alpha)
     : system(system), form(form), alpha(form == RpForm::baumgarte ? alpha : 0), bodies(system.bodies()),
       m(system.rows()), first_lambda(14 * bodies), first_mu(first_lambda + m + bodies), body(bodies),
-      C(system.pattern()), load(bodies), by_lambda(6 * bodies), by_mu(6 * bodies), velocity(6 * bodies),
-      acceleration(6 * bodies), Phi(m), nu(m), gamma(m), H(C), nu_change(C), gamma_change(C),
-      load_change(system.load_pattern())
+      C(system.pattern()), load(bodies), force_lambda(6 * bodies), force_mu(6 * bodies), velocity(6 * bodies),
+      acceleration(6 * bodies), Phi(m), nu(m), gamma(m), H(C), d_nu(C), d_gamma(C),
+      d_load(system.load_pattern())
 {
     x = start;
     find_pairs();
-    declare();
+    declare_pattern();
 }
 
-// --- what stands where ------------------------------------------------------------------------------------
+// --- order of the unknowns and equations ------------------------------------------------------------------
 
-RpEquations::Kind RpEquations::kind(int k) const
+RpEquations::UnknownType RpEquations::unknown_type(int k) const
 {
-    if (k < first_lambda) return k % 14 < 7 ? Kind::position : Kind::velocity;
-    return k < first_mu ? Kind::lambda : Kind::mu;
+    if (k < first_lambda) return k % 14 < 7 ? UnknownType::position : UnknownType::velocity;
+    return k < first_mu ? UnknownType::lambda : UnknownType::mu;
 }
 
 std::string RpEquations::name(int k) const
@@ -93,8 +93,8 @@ void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
         const Vec4 pdot = 0.5 * G.transpose() * motion.omega_bar;
         const Vec4 pddot =
             0.5 * G.transpose() * motion.omegadot_bar - 0.25 * motion.omega_bar.squaredNorm() * p;
-        y.segment<14>(at(b)) << motion.r, p, motion.rdot, pdot;
-        ydot.segment<14>(at(b)) << motion.rdot, pdot, motion.rddot, pddot;
+        y.segment<14>(offset(b)) << motion.r, p, motion.rdot, pdot;
+        ydot.segment<14>(offset(b)) << motion.rdot, pdot, motion.rddot, pddot;
     }
     y.segment(first_lambda, m) = from.lambda;
 }
@@ -124,29 +124,29 @@ void RpEquations::read(double t, const ConstVectorRef& y, lie::State& to) const
     to.t = t;
     for (int b = 0; b < bodies; ++b) {
         lie::Motion& motion = to.body[b];
-        const Vec4 p = y.segment<4>(at(b) + 3);
-        motion.r = y.segment<3>(at(b));
+        const Vec4 p = y.segment<4>(offset(b) + 3);
+        motion.r = y.segment<3>(offset(b));
         motion.A = lie::rotation(p.normalized());
-        motion.rdot = y.segment<3>(at(b) + 7);
-        motion.omega_bar = (2 / p.squaredNorm()) * (lie::G(p) * y.segment<4>(at(b) + 10));
+        motion.rdot = y.segment<3>(offset(b) + 7);
+        motion.omega_bar = (2 / p.squaredNorm()) * (lie::G(p) * y.segment<4>(offset(b) + 10));
     }
 }
 
 // --- the residual -----------------------------------------------------------------------------------------
 
-/// All that the residual and the Jacobian share
+/// Quantities that the residual and the Jacobian share
 void RpEquations::evaluate(double t, const ConstVectorRef& y, const ConstVectorRef& ydot)
 {
     x.t = t;
     for (int b = 0; b < bodies; ++b) {
         Body& q = body[b];
         lie::Motion& motion = x.body[b];
-        motion.r = y.segment<3>(at(b));
-        q.p = y.segment<4>(at(b) + 3);
-        motion.rdot = y.segment<3>(at(b) + 7);
-        q.pdot = y.segment<4>(at(b) + 10);
-        q.rddot = ydot.segment<3>(at(b) + 7);
-        q.pddot = ydot.segment<4>(at(b) + 10);
+        motion.r = y.segment<3>(offset(b));
+        q.p = y.segment<4>(offset(b) + 3);
+        motion.rdot = y.segment<3>(offset(b) + 7);
+        q.pdot = y.segment<4>(offset(b) + 10);
+        q.rddot = ydot.segment<3>(offset(b) + 7);
+        q.pddot = ydot.segment<4>(offset(b) + 10);
         q.p2 = q.p.squaredNorm();
         q.T = (2 / q.p2) * lie::G(q.p);
         q.w = q.T * q.pddot;
@@ -156,11 +156,11 @@ void RpEquations::evaluate(double t, const ConstVectorRef& y, const ConstVectorR
         acceleration.segment<6>(6 * b) << q.rddot, q.w;
     }
     system.variation(x, C);
-    by_lambda.setZero();
-    C.add_transpose(1, y.segment(first_lambda, m), by_lambda);
+    force_lambda.setZero();
+    C.add_transpose(1, y.segment(first_lambda, m), force_lambda);
     if (form == RpForm::ggl) {
-        by_mu.setZero();
-        C.add_transpose(1, y.segment(first_mu, m), by_mu);
+        force_mu.setZero();
+        C.add_transpose(1, y.segment(first_mu, m), force_mu);
     }
     system.loads(x, load);
 }
@@ -173,17 +173,17 @@ void RpEquations::residual(double t, const ConstVectorRef& y, const ConstVectorR
         const Body& q = body[b];
         const lie::Motion& motion = x.body[b];
         const Vec3& omega_bar = motion.omega_bar;
-        F.segment<3>(at(b)) = ydot.segment<3>(at(b)) - motion.rdot;
-        F.segment<4>(at(b) + 3) = ydot.segment<4>(at(b) + 3) - q.pdot;
+        F.segment<3>(offset(b)) = ydot.segment<3>(offset(b)) - motion.rdot;
+        F.segment<4>(offset(b) + 3) = ydot.segment<4>(offset(b) + 3) - q.pdot;
         if (form == RpForm::ggl) {
-            F.segment<3>(at(b)) += by_mu.segment<3>(6 * b);
-            F.segment<4>(at(b) + 3) +=
-                q.T.transpose() * by_mu.segment<3>(6 * b + 3) + y[first_mu + m + b] * q.p;
+            F.segment<3>(offset(b)) += force_mu.segment<3>(6 * b);
+            F.segment<4>(offset(b) + 3) +=
+                q.T.transpose() * force_mu.segment<3>(6 * b + 3) + y[first_mu + m + b] * q.p;
         }
-        F.segment<3>(at(b) + 7) = mass.m[b] * q.rddot + by_lambda.segment<3>(6 * b) - load.F[b];
-        const Vec3 R = mass.J_bar[b] * q.w + by_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
+        F.segment<3>(offset(b) + 7) = mass.m[b] * q.rddot + force_lambda.segment<3>(6 * b) - load.F[b];
+        const Vec3 R = mass.J_bar[b] * q.w + force_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
                        omega_bar.cross(mass.J_bar[b] * omega_bar);
-        F.segment<4>(at(b) + 10) = q.T.transpose() * R + y[first_lambda + m + b] * q.p;
+        F.segment<4>(offset(b) + 10) = q.T.transpose() * R + y[first_lambda + m + b] * q.p;
 
         const double P = 0.5 * (q.p2 - 1), Pdot = q.p.dot(q.pdot);
         if (form == RpForm::ggl) {
@@ -212,7 +212,7 @@ void RpEquations::residual(double t, const ConstVectorRef& y, const ConstVectorR
 
 // --- the Jacobian: its pattern ----------------------------------------------------------------------------
 
-void RpEquations::declare()
+void RpEquations::declare_pattern()
 {
     const auto diagonal = [&](int row, int column, int n) {
         const int first = J.declare(row, column, 1, 1);
@@ -221,7 +221,7 @@ void RpEquations::declare()
     };
     const bool ggl = form == RpForm::ggl;
     for (int b = 0; b < bodies; ++b) {
-        const int r = at(b), p = r + 3, v = r + 7, u = r + 10;
+        const int r = offset(b), p = r + 3, v = r + 7, u = r + 10;
         const int lambda_P = first_lambda + m + b, mu_P = first_mu + m + b;
         body_slots.push_back({.r_r = diagonal(r, r, 3),
                               .r_v = diagonal(r, v, 3),
@@ -239,8 +239,8 @@ void RpEquations::declare()
     for (int k = 0; k < m; ++k)
         for (int n = C.start[k]; n < C.start[k + 1]; ++n) declare_entry(k, n);
     declare_pairs();
-    for (const lie::LoadVariation::Block& block : load_change.block) {
-        const int on = at(block.on), by = at(block.by);
+    for (const lie::LoadVariation::Block& block : d_load.block) {
+        const int on = offset(block.on), by = offset(block.by);
         load_slots.push_back({.q = J.declare(on + 7, by, 7, 7), .qdot = J.declare(on + 7, by + 7, 7, 7)});
     }
     J.analyse(size());
@@ -249,23 +249,23 @@ void RpEquations::declare()
 void RpEquations::declare_entry(int k, int n)
 {
     const lie::Rows::Entry& entry = C.entry[n];
-    const bool ggl = form == RpForm::ggl, turns = (entry.nonzero & rotation_bits) != 0;
-    const int r = at(entry.body), p = r + 3, v = r + 7, u = r + 10;
+    const bool ggl = form == RpForm::ggl, has_rotation = (entry.nonzero & rotation_bits) != 0;
+    const int r = offset(entry.body), p = r + 3, v = r + 7, u = r + 10;
     const int lambda = first_lambda + k, mu = first_mu + k;
     Slots s;
     for (int c = 0; c < 3; ++c) {
-        const bool there = entry.nonzero >> c & 1;
-        s.force[c] = there ? J.declare(v + c, lambda, 1, 1) : -1;
-        s.q_r[c] = there ? J.declare(lambda, r + c, 1, 1) : -1;
-        s.qdot_r[c] = there ? J.declare(lambda, v + c, 1, 1) : -1;
-        s.drift[c] = there && ggl ? J.declare(r + c, mu, 1, 1) : -1;
-        s.r[c] = there && ggl ? J.declare(mu, r + c, 1, 1) : -1;
+        const bool coupled = entry.nonzero >> c & 1;
+        s.force[c] = coupled ? J.declare(v + c, lambda, 1, 1) : -1;
+        s.q_r[c] = coupled ? J.declare(lambda, r + c, 1, 1) : -1;
+        s.qdot_r[c] = coupled ? J.declare(lambda, v + c, 1, 1) : -1;
+        s.mu_force[c] = coupled && ggl ? J.declare(r + c, mu, 1, 1) : -1;
+        s.r[c] = coupled && ggl ? J.declare(mu, r + c, 1, 1) : -1;
     }
-    s.torque = turns ? J.declare(u, lambda, 4, 1) : -1;
-    s.q_p = turns ? J.declare(lambda, p, 1, 4) : -1;
-    s.qdot_p = turns ? J.declare(lambda, u, 1, 4) : -1;
-    s.turn = turns && ggl ? J.declare(p, mu, 4, 1) : -1;
-    s.p = turns && ggl ? J.declare(mu, p, 1, 4) : -1;
+    s.torque = has_rotation ? J.declare(u, lambda, 4, 1) : -1;
+    s.q_p = has_rotation ? J.declare(lambda, p, 1, 4) : -1;
+    s.qdot_p = has_rotation ? J.declare(lambda, u, 1, 4) : -1;
+    s.mu_torque = has_rotation && ggl ? J.declare(p, mu, 4, 1) : -1;
+    s.p = has_rotation && ggl ? J.declare(mu, p, 1, 4) : -1;
     slots.push_back(s);
 }
 
@@ -285,19 +285,19 @@ void RpEquations::find_pairs()
                 pair_of.push_back(static_cast<int>(found - pair.begin()));
             }
 
-    // What is exactly zero in two arbitrary states is taken for zero in all. Where that is wrong, Newton's
-    // method is slower, no more.
+    // A block that is exactly zero in two random states is assumed to be zero in all. If the assumption is
+    // wrong, Newton's method converges more slowly, to the same solution.
     std::mt19937 engine(1);
     std::normal_distribution<> normal;
-    lie::State arbitrary = x;
+    lie::State random_state = x;
     for (int n = 0; n < 2; ++n) {
-        for (lie::Motion& motion : arbitrary.body) {
+        for (lie::Motion& motion : random_state.body) {
             Vec4 p;
             for (double& e : p) e = normal(engine);
             for (double& e : motion.r) e += normal(engine);
             motion.A = lie::rotation(p.normalized());
         }
-        system.second_variation(arbitrary, H);
+        system.second_variation(random_state, H);
         for (size_t h = 0; h < H.block.size(); ++h)
             for (const int i : {0, 1})
                 for (const int j : {0, 1})
@@ -311,8 +311,9 @@ void RpEquations::declare_pairs()
     for (Pair& q : pair)
         for (const int i : {0, 1})
             for (const int j : {0, 1})
-                q.slot[i][j] =
-                    q.nonzero[i][j] ? J.declare(at(q.on) + 7 + 3 * i, at(q.by) + 3 * j, 3 + i, 3 + j) : -1;
+                q.slot[i][j] = q.nonzero[i][j]
+                                   ? J.declare(offset(q.on) + 7 + 3 * i, offset(q.by) + 3 * j, 3 + i, 3 + j)
+                                   : -1;
 }
 
 // --- the Jacobian: its values -----------------------------------------------------------------------------
@@ -322,9 +323,9 @@ const lie::Klu& RpEquations::jacobian(double t, const ConstVectorRef& y, const C
 {
     evaluate(t, y, ydot);
     system.second_variation(x, H);
-    if (form != RpForm::index1) system.nu_variation(x, nu_change);
-    if (form != RpForm::ggl) system.gamma_variation(x, gamma_change);
-    system.load_variation(x, load_change);
+    if (form != RpForm::index1) system.nu_variation(x, d_nu);
+    if (form != RpForm::ggl) system.gamma_variation(x, d_gamma);
+    system.load_variation(x, d_load);
 
     for (Pair& q : pair) q.value.setZero();
     for (int k = 0; k < m; ++k)
@@ -357,12 +358,12 @@ void RpEquations::add_bodies(const ConstVectorRef& y, double c_j)
             add(s.p_u + c, -1);
         }
 
-        const Mat34 omega_p = T_change(q.p, q.p2, q.pdot, omega_bar), w_p = T_change(q.p, q.p2, q.pddot, q.w);
+        const Mat34 omega_p = dT_dp(q.p, q.p2, q.pdot, omega_bar), w_p = dT_dp(q.p, q.p2, q.pddot, q.w);
         const Mat3 gyroscopic = lie::tilde(omega_bar) * J_bar - lie::tilde(J_bar * omega_bar);
-        const Vec3 R = J_bar * q.w + by_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
+        const Vec3 R = J_bar * q.w + force_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
                        omega_bar.cross(J_bar * omega_bar);
         Mat4 u_p =
-            T_transpose_change(q.p, q.p2, q.T, R) + q.T.transpose() * (J_bar * w_p + gyroscopic * omega_p);
+            dT_transpose_dp(q.p, q.p2, q.T, R) + q.T.transpose() * (J_bar * w_p + gyroscopic * omega_p);
         u_p.diagonal().array() += y[first_lambda + m + b];
         add(s.u_p, u_p);
         add(s.u_u, q.T.transpose() * (c_j * J_bar + gyroscopic) * q.T);
@@ -383,8 +384,8 @@ void RpEquations::add_bodies(const ConstVectorRef& y, double c_j)
 void RpEquations::add_rows(double c_j)
 {
     const bool ggl = form == RpForm::ggl;
-    // What stands in the row of λ_k is by_velocity (Φ_q q̇ - ν) + by_acceleration (Φ_q q̈ - γ) + α² Φ.
-    const double by_velocity = ggl ? 1 : 2 * alpha, by_acceleration = ggl ? 0 : 1;
+    // Row of λ_k: by_velocity (Φ_q q̇ - ν) + by_acceleration (Φ_q q̈ - γ) + α² Φ.
+    const double velocity_weight = ggl ? 1 : 2 * alpha, acceleration_weight = ggl ? 0 : 1;
     for (int k = 0; k < m; ++k) {
         const int first = C.start[k], entries = C.start[k + 1] - first;
         for (int b = 0; b < entries; ++b) {
@@ -394,26 +395,26 @@ void RpEquations::add_rows(double c_j)
             const Vec3& omega_bar = x.body[entry.body].omega_bar;
 
             Vec3 d_r = alpha * alpha * entry.r, d_theta = alpha * alpha * entry.pi;
-            Vec3 d_rdot = (by_velocity + by_acceleration * c_j) * entry.r;
-            Vec3 d_omega = by_velocity * entry.pi, d_w = by_acceleration * entry.pi;
+            Vec3 d_rdot = (velocity_weight + acceleration_weight * c_j) * entry.r;
+            Vec3 d_omega = velocity_weight * entry.pi, d_w = acceleration_weight * entry.pi;
             for (int a = 0; a < entries; ++a) {
                 const Mat6& Hab = H.at(k, a, b);
                 const int on = 6 * C.entry[first + a].body;
-                Eigen::Matrix<double, 6, 1> v = by_velocity * velocity.segment<6>(on);
+                Eigen::Matrix<double, 6, 1> v = velocity_weight * velocity.segment<6>(on);
                 if (!ggl) v += acceleration.segment<6>(on);
                 d_r += Hab.leftCols<3>().transpose() * v;
                 d_theta += Hab.rightCols<3>().transpose() * v;
             }
-            if (by_velocity != 0) {
-                d_r -= by_velocity * nu_change.entry[first + b].r;
-                d_theta -= by_velocity * nu_change.entry[first + b].pi;
+            if (velocity_weight != 0) {
+                d_r -= velocity_weight * d_nu.entry[first + b].r;
+                d_theta -= velocity_weight * d_nu.entry[first + b].pi;
             }
             if (!ggl) {
-                const lie::GammaVariation::Entry& change = gamma_change.entry[first + b];
-                d_r -= change.r;
-                d_theta -= change.theta;
-                d_rdot -= change.rdot;
-                d_omega -= change.omega;
+                const lie::GammaVariation::Entry& variation = d_gamma.entry[first + b];
+                d_r -= variation.r;
+                d_theta -= variation.theta;
+                d_rdot -= variation.rdot;
+                d_omega -= variation.omega;
             }
             for (int c = 0; c < 3; ++c) {
                 if (s.force[c] < 0) continue;
@@ -421,19 +422,18 @@ void RpEquations::add_rows(double c_j)
                 add(s.q_r[c], d_r[c]);
                 add(s.qdot_r[c], d_rdot[c]);
                 if (!ggl) continue;
-                add(s.drift[c], entry.r[c]);
+                add(s.mu_force[c], entry.r[c]);
                 add(s.r[c], entry.r[c]);
             }
             if (s.torque < 0) continue;
             const Row4 Phi_p = entry.pi.transpose() * q.T;
-            Row4 d_p =
-                d_theta.transpose() * q.T + d_omega.transpose() * T_change(q.p, q.p2, q.pdot, omega_bar);
-            if (!ggl) d_p += d_w.transpose() * T_change(q.p, q.p2, q.pddot, q.w);
+            Row4 d_p = d_theta.transpose() * q.T + d_omega.transpose() * dT_dp(q.p, q.p2, q.pdot, omega_bar);
+            if (!ggl) d_p += d_w.transpose() * dT_dp(q.p, q.p2, q.pddot, q.w);
             add(s.torque, Phi_p.transpose());
             add(s.q_p, d_p);
             add(s.qdot_p, (d_omega + c_j * d_w).transpose() * q.T);
             if (!ggl) continue;
-            add(s.turn, Phi_p.transpose());
+            add(s.mu_torque, Phi_p.transpose());
             add(s.p, Phi_p);
         }
     }
@@ -454,16 +454,16 @@ void RpEquations::add_loads()
 {
     using Mat7 = Eigen::Matrix<double, 7, 7>;
     for (size_t n = 0; n < load_slots.size(); ++n) {
-        const lie::LoadVariation::Block& block = load_change.block[n];
+        const lie::LoadVariation::Block& block = d_load.block[n];
         const Body &on = body[block.on], &by = body[block.by];
-        Eigen::Matrix<double, 7, 6> rows = Eigen::Matrix<double, 7, 6>::Zero();  // of (F, n̄) in the equations
+        Eigen::Matrix<double, 7, 6> rows =
+            Eigen::Matrix<double, 7, 6>::Zero();  // maps (F, n̄) to the equations of a body
         rows.topLeftCorner<3, 3>().setIdentity();
         rows.bottomRightCorner<4, 3>() = on.T.transpose();
         const Eigen::Matrix<double, 7, 12> d = rows * block.d;
         Mat7 q, qdot;
-        q << d.leftCols<3>(),
-            d.middleCols<3>(3) * by.T +
-                d.rightCols<3>() * T_change(by.p, by.p2, by.pdot, x.body[block.by].omega_bar);
+        q << d.leftCols<3>(), d.middleCols<3>(3) * by.T +
+                                  d.rightCols<3>() * dT_dp(by.p, by.p2, by.pdot, x.body[block.by].omega_bar);
         qdot << d.middleCols<3>(6), d.rightCols<3>() * by.T;
         add(load_slots[n].q, -q);
         add(load_slots[n].qdot, -qdot);

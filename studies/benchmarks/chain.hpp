@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The N-bar pendulum, ready to be stepped: what the benchmarks run.
+/// The N-bar pendulum with its consistent initial state, for the benchmarks.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace hilda::studies {
 
-/// Made once for each N
+/// The model with `bars` bars; constructed once for each number
 inline const dae::Description& chain(long bars)
 {
     static std::map<long, dae::Description> made;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Time of a step of bodies in contact, h = 1e-4 s: the sphere on an incline and the stack of three spheres, with
-/// both presets of friction.
+/// Time of a step with compliant contacts, h = 1e-4 s: the sphere on an incline and the stack of three
+/// spheres, with both presets of the friction law.
 ///
 ///     build/native/studies/hilda_benchmarks --benchmark_filter=contact/
 
@@ -19,7 +19,7 @@ void step(benchmark::State& timer, const Start& start)
     contact::Scene of = studies::scene(start);
     for (auto _ : timer) {
         of.step(1e-4);
-        if (of.t > 0.8) {  // the same motion again and again
+        if (of.t > 0.8) {  // restart, so that the motion does not depend on the number of steps
             timer.PauseTiming();
             of = studies::scene(start);
             timer.ResumeTiming();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Time of the parts of a step of the N-bar pendulum: loads, constraints, their variation, and assembling,
-/// factoring and solving the saddle system, whole by KLU or condensed.
+/// Time of the parts of a step of the N-bar pendulum: loads, constraints, variation of the constraints, and
+/// assembly, factorisation and solution of the saddle system, by KLU or condensed.
 
 #include "lie/solver/saddle.hpp"
 #include "studies/benchmarks/chain.hpp"

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Time of a whole step (loads, constraints, factorization, Newton, update) of the N-bar pendulum, over N, for
-/// every scheme and both linear solvers, at h = 1e-3 s.
+/// Time of a complete step (loads, constraints, factorisation, Newton iteration, update) of the N-bar
+/// pendulum over N, for all fixed-step schemes and both linear solvers, at h = 1e-3 s.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter='step/rA-half-1/'
 
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "studies/benchmarks/chain.hpp"
 
 #include <benchmark/benchmark.h>
@@ -21,7 +24,7 @@ void step(benchmark::State& timer, const lie::Scheme& scheme, lie::LinearSolver 
     lie::State x = d.x;
     for (auto _ : timer) {
         integrator->step(x, 1e-3);
-        if (x.t > 1) {  // the same second of motion again and again, so that every run does the same work
+        if (x.t > 1) {  // restart after 1 s, so that the work does not depend on the number of steps
             timer.PauseTiming();
             x = d.x;
             timer.ResumeTiming();

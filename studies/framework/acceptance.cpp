@@ -23,7 +23,7 @@ Criterion criterion(const std::string& what, double measured, double value, doub
 
 bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohmann::ordered_json& json)
 {
-    Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"met"}, {"what"}});
+    Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"passed"}, {"what"}});
     json["checks"] = nlohmann::ordered_json::array();
     for (const Criterion& d : criteria) {
         table.add({d.measured, d.least, d.most, d.passed() ? "yes" : "NO", d.what});
@@ -31,13 +31,13 @@ bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohman
                                   {"measured", number_or_null(d.measured)},
                                   {"least", d.least},
                                   {"most", d.most},
-                                  {"met", d.passed()}});
+                                  {"passed", d.passed()}});
     }
     const auto passed =
         std::count_if(criteria.begin(), criteria.end(), [](const Criterion& d) { return d.passed(); });
     out << '\n';
     table.print(out);
-    out << fmt::format("{} of {} met\n", passed, criteria.size());
+    out << fmt::format("{} of {} passed\n", passed, criteria.size());
     return passed == static_cast<long>(criteria.size());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// --check of a sweep: what must come out of it, by number.
+/// Acceptance criteria of a study, evaluated by --check.
 
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace hilda::studies {
 
-/// What came out, and between which bounds it must be; NaN is between none.
+/// A measured value and its bounds. The criterion passes if least <= measured <= most; NaN fails.
 struct Criterion {
     std::string what;
     double measured = 0, least = 0, most = 0;
@@ -19,11 +19,13 @@ struct Criterion {
     bool passed() const { return measured >= least && measured <= most; }
 };
 
+/// Criterion with the bounds least and most
 Criterion between(const std::string& what, double measured, double least, double most);
-/// value +- tolerance
+/// Criterion with the bounds value - tolerance and value + tolerance
 Criterion criterion(const std::string& what, double measured, double value, double tolerance);
 
-/// Whether all are met; a table of them, "N of M met" below it, and the same as "checks" for study.json.
+/// Evaluates the criteria. Prints a table and the line "N of M passed", and adds the same as "checks" to the
+/// contents of study.json. Returns true if all criteria pass.
 bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohmann::ordered_json& json);
 
 }  // namespace hilda::studies

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/benchmark.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/message.hpp"
 
@@ -8,7 +10,9 @@
 
 namespace hilda::studies {
 
-dae::Description ready(const Problem& problem, const StudyOptions& options)
+double end_of_model(const dae::Description& d) { return d.end; }
+
+dae::Description read_and_start(const Problem& problem, const StudyOptions& options)
 {
     dae::Description d = dae::read_model(problem.model, problem.name, options.set);
     dae::start(d, {});
@@ -37,10 +41,10 @@ Benchmark make_benchmark(Problem problem, const StudyOptions& options, const Def
 }
 
 std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
-                                  const std::vector<std::string>& otherwise, const DefaultEnd& end)
+                                  const std::vector<std::string>& defaults, const DefaultEnd& end)
 {
     std::vector<Benchmark> all;
-    for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
+    for (const std::string& name : options.problems.empty() ? defaults : options.problems) {
         all.push_back(make_benchmark(problem_or_file(name), options, end));
         for (size_t k = 0; k + 1 < all.size(); ++k)
             if (all[k].problem.name == all.back().problem.name)
@@ -57,18 +61,19 @@ bool divides(double h, double end)
     return steps >= 1 && std::abs(end / h - steps) <= 1e-6;
 }
 
-/// As `hilda run` does: above the bound of a force a study would measure an explosion.
+/// UsageError for a step above the stability limit of a force, as in hilda run
 void check_stable(const std::string& kind, const Benchmark& c, const std::vector<double>& steps)
 {
     const dae::Model& model = *c.started->model;
     const dae::Model::StableStep stable = model.stable_step(c.started->x);
     for (const double h : steps)
         if (h > stable.h)
-            throw UsageError(fmt::format(
-                "study {}: {}: the step {} s is above {:.3g} s, the largest at which {} is stable with an "
-                "explicit step; --steps sets others",
-                kind, c.problem.name, h, stable.h,
-                model.forces()[static_cast<size_t>(stable.force)]->in_words()));
+            throw UsageError(
+                fmt::format("study {}: {}: the step {} s is above {:.3g} s, the stability limit of {} in an "
+                            "explicit step; "
+                            "--steps sets others",
+                            kind, c.problem.name, h, stable.h,
+                            model.forces()[static_cast<size_t>(stable.force)]->label()));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a study is of: a problem, started, over a time, with the truth its runs are judged by.
+/// A benchmark of a study: a problem with its initial state, end time, observable and reference solution.
 
 #pragma once
 
@@ -13,34 +13,38 @@ namespace hilda::studies {
 
 struct Benchmark {
     Problem problem;
-    std::shared_ptr<const dae::Description> started;  ///< shared by the runs, which change nothing in it
-    double end = 0;                                   ///< [s]
-    Observable observable;                            ///< with the name of its body
+    std::shared_ptr<const dae::Description>
+        started;            ///< model and consistent initial state, shared by the runs
+    double end = 0;         ///< [s]
+    Observable observable;  ///< its body name is not empty
 
-    // Of studies with a truth: see truth.hpp.
+    // For studies that compute errors (see reference_solution.hpp):
     Instants instants;
     lie::Trajectory reference_solution;
     std::string reference_name;
-    Errors size;
+    Errors size;  ///< norms of the reference solution itself
 };
 
-/// Reads a problem and readies it for a run.
-dae::Description ready(const Problem& problem, const StudyOptions& options);
+/// Reads the model of a problem, with the changes of --set, and computes its consistent initial state.
+/// lie::InvalidInput.
+dae::Description read_and_start(const Problem& problem, const StudyOptions& options);
 
-/// Until when a problem is followed when --end does not say
+/// End time of a model without --end [s]
 using DefaultEnd = std::function<double(const dae::Description&)>;
-inline double end_of_model(const dae::Description& d) { return d.end; }
+double end_of_model(const dae::Description& d);
 
-/// The problems of --problem, or else these: read and started one after the other, so that the first error is
-/// always the same one. Says on stderr what models drop. UsageError for two of one name.
+/// Benchmarks of the problems of --problem, or of the problems `defaults` without --problem. They are read in
+/// sequence, so that the first error is reproducible. Warnings name redundant constraint rows. UsageError for
+/// two problems with the same name, lie::InvalidInput for an invalid model.
 std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
-                                  const std::vector<std::string>& otherwise,
+                                  const std::vector<std::string>& defaults,
                                   const DefaultEnd& end = end_of_model);
 
-/// One of them
+/// Benchmark of one problem
 Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end = end_of_model);
 
-/// UsageError for a step that does not divide the end, or is longer than `most` [s].
+/// UsageError for a step that does not divide the end time, is larger than `most` [s], or exceeds the
+/// stability limit of a force.
 void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps, double most);
 void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps);
 

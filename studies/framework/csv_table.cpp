@@ -32,7 +32,7 @@ std::vector<std::string> fields(const std::string& line)
     return all;
 }
 
-std::string whole(const std::string& file)
+std::string contents(const std::string& file)
 {
     try {
         return read_file(file, most);
@@ -61,7 +61,7 @@ std::vector<double> CsvTable::values(const std::string& name) const
 CsvTable read_csv_table(const std::string& file)
 {
     CsvTable table{.file = file, .columns = {}, .rows = {}};
-    std::istringstream in(whole(file));
+    std::istringstream in(contents(file));
     std::string line;
     for (long n = 1; std::getline(in, line); ++n) {
         line = trimmed(line);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Tables of numbers that others wrote, to compare with: --against FILE.
+/// CSV tables of numbers from other sources, for comparison (--against FILE).
 
 #pragma once
 
@@ -8,19 +8,20 @@
 
 namespace hilda::studies {
 
-/// A header row with the names of the columns, then rows of numbers. Lines that begin with # are comments.
+/// A table with a header row of column names and rows of numbers. Lines that begin with # are comments.
 struct CsvTable {
     std::string file;
     std::vector<std::string> columns;
     std::vector<std::vector<double>> rows;  ///< NaN for an empty field
 
-    /// The place of a column. InvalidInput names one that is not there.
+    /// Index of a column. lie::InvalidInput if there is no such column.
     size_t column(const std::string& name) const;
-    /// All of its numbers
+    /// All values of a column
     std::vector<double> values(const std::string& name) const;
 };
 
-/// InvalidInput FILE:LINE for what is not such a table, FILE for what cannot be read.
+/// Reads a table. lie::InvalidInput with FILE:LINE for an invalid line, with FILE if the file cannot be read
+/// or has no rows.
 CsvTable read_csv_table(const std::string& file);
 
 }  // namespace hilda::studies

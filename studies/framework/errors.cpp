@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/errors.hpp"
 
+#include "dae/model.hpp"
+
 namespace hilda::studies {
 
 namespace {
 
 using lie::State;
 
-int watched_body(const dae::Model& model, const Observable& observable)
+int observed_body(const dae::Model& model, const Observable& observable)
 {
     if (observable.component.size() != 2 ||
         std::string("rvw").find(observable.component[0]) == std::string::npos ||
         std::string("xyz").find(observable.component[1]) == std::string::npos)
-        lie::reject("studies::errors", "a watched component is one of rx … wz",
+        lie::reject("studies::errors", "the component of an observable must be one of rx … wz",
                     "'" + observable.component + "'");
     return observable.body.empty() ? model.bodies() - 1 : model.find(observable.body);
 }
 
-/// Squared differences of one state, stacked over the bodies from first to last
-struct Squares {
+/// Squared norms of the difference of a state and the reference solution (nullptr: zero), summed over the
+/// bodies from first to last
+struct SquaredNorms {
     double r = 0, A = 0, v = 0, omega = 0;
-    Squares(const State& x, const State* reference_solution, int first, int last)
+    SquaredNorms(const State& x, const State* reference_solution, int first, int last)
     {
         static const lie::Motion zero = [] {
             lie::Motion m;
@@ -37,7 +40,7 @@ struct Squares {
     }
 };
 
-/// |ΔQ|² / |Q|²; 0 where the truth has no constraint loads
+/// |ΔQ|² / |Q|²; 0 if the reference solution has no constraint loads
 double load_error(const dae::Model& model, const State& x, const State& reference_solution)
 {
     const auto a = dae::reactions(model, x), b = dae::reactions(model, reference_solution);
@@ -60,29 +63,31 @@ double component(const State& x, int body, const std::string& name)
 
 Difference difference(const State& x, const State& reference_solution)
 {
-    const Squares all(x, &reference_solution, 0, static_cast<int>(x.body.size()) - 1);
+    const SquaredNorms all(x, &reference_solution, 0, static_cast<int>(x.body.size()) - 1);
     return {std::sqrt(all.r), std::sqrt(all.A), std::sqrt(all.v), std::sqrt(all.omega)};
 }
 
 Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::vector<long>& at,
-              const lie::Trajectory& reference_solution, const Instants& instants, const Observable& watch)
+              const lie::Trajectory& reference_solution, const Instants& instants,
+              const Observable& observable)
 {
-    const int body = watched_body(model, watch);
+    const int body = observed_body(model, observable);
     Errors out;
     int with_loads = 0, nodes = 0;
     for (size_t k = 0; k < at.size(); ++k) {
         if (at[k] == 0) continue;
         const State &x = run.row[k], &exact = reference_solution.row[at[k]];
-        const double z = component(x, body, watch.component) - component(exact, body, watch.component);
+        const double z =
+            component(x, body, observable.component) - component(exact, body, observable.component);
         out.value[norm::observable] += z * z;
         ++nodes;
         if (at[k] == instants.count) {
-            const Squares end(x, &exact, body, body);
+            const SquaredNorms end(x, &exact, body, body);
             out.value[norm::r_end] = std::sqrt(end.r), out.value[norm::A_end] = std::sqrt(end.A);
             out.value[norm::v_end] = std::sqrt(end.v), out.value[norm::omega_end] = std::sqrt(end.omega);
         }
         if (at[k] % instants.stride != 0) continue;
-        const Squares all(x, &exact, 0, model.bodies() - 1);
+        const SquaredNorms all(x, &exact, 0, model.bodies() - 1);
         out.value[norm::r] += all.r, out.value[norm::A] += all.A, out.value[norm::v] += all.v,
             out.value[norm::omega] += all.omega;
         ++out.instants;
@@ -98,16 +103,16 @@ Errors errors(const dae::Model& model, const lie::Trajectory& run, const std::ve
 }
 
 Errors sizes(const dae::Model& model, const lie::Trajectory& reference_solution, const Instants& instants,
-             const Observable& watch)
+             const Observable& observable)
 {
-    const int body = watched_body(model, watch);
+    const int body = observed_body(model, observable);
     Errors out;
     int rows = 0;
     for (long k = 1; k <= instants.count; ++k) {
-        const Squares all(reference_solution.row[k], nullptr, 0, model.bodies() - 1);
+        const SquaredNorms all(reference_solution.row[k], nullptr, 0, model.bodies() - 1);
         out.value[norm::r] += all.r, out.value[norm::A] += all.A, out.value[norm::v] += all.v,
             out.value[norm::omega] += all.omega;
-        const double z = component(reference_solution.row[k], body, watch.component);
+        const double z = component(reference_solution.row[k], body, observable.component);
         out.value[norm::observable] += z * z;
         ++rows;
     }

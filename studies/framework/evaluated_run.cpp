@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/evaluated_run.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "dae/start.hpp"
+#include "lie/settings.hpp"
+
 #include <algorithm>
 
 namespace hilda::studies {

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A member that is compared with the truth of its case.
+/// Runs of a study with their errors against the reference solution of the benchmark.
 
 #pragma once
 
+#include "lie/settings.hpp"
 #include "studies/framework/run.hpp"
 
 namespace hilda::studies {
 
 struct EvaluatedRun : Run {
-    Errors errors;                                  ///< NaN where the run failed
-    double constraint_norm = 0, orthogonality = 0;  ///< largest at the instants
+    Errors errors;                                  ///< NaN if the run failed
+    double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes
 };
 
-/// Integrates; errors and invariants into `run`.
+/// Integrates the run and stores its errors and invariants in it. `of_study`: settings of the study.
 void evaluate(EvaluatedRun& run, const lie::Settings& of_study);
 
-/// Keeps the nodes that are instants of the truth, and what the invariants were there.
+/// Collects the nodes that are rows of the reference solution, and the largest constraint norm [m or rad] and
+/// ‖AᵀA - I‖ at these nodes. lie::NumericalFailure "constraint_drift" if a dropped constraint row is
+/// violated.
 class AtInstants final : public lie::Observer {
 public:
     AtInstants(const dae::Model& model, const Instants& instants, double h)

@@ -19,7 +19,7 @@ void check_keys(const std::string& kind, const StudyOptions& options, std::span<
         std::string all;
         for (const std::string& key : known) all += (all.empty() ? "" : ", ") + key;
         throw UsageError("study " + kind + ": --expect: unknown key" + with_nearest(e.key, known) +
-                         "; there are " + all);
+                         "; known keys: " + all);
     }
 }
 
@@ -39,7 +39,7 @@ bool as_expected(const std::vector<Expectation>& expectations, const std::vector
         }
         if (seen) continue;
         passed = false;
-        message(fmt::format("hilda: error: expected {}, but no run measured '{}'\n", e.text, e.key));
+        message(fmt::format("hilda: error: expected {}, but no run has a value of '{}'\n", e.text, e.key));
     }
     return passed;
 }

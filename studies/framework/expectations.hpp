@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// --expect: what must come out of a study.
+/// Expected results of a study (--expect).
 
 #pragma once
 
@@ -10,16 +10,17 @@
 
 namespace hilda::studies {
 
-/// What one part of a study came to, by the keys that --expect knows
+/// Results of one part of a study, by the keys of --expect
 struct Measured {
     std::string of;  ///< for messages: "rA-half-1 on double_pendulum"
     std::map<std::string, double> value;
 };
 
-/// UsageError for a key that the study does not know.
+/// UsageError for a key that is not in `known`.
 void check_keys(const std::string& kind, const StudyOptions& options, std::span<const std::string> known);
 
-/// Names what was expected and did not come, one line each; true when all came, wherever the key is measured.
+/// Compares all expectations with all measured values of their keys. Prints a line on stderr for each
+/// difference above the tolerance and for each key that was not measured. Returns true if there is none.
 bool as_expected(const std::vector<Expectation>& expectations, const std::vector<Measured>& measured);
 
 }  // namespace hilda::studies

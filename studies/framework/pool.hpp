@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Independent jobs, side by side.
+/// Concurrent execution of independent jobs.
 
 #pragma once
 
@@ -10,13 +10,13 @@ namespace hilda::studies {
 
 class Pool {
 public:
-    /// `count` jobs on up to `threads` threads. On a terminal a progress line with this label is kept on
+    /// `count` jobs on at most `threads` threads. On a terminal a progress line with this label is shown on
     /// stderr; none for "".
     Pool(int threads, std::string label, long count) : threads(threads), label(std::move(label)), count(count)
     {}
 
-    /// Runs job(0) … job(count - 1), each once, begun in this order. Rethrows the first exception, by job
-    /// number, once all jobs have ended.
+    /// Calls job(0) … job(count - 1), each once, started in this order. After all jobs have ended, rethrows
+    /// the exception of the lowest job number.
     void run(const std::function<void(long)>& job) const;
 
 private:

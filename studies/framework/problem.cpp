@@ -2,6 +2,7 @@
 #include "studies/framework/problem.hpp"
 
 #include "dae/nearest.hpp"
+#include "lie/check.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
 #include <algorithm>
@@ -11,14 +12,14 @@ namespace hilda::studies {
 
 namespace {
 
-// Built on first use: files enrol their problems before main, in an order nobody fixes.
+// Constructed on first use, because problems are registered by static initialisers in unspecified order.
 std::vector<Problem>& list()
 {
     static std::vector<Problem> problems;
     return problems;
 }
 
-/// N of n_pendulum_N; none for other names. Refuses numbers out of range.
+/// N of n_pendulum_N; empty for other names. lie::InvalidInput for N out of range.
 std::optional<int> bars(const std::string& name)
 {
     static const std::string family = "n_pendulum_";
@@ -27,7 +28,7 @@ std::optional<int> bars(const std::string& name)
     if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
     const int n = digits.size() > 6 ? most_bars + 1 : std::stoi(digits);
     if (n < 1 || n > most_bars || digits.front() == '0')
-        lie::reject("studies::problem", "n_pendulum_N is there for N from 1 to " + std::to_string(most_bars),
+        lie::reject("studies::problem", "N of n_pendulum_N must be from 1 to " + std::to_string(most_bars),
                     name);
     return n;
 }
@@ -49,8 +50,8 @@ Problem problem(const std::string& name)
     for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
     const std::string meant = dae::nearest(name, names);
     throw lie::InvalidInput("no built-in model is called '" + name + "'" +
-                            (meant.empty() ? "" : "; did you mean '" + meant + "'?") + " There are " + all +
-                            ", and n_pendulum_N for any N");
+                            (meant.empty() ? "." : "; did you mean '" + meant + "'?") + " Built-in models: " +
+                            all + ", and n_pendulum_N for N from 1 to " + std::to_string(most_bars));
 }
 
 bool register_problem(Problem problem)

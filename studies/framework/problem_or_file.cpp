@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/output.hpp"
@@ -20,7 +21,7 @@ Problem problem_or_file(const std::string& name_or_path)
             .reference_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& t) {
-                    return reference::trusted(*d.model, d.x, t);
+                    return reference::reference_solution(*d.model, d.x, t);
                 },
             .observable = {}};
 }

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What judges the runs of a study: the problem's own truth, or the integrator that --reference names.
+/// Reference solutions of a study: those of the problems, or those of the integrator given by --reference.
 
 #pragma once
 
+#include "lie/schemes.hpp"
 #include "studies/framework/benchmark.hpp"
 
 namespace hilda::studies {
 
-/// What is judged, for what judges it must be finer.
+/// The finest runs of a study; the reference solution must be more accurate.
 struct Evaluated {
-    double smallest_step = 0;  ///< of the integrators with a fixed step [s]; 0: there are none
-    double smallest_rtol = 0;  ///< of those that choose their own; 0: there are none
-    int highest_order = 0;     ///< of those with a fixed step
+    double smallest_step = 0;  ///< of the integrators with a fixed step [s]; 0: no such integrator
+    double smallest_rtol = 0;  ///< of the integrators with adaptive steps; 0: no such integrator
+    int highest_order = 0;     ///< of the integrators with a fixed step
 };
 
+/// Computes the reference solutions of benchmarks.
 class Reference {
 public:
-    /// UsageError for a reference that is coarser than what it judges, unless --force is given: its step must
-    /// be smaller than theirs and its order not lower, its rtol ten times smaller, and at most 1e-8.
+    /// UsageError, unless --force is given, for a reference integrator that is not more accurate than the
+    /// runs: its step must be smaller and its order not lower than theirs; its rtol must be ten times smaller
+    /// than theirs, and at most 1e-8 for runs with a fixed step.
     Reference(const std::string& kind, const StudyOptions& options, const Evaluated& evaluated);
 
-    /// Gives each case its truth at its instants, a row for each from t = 0 on, side by side.
+    /// Computes the reference solution of each benchmark at its instants, with a row for each from t = 0 on.
+    /// The benchmarks are computed concurrently.
     void evaluate(std::vector<Benchmark>& benchmarks) const;
 
 private:
@@ -29,8 +33,8 @@ private:
     double step(const Benchmark& c) const;
 
     const StudyOptions& options;
-    const lie::Scheme* scheme = nullptr;  ///< none: the problem's own truth
-    double h = 0;                         ///< wanted [s]; 0: the interval of the instants
+    const lie::Scheme* scheme = nullptr;  ///< nullptr: the reference solution of the problem
+    double h = 0;                         ///< requested step [s]; 0: the interval of the instants
     double rtol = 0;
 };
 

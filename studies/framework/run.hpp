@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One run of a study: a problem, a scheme, and a step or a tolerance; what it cost and how it ended.
+/// A run of a study: benchmark, integrator and step or tolerance, with its cost and status.
 
 #pragma once
 
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/statistics.hpp"
 #include "studies/framework/benchmark.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,16 +17,16 @@ namespace hilda::studies {
 struct Run {
     const Benchmark* c = nullptr;
     const lie::Scheme* scheme = nullptr;
-    double h = 0;     ///< between nodes [s]
-    double rtol = 0;  ///< of a scheme that chooses its own steps; 0: this one does not
+    double h = 0;     ///< time between nodes [s]
+    double rtol = 0;  ///< relative tolerance of an adaptive scheme; 0: fixed step
 
     lie::Statistics statistics;
-    double seconds = 0;  ///< thread CPU time of the march
+    double seconds = 0;  ///< thread CPU time of the integration [s]
     std::string status = "ok", message;
 
     bool failed() const { return status != "ok"; }
     /// "h = 1e-3 s" or "rtol = 1e-6"
-    std::string grain() const;
+    std::string resolution() const;
     /// "rA-half-1 on double_pendulum at h = 1e-3 s"
     std::string name() const;
 };
@@ -31,14 +34,14 @@ struct Run {
 /// CPU time of the calling thread [s]
 double thread_seconds();
 
-/// The settings of a study, with the tolerance of this member
-lie::Settings settings_of(const Run& member, const lie::Settings& of_study);
+/// The settings of a study, with the rtol of this run if it has one
+lie::Settings settings_of(const Run& run, const lie::Settings& of_study);
 
-/// Marches from the start to the end of the member's case. A failure becomes its status: the other members of
-/// the study go on.
-void march(Run& member, const lie::Settings& of_study, std::span<lie::Observer* const> observers = {});
+/// Integrates the benchmark from the start to the end. A failure is recorded as status and message of the
+/// run, so that the other runs of the study continue.
+void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* const> observers = {});
 
-/// Members of any study, for what looks only at how they ended
+/// Pointers to the Run part of the runs of any study
 template <class AnyRun>
 std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
 {
@@ -47,10 +50,10 @@ std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
     return all;
 }
 
-/// A line for each member that failed, with why
+/// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles
 std::string failures(const std::vector<const Run*>& run_pointers);
 
-/// problem, integrator, h or rtol, status and message: what study.json says of every member
-nlohmann::ordered_json as_json(const Run& member);
+/// problem, integrator, h or rtol, status and message of a run, for study.json
+nlohmann::ordered_json as_json(const Run& run);
 
 }  // namespace hilda::studies

@@ -1,33 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Schemes and steps of a study: those the user named, or else its own.
+/// Integrators and steps of a study: those of the command line, or the defaults of the study.
 
 #pragma once
 
+#include "lie/schemes.hpp"
 #include "studies/framework/study.hpp"
 
 namespace hilda::studies {
 
 using Schemes = std::vector<const lie::Scheme*>;
 
-/// Those of --integrator, or else those of `otherwise` that are there, in this order; all when it is empty.
-Schemes any_schemes(const StudyOptions& options, const std::vector<std::string>& otherwise = {});
+/// The integrators of --integrator; without it those of `defaults` that are registered, in this order, or all
+/// if `defaults` is empty
+Schemes any_schemes(const StudyOptions& options, const std::vector<std::string>& defaults = {});
 
-/// The same of schemes with a fixed step; UsageError when another is named.
+/// The same, restricted to schemes with a fixed step. UsageError if --integrator names an adaptive scheme.
 Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
-                           const std::vector<std::string>& otherwise = {});
+                           const std::vector<std::string>& defaults = {});
 
-/// --steps, or else these; the largest first
-std::vector<double> steps_or(const StudyOptions& options, std::vector<double> otherwise);
+/// The steps of --steps, or `defaults`, in descending order [s]
+std::vector<double> steps_or(const StudyOptions& options, std::vector<double> defaults);
 
-/// The one of --steps, or else this; UsageError for several.
-double one_step(const std::string& kind, const StudyOptions& options, double otherwise);
+/// The step of --steps, or the default [s]. UsageError for more than one step.
+double one_step(const std::string& kind, const StudyOptions& options, double defaults);
 
-/// UsageError where --vtk has nowhere to write to.
+/// UsageError if --vtk is given and no output directory
 void check_vtk(const std::string& kind, const StudyOptions& options);
 
-/// UsageError where a model, an integrator or a setting of a model is named: the study has bodies of its own.
+/// UsageError if --problem, --integrator or --set is given, for studies that define their own bodies
 void refuse_models(const std::string& kind, const StudyOptions& options);
-/// The same where --problem has a meaning of its own
+/// UsageError if --integrator or --set is given, for studies in which --problem selects a case of the study
 void refuse_schemes(const std::string& kind, const StudyOptions& options);
 
 }  // namespace hilda::studies

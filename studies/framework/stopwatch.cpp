@@ -3,6 +3,8 @@
 
 #include "contact/evolving/unilateral.hpp"
 
+#include "dae/model_file.hpp"
+#include "lie/settings.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/table.hpp"
 
@@ -12,7 +14,7 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr double long_enough = 0.02;  // of thread CPU time, far above the clock's grain [s]
+constexpr double minimum_time = 0.02;  // of thread CPU time, far above the resolution of the clock [s]
 
 }  // namespace
 
@@ -40,17 +42,17 @@ double ratio(const TimedRun& a, const TimedRun& b)
     return spread(of_each).median;
 }
 
-double seconds_of_march(const Run& member, const lie::Settings& of_study)
+double seconds_of_march(const Run& run, const lie::Settings& of_study)
 {
-    const dae::Description& d = *member.c->started;
-    const lie::Settings settings = settings_of(member, of_study);
-    const lie::TimeGrid grid = lie::TimeGrid::over(member.c->end, member.h);
+    const dae::Description& d = *run.c->started;
+    const lie::Settings settings = settings_of(run, of_study);
+    const lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
     double seconds = 0;
     long runs = 0;
-    while (seconds < long_enough) {
-        const auto integrator =
-            contact::make_integrator(*d.model, *member.scheme, settings);  // a new one: it may remember a run
-        lie::March march(d.x, *integrator, member.h);
+    while (seconds < minimum_time) {
+        const auto integrator = contact::make_integrator(
+            *d.model, *run.scheme, settings);  // a new one, because it may store data of a run
+        lie::March march(d.x, *integrator, run.h);
         const double begin = thread_seconds();
         while (march.number() < grid.steps) march.advance({});
         seconds += thread_seconds() - begin;

@@ -1,48 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a run costs: thread CPU time, the median of repeats.
+/// Time measurement of runs: thread CPU time, median of repeated measurements.
 
 #pragma once
 
+#include "lie/settings.hpp"
 #include "studies/framework/run.hpp"
 
 namespace hilda::studies {
 
-/// Of several measurements
+/// Median and range of repeated measurements
 struct Spread {
     double median = 0, least = 0, most = 0;
 };
-/// NaN of none; the median of an even number is the mean of the two in the middle.
+/// NaN for an empty list. The median of an even number of values is the mean of the two central ones.
 Spread spread(std::vector<double> values);
 
-/// A member that is timed
+/// A run with time measurements
 struct TimedRun : Run {
-    std::vector<double> repeat;  ///< thread CPU time of each march [s]; none where it failed
+    std::vector<double> repeat;  ///< thread CPU time of each integration [s]; empty if the run failed
 
     Spread seconds_of_repeats() const { return spread(repeat); }
-    /// The same of a step [µs]
+    /// Time of a step [µs]
     Spread microseconds() const;
 };
 
-/// Time of a over that of b: the median over the repeats of the ratio within each, which a slow moment of the
-/// machine does not move. NaN where one of them failed.
+/// Ratio of the times of a and b: the median of the ratios of corresponding repeats, which is robust against
+/// a temporary load of the machine. NaN if one of the runs failed.
 double ratio(const TimedRun& a, const TimedRun& b);
 
-/// Thread CPU seconds of the march of a member with nothing observing it. Where it is over sooner than 20 ms it
-/// is run again until they have passed, and the mean is taken. Making the integrator is not counted.
-double seconds_of_march(const Run& member, const lie::Settings& of_study);
+/// Thread CPU time of the integration of a run without observers [s]. A run shorter than 20 ms is repeated
+/// until 20 ms have passed, and the mean is returned. The construction of the integrator is not included.
+double seconds_of_march(const Run& run, const lie::Settings& of_study);
 
-/// What the k-th of some members is run with
+/// Settings of the k-th run
 using SettingsOf = std::function<lie::Settings(long k)>;
 
-/// Times those of the members that have not failed, each options.repeats times: all once, then all again, so
-/// that a slow moment of the machine meets every one of them and not all repeats of one.
+/// Measures each run that has not failed options.repeats times. All runs are measured once, then all again,
+/// so that a temporary load of the machine does not affect all repeats of one run.
 void time_in_turn(const std::string& label, const StudyOptions& options, const std::vector<TimedRun*>& runs,
                   const SettingsOf& settings);
 
-/// Fits y ~ x^p by least squares on log x, log y
+/// Exponent p of y ~ x^p, by linear least squares of log y over log x
 struct Exponent {
     double fitted = 0;         ///< NaN for fewer than two points
-    double largest_local = 0;  ///< between neighbours
+    double largest_local = 0;  ///< largest exponent between neighbouring points
 };
 Exponent exponent(const std::vector<double>& x, const std::vector<double>& y);
 

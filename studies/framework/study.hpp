@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Studies: what they are given, and the list of them.
+/// Studies: their options and the list of registered studies.
 
 #pragma once
 
-#include "lie/integrator.hpp"
+#include "lie/settings.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -13,45 +13,46 @@
 
 namespace hilda::studies {
 
-/// --expect KEY=VALUE[+-TOL]: what must come out
+/// Expected value of a result: --expect KEY=VALUE[+-TOL]
 struct Expectation {
     std::string key;
     double value = 0, tolerance = 0;
-    std::string text;  ///< as typed
+    std::string text;  ///< text of the command line
 };
 
-/// What the command line asks of a study. An empty list means: the study's own default.
+/// Options of a study. An empty list selects the default of the study.
 struct StudyOptions {
     std::vector<std::string> problems;  ///< names or paths of model files
     std::vector<std::string> integrators;
     std::vector<double> steps;     ///< [s], descending
     std::vector<double> rtols;     ///< of adaptive integrators, descending
-    std::vector<int> bars;         ///< of the chains of scaling, ascending
+    std::vector<int> bars;         ///< numbers of bars of study scaling, ascending
     std::optional<double> end;     ///< [s]
     std::vector<std::string> set;  ///< /json/pointer=VALUE
     lie::Settings settings;
 
-    std::string reference;                                 ///< an integrator; "": the truth of each problem
+    std::string reference;  ///< an integrator; "": the reference solution of each problem
     std::optional<double> reference_step, reference_rtol;  ///< [s], 1
-    std::string preset;       ///< of the friction: balanced or dissertation; "": the default of the study
-    std::string normal_rows;  ///< of contacts that are constraints: tangent or fixed-xy; "": tangent
+    std::string preset;       ///< friction parameters: balanced or dissertation; "": the default of the study
+    std::string normal_rows;  ///< of contact constraints: tangent or fixed-xy; "": tangent
     std::string against;      ///< a CSV file to compare with; "": none
-    std::string grid;         ///< of a sweep, by a name that the study knows; "": its default
+    std::string grid;         ///< name of a parameter grid of a sweep; "": its default
 
     int vtk = 0;      ///< frames of each run for ParaView; 0: none
-    int repeats = 0;  ///< of what is timed; 0: the default of studies that time
+    int repeats = 0;  ///< of time measurements; 0: the default
     std::uint64_t seed = 0;
 
-    std::string output;  ///< directory, already made and empty; "" with --json and no --output
-    int jobs = 0;        ///< runs side by side; 0: one for each core, or one where time is measured
-    bool check = false;  ///< all that must come out is wanted, and exit code 6 where it does not
-    bool force = false;  ///< take a directory that is not empty, and a reference that is too coarse
+    std::string output;  ///< existing output directory; "": no files (--json without --output)
+    int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
+    bool check = false;  ///< evaluate all acceptance criteria; exit code 6 if one fails
+    bool all = false;    ///< the complete default selection of a study that has a short one
+    bool force = false;  ///< accept a non-empty directory and a reference solution that is too coarse
     bool plot = true, quiet = false, json = false;
     std::vector<Expectation> expect;
-    std::string command_line;  ///< for the record
+    std::string command_line;  ///< recorded in study.json
 };
 
-/// Options that only some studies take
+/// Flags of the options that only some studies accept (Study::accepted)
 namespace takes {
 enum : unsigned {
     reference = 1,
@@ -63,20 +64,25 @@ enum : unsigned {
     grid = 64,
     check = 128,
     vtk = 256,
-    normal_rows = 512
+    normal_rows = 512,
+    all = 1024
 };
 }  // namespace takes
 
+/// A registered study
 struct Study {
     std::string kind;
-    std::string answers;                               ///< the figure or table it answers, one line
-    unsigned also = 0;                                 ///< of what is in takes
-    std::function<int(const StudyOptions&)> run = {};  ///< returns the exit code; writes into output
+    std::string answers;    ///< one line: figure or table of the dissertation, or question
+    unsigned accepted = 0;  ///< flags of `takes`
+    std::function<int(const StudyOptions&)> run = {};  ///< writes to options.output, returns the exit code
 };
 
+/// All registered studies, sorted by kind
 const std::vector<Study>& studies();
+/// Adds a study; called by a static initialiser in the file of the study.
 bool register_study(Study study);
-/// Studies that follow from another list: it is asked when studies() is, and not before all is enrolled that enrols itself.
+/// Adds a function that makes studies from another registry. It is called by the first call of studies(),
+/// when all static initialisers have run.
 bool register_studies(std::vector<Study> (*make)());
 
 }  // namespace hilda::studies

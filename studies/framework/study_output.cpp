@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/study_output.hpp"
 
+#include "lie/settings.hpp"
 #include "studies/message.hpp"
 #include "studies/output.hpp"
 #include "studies/program/plot.hpp"
@@ -48,7 +49,8 @@ void write(const StudyOptions& options, const StudyOutput& output, const ordered
         write_file(in + name, content);
         written.push_back(name);
     }
-    for (const std::string& figure : output.figures) std::remove((in + figure).c_str());  // of an earlier run
+    for (const std::string& figure : output.figures)
+        std::remove((in + figure).c_str());  // those of an earlier run
     if (options.plot && plot(output.kind + ".py", options.output))
         written.insert(written.end(), output.figures.begin(), output.figures.end());
     if (options.json || options.quiet) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How a study ends: its tables on stdout, its files, its figures, its exit code.
+/// Output of a study: tables on stdout, files, figures and exit code.
 
 #pragma once
 
@@ -16,19 +16,20 @@ namespace hilda::studies {
 
 struct StudyOutput {
     std::string kind = {};
-    std::ostringstream text = {};                                    ///< for people
-    std::string table = {};                                          ///< study.csv
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();  ///< what study.json says after its head
-    std::vector<std::pair<std::string, std::string>> files = {};     ///< more tables: name and content
-    std::vector<std::string> figures = {};                           ///< what KIND.py draws from the tables
+    std::ostringstream text = {};  ///< text for stdout
+    std::string table = {};        ///< contents of study.csv
+    nlohmann::ordered_json json =
+        nlohmann::ordered_json::object();  ///< contents of study.json after the common keys
+    std::vector<std::pair<std::string, std::string>> files = {};  ///< further files: name and contents
+    std::vector<std::string> figures = {};                        ///< files that plots/KIND.py draws
 };
 
-/// Prints and writes; returns the exit code: 4 when all members failed, 6 when an expectation did not come
-/// out. The head of study.json has the settings, the seed, the repeats and where the result comes from.
+/// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed, 6 if
+/// an expectation failed. The common keys of study.json are settings, seed, repeats and provenance.
 int finish(const StudyOptions& options, const StudyOutput& output,
            const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured);
 
-/// Of numbers that may be none: null
+/// The number, or null if it is not finite
 nlohmann::ordered_json number_or_null(double value);
 
 }  // namespace hilda::studies

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A table for people and for programs.
+/// Tables, printed as aligned text and as CSV.
 
 #pragma once
 
@@ -11,15 +11,16 @@
 
 namespace hilda::studies {
 
-/// Rows of texts and numbers under named columns. As text its columns are aligned and numbers rounded; as CSV
-/// numbers are the shortest that read back exactly, and NaN is an empty field.
+/// A table with named columns and cells of texts or numbers. As text, columns are aligned and numbers
+/// rounded. As CSV, numbers are written with the least digits that read back exactly, and NaN is an empty
+/// field.
 class Table {
 public:
     using Cell = std::variant<std::string, double>;
 
     struct Column {
         std::string name;
-        const char* format = "{:.3e}";  ///< fmt, for people
+        const char* format = "{:.3e}";  ///< fmt format of numbers in text output
     };
 
     explicit Table(std::vector<Column> columns) : columns(std::move(columns)) {}
@@ -35,16 +36,16 @@ private:
     std::vector<std::vector<Cell>> cells;
 };
 
-/// Shortest decimal that reads back as the same double; empty for NaN.
+/// The shortest decimal text that reads back as the same double; empty for NaN
 std::string shortest(double value);
 
-/// log(e₁/e₂) / log(h₁/h₂): the order that two errors show. NaN where there is none to see.
+/// Observed order of convergence log(e₁/e₂) / log(h₁/h₂); NaN unless both errors are positive
 inline double order(double h_1, double e_1, double h_2, double e_2)
 {
     return e_1 > 0 && e_2 > 0 ? std::log(e_1 / e_2) / std::log(h_1 / h_2) : std::nan("");
 }
 
-/// Slope of the straight line through (log h, log e), least squares; NaN for fewer than two points.
+/// Slope of the least-squares line through the points (log h, log e); NaN for fewer than two points
 double fitted_order(const std::vector<double>& h, const std::vector<double>& e);
 
 }  // namespace hilda::studies

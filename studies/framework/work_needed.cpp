@@ -5,12 +5,13 @@
 
 namespace hilda::studies {
 
-WorkNeeded work_needed(const std::vector<double>& error, const std::vector<double>& seconds, double asked)
+WorkNeeded work_needed(const std::vector<double>& error, const std::vector<double>& seconds, double accuracy)
 {
     for (size_t k = 0; k < error.size(); ++k) {
-        if (!(error[k] <= asked)) continue;
-        if (k == 0 || std::isnan(error[k - 1])) return {.seconds = seconds[k], .at_most = error[k] < asked};
-        const double part = std::log(asked / error[k - 1]) / std::log(error[k] / error[k - 1]);
+        if (!(error[k] <= accuracy)) continue;
+        if (k == 0 || std::isnan(error[k - 1]))
+            return {.seconds = seconds[k], .at_most = error[k] < accuracy};
+        const double part = std::log(accuracy / error[k - 1]) / std::log(error[k] / error[k - 1]);
         return {.seconds = seconds[k - 1] * std::pow(seconds[k] / seconds[k - 1], part)};
     }
     return {.seconds = std::nan("")};

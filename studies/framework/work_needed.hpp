@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What an integrator needs for an accuracy, from runs of growing cost.
+/// Computing time that an integrator needs for a given accuracy, from runs of increasing cost.
 
 #pragma once
 
@@ -9,12 +9,12 @@ namespace hilda::studies {
 
 struct WorkNeeded {
     double seconds = 0;    ///< NaN: the accuracy is not reached
-    bool at_most = false;  ///< the cheapest run that ended well is more accurate already
+    bool at_most = false;  ///< upper bound only: the cheapest successful run is already more accurate
 };
 
-/// The time at which the error comes down to `asked`: on the straight line in log e, log t between the first
-/// run that is as accurate and the one before it. Errors and times from the coarsest run on; NaN where one
-/// failed.
-WorkNeeded work_needed(const std::vector<double>& error, const std::vector<double>& seconds, double asked);
+/// Time at which the error equals `accuracy`, by linear interpolation of log t over log e between the first
+/// run that is at least as accurate and its predecessor. Errors and times [s] start with the coarsest run;
+/// NaN for a failed run.
+WorkNeeded work_needed(const std::vector<double>& error, const std::vector<double>& seconds, double accuracy);
 
 }  // namespace hilda::studies

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Evolving contact, DVI and springs: error against CPU time in a bowl, cost against the number of contacts elsewhere.
+"""Evolving contact, DVI and springs: error against CPU time (bowl), CPU time against number of contacts (other scenes).
 
     contact-methods.py DIR       reads DIR/study.csv, writes DIR/contact-methods-PART.png
 """
 from drawing import directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
 
 TITLES = {
-    "bowl": "A ball slides in a bowl for 2 s: error of its position",
-    "many": "Balls in a bowl, each by itself",
-    "chain": "Balls in a groove in a row, three contacts a ball",
-    "pile": "Balls that fall into a bowl, 1 s",
+    "bowl": "Ball sliding in a bowl for 2 s: position error",
+    "many": "Independent balls in a bowl: CPU time",
+    "chain": "Chain of balls in a groove, three contacts per ball: CPU time",
+    "pile": "Balls falling into a bowl, 1 s: CPU time",
 }
 
 
@@ -27,20 +27,20 @@ def draw(folder, part, rows):
     figure, panels = plt.subplots(1, 2, figsize=(11.5, 5.0))
     if part == "bowl":
         lines(panels[0], rows, "cpu_seconds", "error", methods)
-        panels[0].set_xlabel("thread CPU time [s]")
+        panels[0].set_xlabel("thread CPU time of the run [s]")
         lines(panels[1], rows, "h", "error", methods)
-        panels[1].set_xlabel("step [s]")
+        panels[1].set_xlabel("step $h$ [s]")
         for axes in panels:
-            axes.set_ylabel("largest error of the position [m]")
+            axes.set_ylabel("largest position error [m]")
     else:
         lines(panels[0], rows, "contacts", "us_per_step_and_contact", methods)
-        panels[0].set_ylabel("thread CPU time of a step and contact [µs]")
-        panels[0].set_xlabel("contacts")
+        panels[0].set_ylabel("thread CPU time per step and contact [µs]")
+        panels[0].set_xlabel("number of contacts")
         for row in rows:
             row["per_second"] = str(number(row["cpu_seconds"]) / number(row["end"]))
         lines(panels[1], rows, "contacts", "per_second", methods)
-        panels[1].set_ylabel("thread CPU time of a second of motion [s]")
-        panels[1].set_xlabel("contacts")
+        panels[1].set_ylabel("thread CPU time per second of motion [s/s]")
+        panels[1].set_xlabel("number of contacts")
     figure.suptitle(TITLES[part], fontsize=11)
     save(figure, folder, f"contact-methods-{part}.png", legend(figure, methods))
 

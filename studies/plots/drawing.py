@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the figures of the studies share: reading a table, and one colour and marker for a scheme in all of them."""
+"""Functions shared by the figures: reading tables, and the same colour and marker for a scheme in all figures."""
 import csv
 import os
 import sys
@@ -10,13 +10,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 
-# told apart by people who do not see red and green
+# distinguishable with red-green colour blindness
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6bb1"]
 MARKERS = "osD^vP*X"
 STYLES = {
     "rA-full-1": ("#d55e00", "s"), "rA-full-1-exact": ("#f4a582", "D"),
     "rA-half-1": ("#0072b2", "o"), "rA-half-1-kick": ("#56b4e9", "^"),
-    "rA-half-1-momentum": ("#009988", ">"),
+    "rA-half-1-momentum": ("#332288", ">"),
     "rA-half-2": ("#009e73", "v"), "rA-half-2-bdf2": ("#66c2a5", "<"),
     "rA-genalpha": ("#cc79a7", "P"), "rA-rattle": ("#8c6bb1", "X"), "rA-rkmk-4": ("#e69f00", "*"),
     "ida-rp": ("#000000", "h"), "ida-rp-baumgarte": ("#444444", "H"), "ida-rp-index1": ("#888888", "8"),
@@ -29,7 +29,7 @@ STYLES = {
 
 
 def style(scheme, others=()):
-    """Colour and marker of a scheme; one that has none of its own gets them by its place among the others."""
+    """Colour and marker of a scheme; a scheme without an entry in STYLES gets them by its position in `others`"""
     if scheme in STYLES:
         return STYLES[scheme]
     unknown = [name for name in others if name not in STYLES]
@@ -38,49 +38,53 @@ def style(scheme, others=()):
 
 
 def directory():
-    """The one argument of a script"""
+    """The result directory, the only argument of a script"""
     if len(sys.argv) != 2:
         sys.exit(sys.modules["__main__"].__doc__)
     return sys.argv[1]
 
 
 def read(*path):
-    """The rows of a table, as dictionaries of texts"""
+    """The rows of a CSV file as dictionaries of strings"""
     with open(os.path.join(*path), newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
 def distinct(rows, column):
-    """The values of a column, in the order in which they come"""
+    """The distinct values of a column, in order of first occurrence"""
     return list(dict.fromkeys(row[column] for row in rows))
 
 
 def where(rows, **values):
+    """The rows whose columns have these values"""
     return [row for row in rows if all(row[column] == value for column, value in values.items())]
 
 
 def number(text):
+    """The number in a field; NaN for an empty field"""
     return float(text) if text else float("nan")
 
 
 def numbers(rows, column):
+    """The numbers of a column"""
     return [number(row[column]) for row in rows]
 
 
 def width(scheme, schemes, thinnest=1.0, thickest=3.2):
-    """Line widths: the first scheme the thickest, so that it shows below those that lie on it"""
+    """Line width of a scheme; earlier schemes have wider lines, so that coinciding curves are visible"""
     if len(schemes) < 2:
         return thinnest
     return thickest - (thickest - thinnest) * schemes.index(scheme) / (len(schemes) - 1)
 
 
 def grid(axes):
+    """Light grid behind the curves"""
     axes.grid(True, which="major", color="0.92")
     axes.set_axisbelow(True)
 
 
 def legend(figure, schemes, markers=True, more=(), columns=8):
-    """One legend below the whole figure"""
+    """Draws one legend below the figure and returns its height as a fraction of the figure height"""
     handles = [Line2D([], [], color=style(s, schemes)[0], marker=style(s, schemes)[1] if markers else None, label=s)
                for s in schemes] + list(more)
     lines = -(-len(handles) // columns)
@@ -90,13 +94,14 @@ def legend(figure, schemes, markers=True, more=(), columns=8):
 
 
 def save(figure, folder, name, below=0.0, top=0.97):
+    """Saves the figure; `below` and `top` are the margins of the panels as fractions of the figure height"""
     figure.tight_layout(rect=(0, below, 1, top))
     figure.savefig(os.path.join(folder, name), dpi=110)
     plt.close(figure)
 
 
 def for_each_problem(draw):
-    """Calls draw(folder, problem, rows) with the rows of each problem of the study that the command line names."""
+    """Calls draw(folder, problem, rows) for each problem in study.csv of the result directory"""
     folder = directory()
     rows = read(folder, "study.csv")
     for problem in distinct(rows, "problem"):

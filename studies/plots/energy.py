@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Change of the energy over time, one figure for each problem.                               Fang (2022), Fig. 3.5
+"""Change of the total energy over time, one figure per problem.                              Fang (2022), Fig. 3.5
 
     energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
 """
@@ -27,7 +27,7 @@ def draw(folder, problem, rows, runs):
         grid(axes)
     kinetic = max(number(run["max_kinetic"]) for run in runs if run["status"] == "ok") if any(
         run["status"] == "ok" for run in runs) else float("nan")
-    which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: h"
+    which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: step h"
     figure.suptitle(f"{problem}: change of the total energy, {which}; largest kinetic energy {kinetic:.4g} J", fontsize=11)
     more = [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"h = {float(h):g} s")
             for k, h in enumerate(steps)] if len(steps) > 1 else []

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball in a bowl with the contact points as unknowns, one figure for each scene.            Fang (2022), Figs. 5.2-5.6
+"""Ball in an ellipsoidal bowl with the contact points as unknowns, one figure per scene.       Fang (2022), Figs. 5.2-5.6
 
     evolving-contact.py DIR     reads DIR/SCENE.csv, writes DIR/evolving-contact-SCENE.png
 """
@@ -39,15 +39,16 @@ def draw(folder, scene, rows):
         multiplier = [max(number(row[c]) for c in ("lambda_N", "lambda_t")) for row in mine]
         axes[1][1].semilogy(t, positive(multiplier), dash, color=colour, lw=0.8)
         axes[1][2].plot(t, numbers(mine, "energy_change"), dash, color=colour, lw=1)
-    titles = (r"contact point on the bowl $\bar\alpha_j$", r"contact point on the ball $\bar\alpha_i$", "normal force $F_N$ [N]",
-              r"residual: largest of $\Psi$, $N$, $G$ [m]", r"$|\lambda_N|$ and tangential part of $\lambda_\Psi$ [N]",
-              "change of energy [J]")
+    titles = (r"contact point on the bowl $\bar\alpha_j$ [m]", r"contact point on the ball $\bar\alpha_i$ [m]",
+              "normal force $F_N$ [N]", r"constraint residual, max of $\Psi$, $N$, $G$ [m]",
+              r"max of $|\lambda_N|$ and tangential part of $\lambda_\Psi$ [N]",
+              "change of energy $E - E_0$ [J]")
     for ax, title in zip(axes.flat, titles):
         ax.set_title(title, fontsize=10)
         grid(ax)
     for ax in (axes[0][2], *axes[1]):
         ax.set_xlabel("$t$ [s]")
-    figure.suptitle(f"{scene}: a ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
+    figure.suptitle(f"{scene}: ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
     figure.legend(handles=lines, loc="lower center", ncol=len(lines), frameon=False, fontsize=9)
     save(figure, folder, f"evolving-contact-{scene}.png", 0.04)
 

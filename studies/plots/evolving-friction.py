@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball in a bowl that friction brings to rest.                                            Fang (2022), Figs. 5.7, 5.8
+"""Ball in an ellipsoidal bowl with friction and rolling resistance.                         Fang (2022), Figs. 5.7, 5.8
 
     evolving-friction.py DIR    reads DIR/curves.csv, writes DIR/evolving-friction-point.png and -forces.png
 """
@@ -11,7 +11,7 @@ IDEAL = {"color": "black", "lw": 0.7, "ls": ":"}
 
 
 def sets(rows):
-    """The runs that were made of each resistance, as pairs of integrator and step"""
+    """The distinct runs for each rolling resistance, as pairs of integrator and step"""
     return list(dict.fromkeys((row["run"], row["h"]) for row in rows if row["run"] != "ideal"))
 
 
@@ -21,7 +21,7 @@ def legend(figure, rows, etas):
     lines += [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"{run}, h = {number(h):g} s")
               for k, (run, h) in enumerate(of)]
     if any(row["run"] == "ideal" for row in rows):
-        lines.append(Line2D([], [], label="ideal limit: no slip, no spring", **IDEAL))
+        lines.append(Line2D([], [], label="ideal limit: rolling without slip, no friction springs", **IDEAL))
     figure.legend(handles=lines, loc="lower center", ncol=len(lines) if len(lines) < 8 else 5, frameon=False, fontsize=9)
 
 
@@ -40,7 +40,7 @@ def point(folder, rows, etas):
     draw(axes[0], rows, etas, "t", "y")
     axes[0].set_xlabel("$t$ [s]")
     axes[0].set_ylabel("$y$ of the contact point [m]")
-    # one above the other, or they would hide each other on the same ellipse
+    # shifted, because all curves are on the same ellipse
     for k, eta in enumerate(etas):
         for m, (run, h) in enumerate(sets(rows)):
             mine = where(rows, eta_r=eta, run=run, h=h)
@@ -48,10 +48,10 @@ def point(folder, rows, etas):
             axes[1].plot(numbers(mine, "y"), lifted, ls=DASHES[m % len(DASHES)], color=COLOURS[k], lw=1)
             axes[1].plot(number(mine[-1]["y"]), lifted[-1], "o", color=COLOURS[k], ms=4)
     axes[1].set_xlabel("$y$ [m]")
-    axes[1].set_ylabel(r"$z$ [m], each $\eta_r$ 0.12 m above the one before")
+    axes[1].set_ylabel(r"$z$ [m], shifted by 0.12 m for each $\eta_r$")
     axes[1].set_aspect("equal", adjustable="datalim")
     grid(axes[1])
-    figure.suptitle("contact point on the bowl", fontsize=11)
+    figure.suptitle("ball in a bowl with rolling resistance: contact point on the bowl", fontsize=11)
     legend(figure, rows, etas)
     save(figure, folder, "evolving-friction-point.png", 0.07)
 
@@ -63,7 +63,7 @@ def forces(folder, rows, etas):
     for ax, (column, name) in zip(axes, names.items()):
         draw(ax, rows, etas, "t", column)
         ax.set_ylabel(name)
-    # the jolt of the release is told of in the text
+    # the axis excludes the transient of the friction springs after the release
     late = [number(row["F_f"]) for row in rows if row["run"] != "ideal" and number(row["t"]) > 0.1]
     axes[1].set_ylim(0, 1.1 * max(late, default=1))
     axes[-1].set_xlabel("$t$ [s]")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Error against step on contacts that are constraints, one figure for each problem.
+"""Error over step size for evolving contacts, one figure per problem.
 
     evolving-order.py DIR       reads DIR/study.csv, writes DIR/evolving-order-PROBLEM.png
 """
@@ -8,11 +8,11 @@ from drawing import Line2D, distinct, for_each_problem, grid, legend, plt, save,
 
 PANELS = [("r", "position $r$ [m]"), ("A", "orientation $\\|A\\|_F$"), ("alpha", r"contact points $\bar\alpha$ [m]"),
           ("F_N", "normal force $F_N$ [N]")]
-ROUNDING = 1e-9  # as in the fit
+ROUNDING = 1e-9  # the limit of the fit in the study
 
 
 def slopes(axes, h, top):
-    """Thin lines of slope 1 and 2 from above the largest error"""
+    """Reference lines of slope 1 and 2 above the largest error"""
     for slope, line in ((1, ":"), (2, "--")):
         axes.plot([h[0], h[-1]], [1.8 * top * (h[0] / h[-1]) ** slope, 1.8 * top], line, color="0.6", lw=1, zorder=0)
 
@@ -34,13 +34,13 @@ def draw(folder, problem, rows):
             axes.set_xticks(h, [f"{x:g}" for x in h])
             axes.xaxis.set_minor_formatter(plt.NullFormatter())
         else:
-            title += ": none to see"
+            title += ": errors below rounding"
         axes.set_title(title, fontsize=10)
         axes.set_xlabel("step $h$ [s]")
         grid(axes)
     all_axes[0].set_ylabel("largest error over the instants")
     more = [Line2D([], [], color="0.6", ls=":", label="slope 1"), Line2D([], [], color="0.6", ls="--", label="slope 2")]
-    figure.suptitle(f"{problem}: error against step size")
+    figure.suptitle(f"{problem}: error over step size")
     save(figure, folder, f"evolving-order-{problem}.png", legend(figure, schemes, more=more))
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The experiments on friction, one figure each.                             Fang (2022), Figs. 4.6-4.12, 4.15-4.18
+"""Friction experiments, one figure per experiment.                          Fang (2022), Figs. 4.6-4.12, 4.15-4.18
 
     friction.py DIR       reads DIR/study.csv and DIR/EXPERIMENT.csv, writes DIR/friction-EXPERIMENT.png
 """
@@ -32,13 +32,13 @@ PRESETS = ("dissertation", "balanced")
 
 
 def split(run):
-    """("balanced", "eta0.012") of balanced-eta0.012; ("", run) where there is no preset"""
+    """Preset and remainder of a run name: ("balanced", "eta0.012") for balanced-eta0.012, ("", run) without preset"""
     preset, _, rest = run.partition("-")
     return (preset, rest) if preset in PRESETS else ("", run)
 
 
 def styles(runs):
-    """A colour for what is varied, dashes for the preset of the dissertation where both are there"""
+    """Colour by the varied parameter; dashes for the preset `dissertation` if both presets are present"""
     varied = list(dict.fromkeys(split(run)[1] or split(run)[0] for run in runs))
     both = len({split(run)[0] for run in runs} - {""}) > 1 and any(split(run)[1] for run in runs)
     return {run: (COLOURS[varied.index(split(run)[1] or split(run)[0]) % len(COLOURS)],
@@ -50,7 +50,7 @@ def curve(rows, column):
 
 
 def below(figure, lines, columns=4):
-    """A legend below the whole figure; the room it needs"""
+    """Draws a legend below the figure and returns its height as a fraction of the figure height"""
     handles = [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in lines.items()]
     figure.legend(handles=handles, loc="lower center", ncol=min(columns, len(handles)), frameon=False, fontsize=9)
     return 0.22 * -(-len(handles) // columns) / figure.get_figheight() + 0.01
@@ -72,7 +72,7 @@ def panels(folder, name, title, by_run):
             ax.set_ylabel(label)
             ax.set_xlabel("$t$ [s]")
             grid(ax)
-    if name == "disk":  # the dashpots of the first steps would hide the rest
+    if name == "disk":  # the axis excludes the dashpot force of the first steps
         axes[2][0].set_ylim(-1, 14)
     figure.suptitle(title, fontsize=11)
     save(figure, folder, f"friction-{name}.png", below(figure, lines))
@@ -96,7 +96,7 @@ def spinning(folder, name, title, by_run, groups, columns):
             grid(ax)
     figure.suptitle(title, fontsize=11)
     lines = {"$K_E$ = " + s[2:] + " N/m": (COLOURS[k], "-") for k, s in enumerate(stiffness)}
-    lines["dissertation (dashed)"] = ("0.4", "--")
+    lines["preset dissertation (dashed)"] = ("0.4", "--")
     save(figure, folder, f"friction-{name}.png", below(figure, lines, columns=5))
 
 
@@ -112,7 +112,7 @@ def orbits(folder, name, title, by_run):
     plane.set_xlabel("$x$ [m]")
     plane.set_ylabel("$y$ [m]")
     radius.set_xlabel("$t$ [s]")
-    radius.set_ylabel("distance from the centre, over the exact one")
+    radius.set_ylabel("radius relative to the exact one")
     grid(plane)
     grid(radius)
     figure.suptitle(title, fontsize=11)
@@ -128,10 +128,10 @@ def draw(folder, name, figure):
         spinning(folder, name, title, by_run, ["steel-20mm", "steel-40mm", "glass-20mm"],
                  [("Psi", r"$\Psi$ [rad]"), ("omega", r"$\omega$ [rad/s]")])
     elif name == "spin-ellipsoid":
-        spinning(folder, name, title + ": true inertia; dashed, that of the published runs", by_run, ["upright", "flat"],
-                 [("Psi", r"$\Psi$ [rad]"), ("omega", r"$\omega$ [rad/s]")])
+        spinning(folder, name, title + ": inertia of the ellipsoid; dashed: inertia used in the published runs", by_run,
+                 ["upright", "flat"], [("Psi", r"$\Psi$ [rad]"), ("omega", r"$\omega$ [rad/s]")])
     elif name == "turntable":
-        orbits(folder, name, title + ": ten orbits of a ball, by the part of the spin that is turned back", by_run)
+        orbits(folder, name, title + r": ten orbits of a ball for different spin corrections $\beta$", by_run)
     elif name in PANELS:
         columns = [panel[0] for row in PANELS[name] for panel in row]
         by_run = {run: rows for run, rows in by_run.items() if all(rows[0].get(c) for c in columns)}

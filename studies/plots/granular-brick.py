@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a brick slides, over friction.                                                        Fang (2022), Fig. 7.4
+"""Sliding distance of a brick over the friction coefficient.                                    Fang (2022), Fig. 7.4
 
     granular-brick.py DIR       reads DIR/study.csv and DIR/motion.csv, writes DIR/granular-brick.png
 """
@@ -12,7 +12,7 @@ def main():
     rows, motion = read(folder, "study.csv"), read(folder, "motion.csv")
     mindlin, incremental = where(rows, law="mindlin"), where(rows, law="mindlin-incremental")
     mu = numbers(mindlin, "mu")
-    figure, (speed, way, off) = plt.subplots(1, 3, figsize=(15, 4.6))
+    figure, (speed, distance, difference) = plt.subplots(1, 3, figsize=(15, 4.6))
 
     for k, row in enumerate(r for r in mindlin if round(number(r["mu"]), 6) in (0.1, 0.2, 0.5)):
         mine = where(motion, mu=row["mu"])
@@ -28,21 +28,22 @@ def main():
 
     fine = [0.09 + 0.002 * k for k in range(212)]
     scale = numbers(mindlin, "coulomb")[0] * mu[0]
-    way.plot(fine, [scale / m for m in fine], "-", color="0.35", lw=1.2, label=r"$v_i^2/2\mu g$")
-    way.plot(mu, numbers(mindlin, "distance"), "o", color=COLOURS[0], ms=6, label="measured")
-    way.set(xlabel=r"friction $\mu$", ylabel="sliding distance [m]", ylim=(0, None))
-    way.legend(frameon=False)
+    distance.plot(fine, [scale / m for m in fine], "-", color="0.35", lw=1.2, label=r"$v_i^2/2\mu g$")
+    distance.plot(mu, numbers(mindlin, "distance"), "o", color=COLOURS[0], ms=6, label="measured")
+    distance.set(xlabel=r"friction coefficient $\mu$", ylabel="sliding distance [m]", ylim=(0, None))
+    distance.legend(frameon=False)
 
-    off.plot(mu, [s / c - 1 for s, c in zip(numbers(mindlin, "with_spring"), numbers(mindlin, "coulomb"))], "-",
-             color="0.35", lw=1.2, label="closed form with the spring that stops it")
-    off.plot(mu, numbers(mindlin, "difference"), "o", color=COLOURS[0], ms=6, label="whole-number positions")
-    off.plot(mu, numbers(mindlin, "difference_double"), "+", color=COLOURS[1], ms=9, mew=1.4, label="double precision")
-    off.plot(numbers(incremental, "mu"), numbers(incremental, "difference"), "s", mfc="none", color=COLOURS[2], ms=9,
-             label="incremental law")
-    off.set(xlabel=r"friction $\mu$", ylabel=r"distance over $v_i^2/2\mu g$, less 1")
-    off.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
-    off.legend(frameon=False, fontsize=9)
-    for axes in (speed, way, off):
+    difference.plot(mu, [s / c - 1 for s, c in zip(numbers(mindlin, "with_spring"), numbers(mindlin, "coulomb"))], "-",
+                    color="0.35", lw=1.2, label="closed form with friction spring")
+    difference.plot(mu, numbers(mindlin, "difference"), "o", color=COLOURS[0], ms=6, label="integer positions")
+    difference.plot(mu, numbers(mindlin, "difference_double"), "+", color=COLOURS[1], ms=9, mew=1.4,
+                    label="double precision")
+    difference.plot(numbers(incremental, "mu"), numbers(incremental, "difference"), "s", mfc="none", color=COLOURS[2], ms=9,
+                    label="incremental law")
+    difference.set(xlabel=r"friction coefficient $\mu$", ylabel=r"relative difference to $v_i^2/2\mu g$")
+    difference.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
+    difference.legend(frameon=False, fontsize=9)
+    for axes in (speed, distance, difference):
         grid(axes)
     save(figure, folder, "granular-brick.png", top=1)
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Speed and spin after an oblique impact, over its angle.                                       Fang (2022), Fig. 7.6
+"""Speed and spin after an oblique impact over the angle.                                        Fang (2022), Fig. 7.6
 
     granular-oblique.py DIR     reads DIR/study.csv and DIR/reference.csv, writes DIR/granular-oblique.png
 """
 from drawing import COLOURS, Line2D, directory, grid, number, numbers, plt, read, save, where
 
-LAWS = {"mindlin": ("o", COLOURS[0], "force from the whole displacement (Eq. 2.45)"),
+LAWS = {"mindlin": ("o", COLOURS[0], "force from the total displacement (Eq. 2.45)"),
         "mindlin-incremental": ("s", COLOURS[1], "force by increments (Eq. 2.44)")}
 
 
@@ -19,8 +19,8 @@ def main():
     for axes, column in zip(both, ("e_t", "omega")):
         for law, (marker, colour, _) in LAWS.items():
             curve, mine = where(reference, law=law), where(rows, law=law)
-            every = -(-len(mine) // 30)  # no more points than can be told apart
-            mine = mine[every - 1::every]
+            stride = -(-len(mine) // 30)  # at most 30 points
+            mine = mine[stride - 1::stride]
             below = [row for row in curve if number(row["from_normal"]) <= critical]
             axes.plot(numbers(below, "from_normal"), numbers(below, column), "--", color=colour, lw=0.9)
             axes.plot(numbers(mine, "from_normal"), numbers(mine, column), marker, color=colour, ms=5.5 if marker == "o" else 8,
@@ -28,7 +28,8 @@ def main():
         axes.plot(numbers(sliding, "from_normal"), numbers(sliding, column), "-", color="k", lw=1.4, zorder=3)
         axes.axvline(critical, color="0.7", lw=0.9, zorder=0)
         axes.set(xlabel=r"angle of impact from the normal $\theta$ [deg]", xlim=(0, 90))
-        axes.secondary_xaxis("top", functions=(lambda a: 90 - a, lambda a: 90 - a)).set_xlabel("from the wall [deg]", fontsize=9)
+        axes.secondary_xaxis("top", functions=(lambda a: 90 - a, lambda a: 90 - a)).set_xlabel(
+            "angle of impact from the wall [deg]", fontsize=9)
         grid(axes)
     both[0].set_ylabel(r"tangential restitution $e_t$")
     both[0].axhline(5 / 7, color="0.5", ls=":", lw=1)
@@ -36,7 +37,7 @@ def main():
     both[0].annotate(r"$\theta = \arctan\,\frac{7}{2}\mu(1+e)$", (critical, 1.0), xytext=(-4, 0), textcoords="offset points",
                      ha="right", va="top", color="0.4", fontsize=9)
     both[1].set_ylabel(r"spin after the impact $\omega$ [rad/s]")
-    handles = [Line2D([], [], color="k", lw=1.4, label="sliding throughout, Eqs. 7.2, 7.3")] + [
+    handles = [Line2D([], [], color="k", lw=1.4, label="sliding during the whole impact, Eqs. 7.2, 7.3")] + [
         Line2D([], [], color=colour, ls="--", lw=0.9, marker=marker, mfc=colour if marker == "o" else "none", label=label)
         for marker, colour, label in LAWS.values()]
     figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=9)

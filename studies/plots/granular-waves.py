@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a force on a lattice of spheres adds to the forces of its floor.                   Fang (2022), Figs. 7.9, 7.10
+"""Change of the floor forces caused by a force on a lattice of spheres.                  Fang (2022), Figs. 7.9, 7.10
 
     granular-waves.py DIR     reads DIR/study.csv and DIR/profiles.csv, writes DIR/granular-waves.png
 """
@@ -43,7 +43,7 @@ def main():
         last.set_ylim(-0.045, 0.085)
         if law == laws[0]:
             last.legend(frameon=False, fontsize=9, loc="upper right")
-            last.set_title("below the force", fontsize=11)
+            last.set_title("floor force below the load", fontsize=11)
         if law == laws[-1]:
             last.set_xlabel(r"$F_{\mathrm{ext}}/mg$")
         grid(last)

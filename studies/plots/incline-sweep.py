@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sphere pushed up an incline does in the end, over slope and rolling resistance.       Fang (2022), Fig. 4.13
+"""Final state of a sphere pushed up an incline over slope and rolling resistance.              Fang (2022), Fig. 4.13
 
     incline-sweep.py DIR    reads DIR/study.csv and DIR/study.json, writes DIR/incline-sweep.png
 
-Lines: the limits by Coulomb's bounds alone (A.7), with mu_s = 0.25 and mu_k = 0.2.
+Lines: limits from the Coulomb bounds (A.7), with mu_s = 0.25 and mu_k = 0.2.
 """
 import json
 import math
@@ -57,15 +57,15 @@ def main():
     handles = [Patch(color=colour, label=label) for colour, label in zip(COLOURS, STATES)] + [
         Line2D([], [], color="k", ls="-", label=r"$\tan\alpha = 2\eta_r\mu_k$"),
         Line2D([], [], color="k", ls="--", label=r"$\tan\alpha = \frac{7}{2}\mu_s - 5\eta_r\mu_k$"),
-        Line2D([], [], color="0.45", ls="--", lw=1, label=r"the same with $\mu_k$: slip can go on above"),
+        Line2D([], [], color="0.45", ls="--", lw=1, label=r"the same with $\mu_k$: slip can persist above"),
         Line2D([], [], color="k", ls="-.", label=r"$\eta_r = 1/2$"),
-        Line2D([], [], color="k", ls=":", label=r"A.7 as printed: $\tan\alpha = 2\eta_r\mu_s$")]
+        Line2D([], [], color="k", ls=":", label=r"A.7 as published: $\tan\alpha = 2\eta_r\mu_s$")]
     if any(row["published"] for row in rows):
         label = f"published state differs: {len(differ)} of {len(rows)}"
         handles.append(Line2D([], [], color="#d1001f", ls="", marker="x", ms=5, label=label) if few else
                        Patch(fill=False, hatch="...", lw=0, label=label))
     figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=9)
-    axes.set_title(f"State {study['end']:g} s after a push of 0.5 m/s up the slope: {study['preset']} friction, "
+    axes.set_title(f"State {study['end']:g} s after a start with 0.5 m/s up the slope: {study['preset']} friction, "
                    f"{len(etas)} x {len(angles)} runs", fontsize=11)
     save(figure, folder, "incline-sweep.png", below=0.125, top=1)
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Newton iterations of a step, over step size and over time, one figure for each problem.
+"""Newton iterations per step over step size and over time, one figure per problem.
                                                                           Fang (2022), Figs. 3.9, 3.11, 3.12, 3.13
 
     iterations.py DIR       reads DIR/study.csv and DIR/iterations.csv, writes DIR/iterations-PROBLEM.png
 """
 from drawing import directory, distinct, grid, legend, numbers, plt, read, save, style, where, width
 
-MOST_STEPS = 3  # panels over time
+MOST_STEPS = 3  # number of panels over time
 
 
 def draw(folder, problem, runs, bins):
@@ -24,13 +24,14 @@ def draw(folder, problem, runs, bins):
             part = where(bins, integrator=scheme, h=h)
             axes.plot(numbers(part, "t"), numbers(part, "mean"), color=colour, lw=width(scheme, schemes))
     mean.set_xlabel("step $h$ [s]")
-    mean.set_ylabel("iterations of a step, mean over the run")
+    mean.set_ylabel("Newton iterations per step, mean over the run")
     mean.set_ylim(bottom=0)
     grid(mean)
     for axes, h in zip(over_time, steps):
-        stretches = len(distinct(where(bins, h=h), "t"))
-        axes.set_title(f"h = {float(h):g} s, means over {stretches} stretches", fontsize=9)
+        intervals = len(distinct(where(bins, h=h), "t"))
+        axes.set_title(f"h = {float(h):g} s, means over {intervals} time intervals", fontsize=9)
         axes.set_xlabel("$t$ [s]")
+        axes.set_ylabel("Newton iterations per step")
         axes.set_ylim(bottom=0)
         grid(axes)
     figure.suptitle(f"{problem}: Newton iterations", fontsize=11)

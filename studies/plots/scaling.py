@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CPU time of a step of the N-bar pendulum over N, its ratio to rA-full-1, and iterations.   Fang (2022), Fig. 3.15
+"""CPU time per step of the N-bar pendulum over N, its ratio to rA-full-1, and iterations.   Fang (2022), Fig. 3.15
 
     scaling.py DIR      reads DIR/study.csv, writes DIR/scaling.png
 """
@@ -25,17 +25,17 @@ def main():
     top = max(numbers(rows, "us_per_step"))
     time.plot(N, [2 * top * n / N[-1] for n in N], ":", color="0.6", lw=1, zorder=0)
     time.set_yscale("log")
-    time.set_ylabel("thread CPU time of a step [µs]")
+    time.set_ylabel("thread CPU time per step [µs]")
     ratio.axhline(1, color="0.6", lw=1, zorder=0)
-    ratio.set_ylabel("time over that of rA-full-1")
-    iterations.set_ylabel("Newton iterations of a step, mean")
+    ratio.set_ylabel("CPU time relative to rA-full-1")
+    iterations.set_ylabel("Newton iterations per step, mean")
     for axes in (ratio, iterations):
         axes.set_ylim(bottom=0)
     for axes in (time, ratio, iterations):
         axes.set_xscale("log", base=2)
-        axes.set_xlabel("bars $N$")
+        axes.set_xlabel("number of bars $N$")
         grid(axes)
-    figure.suptitle(f"N-bar pendulum, h = {number(rows[0]['h']):g} s: median of the repeats", fontsize=11)
+    figure.suptitle(f"N-bar pendulum, h = {number(rows[0]['h']):g} s: CPU time per step, median of the repeats", fontsize=11)
     more = [Line2D([], [], color="0.6", ls=":", label="slope 1")]
     save(figure, folder, "scaling.png", legend(figure, schemes, more=more))
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mass that brings a stack of three spheres down, over the rolling resistance.                Fang (2022), Fig. 4.19
+"""Critical mass of a stack of three spheres over the rolling resistance.                      Fang (2022), Fig. 4.19
 
     stacking.py DIR     reads DIR/study.csv and DIR/study.json, writes DIR/stacking.png
 """
@@ -9,7 +9,7 @@ import os
 
 from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
 
-WAYS = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
+MODES = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
 
 
 def main():
@@ -18,6 +18,7 @@ def main():
     with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
         study = json.load(file)
     compared = any(row["published"] for row in rows)
+    column = "collapse_mode" if "collapse_mode" in rows[0] else "gives_way"  # name in results of earlier versions
     figure, axes = plt.subplots(figsize=(8.6, 6.2))
     for k, gap in enumerate(distinct(rows, "gap")):
         mine, colour = where(rows, gap=gap), COLOURS[k % len(COLOURS)]
@@ -25,23 +26,23 @@ def main():
         if compared:
             axes.plot(eta, numbers(mine, "published"), "-", color=colour, lw=5, alpha=0.22, zorder=1)
         axes.plot(eta, mass, "-", color=colour, lw=1.3)
-        for way, marker in WAYS.items():
-            those = [(e, m) for e, m, row in zip(eta, mass, mine) if row["gives_way"] == way]
+        for mode, marker in MODES.items():
+            those = [(e, m) for e, m, row in zip(eta, mass, mine) if row[column] == mode]
             axes.plot([e for e, _ in those], [m for _, m in those], marker, color=colour, ms=4.5, mew=1,
-                      mfc="white" if way == "rolling" else colour)
+                      mfc="white" if mode == "rolling" else colour)
         axes.annotate(f"gap {number(gap):.2f} R", (eta[-1], mass[-1]), xytext=(0, 5), textcoords="offset points",
                       ha="right", color=colour, fontsize=9)
     axes.set_xlabel(r"rolling resistance $\eta_r$")
     axes.set_ylabel(r"critical mass of the upper sphere $m_{\mathrm{top}}^c$ [kg]")
     grid(axes)
-    handles = [Line2D([], [], color="0.3", ls="", marker=WAYS[way], mfc="white" if way == "rolling" else "0.3", ms=5,
+    handles = [Line2D([], [], color="0.3", ls="", marker=MODES[mode], mfc="white" if mode == "rolling" else "0.3", ms=5,
                       label=label)
-               for way, label in (("rolling", "lower spheres roll away"), ("both", "roll and slide"),
-                                  ("sliding", "slide away")) if where(rows, gives_way=way)]
+               for mode, label in (("rolling", "lower spheres roll"), ("both", "lower spheres roll and slide"),
+                                   ("sliding", "lower spheres slide")) if where(rows, **{column: mode})]
     if compared:
         handles.append(Line2D([], [], color="0.5", lw=5, alpha=0.35, label="published"))
     axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 0.01), frameon=True, framealpha=0.9, fontsize=9)
-    axes.set_title(f"Smallest mass that brings the stack down: {study['preset']} friction, h = {study['h']:g} s", fontsize=11)
+    axes.set_title(f"Critical mass of the upper sphere: {study['preset']} friction, h = {study['h']:g} s", fontsize=11)
     save(figure, folder, "stacking.png", top=1)
 
 

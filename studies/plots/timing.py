@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CPU time of a step over step size, by problem and scheme, and its ratio to rA-full-1.      Fang (2022), Fig. 3.10
+"""CPU time per step over step size, by problem and scheme, and its ratio to rA-full-1.       Fang (2022), Fig. 3.10
 
     timing.py DIR       reads DIR/study.csv, writes DIR/timing.png
 """
@@ -25,16 +25,16 @@ def main():
         time.set_title(problem, fontsize=10)
         ratio.axhline(1, color="0.6", lw=1, zorder=0)
         for axes in (time, ratio):
-            if len(schemes) > 5:  # from one to ten times the time of the fastest
+            if len(schemes) > 5:  # the times then differ by up to a factor of ten
                 axes.set_yscale("log")
             else:
                 axes.set_ylim(bottom=0)
         ratio.set_xlabel("step $h$ [s]")
         for axes in (time, ratio):
             grid(axes)
-    panels[0][0].set_ylabel("thread CPU time of a step [µs]")
-    panels[1][0].set_ylabel("time over that of rA-full-1")
-    figure.suptitle("CPU time of a step: median of the repeats, bars from the least to the most", fontsize=11)
+    panels[0][0].set_ylabel("thread CPU time per step [µs]")
+    panels[1][0].set_ylabel("CPU time relative to rA-full-1")
+    figure.suptitle("CPU time per step: median of the repeats, bars from minimum to maximum", fontsize=11)
     save(figure, folder, "timing.png", legend(figure, schemes))
 
 

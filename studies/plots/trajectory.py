@@ -17,11 +17,11 @@ from matplotlib.lines import Line2D
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6bb1"]
 DASHES = {"x": "-", "y": "--", "z": ":"}
-MOST_BODIES = 8  # of a long chain every so-many-th body is drawn
+MOST_BODIES = 8  # of longer chains, equally spaced bodies are drawn
 
 
 def read(path):
-    """Columns by name."""
+    """The columns of a CSV file, by name"""
     with open(path, newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = next(rows)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Error against CPU time, one figure for each problem: left is cheaper, lower more accurate.
+"""Work-precision diagrams: error over CPU time, one figure per problem.
 
     work-precision.py DIR       reads DIR/study.csv, writes DIR/work-precision-PROBLEM.png
 """
 from drawing import distinct, for_each_problem, grid, legend, number, numbers, plt, save, style, where
 
-PANELS = [("r", "position $r$, rms [m]"), ("v", "velocity $\\dot r$, rms [m/s]"), ("Q", "joint loads, rms, relative")]
+PANELS = [("r", "position $r$, rms [m]"), ("v", "velocity $\\dot r$, rms [m/s]"), ("Q", "constraint loads, rms, relative")]
 
 
 def draw(folder, problem, rows):
@@ -22,8 +22,8 @@ def draw(folder, problem, rows):
         axes.set_title(title, fontsize=10)
         grid(axes)
     panels[0].axhline(1e-3, color="0.6", lw=1, ls="--", zorder=0)
-    panels[0].set_ylabel("error")
-    figure.suptitle(f"{problem}, over {number(rows[0]['end']):g} s: error against CPU time; reference: {rows[0]['reference']}",
+    panels[0].set_ylabel("error (units in the panel titles)")
+    figure.suptitle(f"{problem}, end time {number(rows[0]['end']):g} s: error over CPU time; reference: {rows[0]['reference']}",
                     fontsize=11)
     save(figure, folder, f"work-precision-{problem}.png", legend(figure, schemes))
 

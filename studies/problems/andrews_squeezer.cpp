@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Andrews' squeezer: seven bodies in a plane, three closed loops, driven by a constant torque and held by a
-/// spring. Numbers: Hairer and Wanner, Solving Ordinary Differential Equations II, Sec. VII.7; no gravity.
+/// Andrews' squeezer mechanism: seven bodies in a plane with three closed loops, driven by a constant torque,
+/// with one spring and without gravity. Data: Hairer and Wanner, Solving Ordinary Differential Equations II,
+/// Sec. VII.7.
 ///
-/// Here it is spatial: ten revolute joints with parallel axes, whose redundant rows are found and dropped at
-/// the start.
+/// The model is spatial: ten revolute joints with parallel axes. Their redundant rows are detected and
+/// dropped at the start.
 
+#include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
 
@@ -27,7 +29,8 @@ Point turned(double angle, Point a)
     return {c * a.x - s * a.y, s * a.x + c * a.y};
 }
 
-/// Body frame: the frame of the textbook at angle zero, turned by `angle`; origin at the centre of mass
+/// A body. Body frame: the frame of the textbook at angle zero, rotated by `angle`, with the origin at the
+/// centre of mass
 struct Link {
     const char* name;
     double mass, inertia, angle;
@@ -58,7 +61,7 @@ std::string model()
 
     const Point crank_pin = turned(beta, {rr, 0});
     const Point E = A + turned(delta, {zt, 0}), H = A + turned(epsilon, {0, -u});
-    const Point P = crank_pin - turned(beta + Theta, {d, 0});  // where K2, K3, K4 and K6 meet
+    const Point P = crank_pin - turned(beta + Theta, {d, 0});  // common point of K2, K3, K4 and K6
     const Point D = B + turned(gamma, {sd, -sc});
 
     const Link ground{"ground", 0, 0, 0, O};
@@ -105,14 +108,16 @@ std::string model()
                        bodies, joints, point(C), point(K3.in_body(D)));
 }
 
-const bool registered = register_problem(Problem{
-    .name = "andrews_squeezer",
-    .what = "Andrews' squeezer, seven bodies and three loops; Hairer and Wanner II, VII.7",
-    .model = model(),
-    .reference_name = "index-1 equations (GSL rk8pd, 1e-13)",
-    .reference_solution = [](dae::Description& d,
-                             const std::vector<double>& t) { return reference::trusted(*d.model, d.x, t); },
-    .observable = {.body = "K1", .component = "ry"}});
+const bool registered = register_problem(
+    Problem{.name = "andrews_squeezer",
+            .what = "Andrews' squeezer, seven bodies and three loops; Hairer and Wanner II, VII.7",
+            .model = model(),
+            .reference_name = "index-1 equations (GSL rk8pd, 1e-13)",
+            .reference_solution =
+                [](dae::Description& d, const std::vector<double>& t) {
+                    return reference::reference_solution(*d.model, d.x, t);
+                },
+            .observable = {.body = "K1", .component = "ry"}});
 
 }  // namespace
 }  // namespace hilda::studies

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Bodies that touch: a ball that slides until it rolls, an ellipsoid that bounces, an edge mill. What contacts remember
-/// leaves no equations of motion between the steps, so the truth is a run with small ones.
+/// Models with compliant contacts: a ball that slides until it rolls, a bouncing ellipsoid, an edge mill. The
+/// internal state variables of friction are updated by each step, not by a differential equation. The
+/// reference solution is therefore a run with small steps.
 
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/framework/problem.hpp"
 
@@ -22,7 +25,7 @@ const bool ball =
     register_problem({.name = "rolling_ball",
                       .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
                       .model = R"({"hilda_model": 1, "name": "rolling_ball",
-  "note": "ball of 5 kg and radius 0.2 m in its sag on the floor; a rigid ball would roll after 2 v / 7 mu_k g = 0.29 s",
+  "note": "ball of 5 kg and radius 0.2 m, initially in static equilibrium on the floor; a rigid ball would roll after 2 v / 7 mu_k g = 0.29 s",
   "gravity": [0, 0, -9.81], "end": 1,
   "bodies": [
     {"name": "ball", "mass": 5, "inertia": [0.08, 0.08, 0.08], "r": [0, 0, 0.19975475], "r_dot": [2, 0, 0], "omega": [0, 0, 1]}
@@ -39,11 +42,11 @@ const bool ball =
                       .reference_solution = reference_solution,
                       .observable = {.body = "ball", .component = "vx"}});
 
-const bool ellipsoid = register_problem(
-    {.name = "bouncing_ellipsoid",
-     .what = "ellipsoid dropped askew on a floor, Hertzian with friction; smooth enough for steps of 1e-4 s",
-     .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
-  "note": "homogeneous, semi-axes 0.12, 0.1 and 0.08 m, let go about 0.1 m above the floor",
+const bool ellipsoid = register_problem({.name = "bouncing_ellipsoid",
+                                         .what = "inclined ellipsoid dropped on a floor, Hertz contact with "
+                                                 "friction; smooth enough for steps of 1e-4 s",
+                                         .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
+  "note": "homogeneous, semi-axes 0.12, 0.1 and 0.08 m, released about 0.1 m above the floor",
   "gravity": [0, 0, -9.81], "end": 0.6,
   "bodies": [
     {"name": "egg", "mass": 1, "inertia": [0.00328, 0.00416, 0.00488], "r": [0, 0, 0.2],
@@ -57,15 +60,15 @@ const bool ellipsoid = register_problem(
   ]
 }
 )",
-     .reference_name = reference_name,
-     .reference_solution = reference_solution,
-     .observable = {.body = "egg", .component = "rz"}});
+                                         .reference_name = reference_name,
+                                         .reference_solution = reference_solution,
+                                         .observable = {.body = "egg", .component = "rz"}});
 
-const bool mill = register_problem(
-    {.name = "edge_mill",
-     .what = "ball on an arm that goes round and can rise: it rolls on the floor and presses by its spin",
-     .model = R"({"hilda_model": 1, "name": "edge_mill",
-  "note": "the arm turns about the vertical and pitches in a universal joint, the ball turns on its end; set going at 1 rad/s, rolling",
+const bool mill = register_problem({.name = "edge_mill",
+                                    .what = "edge mill: ball that rolls on the floor at the end of a "
+                                            "rotating, pitching arm; its spin increases the normal force",
+                                    .model = R"({"hilda_model": 1, "name": "edge_mill",
+  "note": "the arm rotates about the vertical and pitches in a universal joint, the ball rotates about the axis of the arm; initially rolling at 1 rad/s",
   "gravity": [0, 0, -9.81], "end": 2,
   "bodies": [
     {"name": "arm", "mass": 1, "inertia": [0.001, 0.02, 0.02], "r": [0.25, 0, 0.2], "r_dot": [0, 0.25, 0], "omega": [0, 0, 1]},
@@ -85,9 +88,9 @@ const bool mill = register_problem(
   ]
 }
 )",
-     .reference_name = reference_name,
-     .reference_solution = reference_solution,
-     .observable = {.body = "ball", .component = "ry"}});
+                                    .reference_name = reference_name,
+                                    .reference_solution = reference_solution,
+                                    .observable = {.body = "ball", .component = "ry"}});
 
 }  // namespace
 

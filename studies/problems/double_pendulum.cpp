@@ -3,6 +3,8 @@
 
 #include "studies/framework/problem.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "reference/motions/closed_form.hpp"
 #include "reference/solvers/reference_solution.hpp"
 
@@ -12,10 +14,11 @@ namespace {
 
 constexpr double length_1 = 4, length_2 = 2;  // [m]
 
-/// In its two angles; whatever is changed about masses, gravity and the planar start is taken over.
+/// Reference solution in the two angles. Masses, moments of inertia, gravity and the planar initial state are
+/// those of the model, so that changes by --set are included; the lengths are fixed.
 lie::Trajectory two_angles(dae::Description& d, const std::vector<double>& instants)
 {
-    return reference::trusted(*d.model, d.x, instants, [&](const std::vector<double>& times) {
+    return reference::reference_solution(*d.model, d.x, instants, [&](const std::vector<double>& times) {
         reference::PlanarChain chain{
             .bar = {{.length = length_1}, {.length = length_2}}, .gravity = d.model->gravity, .t_0 = d.x.t};
         for (size_t b = 0; b < 2; ++b) {
@@ -74,9 +77,10 @@ const bool thin = register_problem(
     {"name": "bar_2", "mass": 39, "inertia": [0.01625, 13.008125, 13.008125], "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
   ],)"));
 
-const bool moving = register_problem(double_pendulum(
-    "double_pendulum_moving", "planar double pendulum that moves from the start; our own test case", R"(
-  "note": "double_pendulum with 1 rad/s of bar 1 and -2 rad/s of bar 2 at the start",
+const bool moving = register_problem(
+    double_pendulum("double_pendulum_moving",
+                    "planar double pendulum with initial angular velocities; not in the dissertation", R"(
+  "note": "double_pendulum with initial angular velocities: bar 1 1 rad/s, bar 2 -2 rad/s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "bar_1", "mass": 312, "inertia": [0.52, 416.26, 416.26], "r": [0, 2, 0],  "A": [[0, 0, 1], [1, 0, 0], [0, 1, 0]],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Contacts that are constraints, with the contact points as unknowns: a ball in a bowl (Fang 2022, Sec. 5.5.1), an
-/// ellipsoid that rocks, one that wobbles, a rattleback.
+/// Models with contact constraints, whose contact points are unknowns: a ball in a bowl (Fang 2022, Sec.
+/// 5.5), a rocking and a wobbling ellipsoid, a rattleback.
 
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/framework/problem.hpp"
@@ -9,7 +9,7 @@ namespace hilda::studies {
 
 namespace {
 
-/// The ball of Fang (2022), Sec. 5.5, let go in the bowl with semi-axes 4, 3 and 2 m
+/// The ball of Fang (2022), Sec. 5.5, released from rest in an ellipsoidal bowl with semi-axes 4, 3 and 2 m
 struct BallInBowl {
     std::string name, what, contact_point, r, friction = {}, note = {};
 };
@@ -21,7 +21,7 @@ bool register_problem(const BallInBowl& ball)
     return studies::register_problem({.name = ball.name,
                                       .what = ball.what,
                                       .model = R"({"hilda_model": 1, "name": ")" + ball.name + R"(",
-  "note": "semi-axes 4, 3 and 2 m, seen from inside; let go at the contact point )" +
+  "note": "bowl with semi-axes 4, 3 and 2 m; ball released at the contact point )" +
                                                ball.contact_point + ball.note + R"(",
   "gravity": [0, 0, -9.81], "end": 10,
   "bodies": [
@@ -37,7 +37,7 @@ bool register_problem(const BallInBowl& ball)
   ]
 }
 )",
-                                      .reference_name = evolving_truth_name,
+                                      .reference_name = evolving_reference_name,
                                       .reference_solution = evolving_reference,
                                       .observable = {.body = "ball", .component = "ry"}});
 }
@@ -49,38 +49,39 @@ const std::string planar_point = "0, 1.5, -1.7321", planar_r = "0, 1.32039469797
 
 const bool planar = register_problem(
     {.name = "ball_in_bowl",
-     .what = "ball let go in an ellipsoidal bowl, swings in a plane without friction (Fang 2022, Sec. 5.5.1)",
+     .what = "ball released in an ellipsoidal bowl, planar motion without friction (Fang 2022, Sec. 5.5.1)",
      .contact_point = planar_point,
      .r = planar_r});
 
 const bool xy = register_problem(
     {.name = "ball_in_bowl_xy",
-     .what = "ball let go in the same bowl where it leaves the plane (Fang 2022, Sec. 5.5.1)",
+     .what = "ball released in the same bowl, spatial motion without friction (Fang 2022, Sec. 5.5.1)",
      .contact_point = xy_point,
      .r = xy_r});
 
 const bool rolling_planar =
     register_problem({.name = "rolling_ball_in_bowl",
-                      .what = "ball that rolls in the bowl of ball_in_bowl without slipping",
+                      .what = "ball that rolls without slip in the bowl of ball_in_bowl",
                       .contact_point = planar_point,
                       .r = planar_r,
                       .friction = rolling});
 
 const bool rolling_xy =
     register_problem({.name = "rolling_ball_in_bowl_xy",
-                      .what = "ball that rolls in the bowl of ball_in_bowl_xy, and pivots",
+                      .what = "ball that rolls without slip, and spins, in the bowl of ball_in_bowl_xy",
                       .contact_point = xy_point,
                       .r = xy_r,
                       .friction = rolling});
 
 const bool braked = register_problem(
     {.name = "braked_ball_in_bowl",
-     .what = "ball that rolls in the same bowl by friction, and comes to rest (Fang 2022, Sec. 5.5.2)",
+     .what = "ball that rolls in the same bowl with sliding and rolling friction, and stops (Fang 2022, Sec. "
+             "5.5.2)",
      .contact_point = planar_point,
      .r = planar_r,
      .friction =
          R"({"law": "slide-roll-spin", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100, "eta_r": 0.1})",
-     .note = "; Table 5.1, homogeneous; stands steps up to 3.26e-3 s, without eta_r 4.64e-3 s"});
+     .note = "; Table 5.1, homogeneous; stable for steps up to 3.26e-3 s, without eta_r up to 4.64e-3 s"});
 
 /// An ellipsoid on the plane z = 0
 struct OnTheFloor {
@@ -109,15 +110,15 @@ bool register_problem(const OnTheFloor& e)
   ]
 }
 )",
-                                      .reference_name = evolving_truth_name,
+                                      .reference_name = evolving_reference_name,
                                       .reference_solution = evolving_reference,
                                       .observable = {.body = e.body, .component = e.observable}});
 }
 
 const bool rocking = register_problem(
     {.name = "rocking_ellipsoid",
-     .what = "ellipsoid that rocks on a smooth floor, with a period of 0.7120300728 s",
-     .note = "homogeneous, semi-axes 0.3, 0.25 and 0.15 m, let go 0.6 rad from upright",
+     .what = "ellipsoid that rocks on a frictionless floor, with a period of 0.7120300728 s",
+     .note = "homogeneous, semi-axes 0.3, 0.25 and 0.15 m, released at an inclination of 0.6 rad",
      .end = "2",
      .body = "ellipsoid",
      .body_keys = R"("mass": 2, "inertia": [0.034, 0.045, 0.061], "r": [0, 0, 0.187757409735186],
@@ -127,9 +128,9 @@ const bool rocking = register_problem(
 
 const bool wobbling = register_problem(
     {.name = "wobbling_ellipsoid",
-     .what = "ellipsoid that spins, wobbles and drifts on a smooth floor",
-     .note =
-         "homogeneous, semi-axes 0.3, 0.25 and 0.15 m; momentum along the floor and about the vertical stays",
+     .what = "ellipsoid that spins, wobbles and drifts on a frictionless floor",
+     .note = "homogeneous, semi-axes 0.3, 0.25 and 0.15 m; horizontal momentum and vertical angular momentum "
+             "are conserved",
      .end = "2",
      .body = "ellipsoid",
      .body_keys = R"("mass": 2, "inertia": [0.034, 0.045, 0.061], "r": [0, 0, 0.1909334496674758],
@@ -138,21 +139,21 @@ const bool wobbling = register_problem(
      .semi_axes = "[0.3, 0.25, 0.15]",
      .observable = "rz"});
 
-const bool rattle =
-    register_problem({.name = "rattleback",
-                      .what = "celt that rolls: spun one way it begins to rattle and turns round",
-                      .note = "semi-axes 0.2, 0.05 and 0.04 m; the axes of inertia are turned by 0.1 "
-                              "rad about z; tilted by 0.011 rad",
-                      .end = "4",
-                      .body = "celt",
-                      .body_keys = R"("mass": 1,
+const bool rattle = register_problem(
+    {.name = "rattleback",
+     .what = "celt that rolls without slip: its spin becomes a rattling motion and reverses",
+     .note = "semi-axes 0.2, 0.05 and 0.04 m; the principal axes of inertia are rotated by 0.1 "
+             "rad about z; initially tilted by 0.011 rad",
+     .end = "4",
+     .body = "celt",
+     .body_keys = R"("mass": 1,
       "inertia": [[0.000894750333095344, -0.0007450099904814797, 0],
                   [-0.0007450099904814797, 0.008245249666904658, 0], [0, 0, 0.0085]],
       "r": [0, 0, 0.040048250137367833], "p": [0.99998437504069015, 0.0024999869791870119, 0.0049999739583740238, 0],
       "r_dot": [0.00093705324820102199, 0.029962880624740451, 0.00014044972276224167], "omega": [0, 0, -3])",
-                      .semi_axes = "[0.2, 0.05, 0.04]",
-                      .observable = "wz",
-                      .friction = rolling});
+     .semi_axes = "[0.2, 0.05, 0.04]",
+     .observable = "wz",
+     .friction = rolling});
 
 }  // namespace
 

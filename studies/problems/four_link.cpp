@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The spatial four-link mechanism, its rotor driven at half a turn a second: Fang (2022), Table 3.3.
+/// The spatial four-link mechanism with a rotor driven at half a revolution per second: Fang (2022), Table
+/// 3.3.
 
 #include "studies/framework/problem.hpp"
 
+#include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 
 namespace hilda::studies {
@@ -10,7 +12,7 @@ namespace hilda::studies {
 namespace {
 
 struct Inertia {
-    std::string rotor, link_2, link_3;  ///< "mass" and "inertia" of a body
+    std::string rotor, link_2, link_3;  ///< keys "mass" and "inertia" of each body
 };
 
 Problem four_link(const std::string& name, const std::string& what, const std::string& note,
@@ -65,23 +67,25 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
             .reference_name = "kinematic analysis at 1e-13",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& instants) {
-                    return reference::trusted(*d.model, d.x, instants);
+                    return reference::reference_solution(*d.model, d.x, instants);
                 },
             .observable = {.body = "link_2", .component = "vz"}};
 }
 
 const bool code = register_problem(four_link(
     "four_link",
-    "spatial four-link, rotor driven at half a turn a second, nothing free (the published code of Fang 2022)",
-    "mass and inertia of the published code of Fang (2022); start projected on the constraints",
+    "spatial four-link, rotor driven at half a revolution per second, no degree of freedom (published code "
+    "of Fang 2022)",
+    "mass and inertia of the published code of Fang (2022); initial state projected onto the constraints",
     {.rotor = R"json("mass": 2, "inertia": [4, 2, 2])json",
      .link_2 = R"json("mass": 1, "inertia": [12.4, 0.1, 12.4])json",
      .link_3 = R"json("mass": 1, "inertia": [4.54, 0.01, 4.54])json"}));
 
 const bool table = register_problem(four_link(
-    "four_link_table33", "four_link with the densities and sizes of the text (Fang 2022, Table 3.3)",
+    "four_link_table33",
+    "four_link with the densities and dimensions of the dissertation (Fang 2022, Table 3.3)",
     "Fang (2022), Table 3.3: 1500 kg/m3, disk of radius 2 m and thickness 0.1 m, rods as cylinders of radius "
-    "0.1 m; start projected",
+    "0.1 m; initial state projected onto the constraints",
     {.rotor =
          R"json("mass": 1884.9555921538758, "inertia": [1884.9555921538758, 1884.9555921538758, 3769.9111843077517])json",
      .link_2 =

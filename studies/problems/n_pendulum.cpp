@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Chains of bars on ball joints, from rest (Fang 2022, chapter 3), and two such bars in spatial motion. From
-/// rest the chain stays in the plane of gravity and its bars.
+/// Chains of bars with spherical joints, from rest (Fang 2022, chapter 3), and two such bars in spatial
+/// motion. From rest the chain remains in the plane of its bars and gravity.
 
 #include "studies/problems/n_pendulum.hpp"
 
+#include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/table.hpp"
 
@@ -13,7 +14,7 @@ namespace hilda::studies {
 
 namespace {
 
-/// Bar i of 2 m x 0.05 m x 0.05 m, 7800 kg/m³, hanging along -z: its body x axis points down
+/// Bar i of 2 m x 0.05 m x 0.05 m, 7800 kg/m³, along -z: its body x axis points down
 std::string bar(int i, const std::string& velocities = "")
 {
     return R"(    {"name": "bar_)" + std::to_string(i) +
@@ -21,7 +22,7 @@ std::string bar(int i, const std::string& velocities = "")
            std::to_string(1 - 2 * i) + R"(], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]])" + velocities + "}";
 }
 
-/// The ball joint above bar i: CD rows along the three global axes
+/// The spherical joint above bar i: CD rows along the three global axes
 std::string ball(int i)
 {
     const auto name = [](int b) { return "\"bar_" + std::to_string(b) + "\""; };
@@ -47,7 +48,7 @@ Problem chain(const std::string& name, const std::string& what, const std::strin
             .reference_name = "index-1 equations by rk8pd at 1e-13",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& instants) {
-                    return reference::trusted(*d.model, d.x, instants);
+                    return reference::reference_solution(*d.model, d.x, instants);
                 },
             .observable = {}};
 }
@@ -64,20 +65,22 @@ Problem n_pendulum(int N, const std::string& name)
         bodies += before + bar(i);
         constraints += before + ball(i);
     }
-    return chain(name,
-                 (name == family ? "chain of bars, n_pendulum_N has N of them, this one 2,"
-                                 : "chain of " + std::to_string(N) + (N == 1 ? " bar" : " bars")) +
-                     " on ball joints, from rest under slanting gravity (Fang 2022, chapter 3)",
-                 "bars of 2 m, section 0.05 m, 7800 kg/m3; gravity of the published code; at rest, as its "
-                 "unseeded spins violate the joints",
-                 bodies, constraints);
+    return chain(
+        name,
+        (name == family ? "chain of 2 bars (n_pendulum_N: N bars)"
+                        : "chain of " + std::to_string(N) + (N == 1 ? " bar" : " bars")) +
+            " with spherical joints, from rest under oblique gravity (Fang 2022, chapter 3)",
+        "bars of 2 m, section 0.05 m, 7800 kg/m3; gravity of the published code; at rest, because its "
+        "random spins without seed violate the joints",
+        bodies, constraints);
 }
 
 std::vector<double> spins(int N, std::uint64_t seed)
 {
     std::mt19937_64 bits(seed);
     std::vector<double> rate(N);
-    // Its 53 highest bits as a double in [0, 1): std::uniform_real_distribution is another one on every platform.
+    // The highest 53 bits as a double in [0, 1). std::uniform_real_distribution differs between standard
+    // libraries.
     for (double& w : rate) w = 10 * (2 * (static_cast<double>(bits() >> 11) * 0x1p-53) - 1);
     return rate;
 }
@@ -100,13 +103,13 @@ namespace {
 
 const bool two = register_problem(n_pendulum(2, family));
 
-const bool spin = register_problem(
-    chain("n_pendulum_2_spin",
-          "two bars on ball joints, moving in space and spinning from the start; our own test case",
-          "n_pendulum_2 with a consistent spatial start: spin about each bar, and joints that move",
-          bar(1, R"(, "r_dot": [-0.5, -1, 0], "omega": [3, 0.5, -1])") + ",\n" +
-              bar(2, R"(, "r_dot": [-2, 0, 0], "omega": [-4, 1, 2])"),
-          ball(1) + ",\n" + ball(2)));
+const bool spin = register_problem(chain(
+    "n_pendulum_2_spin",
+    "two bars with spherical joints in spatial motion with initial spins; not in the dissertation",
+    "n_pendulum_2 with consistent initial velocities: a spin of each bar and a spatial motion of the joints",
+    bar(1, R"(, "r_dot": [-0.5, -1, 0], "omega": [3, 0.5, -1])") + ",\n" +
+        bar(2, R"(, "r_dot": [-2, 0, 0], "omega": [-4, 1, 2])"),
+    ball(1) + ",\n" + ball(2)));
 
 }  // namespace
 

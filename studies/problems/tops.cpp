@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Two symmetric tops whose motion is known in closed form: one thrown, one on its tip.
+/// Two symmetric tops with closed-form solutions: a free top and a heavy top in steady precession.
 
 #include "studies/framework/problem.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "reference/motions/closed_form.hpp"
 #include "reference/solvers/reference_solution.hpp"
 
@@ -10,7 +12,7 @@ namespace hilda::studies {
 
 namespace {
 
-/// States of a single body, given as a function of time
+/// States of a single body, from its motion as a function of time
 reference::ClosedForm one_body(std::function<lie::Motion(double)> at)
 {
     return [at = std::move(at)](const std::vector<double>& instants) {
@@ -27,7 +29,7 @@ reference::ClosedForm one_body(std::function<lie::Motion(double)> at)
 
 lie::Trajectory free_flight(dae::Description& d, const std::vector<double>& instants)
 {
-    return reference::trusted(*d.model, d.x, instants, [&](const std::vector<double>& times) {
+    return reference::reference_solution(*d.model, d.x, instants, [&](const std::vector<double>& times) {
         const reference::FreeTop top(d.model->mass().J_bar[0].diagonal(), d.x.body[0], d.model->gravity,
                                      d.x.t);
         return one_body([&](double t) { return top.at(t); })(times);
@@ -46,14 +48,16 @@ lie::Trajectory steady_precession(dae::Description& d, const std::vector<double>
         .g = -d.model->gravity.z(),
         .theta = std::acos(start.A(2, 2)),
         .Omega = start.omega_bar.y() / std::sqrt(1 - start.A(2, 2) * start.A(2, 2))};
-    return reference::trusted(*d.model, d.x, instants, one_body([&](double t) { return top.at(t - d.x.t); }));
+    return reference::reference_solution(*d.model, d.x, instants,
+                                         one_body([&](double t) { return top.at(t - d.x.t); }));
 }
 
 const bool thrown = register_problem(
     {.name = "free_top",
-     .what = "symmetric top thrown up spinning, three turns of its axis in three seconds (closed form)",
+     .what =
+         "free symmetric top thrown upwards, three precessions of its axis in three seconds (closed form)",
      .model = R"({"hilda_model": 1, "name": "free_top",
-  "note": "cylinder of radius 0.1 m and height 0.3 m; its angular momentum is upright, its axis 18.4 degrees off; back at its height after 3 s",
+  "note": "cylinder of radius 0.1 m and height 0.3 m; vertical angular momentum, axis inclined by 18.4 degrees; returns to its initial height after 3 s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "top", "mass": 2, "inertia": [0.02, 0.02, 0.01],
@@ -66,11 +70,11 @@ const bool thrown = register_problem(
      .reference_solution = free_flight,
      .observable = {.body = "top", .component = "wx"}});
 
-const bool on_its_tip =
-    register_problem({.name = "heavy_top",
-                      .what = "symmetric top on its tip in steady precession at 2 rad/s (closed form)",
-                      .model = R"({"hilda_model": 1, "name": "heavy_top",
-  "note": "disc of radius 0.2 m and thickness 0.06 m, 0.1 m from its tip; cos(nutation) 0.8; spin such that it goes round at 2 rad/s",
+const bool on_its_tip = register_problem(
+    {.name = "heavy_top",
+     .what = "heavy symmetric top with a fixed tip, in steady precession at 2 rad/s (closed form)",
+     .model = R"({"hilda_model": 1, "name": "heavy_top",
+  "note": "disc of radius 0.2 m and thickness 0.06 m, 0.1 m from its tip; cos(nutation) = 0.8; spin for a precession of 2 rad/s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "top", "mass": 2, "inertia": [0.0206, 0.0206, 0.04],
@@ -82,9 +86,9 @@ const bool on_its_tip =
   ]
 }
 )",
-                      .reference_name = "closed form",
-                      .reference_solution = steady_precession,
-                      .observable = {.body = "top", .component = "rx"}});
+     .reference_name = "closed form",
+     .reference_solution = steady_precession,
+     .observable = {.body = "top", .component = "rx"}});
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include "studies/program/arguments.hpp"
 
 #include "dae/nearest.hpp"
+#include "lie/schemes.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/problems/n_pendulum.hpp"
 #include "studies/running/vtk.hpp"
@@ -20,7 +21,7 @@ namespace {
     throw UsageError(option + ": " + what + ", got '" + text + "'");
 }
 
-/// The number that is all of the text; NaN when there is none
+/// The finite number that the whole text represents; NaN if it represents none
 double parse(std::string_view text)
 {
     double value = 0;
@@ -29,9 +30,9 @@ double parse(std::string_view text)
     return error == std::errc() && at == end && std::isfinite(value) ? value : std::nan("");
 }
 
-/// The whole number that is all of the text
+/// The integer that the whole text represents
 template <class Number>
-std::optional<Number> whole(std::string_view text)
+std::optional<Number> whole_number(std::string_view text)
 {
     Number value = 0;
     const char* const end = text.data() + text.size();
@@ -83,7 +84,7 @@ double relative_tolerance(const std::string& option, const std::string& text)
 {
     const double value = parse(text);
     if (!(value >= 1e-14 && value < 1))
-        refuse(option, "must be a number from 1e-14, which double precision can just keep, to below 1", text);
+        refuse(option, "must be a number from 1e-14 (limit of double precision) to below 1", text);
     return value;
 }
 
@@ -123,22 +124,22 @@ std::string normal_rows(const std::string& option, const std::string& text)
 
 int positive_count(const std::string& option, const std::string& text)
 {
-    const std::optional<int> value = whole<int>(text);
+    const std::optional<int> value = whole_number<int>(text);
     if (!value || *value < 1) refuse(option, "must be a whole number, at least 1", text);
     return *value;
 }
 
 int frames(const std::string& option, const std::string& text)
 {
-    const std::optional<int> value = whole<int>(text);
-    if (!value || *value < 1 || *value > Snapshots::most)
-        refuse(option, "must be a whole number from 1 to " + std::to_string(Snapshots::most), text);
+    const std::optional<int> value = whole_number<int>(text);
+    if (!value || *value < 1 || *value > Snapshots::max_frames)
+        refuse(option, "must be a whole number from 1 to " + std::to_string(Snapshots::max_frames), text);
     return *value;
 }
 
 std::uint64_t seed(const std::string& option, const std::string& text)
 {
-    const std::optional<std::uint64_t> value = whole<std::uint64_t>(text);
+    const std::optional<std::uint64_t> value = whole_number<std::uint64_t>(text);
     if (!value) refuse(option, "must be a whole number from 0 to 2^64 - 1", text);
     return *value;
 }
@@ -148,7 +149,7 @@ std::vector<std::string> list(const std::string& option, const std::string& text
     std::vector<std::string> parts;
     for (size_t from = 0; from <= text.size();) {
         const size_t to = std::min(text.find(',', from), text.size());
-        if (to == from) refuse(option, "must be a list such as A,B with no part empty", text);
+        if (to == from) refuse(option, "must be a list such as A,B without empty parts", text);
         parts.push_back(text.substr(from, to - from));
         from = to + 1;
     }
@@ -157,25 +158,25 @@ std::vector<std::string> list(const std::string& option, const std::string& text
 
 std::vector<double> steps(const std::string& option, const std::string& text)
 {
-    return descending(option, text, positive_number, "must name each step once");
+    return descending(option, text, positive_number, "must contain each step once");
 }
 
 std::vector<double> relative_tolerances(const std::string& option, const std::string& text)
 {
-    return descending(option, text, relative_tolerance, "must name each tolerance once");
+    return descending(option, text, relative_tolerance, "must contain each tolerance once");
 }
 
 std::vector<int> bars(const std::string& option, const std::string& text)
 {
     std::vector<int> N;
     for (const std::string& part : list(option, text)) {
-        const std::optional<int> n = whole<int>(part);
+        const std::optional<int> n = whole_number<int>(part);
         if (!n || *n < 1 || *n > most_bars)
             refuse(option, "N must be a whole number from 1 to " + std::to_string(most_bars), part);
         N.push_back(*n);
     }
     std::sort(N.begin(), N.end());
-    if (std::adjacent_find(N.begin(), N.end()) != N.end()) refuse(option, "must name each N once", text);
+    if (std::adjacent_find(N.begin(), N.end()) != N.end()) refuse(option, "must contain each N once", text);
     return N;
 }
 
@@ -215,7 +216,7 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
                              " (hilda integrators lists them)");
         if (std::find(selected.begin(), selected.begin() + static_cast<std::ptrdiff_t>(k), selected[k]) !=
             selected.begin() + static_cast<std::ptrdiff_t>(k))
-            refuse(option, "must name each integrator once", text);
+            refuse(option, "must contain each integrator once", text);
     }
     return selected;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda check: what a model is, without running it.
+/// The command hilda check: validates a model and prints its properties without a simulation.
 
 #pragma once
 
@@ -9,14 +9,16 @@
 namespace hilda::studies {
 
 struct CheckOptions {
-    std::string model;             ///< a built-in name or a path
+    std::string model;             ///< name of a built-in model, or path of a model file
     std::vector<std::string> set;  ///< /json/pointer=VALUE
-    std::string normal_rows;       ///< of contacts that are constraints; "": as the model has it
-    bool fix_initial = false;      ///< also say what the projection onto the constraints would change
+    std::string normal_rows;       ///< of contact constraints: tangent or fixed-xy; "": the model's
+    bool fix_initial = false;      ///< also report the change by the projection onto the constraints
     bool json = false, quiet = false;
 };
 
-/// Prints counts, rank, initial residuals, energy and loads; returns the exit code. Writes no file.
+/// Prints the numbers of bodies, constraints, forces and contacts, the rank of the constraints, the initial
+/// residuals, the energy and the largest reactions. Returns the exit code. Writes no file. lie::InvalidInput
+/// for an invalid model.
 int check_model(const CheckOptions& options);
 
 }  // namespace hilda::studies

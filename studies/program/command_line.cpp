@@ -2,6 +2,7 @@
 #include "studies/program/command_line.hpp"
 
 #include "studies/exit_codes.hpp"
+#include "studies/message.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/check_model.hpp"
 #include "studies/program/granular_program.hpp"
@@ -12,19 +13,21 @@
 #include "studies/program/run_study.hpp"
 
 #include "dae/nearest.hpp"
+#include "lie/settings.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace hilda::studies {
 
 namespace {
 
-/// The words as they could be typed again
-std::string joined(int argc, char** argv)
+/// The command line, quoted for a shell
+std::string shell_quoted(int argc, char** argv)
 {
     std::string line;
     for (int k = 0; k < argc; ++k) {
@@ -44,19 +47,19 @@ std::string joined(int argc, char** argv)
     return line;
 }
 
-/// The program's commands, each with its options and what it does
+/// The commands of the program, with their options and actions
 class Commands {
 public:
-    explicit Commands(std::string typed) : typed(std::move(typed))
+    explicit Commands(std::string command_line_text) : command_line_text(std::move(command_line_text))
     {
         app.set_version_flag("--version", version_line());
-        app.set_help_flag("-h,--help", "this text; hilda COMMAND --help for one command");
+        app.set_help_flag("-h,--help", "print this text; hilda COMMAND --help: the options of a command");
         app.require_subcommand(1);
         app.footer(
-            "A model is a path, or the name of a built-in one (hilda models).\n"
+            "A model is the path of a model file or the name of a built-in model (see hilda models).\n"
             "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 invalid model or input file,\n"
-            "4 numerical failure, 5 input/output, 6 an --expect failed, 7 not available, 130/143 "
-            "interrupted.");
+            "4 numerical failure, 5 input/output, 6 --expect or --check failed, 7 not available,\n"
+            "130/143 interrupted.");
         add_run();
         add_check();
         add_models();
@@ -91,7 +94,7 @@ public:
     }
 
 private:
-    using Set = std::function<void(const std::string& option, const std::string& text)>;
+    using Setter = std::function<void(const std::string& option, const std::string& text)>;
 
     CLI::App* add(const std::string& name, const std::string& what, std::function<int()> action)
     {
@@ -100,19 +103,19 @@ private:
         return command;
     }
 
-    /// An option with a value, which is given once
-    static void value(CLI::App* command, const std::string& name, const std::string& kind,
-                      const std::string& what, Set set)
+    /// Adds an option with one value, which may be given once
+    static CLI::Option* value(CLI::App* command, const std::string& name, const std::string& kind,
+                              const std::string& what, Setter set)
     {
-        command
+        return command
             ->add_option_function<std::string>(
                 name, [name, set = std::move(set)](const std::string& text) { set(name, text); }, what)
             ->type_name(kind);
     }
 
-    /// An option that may be given more than once, each time with one value
+    /// Adds an option with one value, which may be given repeatedly
     static void values(CLI::App* command, const std::string& name, const std::string& kind,
-                       const std::string& what, Set set)
+                       const std::string& what, Setter set)
     {
         command
             ->add_option_function<std::vector<std::string>>(
@@ -126,7 +129,7 @@ private:
     }
 
     template <class List, class Read>
-    static Set append(List& to, Read read)
+    static Setter append(List& to, Read read)
     {
         return [&to, read](const std::string& option, const std::string& text) {
             for (auto& item : read(option, text)) to.push_back(std::move(item));
@@ -134,12 +137,12 @@ private:
     }
 
     template <class Goal, class Read>
-    static Set assign(Goal& to, Read read)
+    static Setter assign(Goal& to, Read read)
     {
         return [&to, read](const std::string& option, const std::string& text) { to = read(option, text); };
     }
 
-    static std::string as_it_is(const std::string& /*option*/, const std::string& text) { return text; }
+    static std::string unchanged(const std::string& /*option*/, const std::string& text) { return text; }
     static std::vector<std::string> one_setting(const std::string& option, const std::string& text)
     {
         return {setting(option, text)};
@@ -150,198 +153,238 @@ private:
         return text;
     }
 
-    /// What the schemes are told, the same for every command that runs them
+    /// The options of lie::Settings, common to run and study
     static void add_settings(CLI::App* c, lie::Settings& s)
     {
-        value(c, "--tolerance", "EPS",
-              "Newton's method stops at corrections below, by default 1e-10 in m, rad, kg m",
+        value(c, "--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
               assign(s.tolerance, positive_number));
         value(c, "--linear-solver", "auto|klu|condensed",
-              "of the saddle system; by default the one with fewer operations",
+              "solver of the saddle-point system; default: auto, the one with fewer operations",
               assign(s.linear_solver, linear_solver));
         value(c, "--rho-infinity", "RHO",
-              "damping of rA-genalpha, from 0, the most, to 1, none; by default 0.8",
+              "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest damping) to 1 (no "
+              "damping); "
+              "default: 0.8",
               assign(s.rho_infinity, fraction));
-        c->add_flag("--reparametrise", s.reparametrise,
-                    "Euler angles turn to another body frame near their singular set, instead of stopping");
-        value(c, "--rtol", "RTOL", "relative error of a step of ida-rp, by default 1e-10",
+        c->add_flag(
+            "--reparametrise", s.reparametrise,
+            "change the body frame when Euler angles approach a singular orientation, instead of stopping");
+        value(c, "--rtol", "RTOL", "relative local error tolerance of ida-rp; default: 1e-10",
               assign(s.rtol, relative_tolerance));
-        value(c, "--atol", "ATOL", "the same, absolute, by default as --rtol",
+        value(c, "--atol", "ATOL", "absolute local error tolerance of ida-rp; default: that of --rtol",
               assign(s.atol, absolute_tolerance));
     }
 
     void add_run()
     {
         RunOptions& o = run;
-        CLI::App* c = add("run", "simulate one model", [this] {
+        CLI::App* c = add("run", "simulate a model", [this] {
             if (run.force && run.resume) throw UsageError("run: --force and --resume exclude each other");
+            if (every && run.interval)
+                throw UsageError("run: --every is the old name of --interval; give only one of them");
+            if (every) run.interval = every;
+            if (every && !run.quiet) warning("--every was renamed to --interval; the old name is still read");
             if (!selected_integrators.empty()) run.integrators = selected_integrators;
-            run.command_line = typed;
+            run.command_line = command_line_text;
             return run_model(run);
         });
         c->add_option("MODEL", o.model, "path of a model file, or name of a built-in model")
             ->required()
             ->type_name("");
         values(c, "--integrator", "NAME[,NAME...]",
-               "one run each, by default rA-half-1; with contacts that are constraints rA-half-1-momentum is "
-               "recommended",
+               "integrators, one run each; recommended for contact constraints: rA-half-1-momentum; default: "
+               "rA-half-1",
                append(selected_integrators, integrators));
-        value(c, "--step", "H", "step size in s, by default 1e-3; not for ida-rp, which chooses its own",
+        value(c, "--step", "H", "step size [s]; not for ida-rp, which chooses its own; default: 1e-3",
               assign(o.step, positive_number));
-        value(c, "--end", "T", "end in s, by default the model's", assign(o.end, nonnegative_number));
-        value(c, "--every", "DT", "s between output rows, by default end/1000; 0: every step",
+        value(c, "--end", "T", "end time [s]; default: that of the model", assign(o.end, nonnegative_number));
+        value(c, "--interval", "DT",
+              "time between output rows [s], 0: a row for each step; default: end/1000",
               assign(o.interval, nonnegative_number));
+        value(c, "--every", "DT", "old name of --interval", assign(every, nonnegative_number))
+            ->group("");  // not in the help
         add_settings(c, o.settings);
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
         value(c, "--normal-rows", "tangent|fixed-xy",
-              "what the normals of contacts that are constraints are projected on, by default as the model "
-              "has it; "
-              "fixed-xy fails where a normal lies in the plane of x and y",
+              "tangent vectors in the normal equations of contact constraints; fixed-xy is singular for a "
+              "normal in "
+              "the x-y plane; default: that of the model",
               assign(o.normal_rows, normal_rows));
-        c->add_flag("--fix-initial", o.fix_initial, "project initial data that violate the constraints");
-        value(c, "--output", "DIR", "by default out/NAME", assign(o.output, path));
-        c->add_flag("--force", o.force,
-                    "write into a directory that is not empty; take a step at which a force is not stable");
-        c->add_flag("--resume", o.resume, "go on from the last checkpoint in the directory");
-        value(c, "--vtk", "DT", "s between frames of the bodies in contact, for ParaView",
+        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
+        value(c, "--output", "DIR",
+              "output directory, new or empty unless --force or --resume is given; default: out/NAME",
+              assign(o.output, path));
+        c->add_flag(
+            "--force", o.force,
+            "overwrite an output directory that is not empty; accept a step above the stability limit");
+        c->add_flag("--resume", o.resume,
+                    "continue the run in the output directory from its last checkpoint");
+        value(c, "--vtk", "DT",
+              "time between ParaView frames of the bodies in contact [s]; default: no frames",
               assign(o.vtk, positive_number));
-        value(c, "--checkpoint", "S", "wall seconds between checkpoints, by default 0: none",
+        value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
               assign(o.checkpoint, nonnegative_number));
-        c->add_flag("--reactions", o.reactions, "also write constraint forces and multipliers");
-        c->add_flag("--log-steps", o.log_steps, "also write steps.csv, a line for each step");
-        c->add_flag("--plot", o.plot, "also draw trajectory.png");
-        value(c, "--threads", "N", "threads inside one run; results are the same for any, and one is used",
+        c->add_flag("--reactions", o.reactions,
+                    "write constraint forces and multipliers to trajectory.csv as well");
+        c->add_flag("--log-steps", o.log_steps, "write steps.csv as well, a row for each step");
+        c->add_flag("--plot", o.plot, "draw trajectory.png as well");
+        value(c, "--threads", "N", "accepted for compatibility; a run uses one thread",
               assign(o.threads, positive_count));
         c->add_flag_callback(
-            "--no-plot", [this] { run.plot = false; }, "draw no figure, as by default");
-        c->add_flag("--json", o.json, "the summary as JSON on stdout, and nothing else there");
-        c->add_flag("--quiet", o.quiet, "print neither result nor warnings nor progress");
-        c->add_flag("-v,--verbose", o.verbose, "say what is done");
+            "--no-plot", [this] { run.plot = false; }, "draw no figure (the default)");
+        c->add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
+        c->add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
+        c->add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
     }
 
     void add_check()
     {
         CheckOptions& o = check;
-        CLI::App* c = add("check", "validate a model and say what it is; change nothing",
+        CLI::App* c = add("check", "validate a model and print its properties; write no file",
                           [this] { return check_model(check); });
         c->add_option("MODEL", o.model, "path of a model file, or name of a built-in model")
             ->required()
             ->type_name("");
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
-        value(c, "--normal-rows", "tangent|fixed-xy", "as in run", assign(o.normal_rows, normal_rows));
-        c->add_flag("--fix-initial", o.fix_initial, "say what projecting the initial data would change");
-        c->add_flag("--json", o.json, "the result as JSON");
-        c->add_flag("--quiet", o.quiet, "only the exit code");
-        c->add_flag("-v,--verbose", verbose, "as by default");
+        value(c, "--normal-rows", "tangent|fixed-xy", "as in hilda run; default: that of the model",
+              assign(o.normal_rows, normal_rows));
+        c->add_flag("--fix-initial", o.fix_initial,
+                    "project inconsistent initial data onto the constraints and report the change");
+        c->add_flag("--json", o.json, "print the result as JSON");
+        c->add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
+        c->add_flag("-v,--verbose", verbose, "no effect");
     }
 
     void add_models()
     {
-        CLI::App* c = add("models", "list the built-in models, or write one as JSON",
+        CLI::App* c = add("models", "list the built-in models, or print one as a model file",
                           [this] { return name.empty() ? list_models(json) : write_model(name, write_to); });
-        c->add_option("NAME", name, "the model to write")->type_name("");
-        value(c, "--write", "FILE", "write it there, not to stdout", assign(write_to, path));
-        c->add_flag("--json", json, "the list as JSON");
+        c->add_option("NAME", name, "name of a built-in model; default: print the list")->type_name("");
+        value(c, "--write", "FILE", "write the model to this file; default: stdout", assign(write_to, path));
+        c->add_flag("--json", json, "print the list as JSON");
     }
 
     void add_integrators()
     {
         CLI::App* c = add("integrators", "list the integrators", [this] { return list_integrators(json); });
-        c->add_flag("--json", json, "the list as JSON");
+        c->add_flag("--json", json, "print the list as JSON");
     }
 
     void add_study()
     {
         StudyOptions& o = study;
         CLI::App* c =
-            add("study", "an experiment: its table, CSV and figures; without KIND, the list of them", [this] {
-                study.command_line = typed;
+            add("study", "run a study: table, CSV files and figures; without KIND: list the studies", [this] {
+                study.command_line = command_line_text;
                 return kind.empty() ? list_studies(study.json) : run_study(kind, study);
             });
-        c->add_option("KIND", kind, "which one")->type_name("");
-        values(c, "--problem", "NAME[,NAME...]", "built-in models or model files", append(o.problems, list));
-        values(c, "--integrator", "NAME[,NAME...]", "by default all", append(o.integrators, integrators));
-        value(c, "--steps", "H1,H2,...", "step sizes in s", assign(o.steps, steps));
-        value(c, "--rtols", "R1,R2,...", "tolerances of integrators that choose their own steps",
+        c->add_option("KIND", kind, "name of the study; default: print the list")->type_name("");
+        values(c, "--problem", "NAME[,NAME...]",
+               "built-in models or model files, or the cases of the study; default: those of the study",
+               append(o.problems, list));
+        values(c, "--integrator", "NAME[,NAME...]", "integrators; default: those of the study",
+               append(o.integrators, integrators));
+        value(c, "--steps", "H1,H2,...", "step sizes [s]; default: those of the study",
+              assign(o.steps, steps));
+        value(c, "--rtols", "R1,R2,...",
+              "relative tolerances of integrators with adaptive steps; default: those of the study",
               assign(o.rtols, relative_tolerances));
-        value(c, "--bars", "N1,N2,...", "lengths of the chain of scaling, by default 1,2,4,...,1024",
+        value(c, "--bars", "N1,N2,...",
+              "numbers of bars of the chains of study scaling; default: 1,2,4,...,1024",
               assign(o.bars, bars));
-        value(c, "--end", "T", "end in s, by default the model's", assign(o.end, positive_number));
+        value(c, "--end", "T", "end time [s]; default: that of the study or of the model",
+              assign(o.end, positive_number));
         values(c, "--set", "/json/pointer=VALUE", "change one entry of each model; repeatable",
                append(o.set, one_setting));
         add_settings(c, o.settings);
-        value(c, "--output", "DIR", "by default out/KIND", assign(o.output, path));
-        value(c, "--reference", "NAME", "the integrator to judge by, by default the truth of each problem",
+        value(c, "--output", "DIR",
+              "output directory, new or empty unless --force is given; default: out/KIND",
+              assign(o.output, path));
+        value(c, "--reference", "NAME",
+              "integrator of the reference solution; default: the reference solution of each problem",
               assign(o.reference, integrator));
-        value(c, "--reference-step", "H", "its step in s, by default a tenth of the smallest one judged",
+        value(c, "--reference-step", "H",
+              "step of the reference integrator [s]; default: a tenth of the smallest step of the study",
               assign(o.reference_step, positive_number));
-        value(c, "--reference-rtol", "R", "its tolerance where it chooses its own steps, by default 1e-12",
+        value(c, "--reference-rtol", "R",
+              "relative tolerance of a reference integrator with adaptive steps; default: 1e-12",
               assign(o.reference_rtol, relative_tolerance));
-        value(c, "--preset", "balanced|dissertation", "of the friction", assign(o.preset, preset));
+        value(c, "--preset", "balanced|dissertation",
+              "parameter set of the friction law; default: that of the study", assign(o.preset, preset));
         value(c, "--normal-rows", "tangent|fixed-xy",
-              "of contacts that are constraints, by default tangent; fixed-xy shows where it fails",
+              "tangent vectors in the normal equations of contact constraints; default: tangent",
               assign(o.normal_rows, normal_rows));
+        c->add_flag(
+            "--all", o.all,
+            "study convergence with every problem, integrator and step instead of the short selection");
         c->add_flag("--check", o.check,
-                    "do all that a study is judged by; exit with 6 where something does not come out");
-        value(c, "--against", "FILE", "a CSV table to compare the result with", assign(o.against, path));
-        value(c, "--grid", "NAME", "of a sweep, by default the finest", assign(o.grid, as_it_is));
-        value(c, "--vtk", "N", "so many frames of each run for ParaView", assign(o.vtk, frames));
-        value(c, "--repeats", "N", "of what is timed, by default 5", assign(o.repeats, positive_count));
-        value(c, "--seed", "N", "of random starts, by default 0", assign(o.seed, seed));
+                    "evaluate all acceptance criteria of the study; exit code 6 if one fails");
+        value(c, "--against", "FILE", "CSV table to compare the result with", assign(o.against, path));
+        value(c, "--grid", "NAME", "parameter grid of a sweep; default: the finest",
+              assign(o.grid, unchanged));
+        value(c, "--vtk", "N", "number of ParaView frames of each run; default: no frames",
+              assign(o.vtk, frames));
+        value(c, "--repeats", "N", "repetitions of each time measurement; default: 5",
+              assign(o.repeats, positive_count));
+        value(c, "--seed", "N", "seed of random initial velocities; default: 0", assign(o.seed, seed));
         c->add_flag("--force", o.force,
-                    "write into a directory that is not empty; take a reference coarser than what it judges");
-        value(c, "--jobs", "N", "runs side by side, by default one for each core; one where time is measured",
+                    "overwrite an output directory that is not empty; accept a reference solution that is "
+                    "too coarse");
+        value(c, "--jobs", "N",
+              "number of concurrent runs; default: the number of cores, or 1 in a study that measures time",
               assign(o.jobs, positive_count));
-        values(c, "--expect", "KEY=VALUE[+-TOL]", "exit with 6 when this does not come out; repeatable",
+        values(c, "--expect", "KEY=VALUE[+-TOL]",
+               "expected value of a result; exit code 6 if the result differs by more than TOL; repeatable",
                append(o.expect, [](const std::string& option, const std::string& text) {
                    return std::vector<Expectation>{expectation(option, text)};
                }));
         c->add_flag_callback(
             "--no-plot", [this] { study.plot = false; }, "draw no figures");
-        c->add_flag("--quiet", o.quiet, "print neither result nor progress");
-        c->add_flag("-v,--verbose", verbose, "as by default");
-        c->add_flag("--json", o.json, "the result as JSON on stdout; files only with --output");
+        c->add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
+        c->add_flag("-v,--verbose", verbose, "no effect");
+        c->add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
     }
 
     void add_granular()
     {
-        CLI::App* c = add("granular", "a granular case, by the program hilda-granular beside this one",
+        CLI::App* c = add("granular", "simulate a granular case, by the program hilda-granular",
                           [this] { return start_granular(granular); });
-        c->prefix_command();  // all that follows is for the other program, --help too
+        c->prefix_command();  // all arguments that follow, --help included, are for hilda-granular
         c->set_help_flag();
         c->callback([this, c] { granular = c->remaining(); });
     }
 
     void add_plot()
     {
-        CLI::App* c = add("plot", "draw the figures again from the CSV files in a directory", [this] {
+        CLI::App* c = add("plot", "draw the figures of a run or study from its CSV files", [this] {
             return plot(script_for(directory), directory) ? exit_code::done : exit_code::not_available;
         });
-        c->add_option("DIR", directory, "of a run or a study")->required()->type_name("");
+        c->add_option("DIR", directory, "output directory of a run or a study")->required()->type_name("");
     }
 
     void add_info()
     {
-        CLI::App* c = add("info", "version, build, libraries, devices: what a bug report needs",
-                          [this] { return info(json, typed); });
-        c->add_flag("--json", json, "the same as JSON");
+        CLI::App* c = add("info", "print version, build, libraries and system, for bug reports",
+                          [this] { return info(json, command_line_text); });
+        c->add_flag("--json", json, "print the result as JSON");
     }
 
     void add_help()
     {
-        CLI::App* c = add("help", "this text, or the help of a command", [this] {
+        CLI::App* c = add("help", "print this text, or the options of a command", [this] {
             const CLI::App* command = nullptr;
             for (const auto& known : actions)
                 if (known.first->get_name() == name) command = known.first;
             if (!name.empty() && command == nullptr)
                 throw UsageError("help: unknown command" + with_nearest(name, names()));
-            // help() of the whole would show the command "help", which has been parsed
-            std::cout << (command != nullptr ? command->help("hilda") : Commands(typed).app.help());
+            // app.help() would print the help of the command "help", because that command has been parsed
+            std::cout << (command != nullptr ? command->help("hilda")
+                                             : Commands(command_line_text).app.help());
             return exit_code::done;
         });
-        c->add_option("COMMAND", name)->type_name("");
+        c->add_option("COMMAND", name, "name of a command")->type_name("");
     }
 
     std::vector<std::string> names() const
@@ -351,7 +394,7 @@ private:
         return all;
     }
 
-    /// CLI11 would only say that the word was not expected.
+    /// UsageError with the nearest known command. CLI11 would only report an unexpected argument.
     void refuse_unknown_command(int argc, char** argv) const
     {
         if (argc < 2) throw UsageError("no command given; hilda help lists them");
@@ -376,11 +419,12 @@ private:
         throw UsageError(where + "one argument too many: '" + word + "'");
     }
 
-    const std::string typed;
+    const std::string command_line_text;
     CLI::App app{"HILDA: multibody dynamics on the Lie group", "hilda"};
     std::vector<std::pair<CLI::App*, std::function<int()>>> actions;
 
     RunOptions run;
+    std::optional<double> every;  ///< value of --every, the old name of --interval
     CheckOptions check;
     StudyOptions study;
     std::vector<std::string> selected_integrators;
@@ -391,6 +435,9 @@ private:
 
 }  // namespace
 
-int command_line(int argc, char** argv) { return Commands(joined(argc, argv)).parse_and_run(argc, argv); }
+int command_line(int argc, char** argv)
+{
+    return Commands(shell_quoted(argc, argv)).parse_and_run(argc, argv);
+}
 
 }  // namespace hilda::studies

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The command line: what is typed becomes options, and options a call.
+/// The command line of the program hilda: reads the options of a command and executes it.
 
 #pragma once
 
 namespace hilda::studies {
 
-/// Does what the command line says and returns the exit code. Throws UsageError for what it does not
-/// understand.
+/// Executes the command of the command line and returns the exit code. UsageError for an invalid command
+/// line.
 int command_line(int argc, char** argv);
 
 }  // namespace hilda::studies

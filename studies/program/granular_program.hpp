@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The program hilda-granular, which is a program of its own: where it is built for a GPU it links CUDA, and this one
-/// links GSL.
+/// The command hilda granular, which starts the separate program hilda-granular. The programs are separate
+/// because hilda links GSL and a GPU build of hilda-granular links the CUDA runtime; their licences do not
+/// permit both in one binary.
 
 #pragma once
 
@@ -9,7 +10,8 @@
 
 namespace hilda::studies {
 
-/// Becomes that program, which lies beside this one. NotAvailable where it does not.
+/// Replaces this process by hilda-granular, which must be in the same directory. Returns only by the
+/// exception NotAvailable, if the program cannot be started.
 int start_granular(const std::vector<std::string>& arguments);
 
 }  // namespace hilda::studies

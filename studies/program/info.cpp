@@ -2,6 +2,7 @@
 #include "studies/program/info.hpp"
 
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/output.hpp"
@@ -26,7 +27,7 @@ std::string system_name()
     return uname(&u) == 0 ? fmt::format("{} {} {}", u.sysname, u.release, u.machine) : "unknown";
 }
 
-constexpr const char* devices = "cpu; no GPU is looked for in this build";
+constexpr const char* devices = "CPU; hilda does not use GPUs (see hilda granular --device)";
 
 }  // namespace
 
@@ -56,8 +57,8 @@ int info(bool json, const std::string& command_line)
     line("processor", fmt::format("{}, {} threads", all["cpu"].get<std::string>(), cores));
     line("devices", devices);
     line("figures", all["figures"].get<std::string>());
-    line("here", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),
-                             problems().size(), studies().size()));
+    line("registered", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),
+                                   problems().size(), studies().size()));
     return exit_code::done;
 }
 

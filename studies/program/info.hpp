@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda info: what a bug report needs.
+/// The command hilda info: version, build and machine, for bug reports.
 
 #pragma once
 
@@ -7,9 +7,10 @@
 
 namespace hilda::studies {
 
-/// The program's name, version and git state, in one line
+/// Name, version and git state of the program, in one line
 std::string version_line();
 
+/// Prints version, build, libraries, system and processor; returns the exit code.
 int info(bool json, const std::string& command_line);
 
 }  // namespace hilda::studies

@@ -2,6 +2,7 @@
 #include "studies/program/lists.hpp"
 
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/output.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using Line = std::vector<std::string>;
 
-/// Columns as wide as their widest entry, two blanks between them
+/// Prints left-aligned columns, separated by two blanks
 void print_aligned(const std::vector<Line>& lines)
 {
     std::vector<size_t> width;
@@ -32,7 +33,7 @@ void print_aligned(const std::vector<Line>& lines)
     }
 }
 
-/// Objects with these keys, or lines without them
+/// Prints JSON objects with these keys, or aligned lines without the keys
 void show(bool json, const Line& keys, const std::vector<Line>& lines)
 {
     if (!json) return print_aligned(lines);
@@ -71,7 +72,7 @@ namespace {
 std::string contacts_of(const lie::Scheme& s)
 {
     if (!s.algebraic) return "-";
-    return s.nonholonomic ? "evolve, roll" : "evolve";
+    return s.nonholonomic ? "constraint, rolling" : "constraint";
 }
 
 }  // namespace
@@ -82,6 +83,7 @@ int list_integrators(bool json)
         nlohmann::ordered_json all = nlohmann::ordered_json::array();
         for (const lie::Scheme& s : lie::schemes())
             all.push_back({{"name", s.name},
+                           {"description", s.description},
                            {"order", s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order)},
                            {"order_lambda",
                             s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
@@ -95,17 +97,16 @@ int list_integrators(bool json)
         return exit_code::done;
     }
     std::vector<Line> lines = {
-        {"name", "order", "of lambda", "contacts", "formulation", "unknowns", "source"}};
+        {"name", "order", "of lambda", "contacts", "formulation", "description", "unknowns", "source"}};
     for (const lie::Scheme& s : lie::schemes())
         lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
                          s.adaptive ? "-" : std::to_string(s.order_lambda), contacts_of(s), s.formulation,
-                         s.unknowns, s.source});
+                         s.description, s.unknowns, s.source});
     print_aligned(lines);
-    std::cout << "\ncontacts: what it takes of contacts that are constraints; evolve: frictionless or with "
-                 "friction "
-                 "as a force,\nroll: ideal rolling too. For these rA-half-1-momentum is recommended; "
-                 "rA-half-1 is the "
-                 "text of the dissertation.\n";
+    std::cout
+        << "\ncontacts: supported contact constraints. constraint: without friction, or with friction as a "
+           "force; rolling: also rolling without slip.\nFor contact constraints rA-half-1-momentum is "
+           "recommended; rA-half-1 is the scheme of the dissertation.\n";
     return exit_code::done;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What there is: hilda models, hilda integrators, hilda study.
+/// The lists of models, integrators and studies: hilda models, hilda integrators, hilda study. Each function
+/// prints to stdout, as JSON or as text, and returns the exit code.
 
 #pragma once
 
@@ -8,7 +9,8 @@
 namespace hilda::studies {
 
 int list_models(bool json);
-/// The JSON of a built-in model, to a file or, for "", to stdout
+/// Writes the JSON of a built-in model to a file, or to stdout if `file` is "". lie::InvalidInput for an
+/// unknown name.
 int write_model(const std::string& name, const std::string& file);
 int list_integrators(bool json);
 int list_studies(bool json);

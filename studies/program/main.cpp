@@ -9,7 +9,8 @@
 
 namespace {
 
-/// A library built with -ffast-math turns denormal numbers off in the whole process.
+/// False if denormal numbers are flushed to zero. A shared library built with -ffast-math sets this mode for
+/// the whole process.
 bool keeps_denormals()
 {
     volatile double tiny = 1e-300;
@@ -22,7 +23,7 @@ bool keeps_denormals()
 int main(int argc, char** argv)
 {
     using namespace hilda::studies;
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write(), which names the file
+    std::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG, and the message names the file
     try {
         if (!keeps_denormals())
             throw std::runtime_error("a library of this process flushes denormal numbers to zero");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/named_model.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/framework/problem.hpp"
 
@@ -49,7 +51,7 @@ std::vector<std::string> normal_rows(const std::string& name_or_path, const std:
         if ((*contacts)[k]["normal"]["type"] == "constraint")
             with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
     if (with.size() == set.size())
-        throw UsageError("--normal-rows is for contacts whose normal is a constraint; " + d.name +
+        throw UsageError("--normal-rows applies to contacts whose normal is a constraint; model " + d.name +
                          " has none");
     return with;
 }

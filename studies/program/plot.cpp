@@ -28,11 +28,12 @@ namespace {
 
 std::string python()
 {
-    const char* selected = std::getenv("HILDA_PYTHON");
-    return selected != nullptr && *selected != '\0' ? selected : version::python;
+    const char* configured = std::getenv("HILDA_PYTHON");
+    return configured != nullptr && *configured != '\0' ? configured : version::python;
 }
 
-/// Beside an installed program, or in the source tree; empty when it is in neither place.
+/// Path of a script in share/hilda/plots of an installed program or in the source tree; empty if it is in
+/// neither
 std::string find_script(const std::string& script)
 {
     std::error_code error;
@@ -43,13 +44,13 @@ std::string find_script(const std::string& script)
     return {};
 }
 
-struct Ended {
-    int code = -1;       ///< -1: could not be started
+struct ProcessResult {
+    int code = -1;       ///< -1: the process could not be started
     std::string output;  ///< stdout and stderr together
 };
 
-/// Runs a program without a shell.
-Ended run(std::vector<std::string> words)
+/// Runs a program without a shell and waits for it. At most about 1 MiB of its output is stored.
+ProcessResult run(std::vector<std::string> words)
 {
     std::array<int, 2> pipe_ends{};
     if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return {};
@@ -67,20 +68,20 @@ Ended run(std::vector<std::string> words)
     posix_spawn_file_actions_destroy(&actions);
     close(pipe_ends[1]);
 
-    Ended ended;
+    ProcessResult result;
     if (error == 0) {
         std::array<char, 4096> chunk{};
         for (ssize_t n = 0;
              (n = read(pipe_ends[0], chunk.data(), chunk.size())) > 0 || (n < 0 && errno == EINTR);)
-            if (n > 0 && ended.output.size() < 1 << 20)
-                ended.output.append(chunk.data(), static_cast<size_t>(n));
+            if (n > 0 && result.output.size() < 1 << 20)
+                result.output.append(chunk.data(), static_cast<size_t>(n));
         int status = 0;
         while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
         }
-        ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+        result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
     }
     close(pipe_ends[0]);
-    return ended;
+    return result;
 }
 
 std::string last_line(std::string text)
@@ -89,15 +90,15 @@ std::string last_line(std::string text)
     return text.substr(text.rfind('\n') + 1);
 }
 
-/// Why a run of Python did not do what it should, in one line; empty when it did.
-std::string complaint(const Ended& ended)
+/// One line with the reason why a Python process failed; empty if it succeeded
+std::string failure_reason(const ProcessResult& result)
 {
-    if (ended.code == 0) return {};
-    if (ended.code == -1 || ended.code == 127)
+    if (result.code == 0) return {};
+    if (result.code == -1 || result.code == 127)
         return python() + " was not found (Debian: apt-get install python3-matplotlib)";
-    if (ended.output.find("No module named 'matplotlib'") != std::string::npos)
+    if (result.output.find("No module named 'matplotlib'") != std::string::npos)
         return python() + " has no matplotlib (Debian: apt-get install python3-matplotlib)";
-    return last_line(ended.output);
+    return last_line(result.output);
 }
 
 }  // namespace
@@ -106,7 +107,7 @@ bool plot(const std::string& script, const std::string& directory)
 {
     const std::string path = find_script(script);
     const std::string why = path.empty() ? "the script " + script + " was not found"
-                                         : complaint(run({python(), path, directory}));
+                                         : failure_reason(run({python(), path, directory}));
     if (!why.empty()) warning("no figures: " + why);
     return why.empty();
 }
@@ -120,20 +121,23 @@ std::string script_for(const std::string& directory)
         const auto kind = study.is_object() ? study.find("study") : study.end();
         if (kind == study.end() || !kind->is_string() ||
             kind->get<std::string>().find('/') != std::string::npos)
-            throw lie::InvalidInput(record + ": does not say which study this is");
+            throw lie::InvalidInput(record +
+                                    ": the key 'study' is missing or invalid; expected the name of a study");
         return kind->get<std::string>() + ".py";
     }
     if (fs::is_regular_file(fs::path(directory) / "trajectory.csv", error)) return "trajectory.py";
-    throw lie::InvalidInput(directory + ": there is neither a study.csv nor a trajectory.csv to draw");
+    throw lie::InvalidInput(directory +
+                            ": contains neither study.csv nor trajectory.csv; hilda plot needs one of them");
 }
 
 std::string python_and_matplotlib()
 {
-    const Ended ended = run({python(), "-c",
-                             "import sys, matplotlib; "
-                             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
-    const std::string why = complaint(ended);
-    return why.empty() ? python() + " " + last_line(ended.output) : why;
+    const ProcessResult result =
+        run({python(), "-c",
+             "import sys, matplotlib; "
+             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
+    const std::string why = failure_reason(result);
+    return why.empty() ? python() + " " + last_line(result.output) : why;
 }
 
 }  // namespace hilda::studies

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Figures: a Python script per figure, which reads only the CSV files in a directory and writes PNG files
-/// there.
+/// Figures. A Python script for each kind of result reads the CSV files of a directory and writes PNG files
+/// to it.
 
 #pragma once
 
@@ -8,15 +8,15 @@
 
 namespace hilda::studies {
 
-/// Runs the script (a name such as "convergence.py") on a directory. Where Python, matplotlib or the script
-/// is missing, or the script fails, it says so on stderr in one line and returns false.
+/// Runs a script, for example "convergence.py", on a directory. Returns false after a one-line warning on
+/// stderr if Python, matplotlib or the script is missing or if the script fails.
 bool plot(const std::string& script, const std::string& directory);
 
-/// The script for what lies in a directory: trajectory.csv, or study.csv and study.json. lie::InvalidInput
-/// when there is neither.
+/// The script for the results in a directory: trajectory.py for trajectory.csv, KIND.py for study.csv, where
+/// study.json states KIND. lie::InvalidInput if there is neither file.
 std::string script_for(const std::string& directory);
 
-/// What draws the figures, for `hilda info`: the Python and its matplotlib, or what is missing.
+/// Versions of Python and matplotlib, or the missing component; for hilda info
 std::string python_and_matplotlib();
 
 }  // namespace hilda::studies

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/run_model.hpp"
 
+#include "lie/schemes.hpp"
 #include "studies/interrupt.hpp"
 #include "studies/message.hpp"
 #include "studies/output.hpp"
@@ -17,20 +18,22 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// One for each integrator; those that may not be written to are refused before the first run begins.
+/// Output directory of each integrator. Directories that are not empty are rejected before the first run
+/// starts.
 std::vector<std::string> directories(const RunOptions& options)
 {
     const std::string output = options.output.empty() ? "out/" + short_name(options.model) : options.output;
     std::vector<std::string> all;
     for (const std::string& name : options.integrators) {
         all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
-        if (!is_vacant(all.back()) && !options.force && !options.resume)
-            throw UsageError(all.back() + ": is not empty; --force overwrites, --resume goes on");
+        if (!is_missing_or_empty(all.back()) && !options.force && !options.resume)
+            throw UsageError(all.back() +
+                             ": is not empty; --force overwrites it, --resume continues its run");
     }
     return all;
 }
 
-/// What an integrator that chooses its own steps has no use for
+/// Rejects options that do not apply to an integrator with adaptive steps
 void refuse_for_adaptive(const RunOptions& options)
 {
     for (const std::string& name : options.integrators) {
@@ -40,10 +43,9 @@ void refuse_for_adaptive(const RunOptions& options)
             refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
         if (options.resume || options.checkpoint > 0)
             refuse(
-                "remembers past steps outside the state; --checkpoint and --resume are for fixed-step "
-                "schemes");
+                "stores past steps outside the state; --checkpoint and --resume are for fixed-step schemes");
         if (options.interval && *options.interval == 0)
-            refuse("chooses its own steps; --every must be positive, got 0");
+            refuse("chooses its own steps; --interval must be positive, got 0");
     }
 }
 
@@ -53,7 +55,7 @@ int run_model(const RunOptions& options)
 {
     if (options.vtk && (options.resume || options.checkpoint > 0))
         throw UsageError(
-            "run: --vtk keeps its frames until the run ends; --checkpoint and --resume exclude it");
+            "run: --vtk writes its frames at the end of the run; --checkpoint and --resume exclude it");
     refuse_for_adaptive(options);
     const std::vector<std::string> directory = directories(options);
     const Interrupt interrupt;
@@ -65,10 +67,11 @@ int run_model(const RunOptions& options)
             break;
         }
         if (options.resume && directory.size() > 1 && SingleRun::has_ended(directory[k])) {
-            if (!options.quiet) warning(directory[k] + ": its run has ended; left as it is");
+            if (!options.quiet) warning(directory[k] + ": its run is complete; skipped");
             continue;
         }
-        const Result result = SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).go();
+        const RunResult result =
+            SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).execute();
         if (code == exit_code::done) code = result.exit_code;
         if (options.json) all.push_back(summary(result));
         if (options.json || options.quiet) continue;

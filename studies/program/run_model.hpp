@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda run: one model, by one integrator after the other.
+/// The command hilda run: simulates one model, with one or more integrators in sequence.
 
 #pragma once
 
-#include "lie/integrator.hpp"
+#include "lie/settings.hpp"
 
 #include <optional>
 #include <string>
@@ -12,28 +12,29 @@
 namespace hilda::studies {
 
 struct RunOptions {
-    std::string model;  ///< a built-in name or a path
+    std::string model;  ///< name of a built-in model, or path of a model file
     std::vector<std::string> integrators{"rA-half-1"};
-    std::optional<double> step;           ///< [s]; 1e-3
-    std::optional<double> end, interval;  ///< [s]; the model's end, a thousandth of the end
+    std::optional<double> step;           ///< [s]; default: 1e-3
+    std::optional<double> end, interval;  ///< [s]; defaults: end of the model, end/1000
     lie::Settings settings;
     std::vector<std::string> set;  ///< /json/pointer=VALUE
-    std::string
-        normal_rows;  ///< of contacts that are constraints: tangent or fixed-xy; "": as the model has it
+    std::string normal_rows;       ///< of contact constraints: tangent or fixed-xy; "": the model's
     bool fix_initial = false;
 
-    std::string output;  ///< "": out/NAME
+    std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
     bool reactions = false, log_steps = false, plot = false;
-    std::optional<double> vtk;  ///< [s] between frames for ParaView
-    double checkpoint = 0;      ///< wall seconds between checkpoints; 0: none
+    std::optional<double> vtk;  ///< time between frames for ParaView [s]
+    double checkpoint = 0;      ///< wall time between checkpoints [s]; 0: no checkpoints
 
     bool json = false, quiet = false, verbose = false;
     int threads = 1;
-    std::string command_line;  ///< for the record
+    std::string command_line;  ///< recorded in summary.json
 };
 
-/// Runs, writes, prints; returns the exit code: that of the first run that did not end well.
+/// Simulates the model with each integrator, writes the results and prints a summary. Returns the exit code
+/// of the first run that did not succeed. With more than one integrator the results are in subdirectories
+/// named by integrator. UsageError for options that do not apply, before the first run starts.
 int run_model(const RunOptions& options);
 
 }  // namespace hilda::studies

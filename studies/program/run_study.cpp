@@ -23,29 +23,30 @@ const Study& find(const std::string& kind)
     throw UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
 
-/// An option that a study would not look at is a mistake of the one who gave it.
-void refuse_idle_options(const Study& study, const StudyOptions& options)
+/// Rejects options that the study does not use; the message names the studies that use them.
+void reject_unused_options(const Study& study, const StudyOptions& options)
 {
-    const auto idle = [&](bool given, unsigned option, const std::string& name) {
-        if (!given || (study.also & option) != 0) return;
+    const auto reject_if = [&](bool given, unsigned option, const std::string& name) {
+        if (!given || (study.accepted & option) != 0) return;
         std::string those;
         for (const Study& other : studies())
-            if ((other.also & option) != 0) those += (those.empty() ? "" : ", ") + other.kind;
+            if ((other.accepted & option) != 0) those += (those.empty() ? "" : ", ") + other.kind;
         throw UsageError("study " + study.kind + ": " + name + " is for " +
                          (those.empty() ? "other studies" : those));
     };
-    idle(!options.reference.empty(), takes::reference, "--reference");
-    idle(options.reference_step.has_value(), takes::reference, "--reference-step");
-    idle(options.reference_rtol.has_value(), takes::reference, "--reference-rtol");
-    idle(!options.rtols.empty(), takes::rtols, "--rtols");
-    idle(options.repeats > 0, takes::repeats, "--repeats");
-    idle(!options.bars.empty(), takes::bars, "--bars");
-    idle(!options.preset.empty(), takes::preset, "--preset");
-    idle(!options.normal_rows.empty(), takes::normal_rows, "--normal-rows");
-    idle(!options.against.empty(), takes::against, "--against");
-    idle(options.check, takes::check, "--check");
-    idle(!options.grid.empty(), takes::grid, "--grid");
-    idle(options.vtk > 0, takes::vtk, "--vtk");
+    reject_if(!options.reference.empty(), takes::reference, "--reference");
+    reject_if(options.reference_step.has_value(), takes::reference, "--reference-step");
+    reject_if(options.reference_rtol.has_value(), takes::reference, "--reference-rtol");
+    reject_if(!options.rtols.empty(), takes::rtols, "--rtols");
+    reject_if(options.repeats > 0, takes::repeats, "--repeats");
+    reject_if(!options.bars.empty(), takes::bars, "--bars");
+    reject_if(!options.preset.empty(), takes::preset, "--preset");
+    reject_if(!options.normal_rows.empty(), takes::normal_rows, "--normal-rows");
+    reject_if(!options.against.empty(), takes::against, "--against");
+    reject_if(options.check, takes::check, "--check");
+    reject_if(options.all, takes::all, "--all");
+    reject_if(!options.grid.empty(), takes::grid, "--grid");
+    reject_if(options.vtk > 0, takes::vtk, "--vtk");
 }
 
 }  // namespace
@@ -53,22 +54,23 @@ void refuse_idle_options(const Study& study, const StudyOptions& options)
 int run_study(const std::string& kind, StudyOptions options)
 {
     const Study& study = find(kind);
-    refuse_idle_options(study, options);
-    const bool timed = (study.also & takes::repeats) != 0;  // side by side, runs would slow each other down
+    reject_unused_options(study, options);
+    const bool timed =
+        (study.accepted & takes::repeats) != 0;  // concurrent runs would disturb the measurement
     if (timed && options.repeats == 0) options.repeats = 5;
     if (options.jobs == 0)
         options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json) options.output = "out/" + kind;
     if (!options.output.empty()) {
-        if (!is_vacant(options.output) && !options.force)
-            throw UsageError(options.output + ": is not empty; --force overwrites");
+        if (!is_missing_or_empty(options.output) && !options.force)
+            throw UsageError(options.output + ": is not empty; --force overwrites it");
         make_directory(options.output);
     }
     try {
         return study.run(options);
     } catch (...) {
         if (!options.output.empty())
-            rmdir(options.output.c_str());  // leaves it alone when there is something in it
+            rmdir(options.output.c_str());  // fails, as intended, if the directory is not empty
         throw;
     }
 }

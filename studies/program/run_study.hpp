@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda study KIND: finds the study and gives it a directory.
+/// The command hilda study KIND: finds the study and creates its output directory.
 
 #pragma once
 
@@ -9,8 +9,9 @@
 
 namespace hilda::studies {
 
-/// Runs the study of that kind; returns its exit code. Its directory is out/KIND, or options.output, and must
-/// be empty unless options.force. With options.json and no output it writes no files.
+/// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
+/// it must be new or empty unless options.force is set. With options.json and without options.output no files
+/// are written. UsageError for an unknown study or for an option that the study does not use.
 int run_study(const std::string& kind, StudyOptions options);
 
 }  // namespace hilda::studies

@@ -19,8 +19,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'C', 'K', 'P'};
-constexpr std::uint64_t format = 5;
-constexpr size_t head = sizeof magic + 2 * sizeof(std::uint64_t), tail = sizeof(std::uint32_t);
+constexpr std::uint64_t format_version = 5;
+constexpr size_t header_bytes = sizeof magic + 2 * sizeof(std::uint64_t),
+                 checksum_bytes = sizeof(std::uint32_t);
 
 /// CRC-32 as in zlib and PNG
 std::uint32_t crc32(const char* bytes, size_t count)
@@ -39,12 +40,12 @@ std::uint32_t crc32(const char* bytes, size_t count)
     return ~crc;
 }
 
-/// Puts values into bytes
-struct Pack {
+/// Appends values to a byte string
+struct OutputArchive {
     std::string bytes;
 
     void raw(const void* from, size_t count) { bytes.append(static_cast<const char*>(from), count); }
-    /// A number of items, each of so many bytes
+    /// Writes the length of a list. `each` is the size of an item [byte], used by InputArchive only.
     size_t count(size_t n, size_t /*each*/)
     {
         const auto wide = static_cast<std::uint64_t>(n);
@@ -53,8 +54,8 @@ struct Pack {
     }
 };
 
-/// Takes them out again
-struct Unpack {
+/// Reads values from a byte string. IoError if the bytes end too early.
+struct InputArchive {
     const char* at;
     const char* end;
     const std::string& file;
@@ -62,7 +63,7 @@ struct Unpack {
     void raw(void* to, size_t count)
     {
         if (static_cast<size_t>(end - at) < count)
-            throw IoError(file + ": the checkpoint is damaged: it ends too early");
+            throw IoError(file + ": the checkpoint is damaged: unexpected end of data");
         if (count > 0) std::memcpy(to, at, count);
         at += count;
     }
@@ -71,89 +72,89 @@ struct Unpack {
         std::uint64_t n = 0;
         raw(&n, sizeof n);
         if (n > static_cast<size_t>(end - at) / each)
-            throw IoError(file + ": the checkpoint is damaged: a list is too long");
+            throw IoError(file + ": the checkpoint is damaged: invalid length of a list");
         return n;
     }
 };
 
 template <class Archive, class Number>
 requires std::is_arithmetic_v<Number>
-void pass(Archive& a, Number& value) { a.raw(&value, sizeof value); }
+void transfer(Archive& a, Number& value) { a.raw(&value, sizeof value); }
 
 template <class Archive, class List>
-void pass_list(Archive& a, List& list)
+void transfer_list(Archive& a, List& list)
 {
     list.resize(static_cast<decltype(list.size())>(a.count(list.size(), sizeof list[0])));
     a.raw(list.data(), list.size() * sizeof list[0]);
 }
 
 template <class Archive>
-void pass(Archive& a, lie::State& x)
+void transfer(Archive& a, lie::State& x)
 {
-    static_assert(sizeof(lie::Motion) == 24 * sizeof(double), "a motion is 24 numbers and nothing else");
-    pass(a, x.t);
-    pass_list(a, x.body);
-    pass_list(a, x.alpha);
-    pass_list(a, x.lambda);
-    pass_list(a, x.discrete_state);
-    pass_list(a, x.internal_state);
-    pass_list(a, x.history);
+    static_assert(sizeof(lie::Motion) == 24 * sizeof(double),
+                  "a motion must consist of 24 numbers without padding");
+    transfer(a, x.t);
+    transfer_list(a, x.body);
+    transfer_list(a, x.alpha);
+    transfer_list(a, x.lambda);
+    transfer_list(a, x.discrete_state);
+    transfer_list(a, x.internal_state);
+    transfer_list(a, x.history);
 }
 
 constexpr size_t bytes_of_event = 2 * sizeof(int) + 2 * sizeof(double);
 
 template <class Archive>
-void pass(Archive& a, contact::ContactEvent& e)
+void transfer(Archive& a, contact::ContactEvent& e)
 {
     auto kind = static_cast<int>(e.type);
-    pass(a, kind);
+    transfer(a, kind);
     e.type = static_cast<contact::ContactEvent::Type>(kind);
-    pass(a, e.t);
-    pass(a, e.contact);
-    pass(a, e.speed);
+    transfer(a, e.t);
+    transfer(a, e.contact);
+    transfer(a, e.speed);
 }
 
-/// The content, in its order, in both directions
+/// Writes or reads the content of a checkpoint, depending on Archive
 template <class Archive>
-void pass(Archive& a, Checkpoint& c)
+void transfer(Archive& a, Checkpoint& c)
 {
-    pass_list(a, c.settings);
-    pass(a, c.node);
-    pass(a, c.number);
-    pass(a, c.iterations);
-    pass(a, c.pivots);
+    transfer_list(a, c.settings);
+    transfer(a, c.node);
+    transfer(a, c.number);
+    transfer(a, c.iterations);
+    transfer(a, c.pivots);
     for (long* n : {&c.statistics.steps, &c.statistics.iterations, &c.statistics.factorizations,
                     &c.statistics.refactorizations, &c.invariants.nodes, &c.invariants.rows,
                     &c.last_step.factorizations, &c.last_step.wall_ns})
-        pass(a, *n);
+        transfer(a, *n);
     for (double* v : {&c.invariants.energy_start, &c.invariants.energy_end, &c.invariants.energy_drift,
                       &c.invariants.constraint_norm, &c.invariants.orthogonality, &c.wall_seconds,
                       &c.last_step.correction})
-        pass(a, *v);
-    pass_list(a, c.invariants.contact);
+        transfer(a, *v);
+    transfer_list(a, c.invariants.contact);
     c.contacts.events.resize(a.count(c.contacts.events.size(), bytes_of_event));
-    for (contact::ContactEvent& e : c.contacts.events) pass(a, e);
-    pass_list(a, c.contacts.closed);
-    pass(a, c.trajectory_bytes);
-    pass(a, c.steps_bytes);
+    for (contact::ContactEvent& e : c.contacts.events) transfer(a, e);
+    transfer_list(a, c.contacts.node_forces);
+    transfer(a, c.trajectory_bytes);
+    transfer(a, c.steps_bytes);
 }
 
 }  // namespace
 
 std::string to_bytes(const Checkpoint& checkpoint)
 {
-    Pack a;
-    std::uint64_t version = format, length = 0;
+    OutputArchive a;
+    std::uint64_t version = format_version, length = 0;
     a.raw(magic, sizeof magic);
-    pass(a, version);
-    pass(a, length);
-    Checkpoint copy =
-        checkpoint;  // pass() serves both directions, so it wants something that it could write to
-    pass(a, copy);
-    length = a.bytes.size() + tail;
+    transfer(a, version);
+    transfer(a, length);
+    Checkpoint copy = checkpoint;  // transfer() serves both directions and needs a non-const object
+    transfer(a, copy);
+    length = a.bytes.size() + checksum_bytes;
     std::memcpy(a.bytes.data() + sizeof magic + sizeof version, &length, sizeof length);
     std::uint32_t crc = crc32(a.bytes.data(), a.bytes.size());
-    pass(a, crc);
+    transfer(a, crc);
     return std::move(a.bytes);
 }
 
@@ -162,32 +163,32 @@ Checkpoint from_bytes(const std::string& bytes, const std::string& file)
     const auto damaged = [&](const std::string& how) {
         return IoError(file + ": the checkpoint is damaged: " + how);
     };
-    if (bytes.size() < head + tail || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-        throw damaged("it does not begin as one");
-    Unpack a{bytes.data() + sizeof magic, bytes.data() + bytes.size(), file};
+    if (bytes.size() < header_bytes + checksum_bytes || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+        throw damaged("the header is not that of a checkpoint");
+    InputArchive a{bytes.data() + sizeof magic, bytes.data() + bytes.size(), file};
     std::uint64_t version = 0, length = 0;
-    pass(a, version);
-    pass(a, length);
+    transfer(a, version);
+    transfer(a, length);
     std::uint32_t crc = 0;
-    std::memcpy(&crc, bytes.data() + bytes.size() - tail, sizeof crc);
+    std::memcpy(&crc, bytes.data() + bytes.size() - checksum_bytes, sizeof crc);
     if (length != bytes.size())
-        throw damaged(fmt::format("it should have {} bytes, got {}", length, bytes.size()));
-    if (crc != crc32(bytes.data(), bytes.size() - tail)) throw damaged("its checksum is wrong");
-    if (version != format)
+        throw damaged(fmt::format("its length must be {} bytes, got {}", length, bytes.size()));
+    if (crc != crc32(bytes.data(), bytes.size() - checksum_bytes)) throw damaged("wrong checksum");
+    if (version != format_version)
         throw IoError(fmt::format("{}: the checkpoint has format {}; this program reads format {}", file,
-                                  version, format));
+                                  version, format_version));
 
-    a.end -= tail;
+    a.end -= checksum_bytes;
     Checkpoint c;
-    pass(a, c);
-    if (a.at != a.end) throw damaged("it is too long");
+    transfer(a, c);
+    if (a.at != a.end) throw damaged("unread bytes after the content");
     return c;
 }
 
 namespace {
 
-struct Names {
-    explicit Names(const std::string& directory)
+struct FileNames {
+    explicit FileNames(const std::string& directory)
         : last(directory + "/checkpoint"), before(last + ".1"), next(last + ".new")
     {}
 
@@ -206,7 +207,7 @@ bool exists(const std::string& file)
 
 void save(const Checkpoint& checkpoint, const std::string& directory)
 {
-    const Names names(directory);
+    const FileNames names(directory);
     write_file(names.next, to_bytes(checkpoint));
     if (exists(names.last)) rename_file(names.last, names.before);
     rename_file(names.next, names.last);
@@ -214,20 +215,20 @@ void save(const Checkpoint& checkpoint, const std::string& directory)
 
 std::optional<Checkpoint> load(const std::string& directory)
 {
-    const Names names(directory);
+    const FileNames names(directory);
     if (!exists(names.last) && !exists(names.before)) return {};
     try {
         return from_bytes(read_file(names.last, largest_file), names.last);
     } catch (const IoError& error) {
         if (!exists(names.before)) throw;
-        warning(std::string(error.what()) + "; going on from the one before");
+        warning(std::string(error.what()) + "; resuming from the previous checkpoint");
     }
     return from_bytes(read_file(names.before, largest_file), names.before);
 }
 
 void remove_checkpoints(const std::string& directory)
 {
-    const Names names(directory);
+    const FileNames names(directory);
     for (const std::string& file : {names.last, names.before, names.next}) std::remove(file.c_str());
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A run written down between two steps, so that it can go on as if nothing had happened.
+/// Checkpoints: the state of a run between two steps. A run resumed from a checkpoint gives the same digits
+/// as an uninterrupted run.
 
 #pragma once
 
 #include "contact/evolving/unilateral.hpp"
+#include "lie/statistics.hpp"
 #include "studies/running/csv_steps.hpp"
 #include "studies/running/csv_trajectory.hpp"
 
@@ -14,35 +16,38 @@
 namespace hilda::studies {
 
 struct Checkpoint {
-    std::string settings;  ///< of the run, for people; only a run with the same may go on from here
-    lie::State node;       ///< on which the march stands
-    long number = 0;       ///< of that node
-    int iterations = 0;    ///< of the step that led to it
-    lie::State pivots;     ///< see PivotNode; no bodies: none so far
+    std::string settings;  ///< list of the settings of the run, as text; a resumed run must have the same
+    lie::State node;       ///< last accepted node
+    long number = 0;       ///< number of that node
+    int iterations = 0;    ///< Newton iterations of the step that ends there
+    lie::State
+        pivots;  ///< state of the last choice of pivots (see PivotNode); no bodies: pivots not chosen yet
     lie::Statistics statistics;
     Invariants invariants;
-    contact::UnilateralStep::Past contacts;  ///< of those that open
+    contact::UnilateralStep::History contacts;  ///< of unilateral contacts
     StepsCsv::Cost last_step;
     std::uint64_t trajectory_bytes = 0, steps_bytes = 0;
     double wall_seconds = 0;
 };
 
-/// Little endian: magic, format version, length of the whole, content, CRC-32 of all before.
+/// Serialises a checkpoint, little endian: magic, format version, total length [byte], content, CRC-32 of all
+/// preceding bytes.
 std::string to_bytes(const Checkpoint& checkpoint);
-/// IoError, naming the file, when the bytes are not exactly what to_bytes() made.
+/// Inverse of to_bytes(). `file` is for the message. IoError if length, checksum or format version is wrong.
 Checkpoint from_bytes(const std::string& bytes, const std::string& file);
 
-/// Writes DIRECTORY/checkpoint; the one before becomes checkpoint.1. At every instant at least one of them is
-/// whole.
+/// Writes DIRECTORY/checkpoint; the previous checkpoint becomes checkpoint.1. At any time at least one of the
+/// two files is complete. IoError.
 void save(const Checkpoint& checkpoint, const std::string& directory);
 
-/// The last checkpoint, or, with a warning on stderr, the one before when the last is damaged. Nothing when
-/// there is none; IoError when none can be read.
+/// Reads the last checkpoint; if it is damaged, the previous one, with a warning on stderr. Empty if there is
+/// no checkpoint. IoError if none can be read.
 std::optional<Checkpoint> load(const std::string& directory);
 
+/// Removes all checkpoint files of a directory.
 void remove_checkpoints(const std::string& directory);
 
-/// FNV-1a, to tell texts apart
+/// FNV-1a hash of a text, 64 bits
 std::uint64_t hash(const std::string& text);
 
 }  // namespace hilda::studies

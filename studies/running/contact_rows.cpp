@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/contact_rows.hpp"
 
+#include "dae/model.hpp"
+
 #include <algorithm>
 
 namespace hilda::studies {
@@ -8,7 +10,7 @@ namespace hilda::studies {
 std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model& model)
 {
     std::vector<const contact::EvolvingContact*> all;
-    for (const auto& c : model.evolving())
+    for (const auto& c : model.general_constraints())
         if (const auto* contact = dynamic_cast<const contact::EvolvingContact*>(c.get()))
             all.push_back(contact);
     return all;
@@ -18,15 +20,15 @@ contact::EvolvingContact::Multipliers forces(const dae::Model& model, const cont
                                              const lie::State& x)
 {
     if (dae::Model::inactive(c, x)) return {};
-    return c.multipliers(model.at(c, x), x.lambda);
+    return c.multipliers(model.arguments(c, x), x.lambda);
 }
 
-ContactForces forces_of(const dae::Model& model, const contact::EvolvingContact& c)
+ContactForceElements find_force_elements(const dae::Model& model, const contact::EvolvingContact& c)
 {
-    ContactForces of;
+    ContactForceElements of;
     for (const auto& force : model.forces()) {
         const auto* tracked = dynamic_cast<const contact::TrackedForce*>(force.get());
-        if (tracked == nullptr || tracked->held_by() != &c) continue;
+        if (tracked == nullptr || tracked->normal_constraint() != &c) continue;
         if (const auto* friction = dynamic_cast<const contact::EvolvingFriction*>(tracked))
             of.friction = friction;
         else
@@ -35,10 +37,10 @@ ContactForces forces_of(const dae::Model& model, const contact::EvolvingContact&
     return of;
 }
 
-OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, const ContactForces& of,
-                  const lie::State& x)
+ContactLoads contact_loads(const dae::Model& model, const contact::EvolvingContact& c,
+                           const ContactForceElements& of, const lie::State& x)
 {
-    if (of.fallback != nullptr && of.fallback->works(x))
+    if (of.fallback != nullptr && of.fallback->is_active(x))
         return {.F_N = std::max(0., of.fallback->at(x).contact_state.N),
                 .friction = of.fallback->friction(x).F};
     const contact::EvolvingContact::Multipliers m = forces(model, c, x);
@@ -48,8 +50,9 @@ OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, co
 int contact_rank(const dae::Model& model, const lie::State& x)
 {
     int rank = 0;
-    for (const auto& c : model.evolving())
-        if (!dae::Model::inactive(*c, x)) rank += c->rows() + c->velocity_rows() - c->unknowns();
+    for (const auto& c : model.general_constraints())
+        if (!dae::Model::inactive(*c, x))
+            rank += c->position_rows() + c->velocity_rows() - c->algebraic_variables();
     return rank;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What results say of contacts that evolve.
+/// Quantities of contact constraints (evolving contacts) for the output.
 
 #pragma once
 
@@ -8,29 +8,32 @@
 
 namespace hilda::studies {
 
-/// Those of a model, in their order
+/// The contact constraints of a model, in the order of the model
 std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model& model);
 
-/// Its multipliers in x, all zero while it is open
+/// Multipliers of a contact constraint in the state x; zero while the constraint is inactive
 contact::EvolvingContact::Multipliers forces(const dae::Model& model, const contact::EvolvingContact& c,
                                              const lie::State& x);
 
-/// The forces of a contact that evolves; nullptr where there is none
-struct ContactForces {
+/// The force elements of a contact constraint; nullptr if there is none
+struct ContactForceElements {
     const contact::EvolvingFriction* friction = nullptr;
-    const contact::ContactForce* fallback = nullptr;  ///< stands by until the constraint has handed over
+    const contact::ContactForce* fallback = nullptr;  ///< compliant contact that can replace the constraint
 };
-ContactForces forces_of(const dae::Model& model, const contact::EvolvingContact& c);
+/// Searches the forces of the model for those of the contact constraint c.
+ContactForceElements find_force_elements(const dae::Model& model, const contact::EvolvingContact& c);
 
-/// What acts on body i of a contact in x, from the constraint and its friction or from what it has handed over to
-struct OnBodyI {
-    double F_N = 0;                          ///< [N]
-    lie::Vec3 friction = lie::Vec3::Zero();  ///< [N, global]
+/// Contact loads on body i in the state x: those of the constraint and its friction, or those of the fallback
+/// if it is active
+struct ContactLoads {
+    double F_N = 0;                          ///< normal force [N]
+    lie::Vec3 friction = lie::Vec3::Zero();  ///< friction force, global [N]
 };
-OnBodyI on_body_i(const dae::Model& model, const contact::EvolvingContact& c, const ContactForces& of,
-                  const lie::State& x);
+ContactLoads contact_loads(const dae::Model& model, const contact::EvolvingContact& c,
+                           const ContactForceElements& of, const lie::State& x);
 
-/// Rows of the equations less unknowns without mass: what contacts that hold in x take from the freedom of a model
+/// Number of degrees of freedom removed by the contact constraints that are active in x: their position and
+/// velocity rows minus their algebraic variables
 int contact_rank(const dae::Model& model, const lie::State& x);
 
 }  // namespace hilda::studies

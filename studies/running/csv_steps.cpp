@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/csv_steps.hpp"
 
+#include "dae/model.hpp"
+#include "lie/integrator.hpp"
 #include "studies/csv.hpp"
 
 namespace hilda::studies {
@@ -36,7 +38,8 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
         row += '\n';
         file.flush_when_full();
     }
-    // The march tells us of a node once the step that leaves it is done.
+    // lie::March reports a node after the following step; the counters since the last call are those of that
+    // step.
     const long counted = integrator.statistics().factorizations;
     last = {counted - factorizations, std::chrono::nanoseconds(now - since).count(),
             integrator.statistics().correction};

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// steps.csv: what each step did and cost.
+/// steps.csv: Newton iterations, residuals, energy and cost of each step.
 
 #pragma once
 
-#include "dae/model.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/output_file.hpp"
 
 #include <chrono>
+
+namespace hilda::lie {
+class Integrator;
+}
+
+namespace hilda::dae {
+class Model;
+}
 
 namespace hilda::studies {
 
@@ -19,16 +26,17 @@ public:
         : model(model), integrator(integrator), h(h), file(file)
     {}
 
+    /// Writes the names of the columns.
     void write_header();
-    /// Counts from here: called just before the march sets off.
+    /// Resets the counters. To be called directly before the time integration starts.
     void begin();
     void accepted(const lie::State& x, long n, int iterations) override;
 
-    /// Factorizations and duration of the step that led to the node the march stands on. Its line is written
-    /// when the march leaves that node, for only then is the node known in full.
+    /// Cost of the step that ends at the current node. Its row is written after the following step, because
+    /// schemes with staggered velocities complete the node only then.
     struct Cost {
         long factorizations = 0, wall_ns = 0;
-        double correction = 0;  ///< last one of the step
+        double correction = 0;  ///< norm of the last Newton correction
     } last;
 
 private:

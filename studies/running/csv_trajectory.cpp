@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/csv_trajectory.hpp"
 
+#include "dae/model.hpp"
 #include "studies/csv.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@ TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid,
       contacts(evolving_contacts(model)), C(model.pattern())
 {
     invariants.contact.resize(contacts.size());
-    for (const contact::EvolvingContact* c : contacts) beside.push_back(forces_of(model, *c));
+    for (const contact::EvolvingContact* c : contacts)
+        force_elements.push_back(find_force_elements(model, *c));
 }
 
 void TrajectoryCsv::write_header()
@@ -32,8 +34,7 @@ void TrajectoryCsv::write_header()
     if (with_reactions) {
         for (const dae::Body& body : model.all_bodies())
             columns(body.name, {"Fx", "Fy", "Fz", "Tx", "Ty", "Tz"});
-        // A dropped row has no multiplier. Where a constraint has several rows they are told apart by their
-        // numbers.
+        // A dropped row has no multiplier. The rows of a constraint with several rows are numbered.
         std::vector<int> rows(model.constraints());
         for (const dae::Model::Row& r : model.all_rows()) ++rows[r.constraint];
         for (const int k : model.active_rows()) {
@@ -45,7 +46,7 @@ void TrajectoryCsv::write_header()
             const contact::EvolvingContact* c = contacts[k];
             columns(c->name,
                     {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z", "lambda_N"});
-            if (rubs(k)) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
+            if (has_friction(k)) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
             if (c->may_be_inactive()) columns(c->name, {"gap"});
         }
     }
@@ -55,7 +56,7 @@ void TrajectoryCsv::write_header()
 void TrajectoryCsv::accepted(const lie::State& x, long n, int)
 {
     const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
-    note(x, energy, constraint_norm);
+    update_invariants(x, energy, constraint_norm);
     if (!grid.is_row(n)) return dae::check_dropped_rows(model, x);
     ++invariants.rows;
     std::string& row = file.buffer;
@@ -87,35 +88,36 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
     dae::check_dropped_rows(model, x);
 }
 
-/// Whether there is friction, by multipliers or by a force
-bool TrajectoryCsv::rubs(size_t k) const
+/// True if contact k has friction, by multipliers or by a force element
+bool TrajectoryCsv::has_friction(size_t k) const
 {
-    return contacts[k]->velocity_rows() > 0 || beside[k].friction != nullptr;
+    return contacts[k]->velocity_rows() > 0 || force_elements[k].friction != nullptr;
 }
 
-/// F_N, the contact point, where it is on both bodies, |λ_N|, friction on body i
+/// Writes F_N, the contact point (global and in both body frames), |λ_N|, the friction force on body i and
+/// the gap
 void TrajectoryCsv::write_contacts(const lie::State& x)
 {
     std::string& row = file.buffer;
     for (size_t k = 0; k < contacts.size(); ++k) {
         const contact::EvolvingContact* c = contacts[k];
-        const dae::Constraint::At at = model.at(*c, x);
-        const OnBodyI acts = on_body_i(model, *c, beside[k], x);
+        const dae::Constraint::Arguments at = model.arguments(*c, x);
+        const ContactLoads loads = contact_loads(model, *c, force_elements[k], x);
         row += ',';
-        append_number(row, acts.F_N);
+        append_number(row, loads.F_N);
         append_vector(row, c->contact_point(at).C());
         append_vector(row, lie::Vec3::Map(at.alpha));
         append_vector(row, lie::Vec3::Map(at.alpha + 3));
         row += ',';
         append_number(row, forces(model, *c, x).N.norm());
-        if (rubs(k)) append_vector(row, acts.friction);
+        if (has_friction(k)) append_vector(row, loads.friction);
         if (!c->may_be_inactive()) continue;
         row += ',';
         append_number(row, c->contact_point(at).gap);
     }
 }
 
-void TrajectoryCsv::note(const lie::State& x, double energy, double constraint_norm)
+void TrajectoryCsv::update_invariants(const lie::State& x, double energy, double constraint_norm)
 {
     if (invariants.nodes++ == 0) invariants.energy_start = energy;
     invariants.energy_end = energy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// trajectory.csv, and what its rows say about the run.
+/// trajectory.csv, and extreme values over all nodes of a run.
 
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace hilda::studies {
 
-/// What became of a contact that evolves, over every node of the run
+/// Extreme values of a contact constraint over all nodes of a run
 struct ContactExtremes {
     double F_N_least = std::numeric_limits<double>::infinity();
-    double F_N_most = -std::numeric_limits<double>::infinity();  ///< [N]
-    double lambda_N = 0;  ///< largest |λ_N| [N]: what the normals lack of being those of the surfaces
+    double F_N_most = -std::numeric_limits<double>::infinity();  ///< normal force [N]
+    double lambda_N = 0;  ///< largest |λ_N| [N]; 0 if the given normals are those of the surfaces
 
-    /// What may be rounding where nothing presses: 1e-9 of all weights, or of as many kilograms in 1 m/s² [N]
+    /// Level of rounding errors of the normal force [N]: 1e-9 Σ m max(1 m/s², |g|)
     static double rounding(const dae::Model& model)
     {
         double sum = 0;
@@ -26,7 +26,7 @@ struct ContactExtremes {
         return 1e-9 * sum * std::max(1.0, model.gravity.norm());
     }
 
-    /// λ_N above this part of F_N is no rounding.
+    /// Upper limit of |λ_N| / |F_N| that rounding errors explain
     static constexpr double allowed = 1e-6;
     bool normals_differ() const
     {
@@ -34,18 +34,19 @@ struct ContactExtremes {
     }
 };
 
-/// Over every node of the run
+/// Extreme values over all nodes of a run
 struct Invariants {
-    long nodes = 0, rows = 0;                 ///< nodes seen, and rows written of them
+    long nodes = 0, rows = 0;                 ///< number of nodes, and of rows written
     double energy_start = 0, energy_end = 0;  ///< [J]
     double energy_drift = 0;                  ///< largest |E - E_0| [J]
     double constraint_norm = 0;               ///< largest scaled residual, also of dropped rows [m or rad]
     double orthogonality = 0;                 ///< largest ‖AᵀA - I‖
-    std::vector<ContactExtremes> contact;     ///< of each contact that evolves
+    std::vector<ContactExtremes> contact;     ///< for each contact constraint
 };
 
-/// Writes those nodes that are rows of the grid. Throws lie::NumericalFailure "constraint_drift"
-/// at the node where a constraint row that was dropped as redundant stops being so.
+/// Writes the nodes that are output rows of the time grid, and updates the extreme values at each node.
+/// lie::NumericalFailure "constraint_drift" at the first node where a constraint row that was dropped as
+/// redundant is violated.
 class TrajectoryCsv final : public lie::Observer {
 public:
     TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, OutputFile& file, bool with_reactions);
@@ -56,16 +57,16 @@ public:
     Invariants invariants;
 
 private:
-    void note(const lie::State& x, double energy, double constraint_norm);
+    void update_invariants(const lie::State& x, double energy, double constraint_norm);
     void write_contacts(const lie::State& x);
-    bool rubs(size_t k) const;
+    bool has_friction(size_t k) const;
 
     const dae::Model& model;
     const lie::TimeGrid& grid;
     OutputFile& file;
     const bool with_reactions;
     std::vector<const contact::EvolvingContact*> contacts;
-    std::vector<ContactForces> beside;  ///< the constraints of these contacts
+    std::vector<ContactForceElements> force_elements;  ///< of these contacts
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/diagnosis.hpp"
 
+#include "dae/model.hpp"
 #include "lie/solver/saddle.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace hilda::studies {
 
 namespace {
 
-/// The force, the constraint or the body that has no finite value in the state x; empty when all have.
+/// The first force or constraint without a finite value in the state x; empty if all values are finite
 std::string not_finite(const dae::Model& model, const lie::State& x)
 {
     for (const auto& force : model.forces()) {
@@ -20,18 +21,19 @@ std::string not_finite(const dae::Model& model, const lie::State& x)
         try {
             force->add(x, loads);
         } catch (const lie::NumericalFailure&) {
-            return force->in_words();
+            return force->label();
         }
         for (int b = 0; b < model.bodies(); ++b)
             if (!loads.F[b].allFinite() || !loads.n_bar[b].allFinite())
-                return fmt::format("{} on body '{}'", force->in_words(), model.body_name(b));
+                return fmt::format("{} on body '{}'", force->label(), model.body_name(b));
     }
     for (const dae::Model::Row& row : model.all_rows())
         if (!std::isfinite(model.scaled_residual(row, x))) return model.name_of(row);
     return {};
 }
 
-/// The reciprocal condition of the saddle matrix at the node; NaN when even that cannot be had
+/// Estimate of the reciprocal condition number of the saddle matrix at x; NaN if the matrix cannot be
+/// evaluated
 double reciprocal_condition(const dae::Model& model, const lie::State& x)
 {
     try {
@@ -65,11 +67,12 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         how = fmt::format("correction {:.1e} after {} iterations", newton->correction, newton->iterations);
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(h))) + 1, 1, 15);
     Diagnosis d;
-    // an observer objects to the node itself, a step fails on the way to the next one
+    // constraint_drift is detected at the node itself; all other failures occur in the step to the next node
     const bool at_node = failure.status == "constraint_drift";
     d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
                          number + (at_node ? 0 : 1), scheme, step_text(h), how);
-    if (at_node || failure.status.starts_with("contact_")) return d;  // the message has it all
+    if (at_node || failure.status.starts_with("contact_"))
+        return d;  // the message of the failure is complete
 
     lie::State next = node;
     next.t += h;

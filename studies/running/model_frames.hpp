@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Snapshots of a model while it marches.
+/// Snapshots of a model during the time integration.
 
 #pragma once
 
@@ -11,12 +11,13 @@
 
 namespace hilda::studies {
 
-/// Of the bodies that have a surface, by one of the contacts. The model must outlive it.
+/// Collects frames of the surfaces and contact points of all contacts of a model. The model must outlive this
+/// object.
 class ModelFrames final : public lie::Observer {
 public:
-    /// A frame at each row of the grid
+    /// A frame at each output row of the grid
     ModelFrames(const dae::Model& model, const lie::TimeGrid& grid);
-    ModelFrames(const dae::Model& model, EvenChoice selected);
+    ModelFrames(const dae::Model& model, EvenSelection selected);
 
     void accepted(const lie::State& x, long n, int iterations) override;
     bool has_contacts() const { return !contacts.empty() || !evolving.empty(); }
@@ -24,13 +25,13 @@ public:
     Snapshots snapshots;
 
 private:
-    ModelFrames(const dae::Model& model, std::function<bool(long)> takes);
+    ModelFrames(const dae::Model& model, std::function<bool(long)> is_selected);
 
     const dae::Model& model;
-    const std::function<bool(long)> takes;  ///< node n
+    const std::function<bool(long)> is_selected;  ///< true if node n is a frame
     std::vector<const contact::ContactForce*> contacts;
-    std::vector<const contact::EvolvingContact*> evolving;  ///< counted after those
-    std::vector<ContactForces> beside;
+    std::vector<const contact::EvolvingContact*> evolving;  ///< numbered after `contacts` in the frames
+    std::vector<ContactForceElements> force_elements;
 };
 
 }  // namespace hilda::studies

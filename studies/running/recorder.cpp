@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/recorder.hpp"
 
+#include "dae/model.hpp"
+
 namespace hilda::studies {
 
 namespace {
@@ -16,8 +18,8 @@ lie::Statistics sum(const lie::Statistics& a, const lie::Statistics& b, long sig
 void PivotNode::accepted(const lie::State& x, long, int)
 {
     const long factorizations = integrator.statistics().factorizations;
-    if (factorizations == seen) return;
-    seen = factorizations;
+    if (factorizations == last_count) return;
+    last_count = factorizations;
     node = integrator.pivots() != nullptr ? *integrator.pivots() : x;
 }
 
@@ -29,13 +31,13 @@ void PivotNode::restore(const lie::State& from, double h)
         if (integrator.pivots() != nullptr) {
             integrator.choose_pivots(node);
         } else {
-            lie::State thrown_away = node;
-            integrator.step(thrown_away, h);
+            lie::State discarded = node;
+            integrator.step(discarded, h);
         }
     } catch (const lie::NumericalFailure&) {
-        // the pivots are chosen first, and it is only for them
+        // The pivots are chosen before the step can fail, and only they are needed.
     }
-    seen = integrator.statistics().factorizations;
+    last_count = integrator.statistics().factorizations;
 }
 
 Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
@@ -54,8 +56,8 @@ Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const l
         if (steps) steps->last = from->last_step;
         pivots.restore(from->pivots, grid.h);
         if (auto* unilateral = dynamic_cast<contact::UnilateralStep*>(&integrator))
-            unilateral->go_on_from(from->contacts);
-        before = sum(from->statistics, integrator.statistics(), -1);
+            unilateral->restore(from->contacts);
+        earlier_statistics = sum(from->statistics, integrator.statistics(), -1);
     } else {
         trajectory.write_header();
         if (steps) steps->write_header();
@@ -72,7 +74,7 @@ std::vector<lie::Observer*> Recorder::observers()
     return all;
 }
 
-lie::Statistics Recorder::statistics() const { return sum(before, integrator.statistics(), 1); }
+lie::Statistics Recorder::statistics() const { return sum(earlier_statistics, integrator.statistics(), 1); }
 
 Checkpoint Recorder::checkpoint(const lie::March& march)
 {
@@ -86,7 +88,7 @@ Checkpoint Recorder::checkpoint(const lie::March& march)
     c.statistics = statistics();
     c.invariants = invariants();
     if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))
-        c.contacts = unilateral->past();
+        c.contacts = unilateral->history();
     c.trajectory_bytes = trajectory_file.size();
     if (steps) {
         c.last_step = steps->last;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The files of a run while it marches, and what a checkpoint needs of them.
+/// The output files of a run during the time integration, and the contents of its checkpoints.
 
 #pragma once
 
+#include "lie/statistics.hpp"
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/csv_steps.hpp"
 #include "studies/running/csv_trajectory.hpp"
@@ -11,47 +12,57 @@
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+class Integrator;
+}
+
 namespace hilda::studies {
 
-/// Where the integrator last chose pivots: the state, or, of a scheme that does not tell it, the node before
-/// the step in which it did. A new integrator brought there has the pivots of the old one and gives the same
-/// digits from then on: pivots are all that an integrator remembers outside the state.
+/// The state at which the integrator last chose the pivots of its sparse factorisation
+/// (Integrator::pivots()). For a scheme that does not provide this state, the node at the start of the step
+/// in which it chose them.
+///
+/// The pivots are the only data of a fixed-step scheme outside the state. A new integrator that chooses
+/// its pivots at the same state gives the same digits from there on.
 class PivotNode final : public lie::Observer {
 public:
     explicit PivotNode(lie::Integrator& integrator) : integrator(integrator) {}
 
     void accepted(const lie::State& x, long n, int iterations) override;
-    /// Brings a new integrator to the pivots that another got there.
+    /// Makes a new integrator choose its pivots at the state `from`; h: step [s]
     void restore(const lie::State& from, double h);
 
     lie::State node;
 
 private:
     lie::Integrator& integrator;
-    long seen = 0;
+    long last_count = 0;
 };
 
+/// Writes trajectory.csv and, on request, steps.csv, and collects the contents of checkpoints.
 class Recorder {
 public:
     struct Options {
         bool reactions = false, log_steps = false;
     };
 
-    /// Begins the files in the directory, or goes on with them, and with the counts, where the checkpoint
-    /// left them.
+    /// Creates the files in the directory. With a checkpoint, truncates them to the lengths stated there and
+    /// restores the counters and the pivots of the integrator. IoError.
     Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
              const std::string& directory, const Options& options, const std::optional<Checkpoint>& from);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// To be called just before the march sets off
+    /// The observers of the time integration. To be called directly before it starts.
     std::vector<lie::Observer*> observers();
-    /// Of the whole run, also before the checkpoint
+    /// Counters of the whole run, including the part before the checkpoint
     lie::Statistics statistics() const;
     const Invariants& invariants() const { return trajectory.invariants; }
 
-    /// Brings the files to the disk, then says how to go on from there; the settings are left to the caller.
+    /// Synchronises the files with the disk and returns a checkpoint of the current node. The caller sets the
+    /// members `settings` and `wall_seconds`.
     Checkpoint checkpoint(const lie::March& march);
+    /// Writes all buffered rows. IoError.
     void flush();
 
 private:
@@ -61,7 +72,7 @@ private:
     TrajectoryCsv trajectory;
     std::optional<StepsCsv> steps;
     PivotNode pivots;
-    lie::Statistics before;  ///< what the integrator did not count itself
+    lie::Statistics earlier_statistics;  ///< of the part of the run before the checkpoint
 };
 
 }  // namespace hilda::studies

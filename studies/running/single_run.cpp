@@ -2,6 +2,9 @@
 #include "studies/running/single_run.hpp"
 
 #include "contact/evolving/unilateral.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "studies/interrupt.hpp"
 #include "studies/message.hpp"
 #include "studies/output.hpp"
@@ -24,31 +27,31 @@ namespace {
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-constexpr double usual_step = 1e-3;  // [s]
+constexpr double default_step = 1e-3;  // [s]
 
-/// Of a scheme that chooses its own steps the nodes are the rows.
+/// Time grid of a run. For an adaptive scheme each node is an output row.
 lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive)
 {
     const double interval = options.interval.value_or(end / 1000);
     try {
-        if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : usual_step);
-        return lie::TimeGrid::over(end, options.step.value_or(usual_step), interval);
+        if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : default_step);
+        return lie::TimeGrid::over(end, options.step.value_or(default_step), interval);
     } catch (const lie::InvalidInput& error) {
         throw UsageError(error.what());
     }
 }
 
-std::string in_words(contact::ContactEvent::Type type)
+std::string event_name(contact::ContactEvent::Type type)
 {
     using Type = contact::ContactEvent::Type;
     return type == Type::lift_off  ? "lift-off"
            : type == Type::impact  ? "impact"
            : type == Type::closing ? "closing"
-                                   : "handed over";
+                                   : "fallback";
 }
 
-/// Not above the number itself, so that a step of what is printed is taken
-std::string in_four_digits(double positive)
+/// Four digits, rounded down, so that the printed step satisfies the limit
+std::string rounded_down(double positive)
 {
     const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 3);
     return fmt::format("{:.4g}", std::floor(positive / unit) * unit);
@@ -69,25 +72,25 @@ bool SingleRun::has_ended(const std::string& directory)
            !std::filesystem::exists(in / "checkpoint.1", error);
 }
 
-Result SingleRun::go()
+RunResult SingleRun::execute()
 {
     begin = Clock::now();
     read();
-    lie::Settings told = options.settings;
-    told.stop = [] { return Interrupt::caught() != 0; };
+    lie::Settings integrator_settings = options.settings;
+    integrator_settings.stop = [] { return Interrupt::caught() != 0; };
     const std::unique_ptr<lie::Integrator> integrator =
-        contact::make_integrator(*description.model, scheme, told);
+        contact::make_integrator(*description.model, scheme, integrator_settings);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
-    evaluate_step(from.has_value());
+    check_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, from);
     if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
         for (const contact::ContactEvent& e : events->events())
-            if (e.t <= last_node)  // not of the step beyond the end, which completes the last node
-                result.events.push_back({e.t,
-                                         description.model->evolving()[static_cast<size_t>(e.contact)]->name,
-                                         in_words(e.type), e.speed});
+            if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
+                result.events.push_back(
+                    {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
+                     event_name(e.type), e.speed});
     finish();
     return std::move(result);
 }
@@ -100,17 +103,17 @@ void SingleRun::read()
     result.end = options.end.value_or(description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
     const double reached = static_cast<double>(grid.steps) * grid.h,
-                 between = static_cast<double>(grid.interval) * grid.h;
+                 spacing = static_cast<double>(grid.interval) * grid.h;
     if (reached > result.end * (1 + 1e-9))
-        warn(fmt::format("the end {} s is no multiple of {}: the run ends at {:.12g} s", result.end,
-                         scheme.adaptive ? "--every" : "the step", reached));
-    if (options.interval && *options.interval > 0 && between > *options.interval * (1 + 1e-9))
-        warn(fmt::format("--every {} is no multiple of the step: rows are {:.12g} s apart", *options.interval,
-                         between));
+        warn(fmt::format("the end {} s is not a multiple of {}: the run ends at {:.12g} s", result.end,
+                         scheme.adaptive ? "--interval" : "the step", reached));
+    if (options.interval && *options.interval > 0 && spacing > *options.interval * (1 + 1e-9))
+        warn(fmt::format("--interval {} is not a multiple of the step: rows are {:.12g} s apart",
+                         *options.interval, spacing));
     for (const std::string& w : description.warnings) warn(w);
     for (const std::string& row : result.start.dropped)
         warn(row + ": redundant with the constraints before it, dropped from the equations");
-    say(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
+    log(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
                     result.start.position_residual, result.start.velocity_residual,
                     result.start.projected ? ", projected" : ""));
 
@@ -130,13 +133,13 @@ void SingleRun::read()
     result.warnings = description.warnings;
     result.set = set;
     result.command_line = options.command_line;
-    result.threads = 1;  // what was used, for any --threads
+    result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
     result.files = {"model.json", "trajectory.csv"};
     if (options.log_steps) result.files.emplace_back("steps.csv");
     if (options.vtk) prepare_frames();
     settings = fmt::format(
-        "model {:016x}, integrator {}, step {}, end {}, every {}, tolerance {}, linear solver {}, rho "
+        "model {:016x}, integrator {}, step {}, end {}, interval {}, tolerance {}, linear solver {}, rho "
         "{}{}{}{}{}",
         hash(description.text), scheme.name, grid.h, result.end, result.interval, options.settings.tolerance,
         static_cast<int>(options.settings.linear_solver), options.settings.rho_infinity,
@@ -148,53 +151,54 @@ void SingleRun::read()
 void SingleRun::prepare_frames()
 {
     const lie::TimeGrid at = lie::TimeGrid::over(result.end, grid.h, *options.vtk);
-    if (at.steps / at.interval + 2 > Snapshots::most)
-        throw UsageError(fmt::format("run: --vtk {} makes {} frames, more than {}", *options.vtk,
-                                     at.steps / at.interval + 1, Snapshots::most));
-    const double between = static_cast<double>(at.interval) * at.h;
-    if (between > *options.vtk * (1 + 1e-9))
-        warn(fmt::format("--vtk {} is no multiple of the step: frames are {:.12g} s apart", *options.vtk,
-                         between));
+    if (at.steps / at.interval + 2 > Snapshots::max_frames)
+        throw UsageError(fmt::format("run: --vtk {} gives {} frames, more than {}", *options.vtk,
+                                     at.steps / at.interval + 1, Snapshots::max_frames));
+    const double spacing = static_cast<double>(at.interval) * at.h;
+    if (spacing > *options.vtk * (1 + 1e-9))
+        warn(fmt::format("--vtk {} is not a multiple of the step: frames are {:.12g} s apart", *options.vtk,
+                         spacing));
     frames.emplace(*description.model, at);
     if (!frames->has_contacts())
         throw UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
 }
 
-// A run that is gone on with has been judged when it began.
-void SingleRun::evaluate_step(bool resumed) const
+// A resumed run was checked when it started: it only gives a warning.
+void SingleRun::check_step(bool resumed) const
 {
     const dae::Model& model = *description.model;
     if (scheme.adaptive) {
         for (const auto& force : model.forces())
             if (force->internal_states() > 0)
                 throw UsageError(fmt::format(
-                    "run: {} chooses its own steps; {} remembers numbers from step to step and needs a "
-                    "fixed-step scheme",
-                    scheme.name, force->in_words()));
+                    "run: {} chooses its own steps; {} has internal state variables and needs a fixed-step "
+                    "scheme",
+                    scheme.name, force->label()));
         return;
     }
     const dae::Model::StableStep stable = model.stable_step(description.x);
     if (!(grid.h > stable.h)) return;
-    const std::string what = fmt::format(
-        "the step {} s is above {} s, the largest at which {} is stable with an explicit step", grid.h,
-        in_four_digits(stable.h), model.forces()[static_cast<size_t>(stable.force)]->in_words());
-    if (!options.force && !resumed) throw UsageError("run: " + what + "; --force overrides");
+    const std::string what =
+        fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
+                    rounded_down(stable.h), model.forces()[static_cast<size_t>(stable.force)]->label());
+    if (!options.force && !resumed) throw UsageError("run: " + what + "; --force accepts it");
     warn(what);
 }
 
 std::optional<Checkpoint> SingleRun::load_checkpoint() const
 {
     if (has_ended(directory))
-        throw UsageError(directory + ": has no checkpoint, and its run has ended; --force starts it again");
+        throw UsageError(directory + ": has no checkpoint, and its run is complete; --force starts it again");
     std::optional<Checkpoint> found = load(directory);
-    if (!found) warn(directory + ": has no checkpoint; starting at the beginning");
+    if (!found) warn(directory + ": has no checkpoint; starting from the initial state");
     if (found && found->settings != settings)
-        throw UsageError(fmt::format("{}: the checkpoint belongs to another run: ({}), not ({})", directory,
-                                     found->settings, settings));
+        throw UsageError(
+            fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})", directory,
+                        found->settings, settings));
     return found;
 }
 
-// What an earlier run left must not be taken for ours.
+// Removes the files of an earlier run, so that they cannot be taken for those of this run.
 void SingleRun::clear_directory() const
 {
     make_directory(directory);
@@ -213,24 +217,24 @@ void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoin
     lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
                             : lie::March(description.x, integrator, grid.h);
     if (from) {
-        seconds_before = from->wall_seconds;
+        earlier_seconds = from->wall_seconds;
         result.resumed_at = from->number;
     }
     begin = Clock::now();
-    // From the first moment on there is something to go on from.
+    // A checkpoint at the start, so that the run can be resumed at any time.
     if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
     advance(march, integrator, recorder);
     last_node = march.node().t;
     result.invariants = recorder.invariants();
     recorder.flush();
-    evaluate_contacts();
+    check_contacts();
 }
 
-// Where λ_N is not zero, the normals that a surface gives are not those of its points; where a contact pulls, the bodies
-// would have parted.
-void SingleRun::evaluate_contacts()
+// Warnings: λ_N ≠ 0 if a surface returns normals that are not those of its points; F_N < 0 in a bilateral
+// contact means that bodies free to separate would have separated.
+void SingleRun::check_contacts()
 {
-    const auto tell = [&](const std::string& what) {
+    const auto add_warning = [&](const std::string& what) {
         warn(what);
         result.warnings.push_back(what);
     };
@@ -238,16 +242,18 @@ void SingleRun::evaluate_contacts()
     for (size_t k = 0; k < result.contacts.size(); ++k) {
         const ContactExtremes& c = result.invariants.contact[k];
         if (c.normals_differ() && c.lambda_N > ContactExtremes::rounding(*description.model))
-            tell(fmt::format(
-                "contact '{}': lambda_N of {:.1e} N beside a normal force of {:.1e} N: the normals of "
-                "its surfaces are not those of their points",
+            add_warning(fmt::format(
+                "contact '{}': lambda_N reaches {:.1e} N at a normal force of {:.1e} N: the normals of its "
+                "surfaces do not belong to their contact points",
                 result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
         if (!contacts[k]->unilateral.enabled &&
             c.F_N_least < -ContactExtremes::rounding(*description.model) &&
             c.F_N_least < -1e-9 * std::abs(c.F_N_most))
-            tell(fmt::format(
-                "contact '{}': pulls, with up to {:.3g} N; bodies that are free to part would have parted",
-                result.contacts[k], -c.F_N_least));
+            add_warning(
+                fmt::format("contact '{}': the normal force is tensile, up to {:.3g} N; with \"unilateral\": "
+                            "true the bodies "
+                            "would separate",
+                            result.contacts[k], -c.F_N_least));
     }
 }
 
@@ -262,7 +268,7 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         try {
             march.advance(observers);
             return true;
-        } catch (const lie::Interrupted&) {  // in the middle of a step; the march stands where it was
+        } catch (const lie::Interrupted&) {  // during a step; the current node is unchanged
             return false;
         }
     };
@@ -276,21 +282,21 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
                 saved = Clock::now();
             }
         }
-        count(march, recorder);  // the look ahead of finish() is no step of the run
+        count(march, recorder);  // before the additional step of finish(), which is not a step of the run
         line.clear();
         if (march.number() == grid.steps) return march.finish(observers);
         result.status = "interrupted";
         result.exit_code = exit_code::signal + Interrupt::caught();
         if (!scheme.adaptive) save_checkpoint(march, recorder);
         if (!options.quiet)
-            message(scheme.adaptive
-                        ? "hilda: interrupted\n"
-                        : "hilda: interrupted; --resume goes on from the checkpoint in " + directory + '\n');
+            message(scheme.adaptive ? "hilda: interrupted\n"
+                                    : "hilda: interrupted; --resume continues from the checkpoint in " +
+                                          directory + '\n');
     } catch (const lie::NumericalFailure& failure) {
         count(march, recorder);
         line.clear();
         failed(failure, march);
-        // The node that the failed step should have left is the last good one, and may be a row.
+        // The start node of the failed step is the last valid node, and may be an output row.
         if (failure.status != "constraint_drift") march.finish(observers);
     }
 }
@@ -299,16 +305,16 @@ void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
 {
     Checkpoint c = recorder.checkpoint(march);
     c.settings = settings;
-    c.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+    c.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
     save(c, directory);
-    say(fmt::format("checkpoint at step {}", march.number()));
+    log(fmt::format("checkpoint at step {}", march.number()));
 }
 
 void SingleRun::count(const lie::March& march, const Recorder& recorder)
 {
     result.statistics = recorder.statistics();
     result.t = march.node().t;
-    result.wall_seconds = seconds_before + seconds(Clock::now() - begin);
+    result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
 }
 
 void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
@@ -335,7 +341,7 @@ void SingleRun::finish()
     write_file(path("summary.json"), as_text(summary(result)));
 }
 
-void SingleRun::say(const std::string& what) const
+void SingleRun::log(const std::string& what) const
 {
     if (options.verbose && !options.quiet) message("hilda: " + what + '\n');
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One model, one integrator, one directory.
+/// The simulation of one model with one integrator, and its output directory.
 
 #pragma once
 
 #include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/progress.hpp"
@@ -15,19 +16,23 @@
 #include <optional>
 #include <string>
 
+namespace hilda::lie {
+class Integrator;
+}
+
 namespace hilda::studies {
 
 class SingleRun {
 public:
-    /// Options and scheme must outlive the run.
+    /// Options and scheme must outlive this object.
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
 
-    /// Reads the model, marches, writes. A numerical failure and an interruption end up in the result;
-    /// everything else that goes wrong is thrown, and before anything is written where it lies in the model
-    /// or the options.
-    Result go();
+    /// Reads the model, integrates, writes the files and returns the result. A numerical failure or an
+    /// interruption is reported in the result. All other errors are thrown: lie::InvalidInput and UsageError
+    /// before any file is written, IoError.
+    RunResult execute();
 
-    /// The directory holds the summary of a run and nothing to go on from.
+    /// True if the directory contains the summary of a run and no checkpoint.
     static bool has_ended(const std::string& directory);
 
 private:
@@ -35,20 +40,21 @@ private:
 
     void read();
     void prepare_frames();
-    /// Refuses a step that a force does not stand, or a scheme.
-    void evaluate_step(bool resumed) const;
+    /// UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
+    /// force has internal state variables.
+    void check_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;
     void clear_directory() const;
     void march(lie::Integrator& integrator, const std::optional<Checkpoint>& from);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
-    void evaluate_contacts();
+    void check_contacts();
     void failed(const lie::NumericalFailure& failure, const lie::March& march);
     void finish();
 
     std::string path(const std::string& file) const { return directory + '/' + file; }
-    void say(const std::string& what) const;
+    void log(const std::string& what) const;
     void warn(const std::string& what) const;
 
     const RunOptions& options;
@@ -58,10 +64,10 @@ private:
     std::optional<ModelFrames> frames;
     lie::TimeGrid grid;
     std::string settings;
-    double last_node = 0;  ///< time of the last node [s]
+    double last_node = 0;  ///< time of the last accepted node [s]
     Clock::time_point begin;
-    double seconds_before = 0;  ///< of a run that is gone on with
-    Result result;
+    double earlier_seconds = 0;  ///< wall time before the checkpoint [s]
+    RunResult result;
 };
 
 }  // namespace hilda::studies

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/summary.hpp"
 
+#include "lie/integrator.hpp"
 #include "studies/output.hpp"
 #include "studies/running/diagnosis.hpp"
 
@@ -23,7 +24,7 @@ std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, 
 
 }  // namespace
 
-nlohmann::ordered_json summary(const Result& r)
+nlohmann::ordered_json summary(const RunResult& r)
 {
     nlohmann::ordered_json out = {{"status", r.status}, {"exit_code", r.exit_code}};
     if (!r.message.empty()) out["message"] = r.message;
@@ -41,10 +42,11 @@ nlohmann::ordered_json summary(const Result& r)
                     {"warnings", r.warnings}};
     out["integrator"] = {{"name", r.integrator}};
     if (r.rtol > 0)
-        out["integrator"].update({{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"every", r.interval}});
+        out["integrator"].update(
+            {{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"interval", r.interval}});
     else
         out["integrator"].update(
-            {{"step", r.step}, {"end", r.end}, {"every", r.interval}, {"tolerance", r.tolerance}});
+            {{"step", r.step}, {"end", r.end}, {"interval", r.interval}, {"tolerance", r.tolerance}});
     out["counters"] = {{"steps", r.statistics.steps},
                        {"newton_iterations", r.statistics.iterations},
                        {"factorizations", r.statistics.factorizations},
@@ -68,10 +70,10 @@ nlohmann::ordered_json summary(const Result& r)
         }
     }
     if (!r.events.empty()) {
-        constexpr size_t most = 1000;  // of a ball that comes to rest by bouncing there are many
+        constexpr size_t most = 1000;  // a bouncing ball that comes to rest causes many events
         out["contact_events"] = {{"count", r.events.size()}, {"first", nlohmann::ordered_json::array()}};
         for (size_t k = 0; k < std::min(most, r.events.size()); ++k) {
-            const Result::Event& e = r.events[k];
+            const RunResult::Event& e = r.events[k];
             out["contact_events"]["first"].push_back(
                 {{"t", e.t}, {"contact", e.contact}, {"what", e.what}, {"speed", e.speed}});
         }
@@ -86,7 +88,7 @@ nlohmann::ordered_json summary(const Result& r)
     return out;
 }
 
-void print(const Result& r, std::ostream& out)
+void print(const RunResult& r, std::ostream& out)
 {
     const auto line = [&](const char* what, const std::string& text) {
         out << fmt::format("{:<14}{}\n", what, text);
@@ -97,10 +99,10 @@ void print(const Result& r, std::ostream& out)
                      count(r.start.rows, "constraint row"),
                      r.contacts.empty() ? "" : count(static_cast<long>(r.contacts.size()), "contact") + ", ",
                      count(r.start.degrees_of_freedom, "degree")));
-    const std::string grain = r.rtol > 0
-                                  ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
-                                  : fmt::format("step {} s", step_text(r.step));
-    line("integrator", fmt::format("{}, {}, end {:g} s", r.integrator, grain, r.end));
+    const std::string resolution = r.rtol > 0
+                                       ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
+                                       : fmt::format("step {} s", step_text(r.step));
+    line("integrator", fmt::format("{}, {}, end {:g} s", r.integrator, resolution, r.end));
     if (r.status != "ok") line("status", fmt::format("{} at t = {:g} s", r.status, r.t));
     line("steps", fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps,
                               per_step(r.statistics), count(r.statistics.factorizations, "factorization"),

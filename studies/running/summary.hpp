@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What came of a run: summary.json for programs, a short table for people.
+/// The result of a run, as summary.json and as a short table on the terminal.
 
 #pragma once
 
 #include "dae/start.hpp"
+#include "lie/statistics.hpp"
 #include "studies/running/csv_trajectory.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,23 +15,23 @@
 
 namespace hilda::studies {
 
-struct Result {
+struct RunResult {
     std::string status = "ok", message;
     int exit_code = 0;
 
     std::string model, integrator;
-    double step = 0, end = 0, interval = 0, tolerance = 0;  ///< every: between rows as they lie on the grid
-    double rtol = 0,
-           atol = 0;  ///< of a scheme that chooses its own steps: it has no step, and a row is a node
-    double t = 0;     ///< reached [s]
+    double step = 0, end = 0, interval = 0;  ///< [s]; interval: between output rows, on the time grid
+    double tolerance = 0;                    ///< of the Newton iteration
+    double rtol = 0, atol = 0;  ///< of an adaptive scheme, whose nodes are the output rows; 0: fixed step
+    double t = 0;               ///< time reached [s]
 
     int bodies = 0, constraints = 0;
-    std::vector<std::string> contacts;  ///< those that evolve
-    /// What happened to those that open, since the run began or went on
+    std::vector<std::string> contacts;  ///< names of the contact constraints
+    /// Event of a unilateral contact: closing, impact, lift-off or switch to the fallback
     struct Event {
         double t;  ///< [s]
         std::string contact, what;
-        double speed;  ///< of approach [m/s]
+        double speed;  ///< approach velocity [m/s]
     };
     std::vector<Event> events;
     dae::StartReport start;
@@ -39,7 +40,7 @@ struct Result {
     lie::Statistics statistics;
     Invariants invariants;
     double setup_seconds = 0, wall_seconds = 0;
-    long resumed_at = -1;  ///< step number; -1: not resumed
+    long resumed_at = -1;  ///< number of the step; -1: not resumed
     std::string command_line;
     int threads = 1;
 
@@ -47,8 +48,10 @@ struct Result {
     std::vector<std::string> files;  ///< written into the directory
 };
 
-nlohmann::ordered_json summary(const Result& result);
+/// The contents of summary.json
+nlohmann::ordered_json summary(const RunResult& result);
 
-void print(const Result& result, std::ostream& out);
+/// Prints the result as a short table.
+void print(const RunResult& result, std::ostream& out);
 
 }  // namespace hilda::studies

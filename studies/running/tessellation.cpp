@@ -24,15 +24,18 @@ namespace {
 using contact::Surface;
 using lie::Vec3;
 
-constexpr int around = 24, down = 12, across = 8;  // divisions of a circle, of half a circle, of a patch
-constexpr double margin = 1.1;                     // of a patch beyond what touches it
-constexpr double foot_size = 0.05;                 // half a side of a foot, over the motion
-constexpr double furthest = 1e3;                   // of a surface from its origin, over its size
+constexpr int around = 24, down = 12,
+              across = 8;           // numbers of divisions of a circle, of a half circle, of a patch
+constexpr double margin = 1.1;      // size of a patch, relative to the region to be covered
+constexpr double foot_size = 0.05;  // half side of a foot, relative to the size of the scene
+constexpr double largest_distance =
+    1e3;  // of a surface point from the origin, relative to the size of the surface
 constexpr double pi = std::numbers::pi;
 
-Vec3 nowhere() { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+Vec3 missing_point() { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
-/// Quads between rows of points; rows and columns may join to rings. The normal is row direction × column direction.
+/// Quadrilaterals of a grid of points; rows and columns may be closed to rings. The normal is row direction ×
+/// column direction.
 void add_quads(Mesh& mesh, int first, int rows, int columns, bool rows_join, bool columns_join)
 {
     const auto at = [&](int r, int c) { return first + r % rows * columns + c % columns; };
@@ -41,8 +44,8 @@ void add_quads(Mesh& mesh, int first, int rows, int columns, bool rows_join, boo
             mesh.polygon.push_back({at(r, c), at(r + 1, c), at(r + 1, c + 1), at(r, c + 1)});
 }
 
-/// The image of the unit sphere, by latitude and longitude about z
-Mesh globe(const std::function<Vec3(const Vec3&)>& image)
+/// Image of the unit sphere, with a grid of latitude and longitude about z
+Mesh sphere_image(const std::function<Vec3(const Vec3&)>& image)
 {
     Mesh mesh;
     mesh.point.push_back(image(Vec3::UnitZ()));
@@ -63,7 +66,7 @@ Mesh globe(const std::function<Vec3(const Vec3&)>& image)
     return mesh;
 }
 
-/// The image of a square in the plane z = 0
+/// Image of a square in the plane z = 0
 Mesh patch(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image)
 {
     Mesh mesh;
@@ -75,12 +78,12 @@ Mesh patch(const Vec3& centre, double half, const std::function<Vec3(const Vec3&
     return mesh;
 }
 
-Mesh patch(const Reach& reach, const std::function<Vec3(const Vec3&)>& image)
+Mesh patch(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image)
 {
-    if (reach.box.isEmpty()) return patch(Vec3::Zero(), 1, image);
-    const Vec3 sides = reach.box.sizes();
+    if (extent.box.isEmpty()) return patch(Vec3::Zero(), 1, image);
+    const Vec3 sides = extent.box.sizes();
     const double half = margin * 0.5 * std::max(sides.x(), sides.y());
-    return patch(reach.box.center(), half > 0 ? half : 1, image);
+    return patch(extent.box.center(), half > 0 ? half : 1, image);
 }
 
 Mesh fan(double R)
@@ -94,12 +97,12 @@ Mesh fan(double R)
     return mesh;
 }
 
-/// At least as long as it is wide
-Mesh tube(double R, const Reach& reach)
+/// Cylinder of radius R about z; its length is at least its diameter
+Mesh tube(double R, const DrawingExtent& extent)
 {
-    const bool known = !reach.box.isEmpty();
-    const double middle = known ? reach.box.center().z() : 0;
-    const double half = std::max(R, known ? margin * 0.5 * reach.box.sizes().z() : 0);
+    const bool known = !extent.box.isEmpty();
+    const double middle = known ? extent.box.center().z() : 0;
+    const double half = std::max(R, known ? margin * 0.5 * extent.box.sizes().z() : 0);
     Mesh mesh;
     for (int r = 0; r < around; ++r)
         for (int c = 0; c <= across; ++c)
@@ -121,7 +124,7 @@ Mesh ring(double R, double r)
     return mesh;
 }
 
-/// As it was given
+/// The triangles of a mesh
 Mesh facets(const contact::TriangleMesh& given)
 {
     Mesh mesh;
@@ -130,14 +133,15 @@ Mesh facets(const contact::TriangleMesh& given)
     return mesh;
 }
 
-/// Where the ray from the origin along u leaves G < 0
-std::optional<Vec3> way_out(const Surface& surface, const Vec3& u)
+/// Intersection of the ray from the origin along u with the surface, from G < 0 to G >= 0, by bisection;
+/// empty if there is none
+std::optional<Vec3> exit_point(const Surface& surface, const Vec3& u)
 {
     const auto inside = [&](double s) { return surface.value(s * u) < 0; };
     double lower = 0, upper = 0.1 * surface.size();
     if (!inside(lower)) return {};
     while (inside(upper)) {
-        if (!(upper < furthest * surface.size())) return {};
+        if (!(upper < largest_distance * surface.size())) return {};
         lower = upper;
         upper *= 1.2;
     }
@@ -148,8 +152,8 @@ std::optional<Vec3> way_out(const Surface& surface, const Vec3& u)
     return Vec3(upper * u);
 }
 
-/// Without the points that were not found, and what was between them
-Mesh found(const Mesh& all)
+/// Removes the points that were not found, and the polygons that contain them
+Mesh without_missing_points(const Mesh& all)
 {
     Mesh mesh;
     std::vector<int> number(all.point.size(), -1);
@@ -165,34 +169,35 @@ Mesh found(const Mesh& all)
     return mesh;
 }
 
-Mesh outward(const Surface& surface, const Reach& reach)
+Mesh mesh_of(const Surface& surface, const DrawingExtent& extent)
 {
-    const auto as_it_is = [](const Vec3& a) { return a; };
-    if (dynamic_cast<const contact::Plane*>(&surface) != nullptr) return patch(reach, as_it_is);
+    const auto identity = [](const Vec3& a) { return a; };
+    if (dynamic_cast<const contact::Plane*>(&surface) != nullptr) return patch(extent, identity);
     if (dynamic_cast<const contact::Foot*>(&surface) != nullptr)
-        return patch(Vec3::Zero(), reach.motion > 0 ? foot_size * reach.motion : 1, as_it_is);
+        return patch(Vec3::Zero(), extent.scene_size > 0 ? foot_size * extent.scene_size : 1, identity);
     if (const auto* disk = dynamic_cast<const contact::Disk*>(&surface)) return fan(disk->R);
     if (const auto* cylinder = dynamic_cast<const contact::Cylinder*>(&surface))
-        return tube(cylinder->R, reach);
+        return tube(cylinder->R, extent);
     if (const auto* torus = dynamic_cast<const contact::Torus*>(&surface)) return ring(torus->R, torus->r);
     if (const auto* mesh = dynamic_cast<const contact::MeshSurface*>(&surface)) return facets(mesh->mesh);
-    const auto or_nowhere = [](const auto& find) {
+    const auto or_missing = [](const auto& find) {
         return [find](const Vec3& at) {
             try {
-                return Vec3(find(at).value_or(nowhere()));
+                return Vec3(find(at).value_or(missing_point()));
             } catch (const lie::NumericalFailure&) {
-                return nowhere();
+                return missing_point();
             }
         };
     };
-    if (surface.convex()) return globe(or_nowhere([&](const Vec3& u) { return surface.support(u); }));
-    if (!endless(surface)) return globe(or_nowhere([&](const Vec3& u) { return way_out(surface, u); }));
-    return patch(reach, or_nowhere([&](const Vec3& a) { return std::optional(surface.project(a)); }));
+    if (surface.convex()) return sphere_image(or_missing([&](const Vec3& u) { return surface.support(u); }));
+    if (!is_unbounded(surface))
+        return sphere_image(or_missing([&](const Vec3& u) { return exit_point(surface, u); }));
+    return patch(extent, or_missing([&](const Vec3& a) { return std::optional(surface.project(a)); }));
 }
 
 }  // namespace
 
-bool endless(const Surface& surface)
+bool is_unbounded(const Surface& surface)
 {
     if (surface.convex() || dynamic_cast<const contact::Disk*>(&surface) != nullptr ||
         dynamic_cast<const contact::Torus*>(&surface) != nullptr ||
@@ -201,13 +206,13 @@ bool endless(const Surface& surface)
     if (dynamic_cast<const contact::HeightMap*>(&surface) != nullptr) return true;
     for (const double sign : {-1., 1.})
         for (int k = 0; k < 3; ++k)
-            if (!way_out(surface, sign * Vec3::Unit(k))) return true;
+            if (!exit_point(surface, sign * Vec3::Unit(k))) return true;
     return false;
 }
 
-Mesh tessellated(const Surface& surface, const Reach& reach)
+Mesh tessellate(const Surface& surface, const DrawingExtent& extent)
 {
-    Mesh mesh = found(outward(surface, reach));
+    Mesh mesh = without_missing_points(mesh_of(surface, extent));
     if (surface.sigma() < 0)
         for (std::vector<int>& polygon : mesh.polygon) std::reverse(polygon.begin(), polygon.end());
     return mesh;

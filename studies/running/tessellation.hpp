@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Surfaces as polygons, to be looked at.
+/// Approximation of surfaces by polygons, for visualisation.
 
 #pragma once
 
@@ -11,23 +11,26 @@ namespace hilda::studies {
 
 struct Mesh {
     std::vector<lie::Vec3> point;           ///< [m]
-    std::vector<std::vector<int>> polygon;  ///< counterclockwise where seen from outside the body
+    std::vector<std::vector<int>> polygon;  ///< vertices, counterclockwise seen from outside the body
 
     bool operator==(const Mesh&) const = default;
 };
 
-/// How much of a surface without end is wanted
-struct Reach {
-    Eigen::AlignedBox3d box = {};  ///< what the others visit, in the frame of the surface; may be empty
-    double motion = 0;             ///< the size of all that moves [m], by which a Foot is drawn
+/// The part of an unbounded surface that is drawn
+struct DrawingExtent {
+    Eigen::AlignedBox3d box =
+        {};                 ///< region of the other bodies, in the frame of the surface [m]; may be empty
+    double scene_size = 0;  ///< diagonal of the region of all bodies [m]; sets the size of a Foot
 };
 
-/// Whether a reach has a say: for a plane, a foot, a cylinder, and what no ray from its origin leaves
-bool endless(const contact::Surface& surface);
+/// True for a surface that is drawn by an extent: plane, foot, cylinder, height map, and an implicit surface
+/// with a coordinate half-axis that does not intersect it
+bool is_unbounded(const contact::Surface& surface);
 
-/// In the frame of the surface; a few hundred points. A convex surface by its support, so that it is fine where it
-/// is curved; one that is a formula along rays from its origin, or over z = 0 of its frame where it has no end.
-/// A mesh is drawn as its triangles. What cannot be found is left open.
-Mesh tessellated(const contact::Surface& surface, const Reach& reach);
+/// Polygons of a surface, in the frame of the surface; at most about 500 points, except for a mesh, whose
+/// triangles are used. A convex surface is sampled by its support function, which places the points by normal
+/// direction. An implicit surface is sampled along rays from its origin, an unbounded one by projection of
+/// points of the plane z = 0. Points that are not found are left out together with their polygons.
+Mesh tessellate(const contact::Surface& surface, const DrawingExtent& extent);
 
 }  // namespace hilda::studies

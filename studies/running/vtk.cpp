@@ -41,7 +41,7 @@ std::string escaped(const std::string& name)
 
 std::string frame_file(const std::string& name, size_t k) { return fmt::format("vtk/{}-{:06}.vtp", name, k); }
 
-/// The numbers of a <DataArray>
+/// A <DataArray> element
 template <class Number>
 struct Array {
     std::string name;
@@ -55,7 +55,7 @@ struct Array {
     }
     void add(const Vec3& v)
     {
-        constexpr double least = std::numeric_limits<Number>::min();  // some readers stop at smaller ones
+        constexpr double least = std::numeric_limits<Number>::min();  // some readers fail at denormal numbers
         for (const double x : v) add(std::abs(x) < least ? 0 : static_cast<Number>(x));
     }
     std::string xml() const
@@ -69,7 +69,7 @@ struct Array {
 using Numbers = Array<int>;
 using Vectors = Array<float>;
 
-/// Cells, by the points that they have
+/// Cells, by the numbers of their points
 struct Cells {
     Numbers connectivity = {"connectivity", 1}, offsets = {"offsets", 1};
     int count = 0, ends = 0;
@@ -85,30 +85,30 @@ struct Cells {
 
 }  // namespace
 
-bool EvenChoice::takes(long n)
+bool EvenSelection::is_selected(long n)
 {
     if (selected == count || n != next()) return false;
     while (selected < count && next() <= n) ++selected;
     return true;
 }
 
-long EvenChoice::next() const
+long EvenSelection::next() const
 {
     return count == 1 ? 0 : std::lround(static_cast<double>(steps) * selected / (count - 1));
 }
 
-void Snapshots::show(int body, const contact::Shape& shape)
+void Snapshots::add_surface(int body, const contact::Shape& shape)
 {
-    const auto same = [&](const Shown& s) {
+    const auto same = [&](const BodySurface& s) {
         return s.body == body && s.shape.surface == shape.surface && s.shape.position == shape.position &&
                s.shape.orientation == shape.orientation;
     };
-    if (std::none_of(shown.begin(), shown.end(), same)) shown.push_back({body, shape});
+    if (std::none_of(surfaces.begin(), surfaces.end(), same)) surfaces.push_back({body, shape});
 }
 
-Snapshots::ContactPoint Snapshots::contact_point(int contact, int i, const contact::ContactState& now,
-                                                 const contact::Wrench& friction,
-                                                 const contact::Deflections& history)
+Snapshots::ContactData Snapshots::contact_data(int contact, int i, const contact::ContactState& now,
+                                               const contact::Wrench& friction,
+                                               const contact::Deflections& history)
 {
     return {.contact = contact,
             .i = i,
@@ -119,63 +119,65 @@ Snapshots::ContactPoint Snapshots::contact_point(int contact, int i, const conta
             .rolling = history.roll_i.slipping || history.roll_j.slipping};
 }
 
-void Snapshots::add(double t, std::vector<Motion> bodies, std::vector<ContactPoint> touches)
+void Snapshots::add(double t, std::vector<Motion> bodies, std::vector<ContactData> contacts)
 {
-    instants.push_back({t, std::move(bodies), std::move(touches)});
+    frames.push_back({t, std::move(bodies), std::move(contacts)});
 }
 
-/// In the frame of the surface: the balls around the surfaces of other bodies, and the contact points
-Reach Snapshots::reach(const Shown& of, const std::vector<double>& radius) const
+/// Region, in the frame of the surface, of the bounding spheres of the surfaces of other bodies and of the
+/// contact points, over all frames
+DrawingExtent Snapshots::extent_of(const BodySurface& of, const std::vector<double>& radius) const
 {
-    Reach reach;
+    DrawingExtent extent;
     Eigen::AlignedBox3d whole;
-    for (const Instant& now : instants) {
+    for (const Frame& now : frames) {
         const Motion& own = motion(now.body, of.body);
         const auto visit = [&](const Vec3& p, double R) {
             const Vec3 a = of.shape.to_surface(own.A.transpose() * (p - own.r));
             for (const double sign : {-R, R}) {
-                reach.box.extend(a + Vec3::Constant(sign));
+                extent.box.extend(a + Vec3::Constant(sign));
                 whole.extend(p + Vec3::Constant(sign));
             }
         };
-        for (size_t k = 0; k < shown.size(); ++k) {
-            if (shown[k].body == of.body || !(radius[k] > 0)) continue;
-            const Motion& b = motion(now.body, shown[k].body);
-            visit(b.r + b.A * shown[k].shape.position, radius[k]);
+        for (size_t k = 0; k < surfaces.size(); ++k) {
+            if (surfaces[k].body == of.body || !(radius[k] > 0)) continue;
+            const Motion& b = motion(now.body, surfaces[k].body);
+            visit(b.r + b.A * surfaces[k].shape.position, radius[k]);
         }
-        for (const ContactPoint& t : now.contact_point) visit(t.C, 0);
+        for (const ContactData& t : now.contacts) visit(t.C, 0);
     }
-    if (!whole.isEmpty()) reach.motion = whole.diagonal().norm();
-    return reach;
+    if (!whole.isEmpty()) extent.scene_size = whole.diagonal().norm();
+    return extent;
 }
 
-std::vector<Snapshots::Piece> Snapshots::pieces() const
+std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
 {
-    const auto piece = [](const Shown& s, const Reach& reach) {
-        Piece p{s.body, tessellated(*s.shape.surface, reach)};
+    const auto piece = [](const BodySurface& s, const DrawingExtent& extent) {
+        BodyMesh p{s.body, tessellate(*s.shape.surface, extent)};
         for (Vec3& a : p.mesh.point) a = s.shape.to_body(a);
         return p;
     };
-    std::vector<double> radius(shown.size(), 0);  // about the origin of the surface; none without end
-    for (size_t k = 0; k < shown.size(); ++k)
-        if (!endless(*shown[k].shape.surface))
-            for (const Vec3& a : tessellated(*shown[k].shape.surface, {}).point)
+    std::vector<double> radius(surfaces.size(),
+                               0);  // about the origin of the surface; 0 for unbounded surfaces
+    for (size_t k = 0; k < surfaces.size(); ++k)
+        if (!is_unbounded(*surfaces[k].shape.surface))
+            for (const Vec3& a : tessellate(*surfaces[k].shape.surface, {}).point)
                 radius[k] = std::max(radius[k], a.norm());
-    std::vector<Piece> all;
-    for (const Shown& s : shown) {
-        Piece p = piece(s, endless(*s.shape.surface) ? reach(s, radius) : Reach());
+    std::vector<BodyMesh> all;
+    for (const BodySurface& s : surfaces) {
+        BodyMesh p = piece(s, is_unbounded(*s.shape.surface) ? extent_of(s, radius) : DrawingExtent());
         if (std::find(all.begin(), all.end(), p) == all.end()) all.push_back(std::move(p));
     }
     return all;
 }
 
-std::string Snapshots::poly_data(const Instant& now, const std::vector<Piece>& pieces)
+std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes)
 {
     Vectors points{"Points", 3}, velocities{"velocity", 3}, N{"normal_force", 3}, F{"friction", 3};
     Numbers slipping{"slipping", 1}, rolling{"rolling", 1}, body{"body", 1}, contact{"contact", 1};
-    Cells vertices, polygons;  // in this order VTK takes the data of cells
+    Cells vertices, polygons;  // VTK expects cell data in this order
     int count = 0;
-    for (const ContactPoint& t : now.contact_point) {
+    for (const ContactData& t : now.contacts) {
         points.add(t.C);
         velocities.add(velocity(motion(now.body, t.i), t.C));
         N.add(t.N);
@@ -186,7 +188,7 @@ std::string Snapshots::poly_data(const Instant& now, const std::vector<Piece>& p
         contact.add(t.contact);
         vertices.add({0}, count++);
     }
-    for (const Piece& piece : pieces) {
+    for (const BodyMesh& piece : body_meshes) {
         const Motion& b = motion(now.body, piece.body);
         for (const Vec3& a : piece.mesh.point) {
             const Vec3 p = b.r + b.A * a;
@@ -218,15 +220,15 @@ std::string Snapshots::poly_data(const Instant& now, const std::vector<Piece>& p
 void Snapshots::write(const std::string& directory, const std::string& name) const
 {
     make_directory(directory + "/vtk");
-    const std::vector<Piece> all = pieces();
+    const std::vector<BodyMesh> all = body_meshes();
     std::string list =
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
-    for (size_t k = 0; k < instants.size(); ++k) {
+    for (size_t k = 0; k < frames.size(); ++k) {
         const std::string file = frame_file(name, k);
-        write_file(directory + '/' + file, poly_data(instants[k], all));
+        write_file(directory + '/' + file, poly_data(frames[k], all));
         list += "<DataSet timestep=\"";
-        append_number(list, instants[k].t);
+        append_number(list, frames[k].t);
         list += "\" part=\"0\" file=\"" + escaped(file) + "\"/>\n";
     }
     write_file(directory + '/' + name + ".pvd", list + "</Collection>\n</VTKFile>\n");

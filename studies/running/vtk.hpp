@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Snapshots of bodies in contact, for ParaView.
+/// Snapshots of bodies in contact, as files for ParaView.
 
 #pragma once
 
@@ -11,12 +11,13 @@
 
 namespace hilda::studies {
 
-/// `count` of the nodes 0 … steps, in turn: the first, the last and evenly between
-class EvenChoice {
+/// Selects `count` evenly spaced nodes of 0 … steps, including the first and the last. The nodes must be
+/// queried in ascending order.
+class EvenSelection {
 public:
-    EvenChoice(int count, long steps) : count(count), steps(steps) {}
+    EvenSelection(int count, long steps) : count(count), steps(steps) {}
 
-    bool takes(long n);
+    bool is_selected(long n);
 
 private:
     long next() const;
@@ -26,59 +27,64 @@ private:
     int selected = 0;
 };
 
-/// What there is to see of a run: the surfaces of its bodies, and instants. They are kept until the run has ended,
-/// for only then it is known how much of a plane must be drawn.
+/// The surfaces of the bodies of a run, and frames of motions and contacts. The frames are stored until the
+/// end of the run, because the drawn part of an unbounded surface depends on all of them.
 ///
-/// A frame is VTK's XML PolyData, in ASCII: polygons, and a vertex at each contact that presses. Its cells say which
-/// `body` they belong to and which `contact` they are, -1 for polygons. Its points have their `velocity` [m/s]; those
-/// of contacts `normal_force` and `friction` [N], both on the first body, and whether they are `slipping`, `rolling`.
+/// File format: VTK XML PolyData, ASCII, with the polygons of the surfaces and a vertex for each contact with
+/// a positive normal force.
+///     cell data    `body` (number, -1: ground), `contact` (number, -1 for polygons)
+///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the first
+///                  body [N], `slipping`, `rolling` (0 or 1); all vectors global
 class Snapshots {
 public:
-    /// A surface on a body, -1 for one that stands at the origin. What is shown already is not shown twice.
-    void show(int body, const contact::Shape& shape);
+    /// Adds a surface of a body (-1: ground). A surface that was added before is ignored.
+    void add_surface(int body, const contact::Shape& shape);
 
-    /// A contact at an instant
-    struct ContactPoint {
-        int contact, i;  ///< its number, and that of its first body
+    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], all
+    /// global
+    struct ContactData {
+        int contact, i;  ///< number of the contact, and of its first body
         lie::Vec3 C, N, F;
         bool slipping, rolling;
     };
-    static ContactPoint contact_point(int contact, int i, const contact::ContactState& now,
-                                      const contact::Wrench& friction, const contact::Deflections& history);
+    static ContactData contact_data(int contact, int i, const contact::ContactState& now,
+                                    const contact::Wrench& friction, const contact::Deflections& history);
 
-    void add(double t, std::vector<lie::Motion> bodies, std::vector<ContactPoint> touches);
+    /// Adds a frame at the time t [s].
+    void add(double t, std::vector<lie::Motion> bodies, std::vector<ContactData> contacts);
 
-    /// DIR/vtk/NAME-000000.vtp and so on, then DIR/NAME.pvd, which lists them with their times
+    /// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., then DIR/NAME.pvd with the list of files and times.
+    /// IoError.
     void write(const std::string& directory, const std::string& name) const;
-    /// What an earlier write() of that name left
+    /// Removes the files of an earlier write() with this name.
     static void remove(const std::string& directory, const std::string& name);
 
-    static constexpr int most = 1000000;  ///< frames that have different names
+    static constexpr int max_frames = 1000000;  ///< limit of the six-digit file names
 
 private:
-    struct Shown {
+    struct BodySurface {
         int body;
         contact::Shape shape;
     };
-    struct Instant {
+    struct Frame {
         double t;
         std::vector<lie::Motion> body;
-        std::vector<ContactPoint> contact_point;
+        std::vector<ContactData> contacts;
     };
-    /// A mesh in the frame of its body
-    struct Piece {
+    /// A mesh, in the frame of its body
+    struct BodyMesh {
         int body;
         Mesh mesh;
 
-        bool operator==(const Piece&) const = default;
+        bool operator==(const BodyMesh&) const = default;
     };
 
-    std::vector<Piece> pieces() const;
-    Reach reach(const Shown& of, const std::vector<double>& radius) const;
-    static std::string poly_data(const Instant& now, const std::vector<Piece>& pieces);
+    std::vector<BodyMesh> body_meshes() const;
+    DrawingExtent extent_of(const BodySurface& of, const std::vector<double>& radius) const;
+    static std::string poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes);
 
-    std::vector<Shown> shown;
-    std::vector<Instant> instants;
+    std::vector<BodySurface> surfaces;
+    std::vector<Frame> frames;
 };
 
 }  // namespace hilda::studies

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs HILDA into the build folder, then configures, builds and runs the consumer against it.
+# Installs HILDA into the build folder, then configures, builds and runs the consumer with this installation.
 file(REMOVE_RECURSE "${work}")
 
 function(do what)
@@ -18,5 +18,5 @@ do("build" ${CMAKE_COMMAND} --build "${work}/build")
 do("run" "${work}/build/consumer")
 message("${output}")
 if(NOT output MATCHES "rA-half-1")
-    message(FATAL_ERROR "consumer: rA-half-1 is not among the schemes of the installed library")
+    message(FATAL_ERROR "consumer: the installed library does not list the integrator rA-half-1")
 endif()

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists the integrators of an installed HILDA: the shared library must have kept the ones that nobody calls
-// by name, and with them the reader of contacts.
+// Prints the integrators of an installed HILDA. The shared library must contain the integrators and the
+// reader of contacts, which register themselves and are not referenced by name.
 #include <iostream>
 
 #include "dae/model_file_types.hpp"
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 
 int main()
 {

@@ -9,10 +9,10 @@
 using namespace hilda;
 using namespace hilda::contact;
 
-TEST_CASE("a step of bodies in contact takes nothing from the heap", "[contact][allocation]")
+TEST_CASE("a step of bodies in contact does not allocate memory", "[contact][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted: a sanitizer replaces malloc");
         return;
     }
     REQUIRE(tests::allocations_during([] { std::make_shared<Hertz>(1e6); }) > 0);
@@ -29,7 +29,7 @@ TEST_CASE("a step of bodies in contact takes nothing from the heap", "[contact][
         low.r = {0, 0, 0.1495};
         low.rdot = {0.5, 0.1, 0};
         low.omega_bar = {0.3, 0, 2};
-        high.r = {0.02, 0.01, 0.46};  // falls on the other, and off it
+        high.r = {0.02, 0.01, 0.46};  // falls onto the lower ball and rolls off
         scene.add(inertia, low);
         scene.add(inertia, high);
         scene.add(Inertia{}, Motion{});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Duals against differences, and a surface written by its user against the built-in one.
+/// Dual against finite differences; a user-defined implicit surface against the built-in ellipsoid.
 
 #include "contact/implicit_surface.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
@@ -27,7 +27,7 @@ struct Function {
 #f, [](const Dual& x) -> Dual { return f; }, [](double x) -> double { return f; } \
     }
 
-/// Every function of one variable, on a range where it is smooth; add the next one here.
+/// All functions of one variable, on an interval where they are smooth. Add new functions here.
 const Function functions[] = {
     BOTH(sin(x)),
     BOTH(cos(x)),
@@ -60,7 +60,7 @@ const Function functions[] = {
 
 #undef BOTH
 
-/// Some point with slope and bend in every direction
+/// A function whose first and second derivatives are not zero
 Dual inner(const Vec3& a)
 {
     const Dual x = Dual::variable(a.x(), 0), y = Dual::variable(a.y(), 1), z = Dual::variable(a.z(), 2);
@@ -74,7 +74,7 @@ double inner_value(const Vec3& a)
 
 }  // namespace
 
-TEST_CASE("every function of a dual has the derivatives of the number", "[contact][dual]")
+TEST_CASE("all functions of a Dual have the derivatives of the real function", "[contact][dual]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 a = random.vector(0.5);
@@ -94,7 +94,7 @@ TEST_CASE("every function of a dual has the derivatives of the number", "[contac
     }
 }
 
-TEST_CASE("duals compare by value", "[contact][dual]")
+TEST_CASE("Duals are compared by value", "[contact][dual]")
 {
     const Dual x = Dual::variable(1, 0), y = Dual::variable(2, 1);
     CHECK((x < y && x <= y && y > x && y >= x && x < 1.5 && !(x > y)));
@@ -104,7 +104,7 @@ TEST_CASE("duals compare by value", "[contact][dual]")
     CHECK(z.g == Vec3(1.5, 1.5 - 2.25, 0));
 }
 
-TEST_CASE("an ellipsoid written by its user is the built-in one", "[contact][surface]")
+TEST_CASE("a user-defined implicit ellipsoid equals the built-in ellipsoid", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 D(0.9, 0.7, 1.2);

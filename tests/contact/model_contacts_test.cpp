@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contacts of a model file: what is read, and what is refused where.
+// Contacts in model files: reading, canonical text, and the place of errors.
 #include <catch2/catch.hpp>
 
 #include "contact/compliant/contact_force.hpp"
@@ -16,7 +16,7 @@ const std::filesystem::path models = std::filesystem::path(HILDA_TEST_DATA) / "m
 const std::string steel = R"({"type": "hooke", "stiffness": 1e4})", rough = R"({"mu_s": 0.3, "K_E": 1e4})",
                   sphere = R"({"type": "sphere", "radius": 0.2})", flat = R"({"type": "plane"})";
 
-/// One ball on the ground. The contact is on line 3.
+/// A ball on the ground. The keys of the contact are on lines 2 to 6.
 std::string ball(const std::string& surface_i = sphere, const std::string& surface_j = flat,
                  const std::string& normal = steel, const std::string& friction = rough, double z = 0.2)
 {
@@ -41,7 +41,8 @@ std::string refusal(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("every kind of contact is read, starts, and is written the same", "[contact][model_file]")
+TEST_CASE("all contacts of the example models are read, can be started, and have a stable canonical text",
+          "[contact][model_file]")
 {
     int contacts = 0;
     for (const auto& entry : std::filesystem::directory_iterator(models / "contacts")) {
@@ -62,7 +63,7 @@ TEST_CASE("every kind of contact is read, starts, and is written the same", "[co
     CHECK(contacts >= 8);
 }
 
-TEST_CASE("defaults of a contact are those of the balanced preset", "[contact][model_file]")
+TEST_CASE("the defaults of a contact are those of the balanced preset", "[contact][model_file]")
 {
     const dae::Description d = dae::read_model(ball(), "m.json");
     CHECK_THAT(d.text, Catch::Contains(R"("law": "slide-roll-spin")") && Catch::Contains(R"("mu_k": 0.3)") &&
@@ -73,7 +74,8 @@ TEST_CASE("defaults of a contact are those of the balanced preset", "[contact][m
                Catch::Contains(R"("beta": 1)"));
 }
 
-TEST_CASE("a patch that resists spinning has the modulus of a Hertzian normal law", "[contact][model_file]")
+TEST_CASE("Hertzian spinning friction uses the modulus of the Hertzian normal law by default",
+          "[contact][model_file]")
 {
     const std::string hertz = R"({"type": "hertz", "E_star": 2e6})";
     const auto stiffness = [&](const std::string& normal, const std::string& more) {
@@ -90,7 +92,7 @@ TEST_CASE("a patch that resists spinning has the modulus of a Hertzian normal la
                Catch::Contains("(/contacts/0/friction): missing key 'E_star'"));
 }
 
-TEST_CASE("a contact that is none is refused at its place", "[contact][model_file]")
+TEST_CASE("an invalid contact is rejected with its position in the file", "[contact][model_file]")
 {
     struct Bad {
         std::string text, message;
@@ -131,19 +133,19 @@ TEST_CASE("a contact that is none is refused at its place", "[contact][model_fil
         {friction(R"({"mu_s": 0.2, "K_E": 1, "mu_r": 1})"),
          "m.json:6:25 (/contacts/0/friction/mu_r): unknown key \"mu_r\""},
         {friction(R"({"mu_s": 0.2})"), "m.json:6:1 (/contacts/0/friction): missing key 'K_E'"},
-        // what the contact itself objects to
+        // errors found by the contact itself
         {ball(sphere, flat, steel, rough, 0.17),
-         "m.json:2:2 (/contacts/0): contact 'c': the surfaces must not overlap by more than a tenth of a "
-         "radius"},
+         "m.json:2:2 (/contacts/0): contact 'c': the surfaces must not overlap by more than a tenth of "
+         "the radius"},
         {ball(sphere, R"({"type": "sphere", "radius": 0.1, "concave": true})"),
-         "m.json:2:2 (/contacts/0): contact::make_detector: a ball must be smaller than the bowl it touches, "
-         "got "
-         "a ball of radius 0.2 in a bowl of radius 0.1"},
+         "m.json:2:2 (/contacts/0): contact::make_detector: the radius of a sphere must be less than that of "
+         "the concave sphere around it, got 0.2 m in 0.1 m"},
         {ball(R"({"type": "foot"})", flat, steel, R"({"mu_s": 0.3, "K_E": 1, "eta_r": 0.1})"),
-         "m.json:2:2 (/contacts/0): contact 'c': rolling and spinning friction need curvature: the sum of "
+         "m.json:2:2 (/contacts/0): contact 'c': the normal or friction law needs curvature: the sum of "
          "the curvatures must be positive, got 0"},
         {ball(flat),
-         "m.json:2:2 (/contacts/0): contact::make_detector: a pair of surfaces must touch in a single point"},
+         "m.json:2:2 (/contacts/0): contact::make_detector: a pair of surfaces must have a single contact "
+         "point"},
     };
     for (const Bad& bad : all) {
         INFO(bad.message);

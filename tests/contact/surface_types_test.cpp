@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Surfaces of a model file: what is read, what is refused and where, and that the canonical text says the same.
+/// Surfaces in model files: reading, errors with their positions, and the canonical text.
 
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/cone.hpp"
@@ -46,7 +46,7 @@ std::string refusal(const std::string& shape)
     return "accepted";
 }
 
-/// A sphere of 162 vertices: of an icosahedron cut into four again and again, the coarsest that is smooth
+/// A sphere of 162 vertices, the coarsest icosphere that is accepted as smooth
 std::string mesh_example()
 {
     const tests::Triangles sphere = tests::icosphere(2);
@@ -59,7 +59,7 @@ std::string mesh_example()
     return "{\"type\": \"mesh\", \"vertices\": [" + vertices + "], \"triangles\": [" + triangles + "]}";
 }
 
-/// An example of every kind of surface; add the next one here.
+/// An example of each surface type. Add new types here.
 const std::map<std::string, std::string> examples = {
     {"cone", R"({"type": "cone", "half_angle": 0.5, "axis": [0, 1, 0]})"},
     {"cylinder", R"({"type": "cylinder", "radius": 0.5, "axis": [1, 0, 0]})"},
@@ -81,7 +81,7 @@ const std::map<std::string, std::string> examples = {
 
 }  // namespace
 
-TEST_CASE("every kind of surface is read and written the same", "[contact][surface_types]")
+TEST_CASE("all surface types are read and have a stable canonical text", "[contact][surface_types]")
 {
     REQUIRE(surface_types().size() >= examples.size());
     for (const SurfaceType& type : surface_types()) {
@@ -100,7 +100,7 @@ TEST_CASE("every kind of surface is read and written the same", "[contact][surfa
     }
 }
 
-TEST_CASE("what a model file says of a surface is what it is", "[contact][surface_types]")
+TEST_CASE("a surface has the parameters of the model file", "[contact][surface_types]")
 {
     const Shape ball = read(examples.at("sphere")).shape;
     CHECK(dynamic_cast<const Sphere&>(*ball.surface).R == 0.2);
@@ -128,7 +128,7 @@ TEST_CASE("what a model file says of a surface is what it is", "[contact][surfac
           "  \"A\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n}");
 }
 
-TEST_CASE("a bad surface is refused with its place and value", "[contact][surface_types]")
+TEST_CASE("an invalid surface is rejected with its position and value", "[contact][surface_types]")
 {
     const auto says = [](const std::string& shape, const std::string& what) {
         INFO(shape);
@@ -159,9 +159,9 @@ TEST_CASE("a bad surface is refused with its place and value", "[contact][surfac
     says(R"({"type": "paraboloid", "radii": [1, 0]})", "(/on_i/radii): radii must be positive, got [1, 0]");
     says(R"({"type": "paraboloid", "radii": 1})", "(/on_i/radii): radii must be a list of 2 numbers, got 1");
     says(R"({"type": "quadric", "Q": [[1, 1, 0], [0, 1, 0], [0, 0, 1]], "c": -1})",
-         "(/on_i/Q): of a quadric, its Q must be symmetric");
+         "(/on_i/Q): Q must be symmetric");
     says(R"({"type": "quadric", "Q": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "c": 1})",
-         "(/on_i/Q): of a quadric, it must have points: G has one sign");
+         "(/on_i/Q): G = 0 must have points; G does not change its sign");
     says(R"({"type": "plane", "normal": [0, 0, 0]})",
          "(/on_i/normal): normal must have a direction, got [0, 0, 0] of length 0");
     says(R"({"type": "plane", "normal": [0, 0, 1], "axis_angle": [0, 0, 1, 2]})",
@@ -170,14 +170,15 @@ TEST_CASE("a bad surface is refused with its place and value", "[contact][surfac
         R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "axis_angle": [0, 0, 1, 2]})",
         "(/on_i): the orientation must be given once, as one of A, p and axis_angle; got 2");
     says(R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]})",
-         "(/on_i/A): A must be a rotation matrix, got a reflection with det A = -1");
+         "(/on_i/A): A must be a rotation matrix, got a reflection (det A = -1)");
     says(R"({"type": "disk", "radius": 1, "axis_angle": [0, 0, 2, 2]})",
-         "(/on_i/axis_angle): the axis of axis_angle must have length 1, got 2; at most 1e-06 off is mended");
+         "(/on_i/axis_angle): the axis of axis_angle must have length 1, got 2; deviations up to 1e-06 are "
+         "corrected");
     says(R"({"type": "disk", "radius": 1, "position": [0, 0]})",
          "(/on_i/position): position must be a list of 3 numbers, got [0, 0]");
 }
 
-TEST_CASE("a bad height map is refused with its place and value", "[contact][surface_types]")
+TEST_CASE("an invalid height map is rejected with its position and value", "[contact][surface_types]")
 {
     const auto says = [](const std::string& heights, const std::string& rest, const std::string& what) {
         CHECK_THAT(refusal("{\"type\": \"height-map\", \"heights\": " + heights + rest + "}"),
@@ -196,7 +197,7 @@ TEST_CASE("a bad height map is refused with its place and value", "[contact][sur
          "(/on_i/corner): corner must be a list of 2 numbers, got [0]");
 }
 
-TEST_CASE("a bad mesh is refused with its place", "[contact][surface_types]")
+TEST_CASE("an invalid mesh is rejected with its position", "[contact][surface_types]")
 {
     const auto says = [](const std::string& vertices, const std::string& triangles, const std::string& what) {
         CHECK_THAT(refusal("{\"type\": \"mesh\", \"vertices\": [" + vertices + "], \"triangles\": [" +
@@ -211,14 +212,14 @@ TEST_CASE("a bad mesh is refused with its place", "[contact][surface_types]")
     says(corners, "[0, 1, 0.5]",
          "(/on_i/triangles): triangles[0][2] must be the number of a vertex, from 0 to 3, got 0.5");
     says(corners, three,
-         "(/on_i/triangles): the edge of the vertices 1 and 2 is open: it has triangle 0 only");
+         "(/on_i/triangles): the edge of the vertices 1 and 2 is open: it belongs to triangle 0 only");
     says(corners, three + ", [1, 2, 3]",
-         "(/on_i/vertices): the mesh is too coarse to be smooth: the 4 vertices near vertex 0 do not "
+         "(/on_i/vertices): the mesh is too coarse for a smooth surface: the 4 vertices near vertex 0 do not "
          "determine a "
          "cubic");
 }
 
-TEST_CASE("two kinds of surface with one name are refused", "[contact][surface_types]")
+TEST_CASE("a second surface type with the same name is rejected", "[contact][surface_types]")
 {
     CHECK_THROWS_AS(register_surface(SurfaceType{.name = "sphere", .read = nullptr}), std::logic_error);
 }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// Memory allocation of the steps of all integrators.
 #include "dae/expression.hpp"
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/bristle.hpp"
 #include "tests/support/mechanisms.hpp"
@@ -14,11 +18,11 @@
 using namespace hilda;
 using lie::Vec3;
 
-TEST_CASE("a step of a mechanism with drivers, springs, memories and expressions takes nothing from the heap",
+TEST_CASE("a step of a mechanism with drivers, springs, internal states and expressions allocates no memory",
           "[dae][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted: a sanitizer replaces the allocator");
         return;
     }
     for (const lie::Scheme& s : lie::schemes()) {
@@ -37,11 +41,13 @@ TEST_CASE("a step of a mechanism with drivers, springs, memories and expressions
         lie::March march(x, *integrator, 1e-3);
         for (int n = 0; n < 5; ++n) march.advance({});
         const long taken = tests::allocations_during([&] {
-            for (int n = 0; n < 300; ++n) march.advance({});  // past the first swap of the driver
+            // beyond the first replacement of the driver by its complement
+            for (int n = 0; n < 300; ++n) march.advance({});
         });
         INFO(s.name);
         CHECK(march.node().discrete_state[0] == 1);
-        CHECK(taken <= integrator->statistics().factorizations * 64);  // new pivots are KLU's to store
+        // KLU allocates memory when it chooses new pivots
+        CHECK(taken <= integrator->statistics().factorizations * 64);
         const long steady = tests::allocations_during([&] {
             for (int n = 0; n < 20; ++n) march.advance({});
         });

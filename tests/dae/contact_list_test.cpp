@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contacts of a model file, read by whoever has enrolled for them; here bristles.
+/// The contacts of a model file and their registered reader. Here the contacts are bristle forces.
 #include <catch2/catch.hpp>
 
 #include "dae/model_file.hpp"
@@ -19,7 +19,7 @@ std::string model(const std::string& contacts)
  "forces": [{"type": "torque", "body": "bob", "frame": "body", "components": [0, 0, 1]}]})";
 }
 
-std::string refusal(const std::string& text)
+std::string error_message(const std::string& text)
 {
     try {
         dae::Description d = dae::read_model(text, "m.json");
@@ -32,7 +32,7 @@ std::string refusal(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("contacts are read with the model and the start before them", "[dae][model_file][contacts]")
+TEST_CASE("the reader of a contact receives the model and the initial data", "[dae][model_file][contacts]")
 {
     const BristleContacts reader;
     dae::Description d = dae::read_model(model(R"([
@@ -45,13 +45,13 @@ TEST_CASE("contacts are read with the model and the start before them", "[dae][m
     CHECK(bristle(1).i == 0);
     CHECK(bristle(1).j == 1);
     CHECK(bristle(1).stiffness == 2);
-    CHECK(bristle(1).most == Approx(0.4));
+    CHECK(bristle(1).max_stretch == Approx(0.4));
     CHECK(bristle(2).name == "brush");
     CHECK(bristle(2).i == dae::ground);
     CHECK(bristle(2).j == 0);
     CHECK(d.force_place[2] == "m.json:3:3 (/contacts/1)");
 
-    // in one form, with defaults and names filled in
+    // the canonical form contains defaults and names
     CHECK_THAT(d.text, Catch::Contains("\"contact-1\"") && Catch::Contains("\"stiffness\""));
     const dae::Description again = dae::read_model(d.text, "again.json");
     CHECK(again.text == d.text);
@@ -61,18 +61,18 @@ TEST_CASE("contacts are read with the model and the start before them", "[dae][m
     CHECK(d.x.internal_state == std::vector<double>{1, 0, 4, 0, 1, 3, 0, 0});
     CHECK(d.model->stable_step(d.x).force == 2);
 
-    // a model without contacts is written without them
+    // the canonical form of a model without contacts has no key "contacts"
     CHECK_THAT(dae::read_model(model("[]"), "m.json").text, !Catch::Contains("contacts"));
 }
 
-TEST_CASE("a contact that is wrong is refused with its place", "[dae][model_file][contacts]")
+TEST_CASE("an invalid contact is rejected with its location", "[dae][model_file][contacts]")
 {
     const BristleContacts reader;
-    struct Bad {
+    struct InvalidContact {
         std::string contacts, message;
     };
     const std::string head = "m.json:1:", pair = R"({"body_i": "bar", "body_j": "bob")";
-    const std::vector<Bad> all = {
+    const std::vector<InvalidContact> all = {
         {"3", "45 (/contacts): contacts must be a list, got 3"},
         {"[3]", "46 (/contacts/0): must be an object, got 3"},
         {R"([{"body_j": "bar"}])", "46 (/contacts/0): missing key 'body_i'"},
@@ -88,25 +88,25 @@ TEST_CASE("a contact that is wrong is refused with its place", "[dae][model_file
          "46 (/contacts/0): bristle: the length must be at most 10 m, got 11"},
         {"[" + pair + R"(, "name": ""}])", "89 (/contacts/0/name): name must be a name"},
         {"[" + pair + R"(, "name": "a"},)" + pair + R"(, "name": "a"}])",
-         "137 (/contacts/1/name): this name is taken already, got \"a\""},
+         "137 (/contacts/1/name): this name is already used, got \"a\""},
     };
-    for (const Bad& bad : all) {
+    for (const InvalidContact& bad : all) {
         INFO(bad.contacts);
-        CHECK_THAT(refusal(model(bad.contacts)), Catch::StartsWith(head + bad.message));
+        CHECK_THAT(error_message(model(bad.contacts)), Catch::StartsWith(head + bad.message));
     }
 
-    // what it objects to only at the start
+    // errors that are detected at the start only
     std::string together = model("[" + pair + R"(, "most": 1, "name": "brush"}])");
     together.replace(together.find("[3, 4, 0]"), 9, "[3, 0, 0]");
-    CHECK(refusal(together) ==
+    CHECK(error_message(together) ==
           "m.json:1:46 (/contacts/0): bristle 'brush': the bodies must be apart at the start");
 }
 
-TEST_CASE("where nobody reads contacts there are none", "[dae][model_file][contacts]")
+TEST_CASE("without a registered reader contacts are rejected", "[dae][model_file][contacts]")
 {
     CHECK(dae::contact_reader() == nullptr);
-    CHECK(refusal(model("[]")) == "");
-    CHECK(refusal(model("[{}, {}]")) ==
-          "m.json:1:45 (/contacts): contacts are not part of this build; the list must be empty, got 2");
-    CHECK_THAT(refusal(model("{}")), Catch::Contains("contacts must be a list"));
+    CHECK(error_message(model("[]")) == "");
+    CHECK(error_message(model("[{}, {}]")) ==
+          "m.json:1:45 (/contacts): this program is built without contacts; the list must be empty, got 2");
+    CHECK_THAT(error_message(model("{}")), Catch::Contains("contacts must be a list"));
 }

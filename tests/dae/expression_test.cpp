@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Expressions and drivers: values, exact derivatives, and what is refused where.
+/// Expressions and drivers: values, exact derivatives, and errors with their columns.
 
 #include "dae/expression.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 
 double at(const std::string& text, double t = 0) { return Expression(text).value(t); }
 
-/// fdot and fddot against central differences of f and fdot; error h²/6 f''' + eps f/h, about 1e-10 of what
-/// is near.
+/// Compares fdot and fddot with central differences of f and fdot. Their error is h²/6 f''' + eps f/h, about
+/// 1e-10.
 void check_derivatives(const std::string& text, double t)
 {
     const Expression f(text);
@@ -32,7 +32,7 @@ void check_derivatives(const std::string& text, double t)
     CHECK(b.fddot == Approx((c.fdot - a.fdot) / (2 * h)).margin(1e-7 * scale));
 }
 
-/// A smooth expression, finite for all t, with third derivatives that stay moderate.
+/// A smooth expression that is finite for all t and has moderate third derivatives
 std::string random_expression(std::mt19937& random, int depth)
 {
     const auto sub = [&] { return random_expression(random, depth - 1); };
@@ -58,10 +58,10 @@ std::string random_expression(std::mt19937& random, int depth)
     }
 }
 
-struct Bad {
+struct InvalidExpression {
     std::string text;
     int column;
-    std::string message;  // a part of it
+    std::string message;  // part of the message
 };
 
 std::string times(int n, const std::string& s)
@@ -71,7 +71,7 @@ std::string times(int n, const std::string& s)
     return all;
 }
 
-std::vector<Bad> bad_expressions()
+std::vector<InvalidExpression> invalid_expressions()
 {
     return {
         {"sine(2*t)", 1, "unknown function 'sine' in \"sine(2*t)\" at column 1; did you mean 'sin'?"},
@@ -126,8 +126,8 @@ std::vector<Bad> bad_expressions()
         {"2^-sin(t)", 3, "the exponent must be constant"},
         {"1e999", 1, "the number '1e999' is out of range"},
         {"t+1e-999", 3, "the number '1e-999' is out of range"},
-        {".", 1, "'.' without digits is no number"},
-        {"t+.e3", 3, "'.' without digits is no number"},
+        {".", 1, "'.' without digits is not a number"},
+        {"t+.e3", 3, "'.' without digits is not a number"},
         {"t/0*(1/0)", 7, "not finite"},
         {"t+log(-1)", 3, "not finite"},
         {"(-8)^(1/3)", 5, "not finite"},
@@ -154,7 +154,7 @@ std::vector<Bad> bad_expressions()
 
 }  // namespace
 
-TEST_CASE("operators bind and associate as in mathematics", "[dae][expression]")
+TEST_CASE("operators have the precedence and associativity of mathematics", "[dae][expression]")
 {
     CHECK(at("1+2*3") == 7);
     CHECK(at("(1+2)*3") == 9);
@@ -176,7 +176,7 @@ TEST_CASE("operators bind and associate as in mathematics", "[dae][expression]")
     CHECK(at(" \t( 1 + t )\t* 2 ", 3) == 8);
 }
 
-TEST_CASE("numbers are read in all their forms", "[dae][expression]")
+TEST_CASE("all forms of numbers are read", "[dae][expression]")
 {
     CHECK(at("1") == 1);
     CHECK(at(".5") == 0.5);
@@ -190,9 +190,10 @@ TEST_CASE("numbers are read in all their forms", "[dae][expression]")
     CHECK(at("2*e") == 2 * M_E);
 }
 
-TEST_CASE("functions have their values", "[dae][expression]")
+TEST_CASE("functions have the values of the C library", "[dae][expression]")
 {
-    const double t = 0.4;  // the compiler computes std::f(t) itself, the library may differ in the last place
+    // The compiler may evaluate std::f(t), which can differ from the library in the last digit.
+    const double t = 0.4;
     CHECK(at("sin(t)", t) == Approx(std::sin(t)).epsilon(1e-15));
     CHECK(at("cos(t)", t) == Approx(std::cos(t)).epsilon(1e-15));
     CHECK(at("tan(t)", t) == Approx(std::tan(t)).epsilon(1e-15));
@@ -214,11 +215,11 @@ TEST_CASE("functions have their values", "[dae][expression]")
     CHECK(at("if(t,2,3)", t) == 2);
     CHECK(at("if(t,2,3)", 0) == 3);
     CHECK(at("if(t,2,3)", -t) == 3);
-    CHECK(at("if(t,log(t),1)", -t) == 1);  // nan of the other branch is not looked at
+    CHECK(at("if(t,log(t),1)", -t) == 1);  // nan of the other branch has no effect
     CHECK(std::isnan(at("if(log(t),1,2)", -t)));
 }
 
-TEST_CASE("derivatives of every function are differences", "[dae][expression]")
+TEST_CASE("derivatives of all functions agree with differences", "[dae][expression]")
 {
     const std::string functions = GENERATE(
         as<std::string>(), "sin(3*t)", "cos(t^2)", "tan(t)", "asin(t/2)", "acos(t*t/2)", "atan(4*t)",
@@ -228,7 +229,7 @@ TEST_CASE("derivatives of every function are differences", "[dae][expression]")
     for (double t : {-0.8, 0.3, 1.1}) check_derivatives(functions, t);
 }
 
-TEST_CASE("derivatives of random expressions are differences", "[dae][expression]")
+TEST_CASE("derivatives of random expressions agree with differences", "[dae][expression]")
 {
     const int seed = GENERATE(range(0, 100));
     std::mt19937 random(seed);
@@ -236,7 +237,7 @@ TEST_CASE("derivatives of random expressions are differences", "[dae][expression
     for (double t : {-1.3, 0., 0.7}) check_derivatives(text, t);
 }
 
-TEST_CASE("the worked example has its fifteen digits", "[dae][expression]")
+TEST_CASE("the reference example is reproduced to thirteen digits", "[dae][expression]")
 {
     const Driver f("pi/4*cos(2*t)+exp(-t^2)*sin(3*t)/(1+t^2)");
     const Jet j = f.jet(0.7);
@@ -287,7 +288,7 @@ TEST_CASE("at a kink the derivatives are those from the right", "[dae][expressio
     CHECK(Expression("step(t)").jet(0).fdot == 0);
 }
 
-TEST_CASE("constant parts are computed when the text is read", "[dae][expression]")
+TEST_CASE("constant parts are evaluated when the text is read", "[dae][expression]")
 {
     CHECK(Expression("2*sin(pi/6)^2-max(1,2)").is_constant());
     CHECK(Expression("if(1,2,3)").is_constant());
@@ -296,11 +297,11 @@ TEST_CASE("constant parts are computed when the text is read", "[dae][expression
     CHECK(j.f == 7);
     CHECK(j.fdot == 0);
     CHECK(j.fddot == 0);
-    // Folding keeps a long sum of numbers within the limits.
+    // Constant folding keeps a long sum of numbers within the limits.
     CHECK(at("1" + times(2047, "+1")) == 2048);
 }
 
-TEST_CASE("variables are found by their place", "[dae][expression]")
+TEST_CASE("variables have the order of their list", "[dae][expression]")
 {
     const Expression force("100*(l-0.5)+2*ldot*abs(ldot)+t", {"l", "ldot", "t"});
     const std::array x{0.75, -3., 0.5};
@@ -308,7 +309,7 @@ TEST_CASE("variables are found by their place", "[dae][expression]")
     CHECK_THROWS_WITH(Expression("lbot", {"l", "ldot", "t"}), Catch::Contains("did you mean 'ldot'?"));
 }
 
-TEST_CASE("the limits themselves are allowed", "[dae][expression]")
+TEST_CASE("values at the limits are allowed", "[dae][expression]")
 {
     CHECK(at(times(63, "(") + "t" + times(63, ")"), 2) == 2);
     CHECK(at(times(63, "-") + "t", 2) == -2);
@@ -316,9 +317,9 @@ TEST_CASE("the limits themselves are allowed", "[dae][expression]")
     CHECK(at(std::string(4095, ' ') + "t", 2) == 2);
 }
 
-TEST_CASE("bad expressions are refused with the column and one line", "[dae][expression]")
+TEST_CASE("invalid expressions are rejected with the column and one line", "[dae][expression]")
 {
-    for (const Bad& bad : bad_expressions()) {
+    for (const InvalidExpression& bad : invalid_expressions()) {
         INFO(bad.text);
         try {
             Expression expression(bad.text);
@@ -334,7 +335,7 @@ TEST_CASE("bad expressions are refused with the column and one line", "[dae][exp
     }
 }
 
-TEST_CASE("the nearest word is near", "[dae][nearest]")
+TEST_CASE("the nearest word is at most two edits away", "[dae][nearest]")
 {
     const std::vector<std::string> keys{"mass", "inertia", "r_dot", "r", "omega"};
     CHECK(nearest("mas", keys) == "mass");
@@ -350,7 +351,7 @@ TEST_CASE("the nearest word is near", "[dae][nearest]")
     CHECK(edit_distance("sni", "sin") == 1);
 }
 
-TEST_CASE("a driver is zero, a number or a text", "[dae][driver]")
+TEST_CASE("a driver is zero, a number or an expression", "[dae][driver]")
 {
     CHECK(Driver().f(3) == 0);
     CHECK(Driver().is_constant());

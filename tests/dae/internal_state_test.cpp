@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Forces that remember real numbers from step to step, and what a force may say of a start and of a step.
+/// Forces with internal states, the check of a force at a start, and its stability limit.
 
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/joints.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/bristle.hpp"
 
@@ -17,11 +21,11 @@ namespace {
 
 const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Z = Vec3::UnitZ();
 
-struct Two {
+struct TwoBodies {
     Model model;
     State x;
 
-    Two()
+    TwoBodies()
     {
         for (const char* name : {"a", "b"})
             model.add({.name = name, .m = 2, .J_bar = Vec3(1, 1.2, 1.4).asDiagonal()});
@@ -34,9 +38,9 @@ struct Two {
 
 }  // namespace
 
-TEST_CASE("each force remembers in its own place, and in the state alone", "[dae][remembered]")
+TEST_CASE("each force has its own internal states, stored in the state only", "[dae][remembered]")
 {
-    Two two;
+    TwoBodies two;
     Model& model = two.model;
     State& x = two.x;
     model.gravity.setZero();
@@ -44,7 +48,7 @@ TEST_CASE("each force remembers in its own place, and in the state alone", "[dae
     model.load(Bristle(ground, 0, 3, 0.5));
     model.load(TorsionSpring(0, Z, 1, Z, 0, 0, 0, x));
     model.load(Bristle(0, 1, 5, 0.25));
-    x.internal_state = {7, 7};  // of another model
+    x.internal_state = {7, 7};  // left from another model
     model.prepare(x);
     CHECK(x.discrete_state == std::vector<int>{0, 0});
     CHECK(x.internal_state == std::vector<double>{1, 1, 0, 0, 1, -1, 2, 0});
@@ -59,7 +63,7 @@ TEST_CASE("each force remembers in its own place, and in the state alone", "[dae
     after.body[1].r = {0.25, 3, 0};
     after.body[0].A = lie::exp(1.5 * Z);
     const lie::Loads before_accepted = loads(after);
-    CHECK(before_accepted.F[1].isApprox(Vec3(0, -5, 0)));  // stretched by 1
+    CHECK(before_accepted.F[1].isApprox(Vec3(0, -5, 0)));  // elastic displacement 1 m
     model.accepted(x, after);
     CHECK(after.discrete_state == std::vector<int>{1, -1});
     CHECK(after.internal_state == std::vector<double>{1, 1, 0, 0, 1, -1, 2.75, 0});  // the second has slipped
@@ -72,21 +76,22 @@ TEST_CASE("each force remembers in its own place, and in the state alone", "[dae
     CHECK(loads(after).F[0].norm() == 0);
 }
 
-TEST_CASE("forces remember the start where it is once it satisfies the constraints", "[dae][remembered]")
+TEST_CASE("internal states at a start belong to the projected positions", "[dae][remembered]")
 {
-    Two two;
+    TwoBodies two;
     two.model.constrain("pin", revolute(ground, O, X, 0, Vec3(-0.9, 0, 0), X));
     two.model.load(Bristle(ground, 0, 3, 0.01));
     start(two.model, two.x, {.fix_initial = true});
     CHECK(std::abs(two.x.body[0].r.x() - 0.9) < 1e-12);
-    CHECK(two.bristle(0).held(two.x) == two.x.body[0].r);
+    CHECK(two.bristle(0).relaxed(two.x) == two.x.body[0].r);
 }
 
-// A bristle that never slips is a spring, one that slips pulls with a constant force, here 1 N from 0.1 m on.
-TEST_CASE("what is remembered moves the bodies as it should", "[dae][remembered]")
+// A bristle that does not slip is a spring. A slipping bristle exerts a constant force, here 1 N beyond 0.1
+// m.
+TEST_CASE("forces with internal states reproduce the closed-form motion", "[dae][remembered]")
 {
     for (const lie::Scheme& scheme : lie::schemes()) {
-        Two two;
+        TwoBodies two;
         two.model.gravity = {0, 0, 0};
         two.model.load(Bristle(ground, 0, 8, 10));
         two.model.load(Bristle(ground, 1, 10, 0.1));
@@ -104,9 +109,10 @@ TEST_CASE("what is remembered moves the bodies as it should", "[dae][remembered]
     }
 }
 
-TEST_CASE("a force that cannot be used from a start is named before it remembers", "[dae][remembered]")
+TEST_CASE("a force that cannot be used from a start is named before internal states are set",
+          "[dae][remembered]")
 {
-    Two two;
+    TwoBodies two;
     two.model.load(TorsionSpring(ground, Z, 0, Z, 0, 0, 0, two.x));
     Bristle bristle(0, 1, 3, 0.5);
     bristle.name = "velvet";
@@ -123,9 +129,9 @@ TEST_CASE("a force that cannot be used from a start is named before it remembers
     CHECK(two.x.internal_state.empty());
 }
 
-TEST_CASE("the stable step of a model is the smallest of its forces", "[dae][remembered]")
+TEST_CASE("the stable step of a model is the smallest stable step of its forces", "[dae][remembered]")
 {
-    Two two;
+    TwoBodies two;
     CHECK(two.model.stable_step(two.x).force == -1);
     two.model.load(TorsionSpring(ground, Z, 0, Z, 1, 0, 0, two.x));
     CHECK(two.model.stable_step(two.x).h == std::numeric_limits<double>::infinity());

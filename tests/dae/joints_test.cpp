@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Joints: what they allow, what they forbid, how many rows that takes; and the two ways to drive a hinge.
+/// Joints: allowed and constrained motions, number of rows; and the two types of hinge drivers.
 
 #include "dae/joints.hpp"
 
 #include "dae/constraints/dp1.hpp"
 #include "dae/kinematics.hpp"
+#include "dae/start.hpp"
 #include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,14 +20,14 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A joint frame fixed in a body: its point, and its axis as third column of R.
+/// A joint frame fixed in a body: its point, and its axis as the third column of R
 struct Frame {
     Vec3 s_bar;
     Mat3 R;
-    Vec3 axis() const { return 3 * R.col(2); }  // joints take axes of any length
+    Vec3 axis() const { return 3 * R.col(2); }  // axes may have any length
 };
 
-/// Where the joint frame of body j is, seen from that of body i.
+/// Pose of the joint frame of body j relative to that of body i
 struct Relative {
     Vec3 d = Vec3::Zero();
     Mat3 Q = Mat3::Identity();
@@ -38,11 +39,11 @@ struct Joint {
     std::string name;
     int freedom;
     std::function<Blocks(int, const Frame&, int, const Frame&, const State&)> make;
-    std::function<Relative(Random&)> allowed;  ///< a random relative pose the joint allows
-    std::vector<int> forbidden;  ///< directions no small motion may take: 0–2 along, 3–5 about the axes of i
+    std::function<Relative(Random&)> allowed;  ///< a random relative pose that the joint allows
+    std::vector<int> forbidden;  ///< constrained directions: 0 to 2 along, 3 to 5 about the axes of body i
 };
 
-/// All joints; add the next one here.
+/// All joints. Add new ones here.
 std::vector<Joint> joints()
 {
     const Mat3 right_angle = about(0, pi / 2);
@@ -103,7 +104,7 @@ std::vector<Joint> joints()
                        const Mat3 Q = about(2, turn(random)) * right_angle * about(2, turn(random));
                        return Relative{random.number() * Q.col(2), Q};
                    },
-                   {2}});  // along the revolute axis, which the cylindrical one is perpendicular to
+                   {2}});  // along the revolute axis, which is perpendicular to the cylindrical axis
     all.push_back({"fixed",
                    0,
                    [](int i, const Frame&, int j, const Frame&, const State& x) { return fixed(i, j, x); },
@@ -123,7 +124,7 @@ std::vector<Joint> joints()
     return all;
 }
 
-/// Places body j so that its joint frame stands in the relative pose q to that of body i.
+/// Moves body j so that its joint frame has the relative pose q to that of body i.
 void place(const Motion& bi, const Frame& a, Motion& bj, const Frame& b, const Relative& q)
 {
     const Mat3 frame_i = bi.A * a.R;
@@ -131,7 +132,7 @@ void place(const Motion& bi, const Frame& a, Motion& bj, const Frame& b, const R
     bj.r = bi.r + bi.A * a.s_bar + frame_i * q.d - bj.A * b.s_bar;
 }
 
-/// Both bodies of the joint, one of which may be the ground
+/// The two bodies of the joint. One of them may be the ground.
 struct Pair {
     int i, j;
     Motion bi, bj;
@@ -142,7 +143,7 @@ struct Pair {
     {
         x.body.clear();
         for (const Motion* b : {&bi, &bj})
-            x.body.push_back(*b);  // numbers 0 and 1; the ground leaves a spare
+            x.body.push_back(*b);  // numbers 0 and 1; number 0 is not used if i is the ground
         return x;
     }
 };
@@ -151,8 +152,8 @@ Eigen::VectorXd values(const Blocks& blocks, const Motion& bi, const Motion& bj)
 {
     Eigen::VectorXd phi(blocks.size());
     for (size_t k = 0; k < blocks.size(); ++k) {
-        const bool turned = blocks[k]->i != 0 && blocks[k]->j != 1;  // some blocks stand from j to i
-        phi[k] = turned ? blocks[k]->phi(bj, bi, 0) : blocks[k]->phi(bi, bj, 0);
+        const bool exchanged = blocks[k]->i != 0 && blocks[k]->j != 1;  // some blocks have exchanged bodies
+        phi[k] = exchanged ? blocks[k]->phi(bj, bi, 0) : blocks[k]->phi(bi, bj, 0);
     }
     return phi;
 }
@@ -162,9 +163,9 @@ Eigen::MatrixXd variations(const Blocks& blocks, const Motion& bi, const Motion&
 {
     Eigen::MatrixXd C(blocks.size(), 12);
     for (size_t k = 0; k < blocks.size(); ++k) {
-        const bool turned = blocks[k]->i != 0 && blocks[k]->j != 1;
-        const Variation v = turned ? blocks[k]->variation(bj, bi, 0) : blocks[k]->variation(bi, bj, 0);
-        if (turned)
+        const bool exchanged = blocks[k]->i != 0 && blocks[k]->j != 1;
+        const Variation v = exchanged ? blocks[k]->variation(bj, bi, 0) : blocks[k]->variation(bi, bj, 0);
+        if (exchanged)
             C.row(k) << v.r_j.transpose(), v.pi_j.transpose(), v.r_i.transpose(), v.pi_i.transpose();
         else
             C.row(k) << v.r_i.transpose(), v.pi_i.transpose(), v.r_j.transpose(), v.pi_j.transpose();
@@ -172,8 +173,8 @@ Eigen::MatrixXd variations(const Blocks& blocks, const Motion& bi, const Motion&
     return C;
 }
 
-/// A bar of 2 kg on a hinge at its end: ground point `pin`, axis `axis` of the ground and of the bar; centre
-/// at `arm`.
+/// A bar of 2 kg on a hinge at its end, with the point `pin` of the ground, the axis `axis` in both frames,
+/// and the centre of mass at pin + arm
 void crank(Model& model, State& x, const Vec3& pin, const Vec3& axis, const Vec3& arm, double omega)
 {
     model.add({.name = "crank", .m = 2, .J_bar = Vec3(0.3, 0.5, 0.6).asDiagonal()});
@@ -187,7 +188,7 @@ void crank(Model& model, State& x, const Vec3& pin, const Vec3& axis, const Vec3
 
 }  // namespace
 
-TEST_CASE("a joint has as many independent rows as it takes freedoms", "[dae][joints]")
+TEST_CASE("a joint has as many independent rows as it removes degrees of freedom", "[dae][joints]")
 {
     Random random(GENERATE(range(1u, 6u)));
     for (const Joint& joint : joints()) {
@@ -203,7 +204,7 @@ TEST_CASE("a joint has as many independent rows as it takes freedoms", "[dae][jo
         const Eigen::MatrixXd C = variations(blocks, pair.bi, pair.bj);
         const Eigen::VectorXd s = C.jacobiSvd().singularValues();
         CHECK(s[s.size() - 1] > 0.1);
-        // each body alone is held as well: that is what counts where the other is the ground
+        // The rows are independent for each body alone, as needed if the other body is the ground.
         for (const int first : {0, 6}) {
             const Eigen::MatrixXd one = C.middleCols(first, 6);
             CHECK(one.jacobiSvd().singularValues()[s.size() - 1] > 0.1);
@@ -211,7 +212,7 @@ TEST_CASE("a joint has as many independent rows as it takes freedoms", "[dae][jo
     }
 }
 
-TEST_CASE("a joint holds in every motion it allows and breaks in those it forbids", "[dae][joints]")
+TEST_CASE("a joint is satisfied by every allowed motion and violated by constrained ones", "[dae][joints]")
 {
     Random random(GENERATE(range(11u, 16u)));
     const int i = GENERATE(0, ground);
@@ -223,7 +224,7 @@ TEST_CASE("a joint holds in every motion it allows and breaks in those it forbid
         place(pair.bi, a, pair.bj, b, joint.allowed(random));
         const Blocks blocks = joint.make(i, a, 1, b, pair.state());
         for (int k = 0; k < 10; ++k) {
-            if (i != ground) pair.bi = random.motion();  // the pair as a whole goes anywhere
+            if (i != ground) pair.bi = random.motion();  // arbitrary motion of the pair
             const Relative q = joint.allowed(random);
             place(pair.bi, a, pair.bj, b, q);
             CHECK(values(blocks, pair.bi, pair.bj).cwiseAbs().maxCoeff() < 2e-14);
@@ -240,7 +241,7 @@ TEST_CASE("a joint holds in every motion it allows and breaks in those it forbid
             }
         }
     }
-    // which direction these two forbid depends on where they are
+    // The constrained direction of these two joints depends on the pose.
     const Frame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
     Motion bi = random.motion(), bj;
     const Mat3 Q = about(2, 1.0) * about(0, pi / 2);
@@ -252,7 +253,7 @@ TEST_CASE("a joint holds in every motion it allows and breaks in those it forbid
     CHECK(values(rod, bi, bj).norm() == Approx(1.8 * 1.8 - 1.7 * 1.7));
 }
 
-TEST_CASE("a joint refuses an axis or a length that is none", "[dae][joints]")
+TEST_CASE("a joint rejects an invalid axis or length", "[dae][joints]")
 {
     const Vec3 O = Vec3::Zero(), X = Vec3::UnitX();
     State x;
@@ -270,9 +271,9 @@ TEST_CASE("a joint refuses an axis or a length that is none", "[dae][joints]")
                       Catch::Contains("parallel") && Catch::Contains("got -1"));
 }
 
-TEST_CASE("a hinge driver turns a crank through three whole turns and back", "[dae][joints]")
+TEST_CASE("a hinge driver rotates a crank by three revolutions forwards and backwards", "[dae][joints]")
 {
-    // g is not zero at the start: the angle counts from there
+    // g is not zero at the start: the rotation is g(t) - g(0)
     const Vec3 axis = Vec3(1, 2, 2) / 3, pin(0.1, 0.2, 0.3), arm = 0.5 * axis.unitOrthogonal();
     const Driver g("3*pi*(1 - cos(pi*t)) + 0.4");
     Model model;
@@ -290,10 +291,10 @@ TEST_CASE("a hinge driver turns a crank through three whole turns and back", "[d
     }
 }
 
-TEST_CASE("a DP1 driver swaps to its complement and so drives whole turns", "[dae][joints]")
+TEST_CASE("a DP1 driver drives whole revolutions with its complement", "[dae][joints]")
 {
-    // a_i · a_j = cos(angle) is singular twice a turn. Both ways round, from both quadrants, with the crank
-    // as body i or j.
+    // a_i · a_j = cos(angle) is singular twice per revolution. Both senses of rotation, starts in two
+    // quadrants, the crank as body i or j.
     const double sense = GENERATE(1.0, -1.0), start_angle = GENERATE(0.4, 2.5);
     const bool crank_first = GENERATE(true, false);
     const bool sine = GENERATE(true, false);
@@ -301,7 +302,7 @@ TEST_CASE("a DP1 driver swaps to its complement and so drives whole turns", "[da
     Model model;
     State x;
     crank(model, x, Vec3::Zero(), X, {0, 0.3, 0}, sense * 2 * pi);
-    // the vector of the crank that stands at start_angle from Y when the crank has not turned
+    // the vector of the crank that encloses start_angle with Y at the start
     const Vec3 a_bar = std::cos(start_angle) * Y + std::sin(start_angle) * Z;
     std::ostringstream f;
     f.precision(17);
@@ -318,11 +319,11 @@ TEST_CASE("a DP1 driver swaps to its complement and so drives whole turns", "[da
         INFO(f.str() << " at t = " << x.t << ", crank is body " << (crank_first ? "i" : "j"));
         CHECK((x.body[0].A - lie::exp(sense * 2 * pi * x.t * X)).norm() < 1e-12);
         CHECK((x.body[0].omega_bar - sense * 2 * pi * X).norm() < 1e-11);
-        // the torque about the pin that holds the weight, the same on either branch
+        // The torque about the pin balances the weight, for the driver and for its complement.
         const Reaction on_crank = reactions(model, x)[0];
         const Vec3 about_pin = x.body[0].A * on_crank.T + x.body[0].r.cross(on_crank.F);
         CHECK(about_pin.x() == Approx(2 * 9.81 * x.body[0].r.y()).margin(1e-10));
         CHECK(model.largest_residual(x).value < 1e-13);
     }
-    CHECK(swaps >= 7);  // four a turn, less one that may be made at the start
+    CHECK(swaps >= 7);  // four per revolution, minus one that may occur at the start
 }

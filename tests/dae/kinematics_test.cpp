@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Kinematics of the slider-crank and the four-link against their reference trajectories, and inverse
-/// dynamics.
+/// Kinematic analysis of the slider-crank and the four-link mechanism compared with reference trajectories,
+/// and inverse dynamics.
 
 #include "dae/kinematics.hpp"
 
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
+#include "dae/start.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The numbers of a CSV file below its first line
+/// The numbers of a CSV file without its header line
 std::vector<std::vector<double>> table(const std::string& file)
 {
     std::ifstream in(HILDA_TEST_DATA "/" + file);
@@ -38,8 +39,8 @@ std::vector<std::vector<double>> table(const std::string& file)
     return rows;
 }
 
-/// A reference row: columns t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint
-/// force (global) and torque (body frame) of each body.
+/// A row of the reference: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint force
+/// (global frame) and torque (body frame) of each body
 struct Reference {
     double t;
     std::vector<Motion> body;
@@ -69,8 +70,8 @@ std::vector<Reference> references(const std::string& file)
     return all;
 }
 
-/// Largest deviations over a run: of r and A as they are, of velocities and accelerations relative to max(1,
-/// size), of forces and torques relative to the largest of the run.
+/// Largest deviations over a run: absolute for r and A; relative to max(1, norm) for velocities and
+/// accelerations; relative to the largest value of the run for forces and torques
 struct Deviation {
     double r = 0, A = 0, rdot = 0, omega_bar = 0, rddot = 0, omegadot_bar = 0, F = 0, T = 0;
 };
@@ -78,9 +79,9 @@ struct Deviation {
 Deviation deviation(const Model& model, const std::vector<State>& run,
                     const std::vector<Reference>& reference)
 {
-    Deviation most;
+    Deviation result;
     double largest_F = 0, largest_T = 0;
-    const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
+    const auto update_max = [](double& largest, double value) { largest = std::max(largest, value); };
     const auto relative = [](const Vec3& a, const Vec3& b) {
         return (a - b).norm() / std::max(1.0, b.norm());
     };
@@ -91,21 +92,21 @@ Deviation deviation(const Model& model, const std::vector<State>& run,
         REQUIRE(reference[k].body.size() == reaction.size());
         for (size_t b = 0; b < reaction.size(); ++b) {
             const Motion &x = run[k].body[b], &y = reference[k].body[b];
-            keep(most.r, (x.r - y.r).norm());
-            keep(most.A, (x.A - y.A).norm());
-            keep(most.rdot, relative(x.rdot, y.rdot));
-            keep(most.omega_bar, relative(x.omega_bar, y.omega_bar));
-            keep(most.rddot, relative(x.rddot, y.rddot));
-            keep(most.omegadot_bar, relative(x.omegadot_bar, y.omegadot_bar));
-            keep(most.F, (reaction[b].F - reference[k].reaction[b].F).norm());
-            keep(most.T, (reaction[b].T - reference[k].reaction[b].T).norm());
-            keep(largest_F, reference[k].reaction[b].F.norm());
-            keep(largest_T, reference[k].reaction[b].T.norm());
+            update_max(result.r, (x.r - y.r).norm());
+            update_max(result.A, (x.A - y.A).norm());
+            update_max(result.rdot, relative(x.rdot, y.rdot));
+            update_max(result.omega_bar, relative(x.omega_bar, y.omega_bar));
+            update_max(result.rddot, relative(x.rddot, y.rddot));
+            update_max(result.omegadot_bar, relative(x.omegadot_bar, y.omegadot_bar));
+            update_max(result.F, (reaction[b].F - reference[k].reaction[b].F).norm());
+            update_max(result.T, (reaction[b].T - reference[k].reaction[b].T).norm());
+            update_max(largest_F, reference[k].reaction[b].F.norm());
+            update_max(largest_T, reference[k].reaction[b].T.norm());
         }
     }
-    most.F /= largest_F;
-    most.T /= largest_T;
-    return most;
+    result.F /= largest_F;
+    result.T /= largest_T;
+    return result;
 }
 
 void check(const Deviation& d)
@@ -125,7 +126,7 @@ void check(const Deviation& d)
 struct Mechanism {
     std::string name;
     void (*build)(Model&, State&);
-    double rate;  ///< of the driven body about global x [rad/s]
+    double rate;  ///< angular velocity of the driven body about global x [rad/s]
 };
 
 const Mechanism mechanisms[] = {
@@ -133,8 +134,8 @@ const Mechanism mechanisms[] = {
     {"four_link", [](Model& m, State& x) { tests::four_link(m, x); }, pi},
 };
 
-/// The slider-crank put together from joints: the same motion from other rows, with a driver that is never
-/// singular
+/// The slider-crank modelled by joints: the same motion with other rows, and with a driver without
+/// singularity
 void slider_crank_of_joints(Model& model, State& x)
 {
     tests::slider_crank_bodies(model, x);
@@ -148,11 +149,11 @@ void slider_crank_of_joints(Model& model, State& x)
     model.constrain("motor", hinge_driver(ground, X, crank, X, Driver("-2*pi*t"), x));
 }
 
-/// Torque about global x on the body with the number 0, from the multiplier of the driver alone
+/// Torque of the driver about global x on body 0, from its multiplier
 double driver_torque(const Model& model, const State& x, size_t row)
 {
     const Model::Row& driver = model.all_rows()[row];
-    const Block& block = driver.in_force(x);
+    const Block& block = driver.active_block(x);
     static const Motion at_rest;
     const bool first = block.i == 0;
     const Variation v =
@@ -163,7 +164,8 @@ double driver_torque(const Model& model, const State& x, size_t row)
 
 }  // namespace
 
-TEST_CASE("kinematics follows the reference through whole turns", "[dae][kinematics][acceptance]")
+TEST_CASE("kinematic analysis reproduces the reference over whole revolutions",
+          "[dae][kinematics][acceptance]")
 {
     const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
     INFO(mechanism.name);
@@ -176,7 +178,7 @@ TEST_CASE("kinematics follows the reference through whole turns", "[dae][kinemat
     for (const State& y : run.row) CHECK(model.largest_residual(y).value < 1e-13);
 }
 
-TEST_CASE("the slider-crank made of joints moves as the one made of blocks", "[dae][kinematics]")
+TEST_CASE("the slider-crank of joints has the motion of the slider-crank of blocks", "[dae][kinematics]")
 {
     Model model;
     State x;
@@ -188,10 +190,10 @@ TEST_CASE("the slider-crank made of joints moves as the one made of blocks", "[d
     check(deviation(model, run.row, references("slider_crank.csv")));
 }
 
-TEST_CASE("data that were mended lead to the same motion, through every swap of the driver",
+TEST_CASE("projected initial data give the same motion through every exchange of the driver",
           "[dae][kinematics]")
 {
-    // The complement of the driver must come from the mended pose, not from the one that was given.
+    // The complement of the driver must be computed from the projected pose, not from the given one.
     const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
     INFO(mechanism.name);
     tests::Random random(5);
@@ -208,7 +210,7 @@ TEST_CASE("data that were mended lead to the same motion, through every swap of 
     check(deviation(model, run.row, references(mechanism.name + ".csv")));
 }
 
-TEST_CASE("the driver's torque is its power over its rate", "[dae][kinematics]")
+TEST_CASE("the torque of a driver is its power divided by its angular velocity", "[dae][kinematics]")
 {
     const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
     Model model;
@@ -226,7 +228,7 @@ TEST_CASE("the driver's torque is its power over its rate", "[dae][kinematics]")
         worst_torque = std::max(worst_torque, std::abs(torque - reference[k][3]));
         worst_energy = std::max(worst_energy, std::abs(lie::energy(model, y) - reference[k][1]));
 
-        // power balance of our own state: dE/dt by the chain rule, without any multiplier
+        // power balance of the computed state: dE/dt by the chain rule, without multipliers
         double power = 0;
         for (size_t b = 0; b < y.body.size(); ++b) {
             const Motion& m = y.body[b];
@@ -242,7 +244,7 @@ TEST_CASE("the driver's torque is its power over its rate", "[dae][kinematics]")
     CHECK(worst_energy < 1e-10 * std::abs(reference[0][1]));
 }
 
-TEST_CASE("inverse dynamics gives back the multipliers of the saddle solve", "[dae][kinematics]")
+TEST_CASE("inverse dynamics returns the multipliers of the saddle system", "[dae][kinematics]")
 {
     const Mechanism mechanism = GENERATE(from_range(std::begin(mechanisms), std::end(mechanisms)));
     INFO(mechanism.name);
@@ -253,17 +255,17 @@ TEST_CASE("inverse dynamics gives back the multipliers of the saddle solve", "[d
     Kinematics kinematics(model);
     for (int k = 0; k < 10; ++k) {
         kinematics.move_to(x, 0.13 * k);
-        std::vector<Reaction> missing;
-        const Eigen::VectorXd lambda = inverse_dynamics(model, x, &missing);
+        std::vector<Reaction> unbalanced;
+        const Eigen::VectorXd lambda = inverse_dynamics(model, x, &unbalanced);
         CHECK((lambda - x.lambda).norm() < 1e-11 * x.lambda.norm());
-        for (const Reaction& r : missing) CHECK(r.F.norm() + r.T.norm() < 1e-11 * x.lambda.norm());
+        for (const Reaction& r : unbalanced) CHECK(r.F.norm() + r.T.norm() < 1e-11 * x.lambda.norm());
     }
 }
 
-TEST_CASE("inverse dynamics finds the torque that no constraint supplies", "[dae][kinematics]")
+TEST_CASE("inverse dynamics returns the torque that the constraints do not supply", "[dae][kinematics]")
 {
-    // A pendulum held still at an angle: the pin takes the weight, what is missing is a torque about the
-    // pin's axis.
+    // A pendulum at rest at an angle: the pin supports the weight. The unbalanced load is a torque about the
+    // axis of the pin.
     Model model;
     State x;
     const Vec3 X = Vec3::UnitX();
@@ -273,19 +275,19 @@ TEST_CASE("inverse dynamics finds the torque that no constraint supplies", "[dae
     dae::start(model, x);
     x.body[0].rddot.setZero();
     x.body[0].omegadot_bar.setZero();
-    std::vector<Reaction> missing;
-    inverse_dynamics(model, x, &missing);
-    // of all loads that do it, the least: it works on the one free motion, turning about the pin, as the true
-    // torque does
-    const Vec3 about_pin = arm.cross(missing[0].F) + missing[0].T;
+    std::vector<Reaction> unbalanced;
+    inverse_dynamics(model, x, &unbalanced);
+    // The unbalanced load is the shortest of all equivalent loads: a multiple of the free motion, the
+    // rotation about the pin.
+    const Vec3 about_pin = arm.cross(unbalanced[0].F) + unbalanced[0].T;
     CHECK(about_pin.x() == Approx(2 * 9.81 * 0.6));
     Eigen::Matrix<double, 6, 1> free, found;
     free << X.cross(arm), X;
-    found << missing[0].F, missing[0].T;
+    found << unbalanced[0].F, unbalanced[0].T;
     CHECK((found - free * (found.dot(free) / free.squaredNorm())).norm() < 1e-13);
 }
 
-TEST_CASE("kinematics goes backwards in time and by any substep", "[dae][kinematics]")
+TEST_CASE("kinematic analysis runs backwards in time and with any substep", "[dae][kinematics]")
 {
     Model model;
     State x;
@@ -303,7 +305,7 @@ TEST_CASE("kinematics goes backwards in time and by any substep", "[dae][kinemat
     }
 }
 
-TEST_CASE("kinematics refuses a mechanism that is free to move", "[dae][kinematics]")
+TEST_CASE("kinematic analysis rejects a mechanism with degrees of freedom", "[dae][kinematics]")
 {
     Model model;
     State x;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Model files that are none: each is refused with file, line, column and JSON pointer, what is wrong, and the
-// value.
+/// Invalid model files. Each is rejected with file, line, column, JSON pointer, the error, and the value.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +13,7 @@ using namespace hilda;
 
 namespace {
 
-const std::string good = R"json({
+const std::string valid_model = R"json({
   "hilda_model": 1,
   "name": "bench",
   "gravity": [0, 0, -9.81],
@@ -41,23 +40,23 @@ const std::string good = R"json({
 }
 )json";
 
-/// One edit of the good model, and what is said of it. An empty `find` replaces the whole text.
-struct Bad {
+/// A modification of the valid model and the expected message. An empty `find` replaces the whole text.
+struct InvalidModel {
     std::string find, replace, pointer, piece;
 };
 
-std::string edited(const Bad& bad)
+std::string edited(const InvalidModel& bad)
 {
     if (bad.find.empty()) return bad.replace;
-    std::string text = good;
+    std::string text = valid_model;
     const std::size_t at = text.find(bad.find);
     INFO(bad.find);
     REQUIRE(at != std::string::npos);
     return text.replace(at, bad.find.size(), bad.replace);
 }
 
-/// What reading and starting says; empty when all is well.
-std::string refusal(const std::string& text, const std::vector<std::string>& set = {})
+/// Message of reading and starting a model, or an empty string
+std::string error_message(const std::string& text, const std::vector<std::string>& set = {})
 {
     try {
         dae::Description d = dae::read_model(text, "bad.json", set);
@@ -68,11 +67,12 @@ std::string refusal(const std::string& text, const std::vector<std::string>& set
     }
 }
 
-void check(const Bad& bad, const std::string& message)
+void check(const InvalidModel& bad, const std::string& message)
 {
     INFO(bad.find << " -> " << bad.replace.substr(0, 200));
     INFO(message);
-    static const std::regex form(R"(bad\.json:[1-9]\d*:[1-9]\d* \((/[^ ]*)\): .+)");  // '.' is no line break
+    // '.' does not match a line break
+    static const std::regex form(R"(bad\.json:[1-9]\d*:[1-9]\d* \((/[^ ]*)\): .+)");
     std::smatch match;
     CHECK(std::regex_match(message, match, form));
     CHECK((match.empty() ? "" : match[1].str()) == bad.pointer);
@@ -87,13 +87,13 @@ std::string repeated(const std::string& s, int n)
     return all;
 }
 
-// One line each, however long.
+// One line per case, of any length
 // clang-format off
-const std::vector<Bad> syntax = {
+const std::vector<InvalidModel> syntax = {
     {"", "", "/", "the text is empty"},
     {"", " \n\t ", "/", "the text is empty"},
-    {"", "{", "/", "ends too early"},
-    {"", "[1, 2", "/2", "ends too early; expected ']'"},
+    {"", "{", "/", "unexpected end of the text"},
+    {"", "[1, 2", "/2", "unexpected end of the text; expected ']'"},
     {"", "nonsense", "/", "got 'nonsense'"},
     {"", "[]", "/", "must be an object, got []"},
     {"", "3", "/", "must be an object, got 3"},
@@ -109,18 +109,18 @@ const std::vector<Bad> syntax = {
     {"\"end\": 2,", "\"end\": 2.,", "/end", "expected digit after '.'"},
     {"\"end\": 2,", "\"end\": .5,", "/end", "got '.5'"},
     {"\"end\": 2,", "\"end\": +2,", "/end", "got '+2'"},
-    {"\"end\": 2,", "\"end\": NaN,", "/end", "numbers are finite"},
-    {"\"end\": 2,", "\"end\": nan,", "/end", "numbers are finite"},
-    {"\"end\": 2,", "\"end\": Infinity,", "/end", "numbers are finite"},
-    {"\"end\": 2,", "\"end\": -inf,", "/end", "numbers are finite"},
-    {"\"end\": 2,", "\"end\": 1e999,", "/end", "a number beyond the range of double precision, got '1e999'"},
-    {"\"end\": 2,", "\"end\": -1e400,", "/end", "beyond the range"},
-    {"\"end\": 2,", "\"end\": 99999999999999999999,", "/end", "an integer too large to be exact, got '99999999999999999999'"},
-    {"\"end\": 2,", "\"end\": 9007199254740993,", "/end", "an integer too large to be exact"},
-    {"\"end\": 2,", "\"end\": -18446744073709551617,", "/end", "an integer too large to be exact"},
-    {"-9.81]", "-9.81,]", "/gravity/3", "a comma that nothing follows, before ']'"},
-    {"\"free_angle\": 0}", "\"free_angle\": 0, }", "/forces/1/free_angle", "a comma that nothing follows, before '}'"},
-    {"\"bench\"", "\"bench", "/name", "a string that is not closed on its line, got \"bench,\""},
+    {"\"end\": 2,", "\"end\": NaN,", "/end", "numbers must be finite"},
+    {"\"end\": 2,", "\"end\": nan,", "/end", "numbers must be finite"},
+    {"\"end\": 2,", "\"end\": Infinity,", "/end", "numbers must be finite"},
+    {"\"end\": 2,", "\"end\": -inf,", "/end", "numbers must be finite"},
+    {"\"end\": 2,", "\"end\": 1e999,", "/end", "the number is outside the range of double precision, got '1e999'"},
+    {"\"end\": 2,", "\"end\": -1e400,", "/end", "outside the range"},
+    {"\"end\": 2,", "\"end\": 99999999999999999999,", "/end", "the integer is too large to be exact, got '99999999999999999999'"},
+    {"\"end\": 2,", "\"end\": 9007199254740993,", "/end", "the integer is too large to be exact"},
+    {"\"end\": 2,", "\"end\": -18446744073709551617,", "/end", "the integer is too large to be exact"},
+    {"-9.81]", "-9.81,]", "/gravity/3", "a comma without a following value, before ']'"},
+    {"\"free_angle\": 0}", "\"free_angle\": 0, }", "/forces/1/free_angle", "a comma without a following value, before '}'"},
+    {"\"bench\"", "\"bench", "/name", "a string must be closed on its line, got \"bench,\""},
     {"", "{\"name\": \"bench", "/name", "missing closing quote"},
     {"\"bench\"", "\"be\\qnch\"", "/name", "forbidden character after backslash"},
     {"\"bench\"", "\"be\\u12\"", "/name", "4 hex digits"},
@@ -128,7 +128,7 @@ const std::vector<Bad> syntax = {
     {"\"bench\"", "\"be\tnch\"", "/name", "control character"},
     {"\"bench\"", "\"be\xff\"", "/name", "ill-formed UTF-8"},
     {"\"bench\"", "\"be\xc0\x80\"", "/name", "ill-formed UTF-8"},
-    {"\"end\": 2,", "\"end\": 2, \"end\": 3,", "/end", "the key \"end\" is there twice; first at bad.json:5:3"},
+    {"\"end\": 2,", "\"end\": 2, \"end\": 3,", "/end", "the key \"end\" is given twice; first at bad.json:5:3"},
     {"\"mass\": 0.5,", "\"mass\": 0.5, \"r\": [0, 0, 0],", "/bodies/1/r", "twice"},
     {"\"type\": \"CD\"", "\"type\": \"CD\", \"type\": \"CD\"", "/constraints/2/type", "twice"},
     {"\"end\": 2,", "\"note\": " + repeated("[", 64) + repeated("]", 64) + ",", "/note" + repeated("/0", 63), "nested deeper than 64"},
@@ -136,7 +136,7 @@ const std::vector<Bad> syntax = {
     {"\"bench\"", "\"" + std::string(4097, 'b') + "\"", "/name", "a string of 4097 bytes"},
 };
 
-const std::vector<Bad> keys_and_types = {
+const std::vector<InvalidModel> keys_and_types = {
     {"\"hilda_model\": 1", "\"hilda_model\": 2", "/hilda_model", "must be 1, got 2"},
     {"\"hilda_model\": 1", "\"hilda_model\": \"1\"", "/hilda_model", "must be a number, got \"1\""},
     {"\"name\": \"bench\",", "", "/", "missing key 'name'"},
@@ -152,7 +152,7 @@ const std::vector<Bad> keys_and_types = {
     {"\"end\": 2,", "\"end\": -1,", "/end", "end must be positive, got -1"},
     {"\"end\": 2,", "\"end\": true,", "/end", "must be a number, got true"},
     {"\"end\": 2,", "\"note\": 5,", "/note", "note must be a string, got 5"},
-    {"\"end\": 2,", "\"contacts\": [{}],", "/contacts", "contacts are not part of this build; the list must be empty, got 1"},
+    {"\"end\": 2,", "\"contacts\": [{}],", "/contacts", "this program is built without contacts; the list must be empty, got 1"},
     {"\"end\": 2,", "\"contacts\": {},", "/contacts", "must be a list"},
     {"", R"({"hilda_model": 1, "name": "x", "bodies": []})", "/bodies", "at least one body with mass"},
     {"", R"({"hilda_model": 1, "name": "x", "bodies": {}})", "/bodies", "must be a list, got an object of 0 keys"},
@@ -161,10 +161,10 @@ const std::vector<Bad> keys_and_types = {
     {"", R"({"hilda_model": 1, "name": "x", "bodies": [5]})", "/bodies/0", "must be an object, got 5"},
 };
 
-const std::vector<Bad> bodies = {
+const std::vector<InvalidModel> bodies = {
     {"\"name\": \"bar\", ", "", "/bodies/0", "missing key 'name'"},
     {"\"name\": \"bob\"", "\"name\": \"bar\"", "/bodies/1/name", "two bodies have the same name, got \"bar\""},
-    {"\"name\": \"bob\"", "\"name\": \"ground\"", "/bodies/1/name", "'ground' is the fixed body"},
+    {"\"name\": \"bob\"", "\"name\": \"ground\"", "/bodies/1/name", "the name 'ground' is reserved for the fixed body"},
     {"\"id\": 2", "\"id\": 1", "/bodies/1/id", "two bodies have the same id, got 1"},
     {"\"id\": 2", "\"id\": 2.5", "/bodies/1/id", "must be an integer"},
     {"\"id\": 2", "\"id\": \"two\"", "/bodies/1/id", "must be a number, got \"two\""},
@@ -187,7 +187,7 @@ const std::vector<Bad> bodies = {
     {"\"A\": [[1,", "\"A\": [[1.1,", "/bodies/0/A", "must be a rotation matrix"},
     {"\"A\": [[1,", "\"A\": [[-1,", "/bodies/0/A", "reflection"},
     {"\"A\": [[1, 0, 0],", "\"A\": [", "/bodies/0/A", "three rows"},
-    {"\"A\": [[1,", "\"A\": [[1.00001,", "/bodies/0/A", "at most 1e-06 off is mended"},
+    {"\"A\": [[1,", "\"A\": [[1.00001,", "/bodies/0/A", "deviations up to 1e-06 are corrected"},
     {"\"p\": [1, 0, 0, 0]", "\"p\": [1, 0, 0, 0.1]", "/bodies/1/p", "p must have length 1, got 1.00498"},
     {"\"p\": [1, 0, 0, 0]", "\"p\": [0, 0, 0, 0]", "/bodies/1/p", "p must have length 1, got 0"},
     {"\"p\": [1, 0, 0, 0]", "\"p\": [1, 0, 0]", "/bodies/1/p", "list of 4 numbers"},
@@ -198,8 +198,8 @@ const std::vector<Bad> bodies = {
     {"\"omega\": [0, 0, 0]", "\"omegga\": [0, 0, 0]", "/bodies/2/omegga", "did you mean 'omega'?"},
 };
 
-const std::vector<Bad> constraints = {
-    {"\"name\": \"rod\"", "\"name\": \"pin\"", "/constraints/1/name", "taken already, got \"pin\""},
+const std::vector<InvalidModel> constraints = {
+    {"\"name\": \"rod\"", "\"name\": \"pin\"", "/constraints/1/name", "already used, got \"pin\""},
     {"\"type\": \"revolute\", ", "", "/constraints/0", "missing key 'type'"},
     {"\"type\": \"DP1\"", "\"type\": \"DP3\"", "/constraints/3/type", "unknown type \"DP3\"; did you mean 'DP1'?"},
     {"\"type\": \"DP1\"", "\"type\": \"screw\"", "/constraints/3/type", "allowed: DP1, DP2, D, CD, spherical"},
@@ -225,11 +225,11 @@ const std::vector<Bad> constraints = {
     {", \"angle\": \"0.5*t^2\"", "", "/constraints/5", "missing key 'angle'"},
     {"\"type\": \"D\", ", "\"type\": \"distance\", \"length\": 0, ", "/constraints/1/length", "length must be positive, got 0"},
     {"\"type\": \"D\", ", "\"type\": \"distance\", ", "/constraints/1", "missing key 'length'"},
-    {"\"axis_bar_j\": [0, 0, 1], \"angle\"", "\"axis_bar_j\": [1, 0, 0], \"angle\"", "/constraints/5", "the two axes must be parallel at the start, the same way; their cosine, got"},
-    {"\"axis_bar_j\": [0, 0, 1], \"angle\"", "\"axis_bar_j\": [0, 0, -1], \"angle\"", "/constraints/5", "the same way; their cosine, got -1"},
+    {"\"axis_bar_j\": [0, 0, 1], \"angle\"", "\"axis_bar_j\": [1, 0, 0], \"angle\"", "/constraints/5", "the two axes must be parallel at the start and point in the same direction; cosine of their angle, got"},
+    {"\"axis_bar_j\": [0, 0, 1], \"angle\"", "\"axis_bar_j\": [0, 0, -1], \"angle\"", "/constraints/5", "the same direction; cosine of their angle, got -1"},
 };
 
-const std::vector<Bad> expressions = {
+const std::vector<InvalidModel> expressions = {
     {"sin(t^2)", "sine(2*t)", "/constraints/3/f", "unknown function 'sine' in \"sine(2*t)\" at column 1; did you mean 'sin'?"},
     {"sin(t^2)", "2*sin(t", "/constraints/3/f", "'(' is never closed in \"2*sin(t\" at column 6"},
     {"sin(t^2)", "0*x", "/constraints/3/f", "unknown name 'x' in \"0*x\" at column 3"},
@@ -240,11 +240,11 @@ const std::vector<Bad> expressions = {
     {"sin(t^2)", "sin(t,t)", "/constraints/3/f", "wrong number of arguments"},
     {"sin(t^2)", "system(t)", "/constraints/3/f", "unknown function 'system'"},
     {"\"sin(t^2)\"", "[0]", "/constraints/3/f", "f must be a number or an expression in a string, got [0]"},
-    {"sin(t^2)", "sqrt(t)", "/constraints/3/f", "f is singular at t = 0, got \"sqrt(t)\" with 0 and derivatives inf"},
-    {"sin(t^2)", "log(t)", "/constraints/3/f", "f is singular at t = 0, got \"log(t)\" with -inf"},
-    {"sin(t^2)", "0*sin(t)/t", "/constraints/3/f", "f is singular at t = 0"},
-    {"sin(t^2)", "t^1.5", "/constraints/3/f", "f is singular at t = 0"},
-    {"0.5*t^2", "asin(1 - t)", "/constraints/5/angle", "angle is singular at t = 0"},
+    {"sin(t^2)", "sqrt(t)", "/constraints/3/f", "f and its derivatives must be finite at t = 0, got \"sqrt(t)\" with the value 0 and the derivatives inf"},
+    {"sin(t^2)", "log(t)", "/constraints/3/f", "f and its derivatives must be finite at t = 0, got \"log(t)\" with the value -inf"},
+    {"sin(t^2)", "0*sin(t)/t", "/constraints/3/f", "f and its derivatives must be finite at t = 0"},
+    {"sin(t^2)", "t^1.5", "/constraints/3/f", "f and its derivatives must be finite at t = 0"},
+    {"0.5*t^2", "asin(1 - t)", "/constraints/5/angle", "angle and its derivatives must be finite at t = 0"},
     {"0.5*t^2", "l", "/constraints/5/angle", "unknown name 'l'"},
     {"ldot*l", "ldot*length", "/forces/0/force", "unknown name 'length' in \"ldot*length\" at column 6; known: l, ldot, t"},
     {"\"cos(t)\"", "\"cos(x)\"", "/forces/2/components/0", "unknown name 'x' in \"cos(x)\" at column 5"},
@@ -252,8 +252,8 @@ const std::vector<Bad> expressions = {
     {"\"cos(t)\"", "null", "/forces/2/components/0", "a number or an expression in a string, got null"},
 };
 
-const std::vector<Bad> forces = {
-    {"\"name\": \"twist\"", "\"name\": \"spring\"", "/forces/1/name", "taken already"},
+const std::vector<InvalidModel> forces = {
+    {"\"name\": \"twist\"", "\"name\": \"spring\"", "/forces/1/name", "already used"},
     {"\"torsion-spring\"", "\"torsion_spring\"", "/forces/1/type", "did you mean 'torsion-spring'?"},
     {"\"stiffness\": 10, ", "", "/forces/0", "missing key 'stiffness'"},
     {"\"stiffness\": 10", "\"stiffness\": -10", "/forces/0/stiffness", "stiffness must not be negative, got -10"},
@@ -264,7 +264,7 @@ const std::vector<Bad> forces = {
     {"\"stiffness\": 1, ", "", "/forces/1", "missing key 'stiffness'"},
     {", \"free_angle\": 0", "", "/forces/1", "missing key 'free_angle'"},
     {"\"axis_bar_i\": [0, 0, 1], \"axis_bar_j\": [0, 0, 1], \"stiffness\"", "\"axis_bar_i\": [0, 1, 1], \"axis_bar_j\": [0, 0, 1], \"stiffness\"", "/forces/1", "the two axes must be parallel at the start"},
-    {"\"body\": \"bob\"", "\"body\": \"ground\"", "/forces/2/body", "a force must act on a body that moves, got 'ground'"},
+    {"\"body\": \"bob\"", "\"body\": \"ground\"", "/forces/2/body", "a force must act on a movable body, got 'ground'"},
     {"\"body\": \"bob\"", "\"body\": \"Bib\"", "/forces/2/body", "did you mean 'bob'?"},
     {"\"body\": \"bob\"", "\"body_i\": \"bob\"", "/forces/2/body_i", "unknown key \"body_i\"; did you mean 'body'?"},
     {"\"frame\": \"global\"", "\"frame\": \"globel\"", "/forces/2/frame", "unknown frame \"globel\"; did you mean 'global'?"},
@@ -275,11 +275,11 @@ const std::vector<Bad> forces = {
     {"\"body\": 1,", "\"body\": 9,", "/forces/3/body", "no body has this id, got 9"},
 };
 
-/// What only the start can see
-const std::vector<Bad> starts = {
+/// Errors that are detected at the start only
+const std::vector<InvalidModel> starts = {
     {"1 + t^2", "0", "/constraints/1", "f is a squared distance and must be positive, got 0"},
     {"1 + t^2", "-1", "/constraints/1", "must be positive, got -1"},
-    {"sin(t^2)", "2", "/constraints/3", "f must lie between -|a_i||a_j| and |a_i||a_j| = 1, got 2"},
+    {"sin(t^2)", "2", "/constraints/3", "f must be between -|a_i||a_j| and |a_i||a_j| = 1, got 2"},
     {"sin(t^2)", "-1.5 + t", "/constraints/3", "got -1.5"},
     {"\"a_bar_j\": [0, 0, 1], \"f\": \"sin(t^2)\"", "\"a_bar_j\": [1, 0, 0], \"f\": \"cos(t)\"", "/constraints/3", "the two vectors are parallel at the start"},
     {"\"r\": [1, 0, 0]", "\"r\": [1, 0, 0.25]", "/constraints/0", "the initial positions violate constraint 'pin' row 3"},
@@ -295,7 +295,7 @@ const std::vector<Bad> starts = {
 };
 
 // clang-format on
-const std::vector<std::pair<std::string, const std::vector<Bad>*>> tables = {
+const std::vector<std::pair<std::string, const std::vector<InvalidModel>*>> tables = {
     {"syntax", &syntax},           {"keys and types", &keys_and_types}, {"bodies", &bodies},
     {"constraints", &constraints}, {"expressions", &expressions},       {"forces", &forces},
     {"starts", &starts},
@@ -303,29 +303,29 @@ const std::vector<std::pair<std::string, const std::vector<Bad>*>> tables = {
 
 }  // namespace
 
-TEST_CASE("the model that the bad ones come from is good", "[dae][model_file]")
+TEST_CASE("the model from which the invalid ones are derived is valid", "[dae][model_file]")
 {
-    CHECK(refusal(good) == "");
-    dae::Description d = dae::read_model(good, "good.json");
+    CHECK(error_message(valid_model) == "");
+    dae::Description d = dae::read_model(valid_model, "good.json");
     CHECK(d.warnings.empty());
     const dae::StartReport report = dae::start(d);
     CHECK(report.rows == report.rank);
 }
 
-TEST_CASE("a bad model file is refused with its place, what is wrong and the value", "[dae][model_file]")
+TEST_CASE("an invalid model file is rejected with its location, the error and the value", "[dae][model_file]")
 {
     std::size_t count = 0;
     for (const auto& [name, table] : tables) {
         CAPTURE(name);
-        for (const Bad& bad : *table) {
-            check(bad, refusal(edited(bad)));
+        for (const InvalidModel& bad : *table) {
+            check(bad, error_message(edited(bad)));
             ++count;
         }
     }
     CHECK(count >= 150);
 }
 
-TEST_CASE("a place is line and column of the value, in characters from 1", "[dae][model_file]")
+TEST_CASE("a location is the line and column of the value, counted in characters from 1", "[dae][model_file]")
 {
     struct Place {
         std::string text, start;
@@ -348,37 +348,37 @@ TEST_CASE("a place is line and column of the value, in characters from 1", "[dae
         {"\n\n  [1,\n  NaN]", "bad.json:4:3 (/1): "},
     };
     for (const Place& place : places) {
-        const std::string message = refusal(place.text);
+        const std::string message = error_message(place.text);
         CHECK_THAT(message, Catch::StartsWith(place.start));
     }
 }
 
-TEST_CASE("a message quotes at most a line of the file", "[dae][model_file]")
+TEST_CASE("a message quotes at most one line of the file", "[dae][model_file]")
 {
     const std::string name(3000, 'x');
     const std::string message =
-        refusal(edited({"\"body_j\": \"bar\"", "\"body_j\": \"" + name + "\"", "", ""}));
+        error_message(edited({"\"body_j\": \"bar\"", "\"body_j\": \"" + name + "\"", "", ""}));
     CHECK(message.size() < 200);
     const std::string e_acute = "\xc3\xa9";
-    const std::string other = refusal(edited({"\"end\"", "\"" + repeated(e_acute, 61) + "\"", "", ""}));
+    const std::string other = error_message(edited({"\"end\"", "\"" + repeated(e_acute, 61) + "\"", "", ""}));
     CHECK(other.size() < 500);
     CHECK_NOTHROW(dae::JsonSource("[\"" + other.substr(0, other.find(" (")) + "\"]", "is UTF-8"));
 }
 
-TEST_CASE("a file too large, or none, is refused before it is read", "[dae][model_file]")
+TEST_CASE("a file that is too large or not a regular file is rejected before it is read", "[dae][model_file]")
 {
     const std::string large(dae::JsonSource::max_bytes + 1, ' ');
-    CHECK_THAT(refusal(large),
+    CHECK_THAT(error_message(large),
                Catch::StartsWith("bad.json:1:1 (/): the text has 67108865 bytes; at most 67108864"));
     std::string many = "[0";
     for (std::size_t k = 0; k < dae::JsonSource::max_values; ++k) many += ",0";
-    CHECK_THAT(refusal(many + "]"), Catch::Contains("more than 2000000 values"));
+    CHECK_THAT(error_message(many + "]"), Catch::Contains("more than 2000000 values"));
 
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     CHECK_THROWS_AS(dae::load_model((folder / "hilda-there-is-no-such-file.json").string()),
                     lie::InvalidInput);
     CHECK_THROWS_WITH(dae::load_model((folder / "hilda-there-is-no-such-file.json").string()),
-                      Catch::Contains("there is no such file"));
+                      Catch::Contains("the file does not exist"));
     CHECK_THROWS_WITH(dae::load_model(folder.string()), Catch::Contains("regular file"));
     CHECK_THROWS_WITH(dae::load_model("/dev/zero"), Catch::Contains("regular file"));
 
@@ -391,7 +391,7 @@ TEST_CASE("a file too large, or none, is refused before it is read", "[dae][mode
     std::filesystem::remove(sparse);
 }
 
-TEST_CASE("a bad --set is named", "[dae][model_file]")
+TEST_CASE("an invalid --set is quoted in the message", "[dae][model_file]")
 {
     struct BadSet {
         std::string set, pointer, piece;
@@ -421,17 +421,18 @@ TEST_CASE("a bad --set is named", "[dae][model_file]")
         {"/bodies/0/r/2=0.5", "/constraints/0", "the initial positions violate"},
     };
     // clang-format on
-    for (const BadSet& bad : sets) check({"", bad.set, bad.pointer, bad.piece}, refusal(good, {bad.set}));
+    for (const BadSet& bad : sets)
+        check({"", bad.set, bad.pointer, bad.piece}, error_message(valid_model, {bad.set}));
 }
 
-TEST_CASE("a mutated model file is read, refused or fails in its numbers; nothing else", "[dae][model_file]")
+TEST_CASE("a mutated model file is read, rejected, or fails numerically", "[dae][model_file]")
 {
     static const std::string alphabet = "{}[]\",:.-+eE0123456789 \nabmnfr_\\/\xff\x80";
     std::mt19937 random(20);
     const auto below = [&](std::size_t n) { return random() % n; };
     int read = 0, started = 0;
     for (int k = 0; k < 2000; ++k) {
-        std::string text = good;
+        std::string text = valid_model;
         for (std::size_t n = 1 + below(3); n > 0; --n) {
             const std::size_t at = below(text.size());
             switch (below(5)) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The model file: every type of constraint and force, round trip, --set, and the keys of the published files.
+/// The model file: all types of constraints and forces, round trip, --set, and the keys of the published
+/// files.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -31,7 +32,7 @@ dae::Description load(const std::string& name, const std::vector<std::string>& s
     return dae::load_model((models / (name + ".json")).string(), set);
 }
 
-std::vector<std::string> good_models()
+std::vector<std::string> valid_models()
 {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(models))
@@ -40,14 +41,14 @@ std::vector<std::string> good_models()
     return names;
 }
 
-/// A bar with some keys replaced, as JSON; `more` ends up in the model.
+/// A model of one bar as JSON. `keys` is added to the bar, `more` to the model.
 std::string bar(const std::string& keys, const std::string& more = "")
 {
     return R"({"hilda_model": 1, "name": "m", "bodies": [{"name": "bar", "mass": 1, "inertia": [1, 1, 1], "r": [1, 2, 3])" +
            keys + "}]" + more + "}";
 }
 
-/// The rows of the constraint `number`
+/// The rows of a constraint
 std::vector<const dae::Block*> rows(const dae::Model& model, int number)
 {
     std::vector<const dae::Block*> blocks;
@@ -56,8 +57,8 @@ std::vector<const dae::Block*> rows(const dae::Model& model, int number)
     return blocks;
 }
 
-/// The kinds of these rows, in order: "CD CD CD DP1"
-std::string kinds(const std::vector<const dae::Block*>& blocks)
+/// The types of these rows in order, for example "CD CD CD DP1"
+std::string types(const std::vector<const dae::Block*>& blocks)
 {
     std::string all;
     for (const dae::Block* b : blocks) {
@@ -74,10 +75,11 @@ std::string kinds(const std::vector<const dae::Block*>& blocks)
 
 }  // namespace
 
-TEST_CASE("every good model is read, starts, and is written as it is read", "[dae][model_file]")
+TEST_CASE("every valid model is read and started, and its canonical form is read as the same model",
+          "[dae][model_file]")
 {
-    CHECK(good_models().size() >= 5);
-    for (const std::string& name : good_models()) {
+    CHECK(valid_models().size() >= 5);
+    for (const std::string& name : valid_models()) {
         INFO(name);
         dae::Description d = load(name);
         const dae::Description again = dae::read_model(d.text, "again.json");
@@ -108,7 +110,7 @@ TEST_CASE("every good model is read, starts, and is written as it is read", "[da
     }
 }
 
-TEST_CASE("each type of constraint is read into its rows", "[dae][model_file]")
+TEST_CASE("each type of constraint gives its rows", "[dae][model_file]")
 {
     const dae::Description d = load("every_type");
     const std::vector<std::string> expected = {"DP1",
@@ -127,15 +129,15 @@ TEST_CASE("each type of constraint is read into its rows", "[dae][model_file]")
     REQUIRE(d.model->constraints() == static_cast<int>(expected.size()));
     for (int k = 0; k < d.model->constraints(); ++k) {
         INFO(d.model->constraint_name(k));
-        CHECK(kinds(rows(*d.model, k)) == expected[k]);
-        // each is between the ground and the body of its name
+        CHECK(types(rows(*d.model, k)) == expected[k]);
+        // each connects the ground with the body of its name
         CHECK(d.model->constraint_name(k) == "the " + d.model->all_bodies()[k].name);
         for (const dae::Block* b : rows(*d.model, k))
             CHECK(std::minmax(b->i, b->j) == std::minmax(ground, k));
     }
 }
 
-TEST_CASE("the basic constraints keep the numbers of the file", "[dae][model_file]")
+TEST_CASE("the basic constraints have the values of the file", "[dae][model_file]")
 {
     const dae::Description d = load("every_type");
     const auto block = [&](int k) { return rows(*d.model, k)[0]; };
@@ -206,7 +208,7 @@ TEST_CASE("each type of force is read", "[dae][model_file]")
     CHECK(motor.components[2].value(0) == 1);
 }
 
-TEST_CASE("the three forms of an orientation are one rotation", "[dae][model_file]")
+TEST_CASE("the three forms of an orientation give the same rotation", "[dae][model_file]")
 {
     const Vec3 u = Vec3(1, -2, 2) / 3;
     const double phi = 2.1;
@@ -229,15 +231,15 @@ TEST_CASE("the three forms of an orientation are one rotation", "[dae][model_fil
     CHECK(lie::orthogonality_error(read("axis_angle", list(lie::Vec4(0, 0, 1, 1e300)))) < 1e-15);
     CHECK(dae::read_model(bar(""), "m").x.body[0].A == Mat3::Identity());
 
-    // A with seven digits is moved to the nearest rotation
+    // A with seven digits is replaced by the nearest rotation
     const Mat3 rounded = (A * 1e7).array().round() / 1e7;
-    const Mat3 mended = read("A", dae::json(rounded));
+    const Mat3 corrected = read("A", dae::json(rounded));
     CHECK(lie::orthogonality_error(rounded) > 1e-8);
-    CHECK(lie::orthogonality_error(mended) < 1e-14);
-    CHECK((mended - lie::nearest_rotation(rounded)).norm() == 0);
+    CHECK(lie::orthogonality_error(corrected) < 1e-14);
+    CHECK((corrected - lie::nearest_rotation(rounded)).norm() == 0);
 }
 
-TEST_CASE("what a file leaves out has its default", "[dae][model_file]")
+TEST_CASE("a missing key has its default", "[dae][model_file]")
 {
     const dae::Description d = dae::read_model(
         bar("",
@@ -254,7 +256,7 @@ TEST_CASE("what a file leaves out has its default", "[dae][model_file]")
     CHECK(d.warnings.empty());
 }
 
-TEST_CASE("the model as read is written in one form", "[dae][model_file]")
+TEST_CASE("the canonical form of a model is unique", "[dae][model_file]")
 {
     const dae::Description d =
         dae::read_model(bar(R"(, "note": "a \"bar\"", "p": [0, 0, 0, 1], "omega": [-0.0, 1e-7, 0.1])"), "m");
@@ -283,20 +285,20 @@ TEST_CASE("the model as read is written in one form", "[dae][model_file]")
     CHECK(std::signbit(dae::read_model(d.text, "m").x.body[0].omega_bar.x()));
 }
 
-TEST_CASE("entries given by --set are changed and added before the model is built", "[dae][model_file]")
+TEST_CASE("values are changed and added by --set before the model is built", "[dae][model_file]")
 {
     const dae::Description d =
         load("double_pendulum", {"/bodies/0/mass=80", "/end=0.5", "/gravity=[0, 0, -1.62]",
                                  "/name=on the moon", "/bodies/1/r_dot=[0, 1, 0]", "/bodies/0/inertia/1=0.5",
                                  "/end=0.75", "/constraints/1/name=elbow=joint"});
     CHECK(d.model->all_bodies()[0].m == 80);
-    CHECK(d.end == 0.75);  // the last one holds
+    CHECK(d.end == 0.75);  // the last change applies
     CHECK(d.model->gravity == Vec3(0, 0, -1.62));
     CHECK(d.name == "on the moon");
     CHECK(d.x.body[1].rdot == Vec3(0, 1, 0));
     CHECK(d.model->all_bodies()[0].J_bar(1, 1) == 0.5);
     CHECK(d.model->constraint_name(1) == "elbow=joint");
-    // and the text is that of the model as changed
+    // the canonical form is that of the changed model
     CHECK(dae::read_model(d.text, "again").text == d.text);
     CHECK_THAT(d.text, Catch::Contains("\"mass\": 80,"));
 
@@ -343,7 +345,7 @@ TEST_CASE("redundant joints of a file are named at the start", "[dae][model_file
     for (const std::string& row : report.dropped) CHECK_THAT(row, Catch::StartsWith("constraint 'D' row "));
 }
 
-TEST_CASE("a start that violates the constraints is mended on request", "[dae][model_file]")
+TEST_CASE("a start that violates the constraints is projected on request", "[dae][model_file]")
 {
     dae::Description d = load("double_pendulum", {"/bodies/1/r/2=-1.001"});
     CHECK_THROWS_AS(dae::start(d), dae::ConstraintError);
@@ -352,7 +354,7 @@ TEST_CASE("a start that violates the constraints is mended on request", "[dae][m
     CHECK(d.model->largest_residual(d.x).value < 1e-12);
 }
 
-TEST_CASE("strict JSON that is no model is kept with its places", "[dae][model_file]")
+TEST_CASE("any strict JSON is stored with its locations", "[dae][model_file]")
 {
     const std::string text = "{\"a\": [1, true, null, -0, 2.5e3],\n \"b\\u00e9\": {\"\": \"\\n\"}}";
     const dae::JsonSource source(text, "f");

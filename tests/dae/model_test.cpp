@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The model: names, bodies that can be, what is refused and how, reactions and energy.
+/// The model: names, valid bodies, rejected input, reactions and energy.
 
 #include "dae/model.hpp"
 
@@ -7,6 +7,9 @@
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -44,10 +47,10 @@ TEST_CASE("bodies are found by their names", "[dae][model]")
     CHECK_THROWS_WITH(model.add(body("rod")), Contains("same name") && Contains("'rod'"));
     CHECK_THROWS_AS(model.add(body("ground")), lie::InvalidInput);
     CHECK_THROWS_AS(model.add(body("")), lie::InvalidInput);
-    CHECK(model.bodies() == 2);  // what was refused left no trace
+    CHECK(model.bodies() == 2);  // rejected bodies were not added
 }
 
-TEST_CASE("a body that cannot be is refused with the reason and the value", "[dae][model]")
+TEST_CASE("an invalid body is rejected with the reason and the value", "[dae][model]")
 {
     Model model;
     CHECK_THROWS_WITH(model.add(body("b", -2)),
@@ -67,7 +70,7 @@ TEST_CASE("a body that cannot be is refused with the reason and the value", "[da
     model.add(body("rod", 1, diagonal(1e-6, 1, 1)));
     model.add(body("thin plate", 1, diagonal(1, 2, 3)));
     model.add(body("thin plate, ten digits", 1, diagonal(0.3333333333, 0.3333333333, 0.6666666667)));
-    // the inequality is one of principal moments, whatever the axes
+    // the inequality holds for the principal moments, in any body frame
     const Mat3 R = Random(1).rotation();
     model.add(body("turned plate", 1, R * diagonal(1, 2, 2.99) * R.transpose()));
     CHECK_THROWS_AS(model.add(body("turned", 1, R * diagonal(1, 2, 3.01) * R.transpose())),
@@ -75,7 +78,7 @@ TEST_CASE("a body that cannot be is refused with the reason and the value", "[da
     CHECK(model.bodies() == 4);
 }
 
-TEST_CASE("a constraint that names no two bodies is refused", "[dae][model]")
+TEST_CASE("a constraint without two different existing bodies is rejected", "[dae][model]")
 {
     Model model;
     model.add(body("crank"));
@@ -91,7 +94,7 @@ TEST_CASE("a constraint that names no two bodies is refused", "[dae][model]")
     CHECK(model.rows() == 3);
 }
 
-TEST_CASE("rows have names that lead to the model", "[dae][model]")
+TEST_CASE("the name of a row contains its constraint and its bodies", "[dae][model]")
 {
     Model model;
     model.add(body("crank"));
@@ -108,7 +111,7 @@ TEST_CASE("rows have names that lead to the model", "[dae][model]")
     CHECK(model.row_name(5) == "constraint 'ball' row 2; bodies 'crank', 'rod'");
 }
 
-TEST_CASE("a model asks for a state with the right bodies in it", "[dae][model]")
+TEST_CASE("a model rejects a state with another number of bodies", "[dae][model]")
 {
     Model model;
     model.add(body("bar"));
@@ -125,7 +128,7 @@ TEST_CASE("a model asks for a state with the right bodies in it", "[dae][model]"
     }
 }
 
-TEST_CASE("an orientation that is no rotation is refused", "[dae][model]")
+TEST_CASE("an orientation that is not a rotation is rejected", "[dae][model]")
 {
     Model model;
     model.add(body("bar"));
@@ -141,7 +144,7 @@ TEST_CASE("an orientation that is no rotation is refused", "[dae][model]")
     CHECK_NOTHROW(model.prepare(x));
 }
 
-TEST_CASE("phi, nu, gamma and the variation leave out dropped rows and the ground", "[dae][model]")
+TEST_CASE("phi, nu, gamma and the variation omit removed rows and the ground", "[dae][model]")
 {
     Random random(GENERATE(range(1u, 6u)));
     Model model;
@@ -176,7 +179,7 @@ TEST_CASE("phi, nu, gamma and the variation leave out dropped rows and the groun
     CHECK(C.entry[2].body == 0);
     CHECK(C.entry[2].pi == three.variation(b, a, x.t).pi_j);
 
-    // residuals count the dropped row too, over the length of its variation
+    // residuals include the removed row and are divided by the length of its first variation
     const Model::Residual largest = model.largest_residual(x);
     double expected = 0;
     for (const Model::Row& row : model.all_rows())
@@ -187,9 +190,9 @@ TEST_CASE("phi, nu, gamma and the variation leave out dropped rows and the groun
           Approx(model.all_rows()[0].block->phi(a, b, x.t) / std::hypot(v.pi_i.norm(), v.pi_j.norm())));
 }
 
-TEST_CASE("the pattern of a model covers the complements of its drivers", "[dae][model]")
+TEST_CASE("the pattern of a model includes the complements of its drivers", "[dae][model]")
 {
-    // a_i along x enters about y and z, its perpendicular about x too
+    // The vector a_i along x has derivatives by rotations about y and z, its perpendicular also about x.
     Model model;
     model.add(body("rotor"));
     State x;
@@ -203,7 +206,7 @@ TEST_CASE("the pattern of a model covers the complements of its drivers", "[dae]
     CHECK((model.all_rows()[0].complement->nonzero() & ~pattern & 0b111111) == 0);
 }
 
-TEST_CASE("a pin carries the weight of a pendulum at rest", "[dae][model]")
+TEST_CASE("a pin supports the weight of a pendulum at rest", "[dae][model]")
 {
     Model model;
     model.add(body("bar", 3, diagonal(0.1, 1, 1)));
@@ -217,7 +220,7 @@ TEST_CASE("a pin carries the weight of a pendulum at rest", "[dae][model]")
     CHECK((hanging.F - Vec3(0, 0, 3 * 9.81)).norm() < 1e-13);
     CHECK(hanging.T.norm() < 1e-13);
 
-    // clamped at its end and held out level: the clamp carries a moment too, seen from the centre of mass
+    // Horizontal cantilever: the clamp at its end supports the weight and its moment.
     Model clamped;
     clamped.add(body("bar", 3, diagonal(0.1, 1, 1)));
     State y;
@@ -227,11 +230,11 @@ TEST_CASE("a pin carries the weight of a pendulum at rest", "[dae][model]")
     dae::start(clamped, y);
     const Reaction level = reactions(clamped, y)[0];
     CHECK((level.F - Vec3(0, 0, 3 * 9.81)).norm() < 1e-13);
-    CHECK(level.T.norm() < 1e-12);  // fixed() meets at the centre of body j
+    CHECK(level.T.norm() < 1e-12);  // the point of fixed() is the centre of mass of body j
     CHECK((y.body[0].r.cross(level.F) - Vec3(2 * 3 * 9.81, 0, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("a body that falls freely follows its parabola and keeps its energy", "[dae][model]")
+TEST_CASE("a freely falling body follows a parabola and conserves its energy", "[dae][model]")
 {
     Model model;
     model.gravity = {1, 0, -9.81};
@@ -252,12 +255,12 @@ TEST_CASE("a body that falls freely follows its parabola and keeps its energy", 
     CHECK(end.t == 1);
     CHECK((end.body[0].r - (at_0.r + at_0.rdot + 0.5 * model.gravity)).norm() < 1e-12);
     CHECK((end.body[0].rdot - (at_0.rdot + model.gravity)).norm() < 1e-12);
-    CHECK((end.body[0].A - at_0.A * lie::exp(at_0.omega_bar)).norm() <
-          1e-12);  // a ball turns about a fixed axis
+    // a body with equal principal moments rotates about a fixed axis
+    CHECK((end.body[0].A - at_0.A * lie::exp(at_0.omega_bar)).norm() < 1e-12);
     CHECK(lie::energy(model, end) == Approx(e).epsilon(1e-13));
 }
 
-TEST_CASE("energy is that of the motion and of the height", "[dae][model]")
+TEST_CASE("the energy is the sum of kinetic and potential energy", "[dae][model]")
 {
     Model model;
     model.add(body("a", 2, diagonal(1, 2, 2.5)));

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// More rows than the motion needs: redundant ones are dropped and named, contradictory ones refused.
+/// Overconstrained mechanisms: redundant rows are removed and named, contradictory rows are rejected.
 
 #include "dae/constraints/d.hpp"
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
@@ -19,11 +22,11 @@ namespace {
 
 const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
-/// Angle at the near end of side a, of a triangle with the sides a, b and the third side c opposite it
+/// Angle between the sides a and b of a triangle with the third side c
 double corner(double a, double b, double c) { return std::acos((a * a + b * b - c * c) / (2 * a * b)); }
 
-/// A four-bar in the plane x = 0: crank 1 m from A = (0, 0, 0), coupler 2.5 m, rocker 2 m from D = (0, 3, 0).
-/// Bars lie along their y axes.
+/// A four-bar linkage in the plane x = 0: crank of 1 m at A = (0, 0, 0), coupler of 2.5 m, rocker of 2 m at
+/// D = (0, 3, 0). The bars are parallel to their body-fixed y axes.
 struct FourBar {
     static constexpr double crank_length = 1, coupler_length = 2.5, rocker_length = 2;
     const Vec3 A = O, D = 3 * Y;
@@ -41,7 +44,7 @@ struct FourBar {
         bar(model, x, "crank", 1, A, crank_angle, crank_length);
         bar(model, x, "coupler", 2, B, coupler_angle, coupler_length);
         bar(model, x, "rocker", 1.5, D, std::atan2(DC.z(), DC.y()), rocker_length);
-        x.body[0].omega_bar = 3 * X;  // the others follow in the start
+        x.body[0].omega_bar = 3 * X;  // the velocities of the others follow by the projection
         x.body[0].rdot = 3 * X.cross(x.body[0].r);
     }
 
@@ -55,7 +58,7 @@ private:
     }
 };
 
-/// Four revolute joints: 20 rows, of which the plane makes 3 redundant
+/// Four revolute joints: 20 rows, 3 of them redundant because all axes are parallel
 void four_revolutes(Model& model, const FourBar& f)
 {
     model.constrain("A", revolute(ground, f.A, X, 0, -f.end(f.crank_length), X));
@@ -64,7 +67,7 @@ void four_revolutes(Model& model, const FourBar& f)
     model.constrain("D", revolute(2, -f.end(f.rocker_length), X, ground, f.D, X));
 }
 
-/// The same motion from 17 rows: the loop closed by a ball at B and a cylinder at C
+/// The same motion with 17 rows: a spherical joint at B and a cylindrical joint at C close the loop.
 void four_bar_without_redundance(Model& model, const FourBar& f)
 {
     model.constrain("A", revolute(ground, f.A, X, 0, -f.end(f.crank_length), X));
@@ -73,9 +76,9 @@ void four_bar_without_redundance(Model& model, const FourBar& f)
     model.constrain("D", revolute(2, -f.end(f.rocker_length), X, ground, f.D, X));
 }
 
-/// Bricard's mechanism of the IFToMM benchmark: five rods of 1 m along edges of a cube, the sixth edge is the
-/// ground; each joint's axis is perpendicular to the two rods it joins, so neighbouring axes are
-/// perpendicular to each other.
+/// Bricard's mechanism of the IFToMM benchmark library: five rods of 1 m along edges of a cube; the sixth
+/// edge is the ground. The axis of each joint is perpendicular to its two rods, so that adjacent axes are
+/// perpendicular.
 void bricard(Model& model, State& x)
 {
     const Vec3 along[] = {X, Y, Z, -X, -Y, -Z};
@@ -87,10 +90,11 @@ void bricard(Model& model, State& x)
                         at + 0.5 * along[k], A);
         at += along[k];
     }
-    // Joint k + 1 is at the beginning of rod k + 1; the last one is at the ground, (0, 0, 1). Of the last
-    // joint, the last row is dropped: with the ground as body i it holds the ground vector across the sixth
-    // edge and the axis. The weight of that row in the dependence of all never comes near zero. That of the
-    // others does (next at t = 0.89 s), and there the rows left would lose rank.
+    // Joint k + 1 is at the beginning of rod k + 1; the last joint is at (0, 0, 1) on the ground. The last
+    // row of the last joint is removed. With the ground as body i, its ground vector is perpendicular to the
+    // sixth edge and to the axis. The coefficient of this row in the linear dependence of all rows stays away
+    // from zero. Other rows have a coefficient that vanishes (first at t = 0.89 s). The remaining rows would
+    // lose rank there.
     for (int k = 0; k < 6; ++k) {
         const Vec3 axis = along[(k + 5) % 6].cross(along[k]);
         const auto in = [&](int b) { return Vec3(x.body[b].A.transpose() * axis); };
@@ -119,7 +123,7 @@ double distance_between(const State& x, const State& y)
     return most;
 }
 
-/// A bar on a hinge about x through the origin, turning at 1 rad/s
+/// A bar on a hinge about x through the origin with 1 rad/s
 void hinged_bar(Model& model, State& x)
 {
     tests::add_body(model, x, "bar", 1, {0.1, 0.2, 0.2}, 0.5 * Y, Mat3::Identity(), 0.5 * X.cross(Y), X);
@@ -128,7 +132,7 @@ void hinged_bar(Model& model, State& x)
 
 }  // namespace
 
-TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and names them",
+TEST_CASE("the three redundant rows of a four-bar with four hinges are removed and named",
           "[dae][overconstrained]")
 {
     const FourBar f;
@@ -141,7 +145,7 @@ TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and 
     CHECK(report.rank == 17);
     CHECK(report.degrees_of_freedom == 1);
     REQUIRE(report.dropped.size() == 3);
-    // the loop is closed at D, so what is redundant shows there
+    // D is the last joint and closes the loop, so that its rows are the redundant ones
     for (const std::string& name : report.dropped)
         CHECK_THAT(name, Contains("constraint 'D' row") && Contains("'rocker'"));
     CHECK(model.rows() == 17);
@@ -150,7 +154,7 @@ TEST_CASE("a four-bar of four hinges drops exactly its three redundant rows and 
     CHECK(model.largest_velocity_residual(x).value < 1e-13);
 }
 
-TEST_CASE("an overconstrained four-bar moves as the one without redundance",
+TEST_CASE("an overconstrained four-bar has the motion of the one without redundant rows",
           "[dae][overconstrained][acceptance]")
 {
     const FourBar f;
@@ -174,10 +178,10 @@ TEST_CASE("an overconstrained four-bar moves as the one without redundance",
     INFO("after 1 s they differ by " << distance_between(x, y));
     CHECK(distance_between(x, start) > 0.5);
     CHECK(distance_between(x, y) < 1e-8);
-    CHECK(redundant.largest_residual(x).value < 1e-12);  // the dropped rows too
+    CHECK(redundant.largest_residual(x).value < 1e-12);  // also of the removed rows
 }
 
-TEST_CASE("a joint given twice is dropped", "[dae][overconstrained]")
+TEST_CASE("the second of two equal joints is removed", "[dae][overconstrained]")
 {
     Model model;
     State x;
@@ -196,7 +200,7 @@ TEST_CASE("a joint given twice is dropped", "[dae][overconstrained]")
     CHECK((reactions(model, x)[0].F - reactions(once, y)[0].F).norm() < 1e-13);
 }
 
-TEST_CASE("contradictory velocities are seen beside large accelerations", "[dae][overconstrained]")
+TEST_CASE("contradictory velocities are detected together with large accelerations", "[dae][overconstrained]")
 {
     Model model;
     State x;
@@ -206,12 +210,13 @@ TEST_CASE("contradictory velocities are seen beside large accelerations", "[dae]
     CHECK_THROWS_AS(dae::start(model, x, {.fix_initial = true}), ConstraintError);
 }
 
-TEST_CASE("a hinge driven twice is refused unless both drive it alike", "[dae][overconstrained]")
+TEST_CASE("two drivers of one hinge are rejected unless they are equal", "[dae][overconstrained]")
 {
-    struct Case {
+    struct SecondDriver {
         const char *second, *level;
     };
-    const Case c = GENERATE(Case{"2*t", "velocity"}, Case{"t + t^2", "acceleration"}, Case{"t", nullptr});
+    const SecondDriver c = GENERATE(SecondDriver{"2*t", "velocity"}, SecondDriver{"t + t^2", "acceleration"},
+                                    SecondDriver{"t", nullptr});
     Model model;
     State x;
     hinged_bar(model, x);
@@ -233,13 +238,13 @@ TEST_CASE("a hinge driven twice is refused unless both drive it alike", "[dae][o
     }
 }
 
-TEST_CASE("a distance that cannot be is refused", "[dae][overconstrained]")
+TEST_CASE("an impossible distance is rejected", "[dae][overconstrained]")
 {
     const bool fix_initial = GENERATE(false, true);
     Model model;
     State x;
     hinged_bar(model, x);
-    model.constrain("stay", dae::distance(ground, O, 0, 0.5 * Y, 1.2));  // it is 1 m, whatever the angle
+    model.constrain("stay", dae::distance(ground, O, 0, 0.5 * Y, 1.2));  // the distance is 1 m at every angle
     try {
         dae::start(model, x, {.fix_initial = fix_initial});
         FAIL("an impossible distance was accepted");
@@ -249,10 +254,10 @@ TEST_CASE("a distance that cannot be is refused", "[dae][overconstrained]")
     }
 }
 
-TEST_CASE("redundant rows are found in data that need mending", "[dae][overconstrained]")
+TEST_CASE("redundant rows are found in initial data that violate the constraints", "[dae][overconstrained]")
 {
-    // Off the constraints the redundant rows look independent; they must be told by where the mechanism can
-    // be.
+    // Redundant rows appear independent if the data violate the constraints. The rank must be that of the
+    // projected positions.
     tests::Random random(GENERATE(range(1u, 6u)));
     const double size = GENERATE(1e-6, 1e-4, 1e-2);
     const FourBar f;
@@ -274,7 +279,7 @@ TEST_CASE("redundant rows are found in data that need mending", "[dae][overconst
     CHECK(distance_between(x, off) < 20 * size);
 }
 
-TEST_CASE("Bricard's mechanism moves although its rows leave it no freedom", "[dae][overconstrained]")
+TEST_CASE("Bricard's mechanism moves although it has as many rows as coordinates", "[dae][overconstrained]")
 {
     Model model;
     State x;

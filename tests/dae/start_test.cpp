@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The consistent start: projections that are least in the metric of the mass, accelerations and multipliers
-/// in closed form, inconsistent data refused or mended.
+/// Consistent initial conditions: shortest projections in the metric of the mass, accelerations and
+/// multipliers in closed form, inconsistent data rejected or projected.
 
 #include "dae/start.hpp"
 
 #include "dae/constraints/cd.hpp"
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
+#include "lie/solver/saddle.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -22,8 +23,8 @@ namespace {
 
 const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
-/// A chain of three unlike bars: a spherical, a universal and a revolute joint; 6 degrees of freedom. Placed
-/// exactly.
+/// A chain of three different bars with a spherical, a universal and a revolute joint: 6 degrees of freedom.
+/// The positions satisfy the constraints.
 void chain(Model& model, State& x, Random& random)
 {
     Vec3 tip = O;
@@ -45,7 +46,7 @@ void chain(Model& model, State& x, Random& random)
     model.constrain("hinge", revolute(1, Z, X, 2, -Z, X));
 }
 
-/// diag(M, J̄) and (Φ_r, Π̄) in full
+/// diag(M, J̄) and (Φ_r, Π̄) as dense matrices
 Eigen::MatrixXd dense_mass(const Model& model)
 {
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(6 * model.bodies(), 6 * model.bodies());
@@ -74,7 +75,7 @@ Eigen::VectorXd velocities(const State& x)
     return v;
 }
 
-/// (r, π̄) of x relative to the pose of `from`
+/// (δr, δθ) from the pose `from` to the pose of x
 Eigen::VectorXd displacement(const State& from, const State& x)
 {
     Eigen::VectorXd q(6 * x.body.size());
@@ -95,17 +96,19 @@ State disturbed(const State& x, double size, Random& random)
     return y;
 }
 
-/// How far from shortest a projection by q is: what of M q is tangent to the constraints, over |M q|
+/// Deviation of a projection q from the shortest one: part of M q tangent to the constraints, divided by |M
+/// q|
 double tangent_part(const Model& model, const State& x, const Eigen::VectorXd& q)
 {
-    const Eigen::MatrixXd N = dense_rows(model, x).fullPivLu().kernel();  // the motions the constraints allow
+    // motions allowed by the constraints
+    const Eigen::MatrixXd N = dense_rows(model, x).fullPivLu().kernel();
     const Eigen::VectorXd Mq = dense_mass(model) * q;
     return (N * N.colPivHouseholderQr().solve(Mq)).norm() / Mq.norm();
 }
 
 }  // namespace
 
-TEST_CASE("positions are projected to round-off along the shortest way", "[dae][start]")
+TEST_CASE("positions are projected to rounding error by the shortest displacement", "[dae][start]")
 {
     Random random(GENERATE(range(1u, 6u)));
     Model model;
@@ -123,7 +126,7 @@ TEST_CASE("positions are projected to round-off along the shortest way", "[dae][
         CHECK(project_positions(model, K, on) <= 5);
         CHECK(model.largest_residual(on).value < 1e-13);
         for (const Motion& m : on.body) CHECK(lie::orthogonality_error(m.A) < 1e-15);
-        // shortest to first order: the part along the constraints shrinks with the distance
+        // shortest to first order: the tangent part is proportional to the disturbance
         const double tangent = tangent_part(model, on, displacement(off, on));
         INFO("disturbed by " << size << ", tangent part " << tangent << ", before " << before);
         CHECK(tangent < 3 * size);
@@ -133,10 +136,10 @@ TEST_CASE("positions are projected to round-off along the shortest way", "[dae][
 
     State on = x;
     project_positions(model, K, on);
-    CHECK(displacement(x, on).norm() < 1e-14);  // what is there already stays
+    CHECK(displacement(x, on).norm() < 1e-14);  // consistent positions do not change
 }
 
-TEST_CASE("far starts are projected too, or refused with the residual", "[dae][start]")
+TEST_CASE("distant starts are projected, or rejected with the residual", "[dae][start]")
 {
     Random random(GENERATE(range(11u, 16u)));
     Model model;
@@ -148,7 +151,7 @@ TEST_CASE("far starts are projected too, or refused with the residual", "[dae][s
     project_positions(model, K, on);
     CHECK(model.largest_residual(on).value < 1e-13);
 
-    // no point is at 1 m from one and at 5 m from the other of two points 2 m apart
+    // No point has the distances 1 m and 5 m from two points that are 2 m apart.
     Model impossible;
     State y;
     impossible.add({.name = "ball", .m = 1, .J_bar = Mat3::Identity()});
@@ -161,7 +164,7 @@ TEST_CASE("far starts are projected too, or refused with the residual", "[dae][s
     CHECK_THROWS_AS(dae::start(impossible, y, {.fix_initial = true}), lie::NumericalFailure);
 }
 
-TEST_CASE("velocities are projected as by an ideal impact", "[dae][start]")
+TEST_CASE("velocities are projected as in an ideal impact", "[dae][start]")
 {
     Random random(GENERATE(range(21u, 26u)));
     Model model;
@@ -176,7 +179,8 @@ TEST_CASE("velocities are projected as by an ideal impact", "[dae][start]")
     CHECK((dense_rows(model, x) * after).cwiseAbs().maxCoeff() < 1e-13);
     CHECK(model.largest_velocity_residual(x).value < 1e-13);
 
-    // Carnot: the energy lost is the energy of the velocities lost. It holds for the shortest way only.
+    // Carnot's theorem: the energy loss is the energy of the lost velocities. It holds for the shortest
+    // change only.
     const Eigen::MatrixXd M = dense_mass(model);
     const auto energy = [&](const Eigen::VectorXd& v) { return 0.5 * v.dot(M * v); };
     CHECK(energy(before) - energy(after) == Approx(energy(before - after)).epsilon(1e-13));
@@ -194,13 +198,13 @@ TEST_CASE("driven velocities are projected onto the driver", "[dae][start]")
     lie::Saddle K(model);
     const Eigen::VectorXd exact = velocities(x);
     for (Motion& m : x.body) m.rdot.setZero(), m.omega_bar.setZero();
-    project_velocities(model, K, x);  // nothing is free: the driver alone decides
+    project_velocities(model, K, x);  // without degrees of freedom the driver determines all velocities
     CHECK((velocities(x) - exact).norm() < 1e-13);
 }
 
 TEST_CASE("a moving pendulum has the accelerations and the reaction of the closed form", "[dae][start]")
 {
-    // A bar of length 2l on a pin at the origin, in the plane x = 0, at the angle theta from the vertical
+    // A bar of length 2l on a pin at the origin, in the plane x = 0, at the angle theta to the vertical
     const double theta = GENERATE(-2.5, -0.4, 0.0, 1.0, 3.0), omega = GENERATE(0.0, 2.0, -3.0);
     constexpr double m = 3, l = 0.7, J = 0.5, g = 9.81;
     Model model;
@@ -213,8 +217,7 @@ TEST_CASE("a moving pendulum has the accelerations and the reaction of the close
     bar.omega_bar = omega * X;
     bar.rdot = l * omega * ahead;
     x.body.push_back(bar);
-    // body i is the bar, then the ground: the multipliers are those of the point of the bar, then of the
-    // ground
+    // The bar is body i or body j of the joint.
     const bool bar_first = GENERATE(true, false);
     model.constrain(
         "pin", bar_first ? revolute(0, {0, 0, l}, X, ground, O, X) : revolute(ground, O, X, 0, {0, 0, l}, X));
@@ -229,18 +232,19 @@ TEST_CASE("a moving pendulum has the accelerations and the reaction of the close
     const Vec3 rddot = l * alpha * ahead - l * omega * omega * along;
     CHECK((x.body[0].rddot - rddot).norm() < 1e-12);
 
-    // tension: centripetal and weight; across: what of the weight the bar does not give way to
+    // along the bar: centripetal force and weight; perpendicular to it: inertial force and weight
     const Reaction on_bar = reactions(model, x)[0];
     CHECK(-on_bar.F.dot(along) == Approx(m * l * omega * omega + m * g * std::cos(theta)).margin(1e-12));
     CHECK(on_bar.F.dot(ahead) == Approx(m * (g * std::sin(theta) + l * alpha)).margin(1e-12));
     CHECK(std::abs(on_bar.F.x()) < 1e-13);
     CHECK((on_bar.T - J * alpha * X).norm() < 1e-12);
-    // Φ_r = ∓ c: the multipliers of the three CD rows are the reaction's components, with that sign
+    // Φ_r = ∓ c: the multipliers of the three CD rows are the components of the reaction with this sign
     CHECK((x.lambda.head<3>() - (bar_first ? 1 : -1) * on_bar.F).norm() < 1e-12);
     CHECK(x.lambda.tail<2>().norm() < 1e-12);
 }
 
-TEST_CASE("the saddle solve satisfies Newton, Euler and the acceleration constraints", "[dae][start]")
+TEST_CASE("the saddle system satisfies the Newton-Euler equations and the acceleration constraints",
+          "[dae][start]")
 {
     Random random(GENERATE(range(31u, 36u)));
     Model model;
@@ -261,7 +265,7 @@ TEST_CASE("the saddle solve satisfies Newton, Euler and the acceleration constra
     CHECK((dense_rows(model, x) * a - gamma).cwiseAbs().maxCoeff() < 1e-12);
 }
 
-TEST_CASE("the published data of the four-link are refused with their residual", "[dae][start]")
+TEST_CASE("the published data of the four-link are rejected with their residual", "[dae][start]")
 {
     Model model;
     State x;
@@ -275,18 +279,18 @@ TEST_CASE("the published data of the four-link are refused with their residual",
                                  Contains("--fix-initial"));
         CHECK(model.constraint_name(e.constraint) == "revD-CD-i");
     }
-    // the residual in m, and over the length of its row as the message gives it
+    // The residual in m; the message gives it divided by the length of the row.
     const Model::Row& row = model.all_rows()[7];
     CHECK(std::abs(row.block->phi(x.body[2], {}, 0)) == Approx(8.7e-3).epsilon(0.01));
     std::ostringstream scaled;
     scaled.precision(3);
     scaled << std::abs(model.scaled_residual(row, x));
     CHECK_THROWS_WITH(dae::start(model, x), Contains("by " + scaled.str()));
-    CHECK(x.body[2].r == given.body[2].r);  // and left as they were
+    CHECK(x.body[2].r == given.body[2].r);  // the data are not changed
     CHECK(x.body[2].A == given.body[2].A);
 }
 
-TEST_CASE("the published data of the four-link are mended on request", "[dae][start]")
+TEST_CASE("the published data of the four-link are projected on request", "[dae][start]")
 {
     Model model;
     State x;
@@ -297,12 +301,12 @@ TEST_CASE("the published data of the four-link are mended on request", "[dae][st
     CHECK(report.dropped.empty());
     CHECK_THAT(report.worst_position, Contains("revD-CD-i"));
     CHECK(report.position_residual > 1e-3);
-    CHECK(report.velocity_residual ==
-          Approx(3.1416).epsilon(0.3));  // the rotor at rest, which should turn at pi rad/s
+    // the rotor is at rest, its driver requires pi rad/s
+    CHECK(report.velocity_residual == Approx(3.1416).epsilon(0.3));
     CHECK(model.largest_residual(x).value < 1e-12);
     CHECK(model.largest_velocity_residual(x).value < 1e-12);
 
-    // nothing is free at t = 0, so there is one consistent state near by
+    // Without degrees of freedom there is one consistent state near the data.
     Model other;
     State y;
     tests::four_link(other, y);
@@ -311,7 +315,7 @@ TEST_CASE("the published data of the four-link are mended on request", "[dae][st
     CHECK((velocities(x) - velocities(y)).norm() < 1e-11);
 }
 
-TEST_CASE("wrong velocities alone are refused too", "[dae][start]")
+TEST_CASE("inconsistent velocities are rejected", "[dae][start]")
 {
     Model model;
     State x;
@@ -320,7 +324,7 @@ TEST_CASE("wrong velocities alone are refused too", "[dae][start]")
     CHECK_THROWS_WITH(dae::start(model, x), Contains("initial velocities") && Contains("--fix-initial"));
 }
 
-TEST_CASE("consistent data are accepted and hardly moved", "[dae][start]")
+TEST_CASE("consistent data are accepted and change by rounding errors only", "[dae][start]")
 {
     const auto build = GENERATE(
         +[](Model& m, State& x) { tests::slider_crank(m, x); },
@@ -342,7 +346,7 @@ TEST_CASE("consistent data are accepted and hardly moved", "[dae][start]")
     CHECK(model.largest_residual(x).value < 1e-14);
 }
 
-TEST_CASE("a model can be started again", "[dae][start]")
+TEST_CASE("a second start of a model gives the same result", "[dae][start]")
 {
     Random random(8);
     Model model;
@@ -355,7 +359,7 @@ TEST_CASE("a model can be started again", "[dae][start]")
     CHECK(second.rank == first.rank);
 }
 
-TEST_CASE("data within the tolerance are moved onto the constraints", "[dae][start]")
+TEST_CASE("data within the tolerance are projected onto the constraints", "[dae][start]")
 {
     Random random(7);
     Model model;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The variations of a whole model: what it puts together from its blocks and forces, against the differences
-/// that any system falls back on.
+/// Variations of a model, assembled from its blocks and forces, compared with the central differences that
+/// are the default of lie::System.
 
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
@@ -17,10 +17,10 @@ using namespace hilda::dae;
 
 namespace {
 
-/// A model that keeps its own variations to itself: System's differences stand in
-class Differences final : public lie::System {
+/// The equations of a model with the default variations of lie::System
+class DifferencedSystem final : public lie::System {
 public:
-    explicit Differences(const Model& model) : model(model) {}
+    explicit DifferencedSystem(const Model& model) : model(model) {}
 
     const lie::Mass& mass() const override { return model.mass(); }
     const lie::Rows& pattern() const override { return model.pattern(); }
@@ -35,7 +35,7 @@ public:
 
 }  // namespace
 
-TEST_CASE("a model puts the variations of its blocks in their places", "[dae][variations]")
+TEST_CASE("the variations of a model are those of its blocks", "[dae][variations]")
 {
     Model model;
     State x;
@@ -43,7 +43,7 @@ TEST_CASE("a model puts the variations of its blocks in their places", "[dae][va
     start(model, x);
     tests::Random random(3);
     for (Motion& body : x.body) body.rdot = random.vector(2), body.omega_bar = random.vector(2);
-    const Differences by_differences(model);
+    const DifferencedSystem by_differences(model);
 
     lie::SecondVariation H(model.pattern()), H_differences(model.pattern());
     model.second_variation(x, H);
@@ -62,7 +62,7 @@ TEST_CASE("a model puts the variations of its blocks in their places", "[dae][va
         CHECK((nu.entry[n].r - nu_differences.entry[n].r).norm() < 1e-8);
         CHECK((nu.entry[n].pi - nu_differences.entry[n].pi).norm() < 1e-8);
         const auto &a = gamma.entry[n], &b = gamma_differences.entry[n];
-        CHECK((a.r - b.r).norm() < 1e-6);  // differences of numbers that reach 1e3
+        CHECK((a.r - b.r).norm() < 1e-6);  // differences of values up to 1e3
         CHECK((a.theta - b.theta).norm() < 1e-6);
         CHECK((a.rdot - b.rdot).norm() < 1e-6);
         CHECK((a.omega - b.omega).norm() < 1e-6);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""hilda-granular says in its exit code and in one line what is wrong.
+"""hilda-granular reports an error by its exit code and one line on stderr.
 
     exit_test.py PROGRAM
 """
@@ -18,7 +18,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
         here = runs.folder
-        short = runs.case("short", end=1e-4, every=5e-5)
+        short = runs.case("short", end=1e-4, interval=5e-5)
 
         def refused(code, message, *arguments, case=short, **options):
             err = runs.finish(case, "--quiet", *arguments, code=code, **options)
@@ -29,80 +29,104 @@ def main():
         refused(2, "--device: must be cpu, cuda or cuda:N", "--device", "gpu")
         for option, value, message in (
                 ("--end", "0", "must be a positive, finite number, got '0'"), ("--step", "-1e-6", "must be a positive, finite number"),
-                ("--every", "nan", "must be a positive, finite number"), ("--end", "1s", "must be a positive, finite number, got '1s'"),
+                ("--interval", "nan", "must be a positive, finite number"), ("--every", "nan", "must be a positive, finite number"), ("--end", "1s", "must be a positive, finite number, got '1s'"),
                 ("--seed", "-1", "must be a whole number from 0"), ("--seed", "1.5", "must be a whole number from 0"),
                 ("--threads", "0", "must be a whole number from 1"), ("--checkpoint", "-1", "must be a finite number, not negative"),
                 ("--set", "step=1", "must be /json/pointer=VALUE"), ("--set", "/step", "must be /json/pointer=VALUE"),
                 ("--output", "", "must be a directory")):
             refused(2, f"granular: {option}: {message}", option, value)
-        for option in ("--end", "1"), ("--set", "/end=1"), ("--seed", "1"), ("--json",), ("--resume",):
+        for option in ("--end", "1"), ("--set", "/end=1"), ("--seed", "1"), ("--every", "1"), ("--json",), ("--resume",):
             process = subprocess.run([sys.argv[1], "head-on", *option], cwd=here, capture_output=True, text=True)
-            expect(process.returncode == 2 and f"granular: {option[0]}: is for cases, and head-on is a validation" in process.stderr,
+            expect(process.returncode == 2 and f"granular: {option[0]}: is valid for cases only, but head-on is a validation" in process.stderr,
                    f"{process.returncode}: {process.stderr}")
-        refused(2, "--full: is for validations, and short.json is a file", "--full")
+        refused(2, "--full: is valid for validations only, but short.json is a file", "--full")
         refused(2, "exclude each other", "--force", "--resume")
+        refused(2, "--every is the old name of --interval; give only one of them", "--every", "1", "--interval", "1")
         place = r"short.json:1:\d+ \({}\): "
         refused(3, place.format("/laws/0/mu") + r"must not be negative, got -1.0 \(from --set '/laws/0/mu=-1'\)", "--set", "/laws/0/mu=-1")
         refused(3, place.format("/steps") + r"unknown key.*\(from --set '/steps=1'\)", "--set", "/steps=1")
-        refused(3, place.format("/laws") + r"--set '/laws/7/mu=1': there is no \"7\"", "--set", "/laws/7/mu=1")
+        refused(3, place.format("/laws") + r"--set '/laws/7/mu=1': entry \"7\" does not exist", "--set", "/laws/7/mu=1")
         refused(3, place.format("/step") + r"must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
-        refused(3, place.format("/end") + r"must not be more than 9e15 steps away", "--end", "1e30")
-        refused(3, place.format("/end") + r"must not be before the first step is done, got 1e-08", "--end", "1e-8")
+        refused(3, place.format("/end") + r"must be at most 9e15 steps", "--end", "1e30")
+        refused(3, place.format("/end") + r"must be at least one step, got 1e-08", "--end", "1e-8")
         refused(7, "--device cuda:99: ", "--device", "cuda:99")
-        refused(3, "none.json: is not there", case="none")
-        expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "nothing is written by what is refused")
+        refused(3, "none.json: does not exist", case="none")
+        expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "rejected runs write no files")
 
-        expect(runs.finish(short, "--quiet") == "", "a good case says nothing where it is told so")
+        expect(runs.finish(short, "--quiet") == "", "a valid case with --quiet prints nothing")
         expect((here / "out" / "short" / "summary.json").exists(), "the output is in out/NAME")
-        refused(2, "out/short: is not empty; --force starts it again, --resume goes on")
+        refused(2, "out/short: is not empty; --force overwrites it, --resume continues its run")
         (here / "other").mkdir()
         (here / "other" / "letter").write_text("precious")
         refused(2, "other: is not empty", "--output", "other")
-        expect((here / "other" / "letter").read_text() == "precious", "what lies there stays")
+        expect((here / "other" / "letter").read_text() == "precious", "existing files are not changed")
         refused(5, "short.json/out", "--output", "short.json/out")
 
-        # one entry after the other, and the whole of it as it was run
-        process = runs.start(short, "--output", "told", "--step", "2.5e-6", "--end", "5e-5", "--every", "2.5e-5", "--seed", "9", "--json", "-v",
+        # options that change entries, and the case.json of the output
+        process = runs.start(short, "--output", "set", "--step", "2.5e-6", "--end", "5e-5", "--interval", "2.5e-5", "--seed", "9", "--json", "-v",
                              "--set", "/name=a cup", "--set", "/laws/0/mu=0.5")
         out, err = process.communicate()
         summary = json.loads(out)
-        expect(process.returncode == 0 and summary == runs.summary("told"), f"the summary alone is on stdout: {out}")
-        expect("steps of 2.5e-06 s" in err, f"says what is done: {err}")
-        ran = json.loads((here / "told" / "case.json").read_text())
-        expect([ran[key] for key in ("name", "step", "end", "every")] == ["a cup", 2.5e-6, 5e-5, 2.5e-5], f"case.json: {ran}")
+        expect(process.returncode == 0 and summary == runs.summary("set"), f"stdout contains the summary only: {out}")
+        expect("steps of 2.5e-06 s" in err, f"-v reports the steps: {err}")
+        ran = json.loads((here / "set" / "case.json").read_text())
+        expect([ran[key] for key in ("name", "step", "end", "interval")] == ["a cup", 2.5e-6, 5e-5, 2.5e-5], f"case.json: {ran}")
         expect(ran["laws"][0]["mu"] == 0.5 and ran["fill"][0]["seed"] == 9, f"case.json: {ran}")
-        expect(summary["case"]["set"] == ["/name=a cup", "/laws/0/mu=0.5", "/step=2.5e-06", "/end=5e-05", "/every=2.5e-05", "/fill/0/seed=9"],
-               f"what was set: {summary}")
+        expect(summary["case"]["set"] == ["/name=a cup", "/laws/0/mu=0.5", "/step=2.5e-06", "/end=5e-05", "/interval=2.5e-05", "/fill/0/seed=9"],
+               f"changed entries: {summary}")
         expect(summary["exit_code"] == 0 and summary["counters"] == dict(summary["counters"], steps=20, rows=3), f"counters: {summary}")
         for key in ("version", "git", "build_type", "flags", "compiler", "libraries", "command_line", "cpu", "threads", "device"):
             expect(summary["provenance"].get(key), f"provenance has {key}: {summary}")
         expect(summary["provenance"]["threads"] == 1 and "'/name=a cup'" in summary["provenance"]["command_line"], f"{summary}")
         (here / "again.json").write_text(json.dumps(ran))
         runs.finish("again", "--quiet", "--output", "again")
-        expect((here / "again" / "particles.csv").read_bytes() == (here / "told" / "particles.csv").read_bytes(),
-               "case.json of the output runs as the case with its options did")
-        runs.finish(short, "--quiet", "--output", "sown", "--end", "5e-5", "--step", "2.5e-6", "--seed", "10")
-        expect((here / "sown" / "particles.csv").read_bytes() != (here / "told" / "particles.csv").read_bytes(), "another seed, other grains")
+        expect((here / "again" / "particles.csv").read_bytes() == (here / "set" / "particles.csv").read_bytes(),
+               "case.json of the output gives the results of the case with its options")
+        runs.finish(short, "--quiet", "--output", "seed", "--end", "5e-5", "--step", "2.5e-6", "--seed", "10")
+        expect((here / "seed" / "particles.csv").read_bytes() != (here / "set" / "particles.csv").read_bytes(), "another seed gives other particles")
 
-        # a disk that is full
+        # old names of keys and of the option: read, with one notice for each, and written with the new names
+        old = {("every" if key == "interval" else key): value for key, value in json.loads((here / "short.json").read_text()).items()}
+        (here / "old.json").write_text(json.dumps(old))
+        err = runs.finish("old", "--output", "old")
+        place = r"hilda: warning: old.json:1:\d+ \(/every\): every was renamed to interval; the old name is still read\n"
+        expect(len(re.findall(place, err)) == 1, f"one notice with the place: {err}")
+        ran = json.loads((here / "old" / "case.json").read_text())
+        expect(list(ran) == list(json.loads((here / "short.json").read_text())) and ran["interval"] == 5e-5, f"case.json has the new names: {ran}")
+        runs.finish(short, "--quiet", "--output", "new")
+        for name in ("particles.csv", "run.csv"):
+            expect((here / "old" / name).read_bytes() == (here / "new" / name).read_bytes(), f"the old names give the same {name}")
+        expect(runs.finish("old", "--quiet", "--output", "old", "--force") == "", "--quiet suppresses the notice")
+        err = runs.finish(short, "--output", "new", "--force", "--every", "2.5e-5")
+        expect("hilda: warning: --every was renamed to --interval; the old name is still read\n" in err, f"notice for the option: {err}")
+        expect((here / "new" / "run.csv").read_text().count("\n") == 6, "--every sets the interval")
+        err = runs.finish(short, "--output", "new", "--force", "--set", "/every=2.5e-5")
+        expect(r"every was renamed to interval; the old name is still read (from --set '/every=2.5e-5')" in err, f"notice for --set: {err}")
+        expect((here / "new" / "run.csv").read_text().count("\n") == 6, "--set /every sets the interval")
+        runs.finish("old", "--quiet", "--output", "old", "--force", "--interval", "2.5e-5")
+        expect((here / "old" / "run.csv").read_text().count("\n") == 6, "--interval replaces the old name in the file")
+        (here / "both.json").write_text(json.dumps(dict(old, interval=5e-5)))
+        refused(3, r"both.json:1:\d+ \(/every\): is the old name of interval, which is given as well; remove one of them", case="both")
+
+        # a full disk
         process = subprocess.run([sys.argv[1], "short.json", "--output", "full", "--quiet", "--threads", "1"], cwd=here,
                                  capture_output=True, text=True, env=runs.environment,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000)))
         expect(process.returncode == 5 and "File too large" in process.stderr, f"{process.returncode}: {process.stderr}")
-        expect(not list((here / "full").rglob("*.new")), "no half of a file is left")
+        expect(not list((here / "full").rglob("*.new")), "incomplete files are deleted")
 
-        # above the limit of stability a step is refused, and taken when it is insisted on
+        # a step above the stability limit is rejected, and accepted with --force
         coarse = runs.case("coarse", step=3e-5, end=3e-5)
         refused(3, r"coarse.json:1:\d+ \(/step\): must not be above .* got 3e-05; --force", case=coarse)
-        expect("warning" in runs.finish(coarse, "--force"), "a step that is not stable is taken with --force")
+        expect("warning" in runs.finish(coarse, "--force"), "an unstable step is accepted with --force")
 
-        # lost grains: who, when, and how fast
+        # lost particles: id, time and velocity
         one = {"r": [0.01, 0.01, 0.05], "radius": 1e-3, "material": "glass"}
         where = r"particle {} {} at t = {}\d* s, with a velocity of \({}\) m/s"
         leaves = runs.case("leaves", fill=[], particles=[one, dict(one, r=[0.01, 0.01, 0.06], v=[0, 0, 2])], gravity=[0, 0, 0], boundaries=CASE["boundaries"][:2])
         refused(4, where.format(1, "has left the domain", "0.01", "0, 0, 2"), case=leaves)
         fast = runs.case("fast", fill=[], particles=[dict(one, v=[0, 0, 500])], gravity=[0, 0, 0], boundaries=CASE["boundaries"][:2])
-        refused(4, where.format(0, "moves more than a cell in a step", "", "0, 0, 500"), "--force", case=fast)
+        refused(4, where.format(0, "moves by more than a cell in one step", "", "0, 0, 500"), "--force", case=fast)
         for name in (leaves, fast):
             summary = json.loads((here / "out" / name / "summary.json").read_text())
             expect(summary["status"] == "particle_lost" and "velocity" in summary["message"], f"{summary}")

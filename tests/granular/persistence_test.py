@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What hilda-granular leaves is one set of bytes, however often it is killed, with any threads and back end.
+"""The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs, any threads and any back end.
 
     persistence_test.py WHAT PROGRAM [PROGRAM]      WHAT is kills, ends or threads; a second PROGRAM has another back end
 """
@@ -17,11 +17,11 @@ import sys
 import tempfile
 import time
 
-# Grains of many sizes in a cup that shakes, under a lid that lies on them, with all that has a history.
+# Polydisperse particles in a shaken cup under a free lid, with all laws that have a history.
 CASE = {
     "hilda_case": 1, "name": "cup",
     "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
-    "step": 5e-6, "end": 0.2, "every": 1e-2, "frames_every": 1.5e-2, "checkpoint_every": 1e-3, "orientation": True,
+    "step": 5e-6, "end": 0.2, "interval": 1e-2, "frame_interval": 1.5e-2, "checkpoint_interval": 1e-3, "orientation": True,
     "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
                   {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
     "laws": [{"between": ["glass", "glass"], "restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"},
@@ -59,7 +59,7 @@ class Runs:
         return err
 
     def sha(self, output):
-        """One for all that does not tell of the clock"""
+        """SHA-256 of all output that does not depend on wall time"""
         out = self.folder / output
         files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
         files += sorted((out / "vtk").iterdir())
@@ -79,46 +79,46 @@ class Runs:
 
 def expect(condition, what):
     if not condition:
-        sys.exit(f"not so: {what}")
+        sys.exit(f"failed: {what}")
 
 
 def kills(runs, wanted=20, legs=20):
-    """Killed at random moments, a leg apart on average, and resumed until it is done"""
+    """Kills a run at random instants, wall time / legs apart on average, and resumes it until it is complete"""
     case = runs.case("cup")
     begin = time.monotonic()
     runs.finish(case, "--output", "whole")
     seconds = time.monotonic() - begin
     whole = runs.sha("whole")
     contacts = (runs.folder / "whole" / "contacts.csv").read_text().count("\n")
-    expect(contacts > 300, f"the grains touch, {contacts} times")
+    expect(contacts > 300, f"there are more than 300 contacts: {contacts}")
 
     draw = random.Random(7)
     resume = ("--output", "cut", "--checkpoint", "0.02", "--resume")
-    done = kept = runs_to_the_end = 0
+    done = with_checkpoint = runs_to_the_end = 0
     while done < wanted:
         process = runs.start(case, *resume)
         try:
             process.communicate(timeout=draw.uniform(0, 2 * seconds / legs))
-            expect(process.returncode == 0, "a run that was not killed ends well")
-            expect(runs.sha("cut") == whole, "the run that was killed leaves what the whole one does")
+            expect(process.returncode == 0, "a run that was not killed exits with 0")
+            expect(runs.sha("cut") == whole, "the killed run and the uninterrupted run give the same files")
             runs.remove("cut")
             runs_to_the_end += 1
         except subprocess.TimeoutExpired:
             process.send_signal(signal.SIGKILL)
             process.communicate()
             done += 1
-            kept += (runs.folder / "cut" / "checkpoint").exists()
-    expect(kept > 0, "some were killed with a checkpoint there")
+            with_checkpoint += (runs.folder / "cut" / "checkpoint").exists()
+    expect(with_checkpoint > 0, "some runs were killed after a checkpoint")
     runs.finish(case, *resume)
-    expect(runs.sha("cut") == whole, "the run that was killed leaves what the whole one does")
+    expect(runs.sha("cut") == whole, "the killed run and the uninterrupted run give the same files")
     left = [file.name for file in (runs.folder / "cut").iterdir()]
-    expect(not any(name.startswith("checkpoint") for name in left), f"no checkpoint is left of a run that is done: {left}")
-    expect("is done already" in runs.finish(case, *resume), "there is no more to do")
-    print(f"{done} kills, {kept} with a checkpoint, {1 + runs_to_the_end} runs to the end; {seconds:.2f} s uncut; {whole}")
+    expect(not any(name.startswith("checkpoint") for name in left), f"a complete run deletes its checkpoints: {left}")
+    expect("the run is complete already" in runs.finish(case, *resume), "a complete run is not resumed")
+    print(f"{done} kills, {with_checkpoint} with a checkpoint, {1 + runs_to_the_end} runs to the end; {seconds:.2f} s uncut; {whole}")
 
 
 def ends(runs):
-    """Signals, damaged and foreign checkpoints, and a grain that is lost"""
+    """Signals, damaged checkpoints, checkpoints of other cases, and a lost particle"""
     case = runs.case("cup", end=0.05)
     runs.finish(case, "--output", "whole")
     whole = runs.sha("whole")
@@ -127,19 +127,19 @@ def ends(runs):
     def interrupt(which):
         process = runs.start(case, "--output", "cut", "--checkpoint", "0.01", "--force")
         while not (out / "checkpoint.1").exists():
-            expect(process.poll() is None, "two checkpoints are kept while it runs")
+            expect(process.poll() is None, "a run in progress has two checkpoints")
             time.sleep(0.001)
         process.send_signal(which)
         _, err = process.communicate()
         expect(process.returncode == 128 + which, f"signal {which} ends with its code, not {process.returncode}")
-        expect("--resume goes on" in err, f"says how to go on: {err}")
+        expect("--resume continues" in err, f"the message states how to continue: {err}")
         summary = runs.summary("cut")
         expect(summary["status"] == "interrupted" and summary["exit_code"] == 128 + which, f"summary of an interrupted run: {summary}")
 
     for which in (signal.SIGINT, signal.SIGTERM):
         interrupt(which)
         runs.finish(case, "--output", "cut", "--resume")
-        expect(runs.sha("cut") == whole, "a run that was interrupted leaves what the whole one does")
+        expect(runs.sha("cut") == whole, "the interrupted run and the uninterrupted run give the same files")
         runs.remove("cut")
 
     interrupt(signal.SIGINT)
@@ -147,26 +147,26 @@ def ends(runs):
     other = runs.case("other", end=0.06)
     for options in ((other,), (case, "--end", "0.06"), (case, "--set", "/laws/0/mu=0.2"), (case, "--seed", "3"), (case, "--step", "4e-6")):
         err = runs.finish(*options, "--output", "cut", "--resume", code=5)
-        expect("cut/case.json: is another case, or this one with other options" in err, f"a foreign one is refused: {err}")
+        expect("cut/case.json: is another case, or this case with other options" in err, f"the checkpoint of another case is rejected: {err}")
     mine = (out / "case.json").read_text()
     (out / "case.json").write_text((runs.folder / "other.json").read_text())
     err = runs.finish(other, "--output", "cut", "--resume", code=5)
-    expect("cut/checkpoint: the checkpoint belongs to another run" in err, f"also where case.json is not: {err}")
+    expect("cut/checkpoint: the checkpoint belongs to another run" in err, f"also if case.json is replaced: {err}")
     (out / "case.json").write_text(mine)
     (out / "checkpoint").write_bytes(newest[:len(newest) // 2] + bytes([newest[len(newest) // 2] ^ 1]) + newest[len(newest) // 2 + 1:])
     err = runs.finish(case, "--output", "cut", "--resume")
     expect("hilda: warning: cut/checkpoint: the checkpoint is damaged" in err and "the one before" in err, err)
-    expect(runs.sha("cut") == whole, "the checkpoint before the last does as well")
+    expect(runs.sha("cut") == whole, "the previous checkpoint gives the same files")
 
     runs.remove("cut")
     interrupt(signal.SIGINT)
     for name in ("checkpoint", "checkpoint.1"):
         (out / name).write_bytes(b"HILDAGRN" + b"\0" * 100)
     expect("cut/checkpoint: the checkpoint is damaged" in runs.finish(case, "--output", "cut", "--resume", code=5),
-           "damaged ones are refused")
+           "damaged checkpoints are rejected")
 
-    # a signal between two times at which a checkpoint may be written stops the run at once all the same
-    rare = runs.case("rare", end=0.08, checkpoint_every=0.03, every=0.01, frames_every=0.01)
+    # a signal between two instants of possible checkpoints stops the run immediately
+    rare = runs.case("rare", end=0.08, checkpoint_interval=0.03, interval=0.01, frame_interval=0.01)
     begin = time.monotonic()
     runs.finish(rare, "--output", "rare")
     seconds = time.monotonic() - begin
@@ -175,53 +175,53 @@ def ends(runs):
     for which, frame in ((signal.SIGINT, 1), (signal.SIGTERM, 2), (signal.SIGINT, 4), (signal.SIGTERM, 5)):
         process = runs.start(rare, "--output", "cut2", "--force")
         while not (runs.folder / "cut2" / "vtk" / f"particles-{frame:06}.vtp").exists():
-            expect(process.poll() is None, "it is not done before the signal")
+            expect(process.poll() is None, "the run is in progress when the signal is sent")
             time.sleep(0.001)
         sent = time.monotonic()
         process.send_signal(which)
         _, err = process.communicate()
         slowest = max(slowest, time.monotonic() - sent)
-        expect(process.returncode == 128 + which and "--resume goes on" in err, f"{process.returncode}: {err}")
+        expect(process.returncode == 128 + which and "--resume continues" in err, f"{process.returncode}: {err}")
         counters = runs.summary("cut2")["counters"]
-        expect(round(counters["t_checkpoint"] / 0.03, 9) in (0, 1, 2), f"the case says when: {counters}")
+        expect(round(counters["t_checkpoint"] / 0.03, 9) in (0, 1, 2), f"checkpoints are at multiples of checkpoint_interval: {counters}")
         between += counters["t"] > counters["t_checkpoint"] + 0.004
         runs.finish(rare, "--output", "cut2", "--resume")
-        expect(runs.sha("cut2") == rare_sha, "what a run that was stopped between leaves is what the whole one does")
+        expect(runs.sha("cut2") == rare_sha, "a run stopped between two instants gives the same files")
         resumed = runs.summary("cut2")["provenance"].get("resumed_at_step", 0)
-        expect(resumed == round(counters["t_checkpoint"] / 5e-6), f"goes on from there: {resumed}, {counters}")
+        expect(resumed == round(counters["t_checkpoint"] / 5e-6), f"the run continues from the checkpoint: {resumed}, {counters}")
         runs.remove("cut2")
-    expect(between > 0, "some were stopped in the middle of an interval")
-    expect(slowest < 0.5 * seconds + 2, f"stops at once: {slowest:.2f} s of {seconds:.2f} s")
+    expect(between > 0, "some runs were stopped within an interval")
+    expect(slowest < 0.5 * seconds + 2, f"the run stops immediately: {slowest:.2f} s of {seconds:.2f} s")
 
-    # without a floor they fall out of the domain
+    # without a floor particles leave the domain
     lost = runs.case("lost", boundaries=CASE["boundaries"][1:], end=0.1)
     err = runs.finish(lost, "--output", "lost", "--checkpoint", "1e-4", code=4)
     expect("error[particle_lost]: particle " in err and "t = " in err and "velocity" in err, err)
     summary = runs.summary("lost")
-    expect(summary["status"] == "particle_lost" and summary["counters"]["t"] > 0.01, f"says where it ended: {summary}")
-    expect(runs.finish(lost, "--output", "lost", "--resume", code=4) == err, "the last checkpoint stays, and can be loaded")
-    lost = runs.case("lost2", boundaries=CASE["boundaries"][1:], end=0.1, checkpoint_every=5e-6)
+    expect(summary["status"] == "particle_lost" and summary["counters"]["t"] > 0.01, f"the summary states the end: {summary}")
+    expect(runs.finish(lost, "--output", "lost", "--resume", code=4) == err, "the last checkpoint remains and can be restored")
+    lost = runs.case("lost2", boundaries=CASE["boundaries"][1:], end=0.1, checkpoint_interval=5e-6)
     runs.finish(lost, "--output", "lost2", code=4)
     expect(runs.summary("lost2")["status"] == "particle_lost" and (runs.folder / "lost2" / "contacts.csv").exists(),
-           "also where neighbours are looked for anew in every step")
+           "also if the neighbour list is rebuilt in each step")
 
-    # frames that a part of the run did not write are not told
+    # frames that a part of the run did not write are not in the collection
     cut = runs.start("rare", "--output", "some", "--no-vtk", "--checkpoint", "1e-4")
     while not (runs.folder / "some" / "checkpoint").exists():
-        expect(cut.poll() is None, "it is not done before the signal")
+        expect(cut.poll() is None, "the run is in progress when the signal is sent")
         time.sleep(0.001)
     cut.send_signal(signal.SIGINT)
     cut.communicate()
     runs.finish("rare", "--output", "some", "--resume")
-    told = re.findall('file="(.*?)"', (runs.folder / "some" / "vtk" / "run.pvd").read_text())
-    expect(told and all((runs.folder / "some" / "vtk" / name).exists() for name in told), f"frames that are there: {told}")
-    print(f"both signals, fallback, refusals and a lost grain; at most {1e3 * slowest:.0f} ms to stop between; {whole}")
+    listed = re.findall('file="(.*?)"', (runs.folder / "some" / "vtk" / "run.pvd").read_text())
+    expect(listed and all((runs.folder / "some" / "vtk" / name).exists() for name in listed), f"the listed frames exist: {listed}")
+    print(f"both signals, fallback, rejections and a lost particle; at most {1e3 * slowest:.0f} ms to stop between; {whole}")
 
 
 def threads(runs, others):
-    """Enough grains for loops to be shared"""
+    """Different numbers of threads and back ends, with enough particles to distribute the loops"""
     cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
-    case = runs.case("heap", end=0.015, every=5e-3, checkpoint_every=5e-3, boundaries=[CASE["boundaries"][0], cup, CASE["boundaries"][2]],
+    case = runs.case("heap", end=0.015, interval=5e-3, checkpoint_interval=5e-3, boundaries=[CASE["boundaries"][0], cup, CASE["boundaries"][2]],
                      domain={"low": [-0.012, -0.012, -0.002], "high": [0.052, 0.052, 0.08]},
                      fill=[dict(CASE["fill"][0], low=[0, 0, 0], high=[0.04, 0.04, 0.02])])
     one = None
@@ -230,12 +230,12 @@ def threads(runs, others):
             runs.finish(case, "--output", "out", "--force", "--threads", str(count), program=program)
             sha = runs.sha("out")
             one = one or sha
-            expect(sha == one, f"{count} threads of {program or runs.program} give the same")
+            expect(sha == one, f"{count} threads of {program or runs.program} give the same files")
     gpu = runs.start(case, "--output", "out", "--force", "--device", "cuda")
     _, err = gpu.communicate()
-    expect(gpu.returncode in (0, 7), f"a GPU runs it or is not there: {err}")
+    expect(gpu.returncode in (0, 7), f"a GPU runs the case or is not available: {err}")
     if gpu.returncode == 0:
-        expect(runs.sha("out") == one, "a GPU gives the same")
+        expect(runs.sha("out") == one, "a GPU gives the same files")
     print(f"1, 2, 3, 4, 8 threads, {1 + len(others)} back ends{', a GPU' if gpu.returncode == 0 else ''}; {one}")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The JSON Schema of the granular case and the program accept the same good cases and refuse the same bad ones.
+"""The JSON Schema of the granular case describes every key. Schema and program accept and reject the same cases.
 
     schema_test.py PROGRAM
 """
@@ -8,6 +8,7 @@ import copy
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,12 +16,14 @@ import tempfile
 import jsonschema
 
 root = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(root / "tests" / "support"))
+from schema_rules import faults_of_text  # noqa: E402
 
-# Every key that there is
+# A case with every key that is not deprecated
 EVERYTHING = {
-    "hilda_case": 1, "name": "everything", "note": "of all a little",
+    "hilda_case": 1, "name": "everything", "note": "a case with every key",
     "domain": {"low": [-1, -1, -1], "high": [2, 2, 2], "periodic": [False, True, False]},
-    "gravity": [0, 0, -1.62], "step": 1e-5, "end": 2e-5, "every": 1e-5, "frames_every": 2e-5, "checkpoint_every": 1e-5, "skin": 0.2,
+    "gravity": [0, 0, -1.62], "step": 1e-5, "end": 2e-5, "interval": 1e-5, "frame_interval": 2e-5, "checkpoint_interval": 1e-5, "skin": 0.2,
     "integrator": "velocity-verlet", "orientation": True,
     "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
                   {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
@@ -48,40 +51,44 @@ EVERYTHING = {
     "fill": [{"type": "lattice", "low": [0, 0, 0.2], "high": [0.3, 0.3, 0.5], "radius": 0.05, "least_radius": 0.04,
               "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}]}
 
+# Keys that were renamed. The old name is read with a notice that gives the new one.
+RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
+
 MISSING = object()
 
-# What only the program knows: names of this case, and how things stand to each other. A law of another name may be one
-# that a build has.
+# Cases that only the program rejects, as (pointer of the changed entry, new value, beginning of the message). The schema
+# cannot compare entries with each other, and it accepts laws of any name because a build can add laws.
 BY_THE_PROGRAM = [
     ("/domain/high/2", -1.5, "/domain/high/2: must be above the low end"),
     ("/laws/0/between/1", "brass", "/laws/0/between/1: no material"),
-    ("/orientation", False, "/particles/0/orientation: needs /orientation to be true"),
-    ("/particles/0/orientation/0", 0.7, "/particles/0: particle 0: Euler parameters must have the length 1, to a thousandth, got 1.06"),
+    ("/orientation", False, "/particles/0/orientation: requires /orientation to be true"),
+    ("/particles/0/orientation/0", 0.7, "/particles/0: particle 0: Euler parameters must have the length 1 within 1e-3, got 1.06"),
     ("/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of"),
-    ("/laws/1", MISSING, "/laws: laws: there is none between two materials that may meet, got 'glass' and 'steel'"),
+    ("/laws/1", MISSING, "/laws: laws: no law is set between two materials that can be in contact, got 'glass' and 'steel'"),
     ("/boundaries/0/material", "wood", "/boundaries/0/material: no material"),
     ("/boundaries/0/material", MISSING, "/boundaries/0/material: no material"),
     ("/boundaries/0/r/2", 0, "/particles/0: particle 0 and boundary 0: must not overlap by more than 5 % of a radius at the start, got 0.05"),
     ("/boundaries/4/v/2", "sine(t)", "/boundaries/4/v/2: unknown function 'sine' in \"sine(t)\" at column 1; did you mean 'sin'?"),
     ("/boundaries/4/v/2", "1/t-1/t+log(t-1)", "/boundaries/4: boundary 'box-x': v is not finite at t = 5e-06 s"),
-    ("/particles/0/replica", 1, "/particles/0/replica: must be 0 where a boundary is free, as /boundaries/5, got 1"),
+    ("/particles/0/replica", 1, "/particles/0/replica: must be 0 if a boundary has a mass, as /boundaries/5 has, got 1"),
     ("/boundaries/4/high", [1, 1, -1], "/boundaries/4/high: must be above low along z"),
     ("/particles/0/material", "wood", "/particles/0/material: no material"),
     ("/particles/0/r/2", 3, "/particles/0: particle 0: is outside the domain along z, got 3"),
     ("/particles/0/r", [0.05, 0.05, 0.3], "/particles/0: particle 0 and particle 1: must not overlap by more than 5 % of a radius at the start, got 0.0"),
-    ("/fill/0/least_radius", 0.06, "/fill/0/least_radius: must be positive, and not above the radius"),
+    ("/fill/0/least_radius", 0.06, "/fill/0/least_radius: must be positive and not greater than radius"),
     ("/fill/0", {"type": "lattice", "low": [0, 0, 0], "high": [1, 1, 1], "radius": 1e-5, "material": "steel"},
      "/fill: 1.08e+14 particles need about "),
-    ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: is not there"),
+    ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: does not exist"),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: the box must be at least a diameter wide"),
     ("/step", 0.1, "/step: must not be above"),
 ]
+# Cases that both the schema and the program reject
 BY_BOTH = [
     ("/hilda_case", 2, "/hilda_case: must be 1"),
     ("/hilda_case", MISSING, "/hilda_case"),
     ("/steps", 5, "/steps: unknown key"),
-    ("/name", 5, "/name: must be a text"),
-    ("/note", [], "/note: must be a text"),
+    ("/name", 5, "/name: must be a string"),
+    ("/note", [], "/note: must be a string"),
     ("/domain", MISSING, "/domain: is missing"),
     ("/domain/low", MISSING, "/domain/low: is missing"),
     ("/domain/high", [1, 1], "/domain/high: must be three numbers"),
@@ -93,16 +100,16 @@ BY_BOTH = [
     ("/step", "1e-5", "/step: must be a finite number"),
     ("/step", MISSING, "/step: is missing"),
     ("/end", -1, "/end: must be positive"),
-    ("/every", 0, "/every: must be positive"),
-    ("/frames_every", 0, "/frames_every: must be positive"),
+    ("/interval", 0, "/interval: must be positive"),
+    ("/frame_interval", 0, "/frame_interval: must be positive"),
     ("/orientation", 1, "/orientation: must be true or false"),
     ("/particles/0/orientation", [1, 0, 0], "/particles/0/orientation: must be four numbers"),
     ("/particles/0/orientation/2", "x", "/particles/0/orientation/2: must be a finite number"),
-    ("/checkpoint_every", -1, "/checkpoint_every: must be positive"),
+    ("/checkpoint_interval", -1, "/checkpoint_interval: must be positive"),
     ("/skin", 0, "/skin: must be in (0, 1]"),
     ("/skin", 1.5, "/skin: must be in (0, 1]"),
     ("/integrator", "euler", "/integrator: must be one of"),
-    ("/materials", MISSING, "/materials: must name at least one"),
+    ("/materials", MISSING, "/materials: must have at least one entry"),
     ("/materials", {}, "/materials: must be a list"),
     ("/materials/0", "glass", "/materials/0: must be an object"),
     ("/materials/0/name", MISSING, "/materials/0/name: is missing"),
@@ -113,8 +120,8 @@ BY_BOTH = [
     ("/materials/0/nu", -1, "/materials/0/nu: must be between -1 and 0.5"),
     ("/materials/0/G", 1, "/materials/0/G: unknown key"),
     ("/laws/0/between", ["glass"], "/laws/0/between: must be two names"),
-    ("/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"),
-    ("/laws/0/restitution", -0.1, "/laws/0/restitution: must be in (0, 1], got -0.1"),
+    ("/laws/0/restitution", 1.2, "/laws/0/restitution: must be in [0, 1], got 1.2"),
+    ("/laws/0/restitution", -0.1, "/laws/0/restitution: must be in [0, 1], got -0.1"),
     ("/laws/0/restitution", MISSING, "/laws/0/restitution: is missing"),
     ("/laws/0/mu", -0.3, "/laws/0/mu: must not be negative"),
     ("/laws/0/mu", MISSING, "/laws/0/mu: is missing"),
@@ -148,16 +155,16 @@ BY_BOTH = [
     ("/boundaries/3/r", "here", "/boundaries/3/r: must be three numbers"),
     ("/boundaries/4/open", ["z"], "/boundaries/4/open/0: must be one of -x, +x"),
     ("/boundaries/4/open", ["+z", "+z"], "/boundaries/4/open/1: must be one of -x, +x"),
-    ("/boundaries/4/open", ["-x", "+x", "-y", "+y", "-z", "+z"], "/boundaries/4/open: must leave a side"),
+    ("/boundaries/4/open", ["-x", "+x", "-y", "+y", "-z", "+z"], "/boundaries/4/open: must not contain all six sides"),
     ("/boundaries/4/low", MISSING, "/boundaries/4/low: is missing"),
     ("/boundaries/4/omega", [0, 0, 1], "/boundaries/4/omega: unknown key"),
-    ("/boundaries/5/v", [0, 0, 0], "/boundaries/5/v: must not stand where r is a formula"),
+    ("/boundaries/5/v", [0, 0, 0], "/boundaries/5/v: must not be given if r is a formula"),
     ("/boundaries/5/r", ["t", "t"], "/boundaries/5/r: must be three numbers or formulas"),
-    ("/boundaries/5/omega", [0, 0, "t"], "/boundaries/5/omega: must be numbers where the inertia lets it turn"),
+    ("/boundaries/5/omega", [0, 0, "t"], "/boundaries/5/omega: must be three numbers if inertia is positive"),
     ("/boundaries/5/mass", -1, "/boundaries/5/mass: must be positive"),
     ("/boundaries/5/mass", MISSING, "/boundaries/5/inertia: unknown key"),
     ("/boundaries/5/inertia", -1, "/boundaries/5/inertia: must not be negative"),
-    ("/boundaries/5/free", True, "/boundaries/5/free: must be three times true or false"),
+    ("/boundaries/5/free", True, "/boundaries/5/free: must be three values, each true or false"),
     ("/boundaries/5/F", [0, 0, None], "/boundaries/5/F/2: must be a finite number"),
     ("/particles/0/force", 1, "/particles/0/force: must be three numbers"),
     ("/particles/0/replica", -1, "/particles/0/replica: must be a whole number"),
@@ -180,7 +187,7 @@ BY_BOTH = [
 
 
 def changed(case, pointer, value):
-    """The case with one entry set or taken out"""
+    """A copy of the case with one entry set or removed"""
     case = copy.deepcopy(case)
     *path, last = pointer.split("/")[1:]
     at = case
@@ -194,64 +201,63 @@ def changed(case, pointer, value):
     return case
 
 
-def without_description(node, path="#"):
-    """Places of the schema that say what a key is, but not in words."""
-    if not isinstance(node, dict):
-        return
-    for key, value in node.get("properties", {}).items():
-        # not in conditions, which are told by what they are for
-        plain = "/tool/not" not in path and isinstance(value, dict) and "const" not in value and "/if" not in path and "$ref" not in value
-        if plain and "description" not in value and not path.startswith("#/$defs/pair/allOf"):
-            yield f"{path}/{key}"
-    for key, value in node.items():
-        for child, at in ([(value, key)] if isinstance(value, dict) else
-                          [(v, f"{key}/{k}") for k, v in enumerate(value)] if isinstance(value, list) else []):
-            yield from without_description(child, f"{path}/{at}")
-
-
 def main():
     with open(root / "granular" / "case.schema.json", encoding="utf-8") as file:
         schema = json.load(file)
     validator_class = jsonschema.validators.validator_for(schema)
     validator_class.check_schema(schema)
     validator = validator_class(schema)
-    faults = [f"{place} has no description" for place in without_description(schema)]
+    faults = faults_of_text(schema)
 
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
 
-        def run(case):
+        def run(case, quiet=True):
             (folder / "case.json").write_text(json.dumps(case))
-            done = subprocess.run([sys.argv[1], "case.json", "--quiet", "--threads", "1", "--output", "out"], cwd=folder,
-                                  capture_output=True, text=True)
+            done = subprocess.run([sys.argv[1], "case.json", "--threads", "1", "--output", "out"] + ["--quiet"] * quiet,
+                                  cwd=folder, capture_output=True, text=True)
             return done.returncode, done.stderr
 
         for pointer, value, message in BY_BOTH + BY_THE_PROGRAM:
             case = changed(EVERYTHING, pointer, value)
             code, err = run(case)
             place, _, rest = message.partition(":")
-            told = re.escape(message)
+            expected = re.escape(message)
             if message.startswith("/"):
-                told = r"case.json:\d+:\d+ \(" + re.escape(place) + r"[^ ]*\)" + (re.escape(":" + rest) if rest else "")
-            if code != 3 or not re.search(told, err) or "hilda: error: case.json:" not in err:
-                faults.append(f"{pointer}: the program ended with {code}, not 3 and '{message}': {err}")
+                expected = r"case.json:\d+:\d+ \(" + re.escape(place) + r"[^ ]*\)" + (re.escape(":" + rest) if rest else "")
+            if code != 3 or not re.search(expected, err) or "hilda: error: case.json:" not in err:
+                faults.append(f"{pointer}: the program exited with {code}, not with 3 and '{message}': {err}")
             if (folder / "out").exists():
-                faults.append(f"{pointer}: the program wrote something")
+                faults.append(f"{pointer}: the program wrote files")
             by_both = (pointer, value, message) in BY_BOTH
             if validator.is_valid(case) == by_both:
-                faults.append(f"{pointer}: {value}: {'accepted' if by_both else 'refused'} by the schema")
+                faults.append(f"{pointer}: {value}: {'accepted' if by_both else 'rejected'} by the schema")
 
         examples = sorted((root / "granular" / "cases").glob("*.json"))
-        good = [EVERYTHING] + [json.loads(file.read_text()) for file in examples]
-        for case in good:
+        valid = [EVERYTHING] + [json.loads(file.read_text()) for file in examples]
+        for case in valid:
             faults += [f"{case['name']}: {e.json_path}: {e.message[:200]}" for e in validator.iter_errors(case)]
         code, err = run(EVERYTHING)
         if code != 0:
-            faults.append(f"everything: {code}: {err}")
+            faults.append(f"the case with every key: the program exited with {code}: {err}")
+
+        shutil.rmtree(folder / "out", ignore_errors=True)
+        old_names = {**EVERYTHING, **{old: EVERYTHING[new] for old, new in RENAMED.items()}}
+        for new in RENAMED.values():
+            del old_names[new]
+        if not validator.is_valid(old_names):
+            faults.append("the schema rejects the old names of renamed keys")
+        code, err = run(old_names, quiet=False)
+        if code != 0:
+            faults.append(f"old names of renamed keys: the program exited with {code}: {err}")
+        for old, new in RENAMED.items():
+            if f"/{old}" not in err or new not in err:
+                faults.append(f"/{old}: the program prints no notice with the new name {new}: {err}")
 
     for fault in faults:
         print(fault)
-    print(f"{len(good)} cases accepted, {len(BY_BOTH)} refused by both, {len(BY_THE_PROGRAM)} by the program; {len(faults)} faults")
+    print(f"{len(valid)} cases accepted, {len(BY_BOTH)} rejected by both, {len(BY_THE_PROGRAM)} by the program only; "
+          f"{len(faults)} faults")
     return 1 if faults else 0
 
 

@@ -24,7 +24,7 @@ LongMat3 tilde_long(const LongVec3& a)
     return S;
 }
 
-/// Σ θ̃ⁿ / (n + first)!, in extended precision: exp for first = 0, the left Jacobian for first = 1
+/// Σ θ̃ⁿ first!/(n + first)! in extended precision: exp for first = 0, the left Jacobian for first = 1
 LongMat3 power_series(const Vec3& theta, int first)
 {
     const LongMat3 X = tilde_long(theta.cast<Long>());
@@ -52,7 +52,7 @@ const double angles[] = {0,   1e-300,    1e-16, 1e-8, 1e-4, 0.1,       0.4999999
 
 }  // namespace
 
-TEST_CASE("tilde is the cross product and vee its inverse", "[lie][so3]")
+TEST_CASE("tilde(a) b is the cross product and vee is the inverse of tilde", "[lie][so3]")
 {
     const Vec3 a(1, -2, 3), b(0.4, 5, -6);
     CHECK((tilde(a) * b - a.cross(b)).norm() == 0);
@@ -72,7 +72,7 @@ TEST_CASE("exp and the right Jacobian are accurate to 1e-15 at every angle", "[l
         }
 }
 
-TEST_CASE("small angles keep all digits of the rotation vector", "[lie][so3]")
+TEST_CASE("log(exp(theta)) has full relative accuracy for small angles", "[lie][so3]")
 {
     std::mt19937_64 random(8);
     for (const double angle : {1e-300, 1e-16, 1e-8, 1e-4}) {
@@ -95,13 +95,13 @@ TEST_CASE("log is the inverse of exp at every angle", "[lie][so3]")
             if (angle < pi - 1e-4) CHECK((back - theta).norm() < 1e-15 * std::max(1.0, 2 * angle));
         }
     CHECK(log(Mat3::Identity()) == Vec3::Zero());
-    for (int k = 0; k < 3; ++k) {  // half turns exactly, where the skew part of A vanishes
+    for (int k = 0; k < 3; ++k) {  // exact half turns: the skew-symmetric part of A is zero
         const Mat3 A = 2 * Vec3::Unit(k) * Vec3::Unit(k).transpose() - Mat3::Identity();
         CHECK(std::abs(log(A)[k]) == Approx(pi).epsilon(eps));
     }
 }
 
-TEST_CASE("the inverse of the right Jacobian is its inverse", "[lie][so3]")
+TEST_CASE("right_jacobian_inverse is the inverse of right_jacobian", "[lie][so3]")
 {
     std::mt19937_64 random(10);
     for (const double angle : angles) {
@@ -113,7 +113,7 @@ TEST_CASE("the inverse of the right Jacobian is its inverse", "[lie][so3]")
     }
 }
 
-TEST_CASE("the right Jacobian is the difference quotient of exp", "[lie][so3]")
+TEST_CASE("the right Jacobian agrees with differences of exp", "[lie][so3]")
 {
     std::mt19937_64 random(11);
     for (const double angle : {1e-8, 0.3, 0.5, 2.0, 3.1}) {
@@ -126,7 +126,8 @@ TEST_CASE("the right Jacobian is the difference quotient of exp", "[lie][so3]")
     }
 }
 
-TEST_CASE("the nearest rotation of a rotation with noise is within the noise, and proper", "[lie][so3]")
+TEST_CASE("the nearest rotation to a perturbed rotation is proper and differs by the perturbation at most",
+          "[lie][so3]")
 {
     std::mt19937_64 random(12);
     for (int n = 0; n < 20; ++n) {
@@ -139,7 +140,7 @@ TEST_CASE("the nearest rotation of a rotation with noise is within the noise, an
     CHECK(nearest_rotation(Vec3(1, 1, -1).asDiagonal()).determinant() == Approx(1));
 }
 
-TEST_CASE("Euler parameters and rotations are the same thing", "[lie][euler]")
+TEST_CASE("Euler parameters and rotations convert into each other at every angle", "[lie][euler]")
 {
     std::mt19937_64 random(13);
     for (const double angle : angles)
@@ -166,7 +167,9 @@ TEST_CASE("2 G pdot is the body-frame angular velocity", "[lie][euler]")
     CHECK((2 * G(euler_parameters(A)) * pdot - omega_bar).norm() < 1e-9);
 }
 
-TEST_CASE("Euler angles come back, and B gives the body-frame angular velocity", "[lie][euler]")
+TEST_CASE(
+    "Euler angles and rotations convert into each other, and B is the map to the body-frame angular velocity",
+    "[lie][euler]")
 {
     std::mt19937_64 random(15);
     std::uniform_real_distribution<double> turn(-3.1, 3.1), nutation(0.05, 3.09);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A surface and a friction law in one file, as a user would add them, with keys of their own in the model file.
+/// A user-defined surface and a user-defined friction law in one file. Both register themselves and have
+/// their own keys in the model file.
 
 #include "contact/friction/friction.hpp"
 #include "contact/implicit_surface.hpp"
@@ -8,7 +9,8 @@
 namespace hilda::contact {
 namespace {
 
-/// A sphere of the given radius that is pointed along z: x² + y² + z² (1 + point z/R) = R².
+/// Reads an egg-shaped surface: x² + y² + z² (1 + point z/R) = R² with the keys "radius" R [m] and "point" in
+/// [-0.3, 0.3].
 std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
 {
     const double R = o.positive("radius"), point = o.number("point", 0.1);
@@ -22,7 +24,7 @@ std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
 
 const bool egg = register_surface({.name = "demo-egg", .read = read_egg});
 
-/// F = c ṡ, never above μ_s N: a film of oil
+/// Viscous friction F = c ṡ, limited to μ_s N. It has no history.
 class DemoOil final : public FrictionModel {
 public:
     DemoOil(double c, double mu_s) : c(c), mu_s(mu_s) {}
@@ -43,7 +45,7 @@ private:
 
 const bool oil =
     register_friction_law(FrictionLaw{.name = "demo-oil",
-                                      .what = "viscous, up to the Coulomb bound",
+                                      .what = "viscous, limited to the Coulomb bound",
                                       .read = [](dae::ObjectReader& o, FrictionParameters p,
                                                  const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
                                           return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);

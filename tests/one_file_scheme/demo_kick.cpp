@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A scheme in one file, as a user would add one: symplectic Euler on the accelerations of the saddle system.
-/// The constraints are kept in acceleration only, so they drift by O(h); it is here to show how little a
-/// scheme needs.
+/// Example of a scheme in one file: symplectic Euler with the accelerations of the saddle system.
+///
+/// The constraints are satisfied at acceleration level only. Positions and velocities drift from them by
+/// O(h). The example shows the minimum that a scheme implements.
 
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/saddle.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
@@ -56,11 +61,12 @@ private:
 
 const bool registered =
     register_scheme<DemoKick>({.name = "demo-kick",
+                               .description = "symplectic Euler at acceleration level, an example",
                                .order = 1,
                                .order_lambda = 1,
                                .formulation = "rA",
                                .unknowns = "none",
-                               .source = "symplectic Euler on Fang (2022), Eqs. 2.9, 2.17"});
+                               .source = "Fang (2022), Eqs. 2.9, 2.17"});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The double pendulum and chains of bars on ball joints, as models and as equations in angles.
+/// Double pendulum and chains of bars on ball joints, as models and in minimal coordinates.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace hilda::tests {
 
-/// What a double pendulum is made of: Fang (2022), Table 3.2, with the section of the bars [m] and the rates
-/// at the start [rad/s]
+/// Double pendulum of Fang (2022), Table 3.2, with the width w of the square bars [m] and the initial angular
+/// velocities [rad/s]
 struct DoublePendulum {
     double w = 0.1, thetadot_1 = 0, thetadot_2 = 0;
 
@@ -34,6 +34,7 @@ struct DoublePendulum {
         dae::start(model, x);
     }
 
+    /// The same double pendulum in the two angles
     reference::PlanarChain angles() const
     {
         constexpr double right_angle = 1.57079632679489661923;
@@ -46,7 +47,8 @@ struct DoublePendulum {
 
 inline const Vec3 slanting(0.7032947922, 6.717281251500001, 7.1147458602);
 
-/// N bars of 2 m hanging along -z on ball joints, under slanting gravity; `start` changes the velocities
+/// Chain of N bars of 2 m, hanging along -z on ball joints, under the gravity `slanting`. `start` sets the
+/// initial velocities.
 template <class Start>
 void ball_chain(int N, dae::Model& model, lie::State& x, const Start& start)
 {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Models and measures for the schemes on Euler parameters and Euler angles.
+/// Models and order measurement for the schemes on Euler parameters and Euler angles.
 
 #pragma once
 
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "tests/reference/chains.hpp"
 #include "tests/reference/reference_csv.hpp"
 
 namespace hilda::tests {
 
-/// Two spinning bars on ball joints: tests/data/x_n_pendulum_2_spin.csv
+/// Two spinning bars on ball joints. Reference solution: tests/data/x_n_pendulum_2_spin.csv
 inline void two_spinning_bars(dae::Model& model, lie::State& x)
 {
     ball_chain(2, model, x, [](lie::State& start) {
@@ -17,13 +20,13 @@ inline void two_spinning_bars(dae::Model& model, lie::State& x)
     });
 }
 
-/// The double pendulum that moves from the start: tests/data/x_double_pendulum_moving.csv
+/// Double pendulum with initial velocities. Reference solution: tests/data/x_double_pendulum_moving.csv
 inline void moving_double_pendulum(dae::Model& model, lie::State& x)
 {
     DoublePendulum{.w = 0.1, .thetadot_1 = 1, .thetadot_2 = -2}.build(model, x);
 }
 
-/// Nodes at multiples of dt, without the start
+/// States at the multiples of dt, without the initial state
 inline std::vector<lie::State> run(const std::string& scheme, const lie::System& system, const lie::State& x,
                                    double h, double t_end, double dt,
                                    const lie::Settings& settings = {.tolerance = 1e-12})
@@ -34,7 +37,7 @@ inline std::vector<lie::State> run(const std::string& scheme, const lie::System&
     return rows;
 }
 
-/// Order of each part of a deviation out of two
+/// Measured order of each part of a deviation, from two step sizes with the given ratio
 inline Deviation order(const Deviation& coarse, const Deviation& fine, double ratio = 2)
 {
     const auto of = [&](double a, double b) { return std::log(a / b) / std::log(ratio); };

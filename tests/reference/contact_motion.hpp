@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What every motion in contact must satisfy, whatever it was made from.
+/// Checks that every reference motion in contact must pass.
 
 #pragma once
 
@@ -17,12 +17,19 @@ using reference::ContactInstant;
 using reference::Mat3;
 using reference::Vec3;
 
-/// t - 2h … t + 2h
-inline std::vector<double> five(double t, double h) { return {t - 2 * h, t - h, t, t + h, t + 2 * h}; }
+/// t - 2h, t - h, t, t + h, t + 2h
+inline std::vector<double> five_instants(double t, double h)
+{
+    return {t - 2 * h, t - h, t, t + h, t + 2 * h};
+}
 
-/// Five instants h apart: rates are derivatives, Newton's and Euler's equations hold under gravity along -z, and the
-/// contact point is one point. With h times the rate of change near 4e-3, differences leave 1e-11 of truncation
-/// and less of rounding. Rates are judged by what is lost in a time of 1/rate.
+/// Checks five states of a motion, h apart: velocities and accelerations are the derivatives of positions and
+/// velocities, the Newton-Euler equations are satisfied under gravity g along -z, and p and ā are the same
+/// point.
+///
+/// `rate` [1/s] is the rate of change of the motion. With h · rate near 4e-3 the finite differences have a
+/// relative truncation error of 1e-11 and a smaller rounding error. Tolerances of derivatives are scaled with
+/// the rate.
 inline void check_motion(const std::vector<ContactInstant>& x, double h, double m, const Mat3& J_bar,
                          double g, double rate)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The reference trajectories in tests/data, and how far a run is from one.
+/// Reference trajectories in tests/data, and the deviation of a run from a trajectory.
 
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace hilda::tests {
 
-/// A row: columns t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint force (global)
-/// and torque (body frame) of each body.
+/// Row of a reference trajectory. Columns: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant
+/// constraint force (global) and torque (body frame) of each body.
 struct Reference {
     lie::State x;
     std::vector<dae::Reaction> reaction;
@@ -60,7 +60,7 @@ inline std::vector<double> instants(const std::vector<Reference>& reference)
     return t;
 }
 
-/// Largest deviations over a run: in m, -, m/s, rad/s, m/s², rad/s².
+/// Largest deviations over a run and its bodies [m, -, m/s, rad/s, m/s², rad/s²]
 struct Deviation {
     double r = 0, A = 0, rdot = 0, omega_bar = 0, rddot = 0, omegadot_bar = 0;
 
@@ -103,7 +103,8 @@ inline Deviation deviation(const std::vector<lie::State>& run, const std::vector
     return d;
 }
 
-/// The resultant constraint loads against those of the reference, relative to the largest of the run
+/// Deviation of the resultant constraint loads from those of the reference, relative to the largest of the
+/// run
 inline double reaction_deviation(const std::vector<std::vector<dae::Reaction>>& run,
                                  const std::vector<Reference>& reference)
 {

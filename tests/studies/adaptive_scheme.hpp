@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A scheme that chooses its own steps, not in the list of schemes.
+/// An adaptive scheme for tests, which is not registered.
 
 #pragma once
 
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::tests {
 
-/// Steps of rA-half-2, the smaller the smaller rtol is
+/// Steps of rA-half-2 of at most sqrt(rtol) seconds
 class InnerSteps final : public lie::Integrator {
 public:
     InnerSteps(const lie::System& model, const lie::Settings& settings)
@@ -46,7 +49,7 @@ inline const lie::Scheme inner_steps = {
         return std::make_unique<InnerSteps>(s, settings);
     }};
 
-/// Schemes of the list that choose their own steps
+/// Names of the registered adaptive schemes
 inline std::vector<std::string> adaptive_schemes()
 {
     std::vector<std::string> names;

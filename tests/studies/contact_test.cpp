@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Contacts as a user of the program meets them.
+/// Models with contacts in the program.
 
 #include "studies/exit_codes.hpp"
 #include "tests/studies/program.hpp"
@@ -14,7 +14,8 @@ using tests::Ended;
 
 namespace {
 
-/// A ball in a bowl without gravity, at x with a velocity of 1 m/s along x
+/// A model file with a ball in a spherical bowl without gravity, at (x, 0, 0) with a velocity of 1 m/s along
+/// x
 std::string in_bowl(const std::string& x, const std::string& radius = "0.1")
 {
     return R"({"hilda_model": 1, "name": "bowl", "gravity": [0, 0, 0], "end": 0.03125,
@@ -29,7 +30,8 @@ std::string in_bowl(const std::string& x, const std::string& radius = "0.1")
 
 }  // namespace
 
-TEST_CASE("a model file with contacts is run, checked and refused", "[studies][contact]")
+TEST_CASE("run and check accept a valid model file with contacts and reject an invalid one",
+          "[studies][contact]")
 {
     const tests::Scratch in;
     tests::write(in / "good.json", in_bowl("0.25"));
@@ -43,19 +45,19 @@ TEST_CASE("a model file with contacts is run, checked and refused", "[studies][c
     const Ended stiff =
         call(in, {"run", "good.json", "--no-plot", "--force", "--set", "/contacts/0/normal/stiffness=1e8"});
     CHECK(stiff.code == studies::exit_code::done);
-    CHECK_THAT(stiff.err, Catch::Contains("contact 'ball-bowl' is stable"));
+    CHECK_THAT(stiff.err, Catch::Contains("the stability limit of contact 'ball-bowl'"));
 }
 
-TEST_CASE("check tells of each contact at the start", "[studies][contact]")
+TEST_CASE("check prints the initial state of each contact", "[studies][contact]")
 {
     const tests::Scratch in;
-    tests::write(in / "m.json", in_bowl("0.90625"));  // 6.25 mm deep in the bowl
+    tests::write(in / "m.json", in_bowl("0.90625"));  // an overlap of 6.25 mm
     const Ended words = call(in, {"check", "m.json"});
     CHECK_THAT(words.out, Catch::Contains("forces              0\n") &&
                               Catch::Contains("contacts            1\n") &&
                               Catch::Contains("  ball-bowl         overlap 6.250e-03 m, 6.250e+00 N, "
                                               "curvature 9 1/m, stable up to "));
-    // symplectic Euler on a spring: h = 2 sqrt(m/k)
+    // stability limit of symplectic Euler for a spring: h = 2 sqrt(m/k)
     const Ended json = call(in, {"check", "m.json", "--json"});
     CHECK_THAT(json.out, Catch::Contains(R"("forces": 0)") && Catch::Contains(R"("name": "ball-bowl")") &&
                              Catch::Contains(R"("stable_step": 0.0632)"));
@@ -63,7 +65,7 @@ TEST_CASE("check tells of each contact at the start", "[studies][contact]")
     CHECK_THAT(call(in, {"check", "apart.json"}).out, Catch::Contains("gap 4.000e-01 m, 0.000e+00 N"));
 }
 
-TEST_CASE("a touch that is not found ends the run with the pair, the bodies and the time",
+TEST_CASE("a contact point that is not found ends the run with the contact, the bodies and the time",
           "[studies][contact]")
 {
     const tests::Scratch in;
@@ -74,20 +76,20 @@ TEST_CASE("a touch that is not found ends the run with the pair, the bodies and 
         start.err,
         Catch::Contains("start.json:3:15 (/contacts/0): contact 'ball-bowl': the centres of two spheres"));
 
-    // through the centre of the bowl in the eighth step of 1/1024 s
+    // The ball passes the centre of the bowl in the eighth step of 1/1024 s.
     tests::write(in / "on.json", in_bowl("-0.0078125"));
     const Ended on =
-        call(in, {"run", "on.json", "--no-plot", "--step", "0.0009765625", "--every", "0.0009765625"});
+        call(in, {"run", "on.json", "--no-plot", "--step", "0.0009765625", "--interval", "0.0009765625"});
     CHECK(on.code == studies::exit_code::numerical_failure);
     CHECK_THAT(on.err, Catch::Contains("error[contact_not_converged]: t=0.0078") &&
                            Catch::Contains("contact 'ball-bowl': the centres of two spheres coincide") &&
                            Catch::Contains("bodies 'ball', 'ground', t = 0.0078125 s"));
     const std::string rows = tests::read(in / "out/on/trajectory.csv");
-    CHECK(std::count(rows.begin(), rows.end(), '\n') == 1 + 8);  // each node once, up to the last good one
+    CHECK(std::count(rows.begin(), rows.end(), '\n') == 1 + 8);  // each node once, up to the last valid one
     CHECK_THAT(tests::read(in / "out/on/summary.json"), Catch::Contains("contact_not_converged"));
 }
 
-TEST_CASE("a model file with contacts is judged by an integrator, or not at all", "[studies][contact]")
+TEST_CASE("a study of a model file with contacts needs --reference", "[studies][contact]")
 {
     const tests::Scratch in;
     tests::write(in / "m.json", in_bowl("0.89"));
@@ -96,7 +98,7 @@ TEST_CASE("a model file with contacts is judged by an integrator, or not at all"
         "--steps", "7.8125e-4,3.90625e-4", "--no-plot", "--output", "out",          "--force"};
     const Ended refused = call(in, study);
     CHECK(refused.code == studies::exit_code::invalid_input);
-    CHECK_THAT(refused.err, Catch::Contains("let an integrator be the reference (--reference NAME)"));
+    CHECK_THAT(refused.err, Catch::Contains("select an integrator as the reference (--reference NAME)"));
     std::vector<std::string> evaluated = study;
     evaluated.insert(evaluated.end(), {"--reference", "rA-rattle"});
     CHECK(call(in, evaluated).code == studies::exit_code::done);

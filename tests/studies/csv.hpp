@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reads the tables that studies write.
+/// Reading of the CSV tables of studies.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace hilda::tests {
 
-/// A row, by column; all names of columns are there.
+/// The fields of a row, by column name
 using CsvRow = std::map<std::string, std::string>;
 
 inline std::vector<std::string> fields(const std::string& line)
@@ -28,7 +28,7 @@ inline std::vector<std::string> fields(const std::string& line)
     return out;
 }
 
-/// A table, no field of which has quotes or line breaks inside; one that is not there has no rows.
+/// The rows of a table whose fields contain no quotes and no line breaks; empty if the file does not exist
 inline std::vector<CsvRow> csv(const fs::path& file)
 {
     std::istringstream in(read(file));
@@ -39,14 +39,14 @@ inline std::vector<CsvRow> csv(const fs::path& file)
     while (std::getline(in, line)) {
         const std::vector<std::string> values = fields(line);
         if (values.size() != names.size())
-            throw std::runtime_error("a row has another number of fields: " + line);
+            throw std::runtime_error("a row has a different number of fields than the header: " + line);
         rows.emplace_back();
         for (size_t k = 0; k < names.size(); ++k) rows.back()[names[k]] = values[k];
     }
     return rows;
 }
 
-/// NaN for an empty field; throws where there is no such column.
+/// The number in a field, NaN for an empty field. std::out_of_range if there is no such column.
 inline double number(const CsvRow& row, const std::string& column)
 {
     const std::string& text = row.at(column);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Calls the program as a user would: its exit code, what it prints, the files it writes.
+/// Calls of the program in a process of its own: exit code, output and files.
 
 #pragma once
 
@@ -38,7 +38,7 @@ inline void write(const fs::path& file, const std::string& text)
 
 inline std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// A directory that goes away with the test
+/// A temporary directory, removed by the destructor
 class Scratch {
 public:
     Scratch()
@@ -57,18 +57,18 @@ public:
 };
 
 struct Ended {
-    int code = 0;  ///< 128 + signal where it died of one
+    int code = 0;  ///< exit code, or 128 + number of the signal that ended the process
     std::string out, err;
 };
 
-/// What a call is made with, besides its arguments
+/// Conditions of a call
 struct Limits {
-    long file_bytes = 0;         ///< of one file; 0: none
-    std::string stdout_to = {};  ///< instead of a file that is read back
-    std::string python = {};     ///< HILDA_PYTHON
+    long file_bytes = 0;         ///< largest size of a file; 0: no limit
+    std::string stdout_to = {};  ///< file for stdout; "": a temporary file that is read back
+    std::string python = {};     ///< value of HILDA_PYTHON; "": unchanged
 };
 
-/// The program, running in a scratch directory
+/// The running program, in a scratch directory
 class Program {
 public:
     Program(const Scratch& in, const std::vector<std::string>& arguments, const Limits& limits = {})
@@ -114,7 +114,7 @@ inline Ended call(const Scratch& in, const std::vector<std::string>& arguments, 
     return Program(in, arguments, limits).wait();
 }
 
-/// Waits until a file is there and not empty; false after ten seconds.
+/// Waits until a file exists and is not empty; false after ten seconds
 inline bool appears(const fs::path& file)
 {
     std::error_code error;
@@ -125,7 +125,7 @@ inline bool appears(const fs::path& file)
     return false;
 }
 
-/// A model file: a bar on a hinge, with what is put into the lists of constraints and forces
+/// A model file of a bar with a revolute joint, and additional constraints and forces
 inline std::string pendulum(const std::string& more_constraints = "", const std::string& forces = "")
 {
     return R"({"hilda_model": 1, "name": "pendulum", "end": 1.0,

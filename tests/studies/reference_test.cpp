@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What judges, and what it may judge
+/// Reference solutions of studies by an integrator.
 #include "studies/exit_codes.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
@@ -27,16 +27,17 @@ Ended study(const Scratch& in, const std::vector<std::string>& more)
 
 }  // namespace
 
-TEST_CASE("a fine run of another integrator judges like the truth", "[studies][reference]")
+TEST_CASE("a fine run of another integrator gives the same errors as the reference solution of the problem",
+          "[studies][reference]")
 {
     const Scratch in;
-    REQUIRE(study(in, {"--quiet", "--output", "truth"}).code == 0);
+    REQUIRE(study(in, {"--quiet", "--output", "reference"}).code == 0);
     const Ended ended = study(in, {"--reference", "rA-half-2", "--reference-step", "1e-4", "--output", "a"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("truth: rA-half-2 at h = 0.0001 s"));
+    CHECK_THAT(ended.out, Contains("reference solution: rA-half-2 at h = 0.0001 s"));
     REQUIRE(study(in, {"--reference", "rA-half-2", "--quiet", "--output", "b"}).code == 0);
-    const auto reference_solution = csv(in / "truth/study.csv"), fine = csv(in / "a/study.csv"),
+    const auto reference_solution = csv(in / "reference/study.csv"), fine = csv(in / "a/study.csv"),
                usual = csv(in / "b/study.csv");
     REQUIRE(reference_solution.size() == 2);
     for (size_t k = 0; k < 2; ++k)
@@ -47,8 +48,7 @@ TEST_CASE("a fine run of another integrator judges like the truth", "[studies][r
         }
 }
 
-TEST_CASE("a reference that is coarser than what it judges is refused unless it is forced",
-          "[studies][reference]")
+TEST_CASE("a reference that is coarser than a run is rejected without --force", "[studies][reference]")
 {
     const Scratch in;
     for (const char* step : {"5e-3", "1e-2"}) {
@@ -73,14 +73,14 @@ TEST_CASE("a reference that is coarser than what it judges is refused unless it 
             .code == 0);
 }
 
-TEST_CASE("what is wrong about a reference is said in one line", "[studies][reference]")
+TEST_CASE("an invalid reference is reported in one line", "[studies][reference]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& expected) {
         const Ended ended = study(in, more);
         CAPTURE(more, ended.err);
         CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(says));
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(expected));
         CHECK(ended.err.find('\n') == ended.err.size() - 1);
     };
     refused({"--reference", "rA-half2"},
@@ -95,8 +95,7 @@ TEST_CASE("what is wrong about a reference is said in one line", "[studies][refe
         refused({"--reference", name, "--reference-step", "1e-4"}, "chooses its own steps");
 }
 
-TEST_CASE("schemes that choose their own steps judge and are judged by their tolerance",
-          "[studies][reference]")
+TEST_CASE("adaptive schemes are references and evaluated runs by their tolerance", "[studies][reference]")
 {
     studies::StudyOptions options;
     options.quiet = true;
@@ -131,7 +130,7 @@ TEST_CASE("schemes that choose their own steps judge and are judged by their tol
     }
 }
 
-TEST_CASE("adaptive schemes judge on the command line and have no place in studies of steps",
+TEST_CASE("adaptive schemes are accepted as --reference and rejected by studies of fixed steps",
           "[studies][reference]")
 {
     const Scratch in;
@@ -140,7 +139,7 @@ TEST_CASE("adaptive schemes judge on the command line and have no place in studi
         const Ended evaluated = study(in, {"--reference", name, "--output", "a-" + name});
         CAPTURE(evaluated.err);
         CHECK(evaluated.code == 0);
-        CHECK_THAT(evaluated.out, Contains("truth: " + name + " at rtol 1e-12"));
+        CHECK_THAT(evaluated.out, Contains("reference solution: " + name + " at rtol 1e-12"));
         for (const char* kind : {"convergence", "energy", "iterations", "timing", "scaling"}) {
             const Ended refused = call(in, {"study", kind, "--integrator", name});
             CHECK(refused.code == 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The steps that a force stands, and that `hilda run` refuses beyond.
+/// Stability limits of forces: steps above them are rejected by hilda run and by studies.
 
+#include "lie/schemes.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/running/single_run.hpp"
 #include "tests/studies/program.hpp"
@@ -13,13 +14,13 @@ using studies::SingleRun;
 
 namespace {
 
-/// A body on a bristle of 18.5 kN/m, which is stable up to 2/sqrt(18500) s = 14.704 ms
-struct Brushed {
+/// A body of 1 kg on a bristle of 18.5 kN/m, with the stability limit 2/sqrt(18500) s = 14.704 ms
+struct BristleModel {
     const tests::BristleContacts reader;
     const tests::Scratch in;
     studies::RunOptions options;
 
-    Brushed()
+    BristleModel()
     {
         tests::write(in / "m.json",
                      R"({"hilda_model": 1, "name": "m", "end": 0.3,
@@ -28,56 +29,55 @@ struct Brushed {
         options.model = (in / "m.json").string();
         options.quiet = true;
     }
-    studies::Result run(const std::string& scheme = "rA-half-1") const
+    studies::RunResult run(const std::string& scheme = "rA-half-1") const
     {
-        return SingleRun(options, lie::scheme(scheme), directory()).go();
+        return SingleRun(options, lie::scheme(scheme), directory()).execute();
     }
     std::string directory() const { return (in / "out").string(); }
 };
 
 }  // namespace
 
-TEST_CASE("a step above what a force stands is refused, by name and before anything is written",
+TEST_CASE("a step above the stability limit of a force is rejected with its name before any file is written",
           "[studies][stable_step]")
 {
-    Brushed m;
+    BristleModel m;
     m.options.step = 0.015;
     CHECK_THROWS_AS(m.run(), studies::UsageError);
     CHECK_THROWS_WITH(m.run(),
-                      "run: the step 0.015 s is above 0.0147 s, the largest at which bristle 'brush' "
-                      "is stable with an explicit step; --force overrides");
+                      "run: the step 0.015 s is above 0.0147 s, the stability limit of bristle 'brush' in an "
+                      "explicit step; --force accepts it");
     CHECK_FALSE(tests::fs::exists(m.directory()));
 
     m.options.force = true;
     CHECK(m.run().step == 0.015);
     m.options.force = false;
-    m.options.step = 0.0147;  // what the message says
+    m.options.step = 0.0147;  // the limit stated in the message
     CHECK(m.run().status == "ok");
     m.options.step.reset();
     CHECK(m.run().status == "ok");
 }
 
-TEST_CASE("a scheme that chooses its own steps is refused where a force remembers numbers",
-          "[studies][stable_step]")
+TEST_CASE("an adaptive scheme is rejected if a force has internal state variables", "[studies][stable_step]")
 {
-    const Brushed m;
+    const BristleModel m;
     CHECK_THROWS_WITH(m.run("ida-rp"),
-                      "run: ida-rp chooses its own steps; bristle 'brush' remembers numbers "
-                      "from step to step and needs a fixed-step scheme");
+                      "run: ida-rp chooses its own steps; bristle 'brush' has internal state variables and "
+                      "needs a fixed-step scheme");
     CHECK_FALSE(tests::fs::exists(m.directory()));
 }
 
-TEST_CASE("a run with --force that was killed is gone on with, and ends as one that was left alone",
+TEST_CASE("a killed run with --force is resumed and gives the result of an uninterrupted run",
           "[studies][stable_step][resume]")
 {
-    Brushed m;
+    BristleModel m;
     m.options.step = 0.016;
     m.options.end = 30;
     m.options.force = true;
     REQUIRE(m.run().status == "ok");
     const std::string whole = tests::read(m.in / "out/trajectory.csv");
 
-    m.options.checkpoint = 1e-9;  // at every step
+    m.options.checkpoint = 1e-9;  // after each step
     tests::fs::remove_all(m.directory());
     const pid_t child = fork();
     if (child == 0) {
@@ -89,20 +89,20 @@ TEST_CASE("a run with --force that was killed is gone on with, and ends as one t
     }
     REQUIRE(child > 0);
     CHECK(tests::appears(m.in / "out/checkpoint.1"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // by then it is not that of the start
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // later than the checkpoint of the start
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
 
     m.options.force = false;
     m.options.resume = true;
     m.options.checkpoint = 0;
-    const studies::Result resumed = m.run();
+    const studies::RunResult resumed = m.run();
     CHECK(resumed.status == "ok");
     CHECK(resumed.resumed_at > 0);
     CHECK(tests::read(m.in / "out/trajectory.csv") == whole);
 }
 
-TEST_CASE("a study refuses steps that a force does not stand", "[studies][stable-step]")
+TEST_CASE("a study rejects steps above the stability limit of a force", "[studies][stable-step]")
 {
     const tests::Scratch in;
     const tests::Ended ended = tests::call(

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A reader of the contacts of a model file, which makes bristles of them.
+/// A reader for the contacts of a model file that creates a Bristle for each contact.
 
 #pragma once
 
+#include "dae/model.hpp"
 #include "dae/model_file_types.hpp"
 #include "tests/support/bristle.hpp"
 
 namespace hilda::tests {
 
-/// Enrolled for as long as it lives; then the reader before it is back.
+/// Registers the reader in the constructor and restores the previous reader in the destructor.
 struct BristleContacts {
-    const dae::ReadContact before = dae::contact_reader();
+    const dae::ReadContact previous = dae::contact_reader();
 
     BristleContacts() { dae::register_contact_reader(read); }
-    ~BristleContacts() { dae::register_contact_reader(before); }
+    ~BristleContacts() { dae::register_contact_reader(previous); }
     BristleContacts(const BristleContacts&) = delete;
     BristleContacts& operator=(const BristleContacts&) = delete;
 
-    /// Stiffness is by default as many N/m as body i has kg, and the length is a tenth of the distance at the
-    /// start.
+    /// Default of `stiffness` [N/m]: the mass of body i in kg times 1 N/(m kg). Default of `most` [m]: a
+    /// tenth of the distance of the bodies at the start.
     static void read(dae::ObjectReader& o, const dae::ContactPair& pair)
     {
         const auto r = [&](int b) { return b == dae::ground ? lie::Vec3(0, 0, 0) : pair.start.body[b].r; };
         const double mass = pair.i == dae::ground ? 1 : pair.model.mass().m[pair.i];
         const double stiffness = o.positive("stiffness", mass);
-        const double most = o.number("most", 0.1 * (r(pair.j) - r(pair.i)).norm());
-        if (most > 10) lie::reject("bristle", "the length must be at most 10 m", most);
-        auto bristle = std::make_unique<Bristle>(pair.i, pair.j, stiffness, most);
+        const double max_stretch = o.number("most", 0.1 * (r(pair.j) - r(pair.i)).norm());
+        if (max_stretch > 10) lie::reject("bristle", "the length must be at most 10 m", max_stretch);
+        auto bristle = std::make_unique<Bristle>(pair.i, pair.j, stiffness, max_stretch);
         bristle->name = pair.name;
         pair.model.load(std::move(bristle));
     }

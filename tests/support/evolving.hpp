@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Bodies put into contact, for tests of contacts that evolve.
+/// Support for tests of evolving contacts: surface pairs, contact poses, models and runs.
 #pragma once
 
 #include "contact/evolving/contact.hpp"
@@ -10,7 +10,13 @@
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "contact/tangent_basis.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/linear_solver.hpp"
+#include "lie/solver/saddle.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -34,7 +40,7 @@ Shape shape(Arguments&&... arguments)
     return {std::make_shared<S>(std::forward<Arguments>(arguments)...)};
 }
 
-/// The same surface elsewhere in its body
+/// The same surface with a random pose in its body
 inline Shape moved(Shape shape, Random& random)
 {
     shape.position = random.vector(0.3);
@@ -42,20 +48,21 @@ inline Shape moved(Shape shape, Random& random)
     return shape;
 }
 
-struct Pair {
+/// A pair of surfaces and the regions in which random contact points are chosen
+struct SurfacePair {
     std::string name;
     Shape i, j;
-    /// Points of the frames of the surfaces near which they are to touch: the middle of a region, and its size
+    /// Centre and half-width of the region of the contact point, in the surface frame [m]
     Vec3 near_i, near_j;
     double spread_i = 0.5, spread_j = 0.5;
 };
 
-/// Every kind of surface, convex and hollow, on both sides; each on a body of its own, and not in its middle
-inline std::vector<Pair> pairs(Random& random)
+/// All types of surface, convex and concave, on either body, each with a random pose in its body
+inline std::vector<SurfacePair> surface_pairs(Random& random)
 {
     using namespace contact;
     const Vec3 up = Vec3::UnitZ(), out = Vec3::UnitX();
-    std::vector<Pair> all{
+    std::vector<SurfacePair> all{
         {"ball in an ellipsoidal bowl", shape<Sphere>(0.5), shape<Ellipsoid>(Vec3(4, 3, 2), true), up,
          Vec3(1, 1.5, -1.6), 0.5, 0.4},
         {"ellipsoid in a bowl", shape<Ellipsoid>(Vec3(0.5, 0.4, 0.3)), shape<Sphere>(2.0, true), 0.5 * up,
@@ -76,27 +83,28 @@ inline std::vector<Pair> pairs(Random& random)
         {"ball in a toroidal groove", shape<Sphere>(0.2), shape<Torus>(2.0, 0.6, true), up, Vec3(2, 0, -0.6),
          0.5, 0.3},
     };
-    for (Pair& pair : all) pair.i = moved(pair.i, random), pair.j = moved(pair.j, random);
+    for (SurfacePair& pair : all) pair.i = moved(pair.i, random), pair.j = moved(pair.j, random);
     return all;
 }
 
-/// A point of the surface near the place that the pair gives for it, body frame
+/// A random point of the surface near `near`, in the body frame
 inline Vec3 point(const Shape& shape, const Vec3& near, double spread, Random& random)
 {
     return shape.to_body(shape.surface->project(near + random.vector(spread)));
 }
 
-struct Touching {
+/// Two bodies in contact, with the contact points and a tangent basis
+struct ContactPose {
     Motion bi, bj;
     Eigen::Matrix<double, 6, 1> alpha;
-    Eigen::Matrix<double, 3, 2> T;  ///< across the normal of i
+    Eigen::Matrix<double, 3, 2> T;  ///< tangent basis of the normal of i
 
-    dae::Constraint::At at() const { return {bi, bj, 0, alpha.data(), T.data(), false}; }
+    dae::Constraint::Arguments at() const { return {bi, bj, 0, alpha.data(), T.data(), false}; }
 };
 
-/// Body i put to body j, so that these of their points touch, turned by `angle` about the normal
-inline void contact_point(const Shape& shape_i, const Vec3& a_i, Motion& bi, const Shape& shape_j,
-                          const Vec3& a_j, const Motion& bj, double angle = 0)
+/// Moves body i so that the given points of the two bodies are in contact; turned by `angle` about the normal
+inline void place_in_contact(const Shape& shape_i, const Vec3& a_i, Motion& bi, const Shape& shape_j,
+                             const Vec3& a_j, const Motion& bj, double angle = 0)
 {
     const auto frame = [](const Vec3& n) {
         Mat3 A;
@@ -112,28 +120,28 @@ inline void contact_point(const Shape& shape_i, const Vec3& a_i, Motion& bi, con
     bi.r = bj.r + bj.A * a_j - bi.A * a_i;
 }
 
-inline Touching touching(const Pair& pair, Random& random)
+inline ContactPose random_contact_pose(const SurfacePair& pair, Random& random)
 {
-    Touching x;
+    ContactPose x;
     x.bi = random.motion(), x.bj = random.motion();
     const Vec3 a_i = point(pair.i, pair.near_i, pair.spread_i, random),
                a_j = point(pair.j, pair.near_j, pair.spread_j, random);
-    contact_point(pair.i, a_i, x.bi, pair.j, a_j, x.bj, random.number(-3, 3));
+    place_in_contact(pair.i, a_i, x.bi, pair.j, a_j, x.bj, random.number(-3, 3));
     x.alpha << a_i, a_j;
     const Vec3 n_i = x.bi.A * (pair.i.orientation * pair.i.surface->normal(pair.i.to_surface(a_i)));
     x.T = contact::tangent_basis(n_i);
     return x;
 }
 
-/// The contact of a model that has one, or the k-th
+/// The k-th evolving contact of a model
 inline const EvolvingContact& contact_of(const dae::Model& model, size_t k = 0)
 {
-    return static_cast<const EvolvingContact&>(*model.evolving()[k]);
+    return static_cast<const EvolvingContact&>(*model.general_constraints()[k]);
 }
 inline EvolvingContact::Multipliers multipliers(const dae::Model& model, const lie::State& x, size_t k = 0)
 {
     const EvolvingContact& c = contact_of(model, k);
-    return c.multipliers(model.at(c, x), x.lambda);
+    return c.multipliers(model.arguments(c, x), x.lambda);
 }
 
 /// Inertia of a homogeneous ellipsoid about its centre
@@ -143,7 +151,7 @@ inline Mat3 inertia(double m, const Vec3& semi_axes)
     return 0.2 * m * (Vec3::Constant(squares.sum()) - squares).asDiagonal().toDenseMatrix();
 }
 
-/// Condition number of the saddle matrix with one free body of mass m, lengths measured in L and masses in m
+/// Condition number of the saddle matrix of one free body of mass m, with lengths scaled by L and masses by m
 inline double condition(const dae::Model& model, const lie::State& x, double m, double L)
 {
     lie::Saddle K(model);
@@ -162,7 +170,8 @@ inline double condition(const dae::Model& model, const lie::State& x, double m, 
     return singular[0] / singular[singular.size() - 1];
 }
 
-struct Scene {
+/// A model with evolving contacts and its state
+struct ContactModel {
     dae::Model model;
     lie::State x;
 
@@ -171,8 +180,8 @@ struct Scene {
         model.add({name, m, J_bar});
         x.body.push_back(motion);
     }
-    void contact_point(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
-                       Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent)
+    void add_contact(const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j,
+                     Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent)
     {
         model.constrain(name,
                         std::make_unique<EvolvingContact>(i, shape_i, j, shape_j, friction, normal_rows));
@@ -180,19 +189,20 @@ struct Scene {
     void start(bool fix_initial = false) { dae::start(model, x, {.fix_initial = fix_initial}); }
 };
 
-struct Watch final : lie::Observer {
-    explicit Watch(std::function<void(const lie::State&, long)> f) : f(std::move(f)) {}
+/// Calls a function at every node.
+struct NodeCallback final : lie::Observer {
+    explicit NodeCallback(std::function<void(const lie::State&, long)> f) : f(std::move(f)) {}
     void accepted(const lie::State& x, long n, int) override { f(x, n); }
     std::function<void(const lie::State&, long)> f;
 };
 
-/// All nodes of a run are shown; returns the last
+/// Runs to t_end, calls `watch` at every node, and returns the last state
 inline lie::State run(
-    Scene& scene, const char* scheme, double h, double t_end,
+    ContactModel& scene, const char* scheme, double h, double t_end,
     const std::function<void(const lie::State&, long)>& watch = [](const lie::State&, long) {},
     lie::LinearSolver solver = lie::LinearSolver::automatic)
 {
-    Watch observer(watch);
+    NodeCallback observer(watch);
     lie::Observer* observers[] = {&observer};
     const auto integrator =
         lie::scheme(scheme).make(scene.model, {.tolerance = 1e-14, .linear_solver = solver});
@@ -202,8 +212,8 @@ inline lie::State run(
 inline const Vec3 bowl_axes(4, 3, 2);
 inline constexpr double R = 0.5;
 
-/// A ball of 1 kg in the bowl, its centre at r, at rest
-struct BallInBowl : Scene {
+/// A ball of 1 kg in the ellipsoidal bowl, at rest, with its centre at r
+struct BallInBowl : ContactModel {
     explicit BallInBowl(const Vec3& r, Friction friction = Friction::none, const Vec3& omega = Vec3::Zero(),
                         NormalRows normal_rows = NormalRows::tangent)
     {
@@ -211,8 +221,8 @@ struct BallInBowl : Scene {
         ball.r = r;
         ball.omega_bar = omega;
         add("ball", 1, 0.4 * R * R * Mat3::Identity(), ball);
-        contact_point("bowl", 0, shape<contact::Sphere>(R), dae::ground,
-                      shape<contact::Ellipsoid>(bowl_axes, true), friction, normal_rows);
+        add_contact("bowl", 0, shape<contact::Sphere>(R), dae::ground,
+                    shape<contact::Ellipsoid>(bowl_axes, true), friction, normal_rows);
         start();
     }
 };

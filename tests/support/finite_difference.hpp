@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Derivatives by central differences of fourth order, for what a formula is checked against.
+/// Numerical derivatives by central differences of fourth order, for the verification of analytical
+/// derivatives.
 
 #pragma once
 
 namespace hilda::tests {
 
-/// f'(0), of a scalar, a vector or a matrix; error h⁴ f⁽⁵⁾/30 + 2ε|f|/h, about 1e-12 for functions near one.
+/// f'(0) of a scalar, vector or matrix function f. The error is h⁴ f⁽⁵⁾/30 + 2ε|f|/h, about 1e-12 for
+/// functions of order 1.
 template <class F>
 auto derivative(const F& f, double h = 2e-3)
 {
@@ -14,7 +16,7 @@ auto derivative(const F& f, double h = 2e-3)
     return Value(((a - d) + 8 * (c - b)) / (12 * h));
 }
 
-/// f''(0); error h⁴ f⁽⁶⁾/90 + 6ε|f|/h², about 1e-10 for functions near one.
+/// f''(0). The error is h⁴ f⁽⁶⁾/90 + 6ε|f|/h², about 1e-10 for functions of order 1.
 template <class F>
 auto second_derivative(const F& f, double h = 4e-3)
 {

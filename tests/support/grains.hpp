@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Grains for tests of the granular room.
+/// Materials and names for the tests of `granular`.
 #pragma once
 
 #include "granular/validations/soft_sphere.hpp"
@@ -16,7 +16,7 @@ using granular::Vec3;
 using granular::World;
 using granular::WorldOptions;
 
-/// As beads of a millimetre are made of
+/// Glass beads, with a Young's modulus reduced by a factor of 1000
 inline Material glass() { return {"glass", 2500, 7e7, 0.24}; }
 
 }  // namespace hilda::tests

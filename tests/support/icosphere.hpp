@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Triangle meshes that converge to a smooth surface.
+/// Triangle meshes of the unit sphere that converge under refinement, and their images.
 
 #pragma once
 
@@ -16,8 +16,8 @@ struct Triangles {
     std::vector<contact::Triangle> triangles;
 };
 
-/// The unit sphere: an icosahedron whose triangles are cut into four, `levels` times. The longest edge is 1.05, 0.62,
-/// 0.32, 0.16, 0.083 for 0 to 4.
+/// The unit sphere: an icosahedron refined `levels` times by splitting each triangle into four. The longest
+/// edge is 1.05, 0.62, 0.32, 0.16, 0.083 for levels 0 to 4.
 inline Triangles icosphere(int levels)
 {
     Triangles mesh;
@@ -29,7 +29,7 @@ inline Triangles icosphere(int levels)
                 v[k] = 0, v[(k + 1) % 3] = s, v[(k + 2) % 3] = t;
                 mesh.vertices.push_back(v.normalized());
             }
-    // its faces are the triples of neighbours
+    // the faces are the triples of vertices at the edge length
     const std::vector<lie::Vec3>& x = mesh.vertices;
     const auto near = [&](int a, int b) { return (x[a] - x[b]).norm() < 1.1; };
     for (int a = 0; a < 12; ++a)
@@ -59,7 +59,7 @@ inline Triangles icosphere(int levels)
     return mesh;
 }
 
-/// The mesh of its image
+/// The mesh with the vertices f(v)
 template <class F>
 contact::TriangleMesh image(Triangles mesh, const F& f)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The driven benchmark mechanisms by hand: slider-crank and four-link of Fang (2022), Tables 3.3 to 3.5,
-/// with their 18 rows each. Numbers as in the published code (sbel-reproducibility, HalfImplicit_JCND; crank
-/// mass of the Table).
+/// The driven benchmark mechanisms, written row by row: slider-crank and four-link mechanism of Fang (2022),
+/// Tables 3.3 to 3.5, with 18 rows each. The numbers are those of the published code (sbel-reproducibility,
+/// HalfImplicit_JCND) with the crank mass of the table.
 
 #pragma once
 
@@ -79,7 +79,7 @@ inline void slider_crank(dae::Model& model, lie::State& x)
 
 enum class FourLinkStart {
     consistent,  ///< projected on the constraints, 17 digits
-    stored       ///< as published: link 3 turned wrong by 2.4e-3, the rotor at rest although it is driven
+    stored       ///< as published: link 3 is off by 2.4e-3 rad, and the driven rotor is at rest
 };
 
 inline void four_link(dae::Model& model, lie::State& x, FourLinkStart start = FourLinkStart::consistent)

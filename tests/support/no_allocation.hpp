@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Counts what the program takes from the heap. The counters replace malloc and operator new, so a test program that
-/// includes this file in any of its sources counts everything in it, KLU included.
+/// Counts heap allocations. The functions below replace malloc, calloc and realloc. A test program that
+/// includes this file in one of its sources counts all allocations, including those of operator new and of
+/// KLU.
 #pragma once
 
 #include <atomic>
@@ -11,14 +12,14 @@ namespace hilda::tests {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define HILDA_SANITIZED
-inline constexpr bool counts_allocations = false;  ///< a sanitizer owns the heap
+inline constexpr bool counts_allocations = false;  ///< a sanitizer replaces malloc itself
 #else
 inline constexpr bool counts_allocations = true;
 #endif
 
 inline std::atomic<long> allocations{0};
 
-/// Allocations while f runs
+/// Number of allocations during f()
 template <class F>
 long allocations_during(F&& f)
 {

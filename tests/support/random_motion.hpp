@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Random input for tests, from a seed: numbers, vectors, rotations, motions; and where a motion goes from
-/// there.
+/// Random input for tests from a seed: numbers, vectors, rotations, motions; and displaced poses of a motion.
 
 #pragma once
 
@@ -10,7 +9,7 @@
 
 namespace hilda::tests {
 
-/// A source of random input. The same seed gives the same test.
+/// A random number generator. The same seed gives the same input.
 class Random {
 public:
     explicit Random(unsigned seed) : engine(seed) {}
@@ -19,14 +18,14 @@ public:
     {
         return std::uniform_real_distribution<>(low, high)(engine);
     }
-    /// In the cube |x|, |y|, |z| < size
+    /// Uniformly distributed in the cube |x|, |y|, |z| < size
     lie::Vec3 vector(double size = 1)
     {
         const double x = number(-size, size), y = number(-size, size), z = number(-size, size);
         return {x, y, z};
     }
     lie::Vec3 unit() { return direction(3).head<3>(); }
-    /// Evenly distributed over SO(3): the Euler parameters are a direction in R⁴
+    /// Uniformly distributed on SO(3): the Euler parameters are a random direction in R⁴
     lie::Mat3 rotation()
     {
         const Eigen::Vector4d p = direction(4);
@@ -59,8 +58,8 @@ private:
     std::mt19937 engine;
 };
 
-/// The pose of a motion after a time tau, r + ṙ τ + r̈ τ²/2 and A exp(ω̄ τ + ω̄̇ τ²/2): a curve with the
-/// velocities and accelerations of the motion at τ = 0.
+/// The pose r + ṙ τ + r̈ τ²/2, A exp(ω̄ τ + ω̄̇ τ²/2) at the time τ: a curve with the velocities and
+/// accelerations of the motion m at τ = 0.
 inline lie::Motion pose_after(const lie::Motion& m, double tau)
 {
     lie::Motion at = m;
@@ -69,7 +68,7 @@ inline lie::Motion pose_after(const lie::Motion& m, double tau)
     return at;
 }
 
-/// r → r + δr, A → A exp(δπ̄): δ holds both
+/// The pose r + δr, A exp(δπ̄) with δ = (δr, δπ̄)
 inline lie::Motion displaced(const lie::Motion& m, const Eigen::Matrix<double, 6, 1>& delta)
 {
     lie::Motion at = m;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A top on a ball joint, as a lie::System in a few lines: what a stepper needs to know, and no joints, names
-/// or files.
+/// A top on a ball joint: a minimal lie::System without joints, names or files.
 #pragma once
 
 #include "lie/solver/saddle.hpp"
+#include "lie/system.hpp"
 
 namespace hilda::tests {
 
 using lie::Mat3;
 using lie::Vec3;
 
-/// The point s_bar of the body stays at the origin; without it (free = true) the body is torque-free.
+/// The point s_bar of the body is fixed at the origin. With free = true the body is torque-free instead.
 class SpinningTop final : public lie::System {
 public:
     explicit SpinningTop(bool free = false) : free(free)
@@ -60,7 +60,7 @@ public:
         return free ? 0 : 2.0 * 9.81 * x.body[0].r.z();
     }
 
-    /// Tilted, spinning and falling, consistent in position, velocity and acceleration
+    /// A tilted, spinning and precessing top, consistent in position, velocity and acceleration
     lie::State start() const
     {
         lie::State x;

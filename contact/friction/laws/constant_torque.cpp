@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Sliding as in Sec. 4.3.1; rolling by a torque of constant size against the rolling velocity.
+/// Friction law "constant-torque": sliding friction of Sec. 4.3.1 and a rolling torque of constant magnitude
+/// against the rolling velocity.
 ///
 ///     T_i = -μ_r R N ω_t / |ω_t|,   T_j = -T_i                                         Fang (2022), Eq. 2.48
 ///
-/// ω_t is the part of ω_i - ω_j in the tangent plane, 1/R = κ_i + κ_j. It has no history, so a body at rest trembles:
-/// where the speed should be zero, rounding gives the torque its direction.
+/// ω_t is the tangential part of ω_i - ω_j, and 1/R = κ_i + κ_j the sum of the mean curvatures. The rolling
+/// torque has no history. A body at rest is therefore not held exactly: at zero velocity the direction of the
+/// torque is that of the rounding errors.
 
 #include "contact/friction/laws/spring.hpp"
 #include "dae/object_reader.hpp"
@@ -12,11 +14,11 @@
 namespace hilda::contact {
 namespace {
 
-class ConstantTorque final : public Sliding {
+class ConstantTorque final : public SlidingFriction {
 public:
-    explicit ConstantTorque(const FrictionParameters& p) : Sliding(p) {}
+    explicit ConstantTorque(const FrictionParameters& p) : SlidingFriction(p) {}
 
-    void advance(const ContactState& now, Deflections& h) const override { slide(now, h); }
+    void advance(const ContactState& now, Deflections& h) const override { advance_sliding(now, h); }
 
     Wrench load(const ContactState& now, const Rates& rates, const Deflections& h) const override
     {

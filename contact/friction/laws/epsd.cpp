@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Sliding as in Sec. 4.3.1; rolling by an elastic-plastic spring and dashpot on the rolling rotation.
+/// Friction law "epsd": sliding friction of Sec. 4.3.1 and an elastic-plastic spring-damper for the rolling
+/// rotation.
 ///
-///     M^k += k_r ω_t h, |M^k| ≤ μ_r R N;   M^d = C_r ω_t, none at the bound          Fang (2022), Sec. 2.2.1.4
+///     M^k += k_r ω_t h, |M^k| ≤ μ_r R N;   M^d = C_r ω_t, zero at the bound        Fang (2022), Sec. 2.2.1.4
 ///     k_r = K_E R²,   C_r = ζ 2 √(I_r k_r),   I_r = I + m R²                   Ai et al. (2011), model C
 ///
-/// ω_t is the part of ω_i - ω_j in the tangent plane, 1/R = κ_i + κ_j. The spring is carried like those of
-/// slide-roll-spin; published codes keep it as a vector of the global frame.
+/// ω_t is the tangential part of ω_i - ω_j, and 1/R = κ_i + κ_j the sum of the mean curvatures. The spring is
+/// stored in the contact frame like those of slide-roll-spin; published codes store it as a vector in the
+/// global frame.
 
 #include "contact/friction/laws/spring.hpp"
 #include "dae/object_reader.hpp"
@@ -13,15 +15,15 @@
 namespace hilda::contact {
 namespace {
 
-class Epsd final : public Sliding {
+class Epsd final : public SlidingFriction {
 public:
-    explicit Epsd(const FrictionParameters& p) : Sliding(p) {}
+    explicit Epsd(const FrictionParameters& p) : SlidingFriction(p) {}
 
     void advance(const ContactState& now, Deflections& h) const override
     {
-        slide(now, h);
+        advance_sliding(now, h);
         const SlidingDisplacement& s = now.slip;
-        const Spring spring = rolling(now);
+        const RollingSpring spring = rolling(now);
         h.Theta_i += components(now.contact_point.K_i * s.q_i + now.contact_point.K_j * s.q_j, s.n, s.u);
         return_to_bound(h.Theta_i, h.roll_i, spring.cap, spring.cap);
     }
@@ -31,7 +33,7 @@ public:
         Wrench out;
         add_sliding(now, rates, h, out);
         const SlidingDisplacement& s = now.slip;
-        const Spring spring = rolling(now);
+        const RollingSpring spring = rolling(now);
         const Vec3 elastic = spring.K * tangent(h.Theta_i, s.n, s.u);
         Vec3 tau = elastic;
         if (h.roll_i.damped)
@@ -47,16 +49,16 @@ public:
 
     Springs springs(const ContactState& now) const override
     {
-        const Spring spring = rolling(now);
+        const RollingSpring spring = rolling(now);
         return {.K_slide = p.K_E, .D_slide = D_slide(now), .K_roll = spring.K, .D_roll = spring.D};
     }
 
 private:
-    struct Spring {
+    struct RollingSpring {
         double K = 0, D = 0, cap = 0;
     };
 
-    Spring rolling(const ContactState& now) const
+    RollingSpring rolling(const ContactState& now) const
     {
         const double kappa = 0.5 * (now.contact_point.K_i.trace() + now.contact_point.K_j.trace());
         if (!(kappa > 0)) return {};

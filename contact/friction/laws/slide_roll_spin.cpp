@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Sliding, rolling and spinning friction from the motion of the contact point.           Fang (2022), Sec. 4.3
+/// Friction law "slide-roll-spin": sliding, rolling and spinning friction from the displacement of the
+/// contact point (Fang 2022, Sec. 4.3).
 ///
-///     S += q_i - q_j                 F   = K_E S + D Δs/h              on i at C, -F on j               (4.1, 4.2)
+///     S += q_i - q_j                 F   = K_E S + D Δs/h              on i at C, -F on j         (4.1, 4.2)
 ///     Θ += K_i q_i + K_j q_j         T   = (K_R Θ + D_R Δθ/h) × n      on i, -T on j
-///     Ψ += ψ                         T_ψ = -(K_ψ Ψ + D_ψ ψ/h) n        on i, opposite on j                   (4.8)
+///     Ψ += ψ                         T_ψ = -(K_ψ Ψ + D_ψ ψ/h) n        on i, opposite on j             (4.8)
 ///
-/// Each deflection gives way at μ_s N and slips at μ_k N:
+/// Δs, Δθ and ψ are the increments of a step h. The deflections are bounded, with μ = μ_s in stick and
+/// μ = μ_k in slip:
 ///
-///     |S| ≤ μ N / K_E;   |Θ| ≤ (κ/2) μ N / K_E,  K_R = 4 η_r K_E / κ²,  κ = κ_i + κ_j                   (4.6, 4.7)
-///     |Ψ| ≤ κ μ N / K_E, K_ψ = η_ψ K_E / κ²,     or with a Hertzian patch of radius a                        (4.9)
-///     |Ψ| ≤ μ N / (K_E a), K_ψ = a² K_E / 2,     a³ = 3 N / (4 κ E*)                                    (A.21-A.23)
+///     |S| ≤ μ N / K_E;   |Θ| ≤ (κ/2) μ N / K_E,  K_R = 4 η_r K_E / κ²,  κ = κ_i + κ_j             (4.6, 4.7)
+///     |Ψ| ≤ κ μ N / K_E, K_ψ = η_ψ K_E / κ²,     or with a Hertzian patch of radius a                  (4.9)
+///     |Ψ| ≤ μ N / (K_E a), K_ψ = a² K_E / 2,     a³ = 3 N / (4 κ E*)                             (A.21-A.23)
 ///
-/// Balanced, the default: n × (K_i q_i + K_j q_j) is the turn of i against j but for the spin, so one vector Θ gives
-/// opposite torques and no angular momentum is made. κ in rolling is the tensor K_i + K_j:
+/// Balanced preset (default): n × (K_i q_i + K_j q_j) is the rotation of i relative to j without the spin.
+/// One vector Θ gives opposite torques, so that angular momentum is conserved. In rolling, κ is the tensor
+/// K_i + K_j:
 ///
 ///     T = (4 η_r K_E κ⁻² Θ + D κ⁻¹ Δθ/h) × n,   |κ⁻¹ Θ| ≤ μ N / (2 K_E),   D = ζ 4 √(I η_r K_E)
 ///
-/// a spring that stores what is put into it, whichever way it rolls; on a sphere it is that of (4.6). Curvatures whose
-/// 1/κ is longer than the lever of the meeting count as that long. In spinning κ is the mean.
+/// This is a conservative spring for any path of Θ. On a sphere it is that of (4.6). Lever arms 1/κ are
+/// limited to ContactState::max_lever. In spinning, κ is the sum of the mean curvatures.
 ///
-/// As in the dissertation: Θ_i += κ_i q_i and Θ_j += κ_j q_j apart, with κ along the way of each contact point (the
-/// mean where there is none), T_i = (K_R Θ_i + ...) × n and T_j = -(K_R Θ_j + ...) × n. Their sum is not zero
-/// unless the bodies are alike. The text calls the vector itself the torque; a torque about the axis of rolling is
-/// its cross product with n.
+/// Dissertation preset: two vectors, Θ_i += κ_i p_i and Θ_j += κ_j p_j, with the normal curvature κ_b along
+/// the path of the contact point on each body (the mean curvature if there is no path), T_i = (K_R Θ_i + ...)
+/// × n and T_j = -(K_R Θ_j + ...) × n. The torques are opposite only for equal bodies. The text calls the
+/// tangent vector itself the torque; the torque about the axis of rolling is its cross product with n.
 
 #include "contact/friction/laws/spring.hpp"
 #include "contact/normal/normal_law.hpp"
@@ -33,18 +36,19 @@
 namespace hilda::contact {
 namespace {
 
-constexpr double no_way = 1e-14;        // [m], [rad]: a shorter vector has no direction
-constexpr double no_curvature = 1e-12;  // part of a curvature that is rounding
-constexpr double flat = 1e-9;           // [1/m]: a smaller κ_i + κ_j has no rolling to resist
+constexpr double no_direction = 1e-14;  // a shorter vector is treated as zero [m], [rad]
+constexpr double no_curvature = 1e-12;  // relative rounding error of a curvature
+constexpr double min_curvature = 1e-9;  // spinning friction is zero if κ_i + κ_j is smaller [1/m]
 
-/// Curvature along t, or the mean where t has no direction
+/// Normal curvature along t, or the mean curvature if t is zero [1/m]
 double curvature(const Mat3& K, const Vec3& t)
 {
     const double squared = t.squaredNorm();
-    return squared > no_way * no_way ? t.dot(K * t) / squared : 0.5 * K.trace();
+    return squared > no_direction * no_direction ? t.dot(K * t) / squared : 0.5 * K.trace();
 }
 
-/// K_i + K_j in (u, w), and its inverse: the lever arms of rolling. Curvatures below 1/lever count as that.
+/// κ = K_i + K_j in (u, w) and its inverse L, the tensor of the lever arms of rolling. Principal curvatures
+/// below 1/max_lever are raised to that value.
 struct RollingLevers {
     explicit RollingLevers(const ContactState& now)
     {
@@ -54,8 +58,8 @@ struct RollingLevers {
         K << u.dot(Ku), u.dot(Kw), u.dot(Kw), w.dot(Kw);
         const double mean = 0.5 * K.trace(), apart = std::hypot(0.5 * (K(0, 0) - K(1, 1)), K(0, 1));
         least = mean - apart;
-        if (const double floor = 1 / now.lever; least < floor) {
-            // the same principal directions, with the smaller curvatures raised
+        if (const double floor = 1 / now.max_lever; least < floor) {
+            // the principal directions do not change
             const double raised = std::max(mean + apart, floor);
             const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
             if (apart > no_curvature * std::abs(mean))
@@ -68,22 +72,24 @@ struct RollingLevers {
         L /= K(0, 0) * K(1, 1) - K(0, 1) * K(0, 1);
     }
 
+    /// Longest lever arm [m]
     double longest() const { return 1 / least; }
 
     Eigen::Matrix2d K, L;  ///< [1/m, m]
-    double least;          ///< [1/m]
+    double least;          ///< smaller principal curvature [1/m]
 };
 
-class SlideRollSpin final : public Sliding {
+class SlideRollSpin final : public SlidingFriction {
 public:
-    explicit SlideRollSpin(const FrictionParameters& p) : Sliding(p) {}
+    explicit SlideRollSpin(const FrictionParameters& p) : SlidingFriction(p) {}
 
     void advance(const ContactState& now, Deflections& h) const override
     {
-        slide(now, h);
-        if (p.eta_r > 0) p.relative_rolling ? roll_together(now, h) : roll_apart(now, h);
+        advance_sliding(now, h);
+        if (p.eta_r > 0)
+            p.relative_rolling ? advance_relative_rolling(now, h) : advance_separate_rolling(now, h);
         if (p.eta_psi > 0 || p.E_star > 0) {
-            const Spring spring = spinning(now);
+            const BoundedSpring spring = spinning(now);
             h.Psi += now.slip.psi;
             return_to_bound(h.Psi, h.spin, spring.cap_s, spring.cap_k);
         }
@@ -95,10 +101,11 @@ public:
         add_sliding(now, rates, h, out);
         if (p.eta_r > 0) add_rolling(now, rates, h, out);
         if (p.eta_psi > 0 || p.E_star > 0) {
-            const Spring spring = spinning(now);
+            const BoundedSpring spring = spinning(now);
             out.T_spin_E = -spring.K * h.Psi;
-            out.T_spin = within(out.T_spin_E, h.spin.damped ? -D_spin(now, spring.K) * rates.psi : 0.,
-                                spring.K * spring.cap_s, p.capped);
+            out.T_spin =
+                sum_within_bound(out.T_spin_E, h.spin.damped ? -D_spin(now, spring.K) * rates.psi : 0.,
+                                 spring.K * spring.cap_s, p.capped);
             out.T_i += out.T_spin * now.slip.n;
             out.T_j -= out.T_spin * now.slip.n;
         }
@@ -109,12 +116,12 @@ public:
     {
         Springs all{.K_slide = p.K_E, .D_slide = D_slide(now)};
         if (p.eta_r > 0) {
-            // along the direction of the smaller curvature, where rolling is stiffest
+            // rolling is stiffest in the direction of the smaller curvature
             const double longest = RollingLevers(now).longest();
             all.K_roll = 4 * p.eta_r * p.K_E * longest * longest, all.D_roll = D_roll(now, all.K_roll);
         }
         if (p.eta_psi > 0 || p.E_star > 0) {
-            const Spring spring = spinning(now);
+            const BoundedSpring spring = spinning(now);
             all.K_spin = spring.K, all.D_spin = D_spin(now, spring.K);
         }
         return all;
@@ -123,24 +130,24 @@ public:
     bool needs_curvature() const override { return p.eta_r > 0 || p.eta_psi > 0 || p.E_star > 0; }
 
 private:
-    struct Spring {
+    struct BoundedSpring {
         double K = 0, cap_s = 0, cap_k = 0;
     };
 
-    /// Eqs. 4.6, 4.7
-    Spring rolling(const ContactState& now, double kappa) const
+    /// Rolling of the dissertation preset                                                       Eqs. 4.6, 4.7
+    BoundedSpring rolling(const ContactState& now, double kappa) const
     {
-        kappa = std::max(kappa, 1 / now.lever);
+        kappa = std::max(kappa, 1 / now.max_lever);
         const double K = 4 * p.eta_r * p.K_E / (kappa * kappa), lever = kappa / (2 * p.K_E);
         return {.K = K, .cap_s = lever * p.mu_s * now.N, .cap_k = lever * p.mu_k * now.N};
     }
 
-    /// Eq. 4.9, or A.21 to A.23
-    Spring spinning(const ContactState& now) const
+    /// Spinning, empirical or Hertzian                                           Eq. 4.9 or Eqs. A.21 to A.23
+    BoundedSpring spinning(const ContactState& now) const
     {
         const double kappa = 0.5 * (now.contact_point.K_i.trace() + now.contact_point.K_j.trace());
-        if (!(kappa > flat) || !(now.N > 0)) return {};
-        double K = 0, per_newton = 0;  // of the bound of Psi
+        if (!(kappa > min_curvature) || !(now.N > 0)) return {};
+        double K = 0, per_newton = 0;  // bound of Ψ per N of μ N [1/N]
         if (p.E_star > 0) {
             const double a = std::cbrt(3 * now.N / (4 * kappa * p.E_star));
             K = 0.5 * a * a * p.K_E;
@@ -161,7 +168,7 @@ private:
         return p.D_spin.value_or(2 * p.zeta * std::sqrt(now.I_spin * K));
     }
 
-    void roll_together(const ContactState& now, Deflections& h) const
+    void advance_relative_rolling(const ContactState& now, Deflections& h) const
     {
         const SlidingDisplacement& s = now.slip;
         h.Theta_i += components(now.contact_point.K_i * s.q_i + now.contact_point.K_j * s.q_j, s.n, s.u);
@@ -170,13 +177,14 @@ private:
                         per_newton * p.mu_s * now.N, per_newton * p.mu_k * now.N);
     }
 
-    /// Each along its own way, each carried by its own body and then written in the common frame
-    void roll_apart(const ContactState& now, Deflections& h) const
+    /// One vector per body along the path on that body. It is transported with its body and then expressed in
+    /// (u, w).
+    void advance_separate_rolling(const ContactState& now, Deflections& h) const
     {
         const SlidingDisplacement& s = now.slip;
         const double kappa_i = curvature(now.contact_point.K_i, s.p_i),
                      kappa_j = curvature(now.contact_point.K_j, s.p_j);
-        const Spring spring = rolling(now, kappa_i + kappa_j);
+        const BoundedSpring spring = rolling(now, kappa_i + kappa_j);
         h.Theta_i = components(tangent(h.Theta_i, s.n, s.u_i) + kappa_i * s.p_i, s.n, s.u);
         h.Theta_j = components(tangent(h.Theta_j, s.n, s.u_j) + kappa_j * s.p_j, s.n, s.u);
         return_to_bound(h.Theta_i, h.roll_i, spring.cap_s, spring.cap_k);
@@ -185,10 +193,12 @@ private:
 
     void add_rolling(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
     {
-        p.relative_rolling ? add_relative(now, rates, h, out) : add_each(now, rates, h, out);
+        p.relative_rolling ? add_relative_rolling(now, rates, h, out)
+                           : add_separate_rolling(now, rates, h, out);
     }
 
-    void add_relative(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
+    void add_relative_rolling(const ContactState& now, const Rates& rates, const Deflections& h,
+                              Wrench& out) const
     {
         const SlidingDisplacement& s = now.slip;
         const RollingLevers levers(now);
@@ -203,7 +213,7 @@ private:
             else
                 tau += 2 * p.zeta * std::sqrt(now.I_roll * k) * (levers.L * rate);
         }
-        const double bound = 2 * p.eta_r * p.mu_s * now.N;  // of κ τ
+        const double bound = 2 * p.eta_r * p.mu_s * now.N;  // of |κ τ|
         if (const double size = (levers.K * tau).norm(); p.capped && size > bound) tau *= bound / size;
         const Vec3 T = tangent(tau, s.n, s.u).cross(s.n);
         out.T_roll_E = tangent(elastic, s.n, s.u).cross(s.n);
@@ -212,18 +222,19 @@ private:
         out.T_j -= T;
     }
 
-    void add_each(const ContactState& now, const Rates& rates, const Deflections& h, Wrench& out) const
+    void add_separate_rolling(const ContactState& now, const Rates& rates, const Deflections& h,
+                              Wrench& out) const
     {
         const SlidingDisplacement& s = now.slip;
         const double kappa_i = curvature(now.contact_point.K_i, s.p_i),
                      kappa_j = curvature(now.contact_point.K_j, s.p_j);
-        const Spring spring = rolling(now, kappa_i + kappa_j);
+        const BoundedSpring spring = rolling(now, kappa_i + kappa_j);
         const auto torque = [&](const Vec2& Theta, const Regime& regime, const Vec3& rate,
                                 Vec3& elastic) -> Vec3 {
             const Vec3 tau = spring.K * tangent(Theta, s.n, s.u);
             elastic = tau.cross(s.n);
             const Vec3 damping = regime.damped ? Vec3(D_roll(now, spring.K) * rate) : Vec3(Vec3::Zero());
-            return within(tau, damping, spring.K * spring.cap_s, p.capped).cross(s.n);
+            return sum_within_bound(tau, damping, spring.K * spring.cap_s, p.capped).cross(s.n);
         };
         out.T_i += torque(h.Theta_i, h.roll_i, kappa_i * rates.p_i, out.T_roll_E);
         out.T_j -= torque(h.Theta_j, h.roll_j, kappa_j * rates.p_j, out.T_roll_E_j);
@@ -231,12 +242,12 @@ private:
     }
 };
 
-/// Where spinning is resisted by a Hertzian patch, its modulus is that of the normal law unless told otherwise.
+/// For "spin": "hertz" the effective modulus is that of the Hertzian normal law unless E_star is given.
 std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw& normal)
 {
     o.exclude("eta_psi", "spin");
     p.eta_r = o.not_negative("eta_r", 0);
-    if (o.look("spin") != nullptr) {
+    if (o.find("spin") != nullptr) {
         o.one_of("spin", {"hertz"});
         const auto* hertz = dynamic_cast<const Hertz*>(&normal);
         p.E_star = hertz != nullptr && !o.has("E_star") ? hertz->E_star : o.positive("E_star");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The spring and dashpot that sliding, rolling and spinning friction share.          Fang (2022), Sec. 4.3.1
+/// Bounded spring-damper used for sliding, rolling and spinning friction.             Fang (2022), Sec. 4.3.1
 
 #pragma once
 
@@ -7,14 +7,17 @@
 
 namespace hilda::contact {
 
-inline double size(const Vec2& v) { return v.norm(); }
-inline double size(double v) { return std::abs(v); }
-inline double size(const Vec3& v) { return v.norm(); }
+/// Euclidean norm or absolute value
+inline double magnitude(const Vec2& v) { return v.norm(); }
+inline double magnitude(double v) { return std::abs(v); }
+inline double magnitude(const Vec3& v) { return v.norm(); }
 
-/// A micro-deflection that has grown: sticking, it gives way at cap_s and slips; slipping, it stays at cap_k until
-/// it falls below and sticks again. The dashpot is off while it slips. The sign of a spin is kept, which the
-/// dissertation's wording would lose.
-/// `length` measures it where that is not its size.
+/// Applies the bound to a micro-deflection H after an increment, and updates its regime.
+///
+/// Stick: if `length` exceeds cap_s, H is scaled to cap_s and the regime becomes slip. Slip: if `length`
+/// exceeds cap_k, H is scaled to cap_k; otherwise the regime becomes stick. The damper is off in the step in
+/// which H is scaled. The sign of a scalar H is preserved; the dissertation's Ψ = S_ψ loses it. `length` is
+/// the measure of H that is compared with the bound. The second function uses |H|.
 template <class Deflection>
 void return_to_bound(Deflection& H, double length, Regime& regime, double cap_s, double cap_k)
 {
@@ -26,24 +29,24 @@ void return_to_bound(Deflection& H, double length, Regime& regime, double cap_s,
 template <class Deflection>
 void return_to_bound(Deflection& H, Regime& regime, double cap_s, double cap_k)
 {
-    return_to_bound(H, size(H), regime, cap_s, cap_k);
+    return_to_bound(H, magnitude(H), regime, cap_s, cap_k);
 }
 
-/// Spring and dashpot, and together no more than `bound` where it is to be kept.
+/// Sum of the spring load and the damper load. If `capped`, its magnitude is limited to `bound`.
 template <class Load>
-Load within(const Load& elastic, const Load& damping, double bound, bool keep)
+Load sum_within_bound(const Load& elastic, const Load& damping, double bound, bool capped)
 {
     Load sum = elastic + damping;
-    if (keep)
-        if (const double length = size(sum); length > bound) sum *= bound / length;
+    if (capped)
+        if (const double length = magnitude(sum); length > bound) sum *= bound / length;
     return sum;
 }
 
-/// The built-in laws slide alike (Sec. 4.3.1) and differ in rolling and spinning.
-class Sliding : public FrictionModel {
+/// Sliding friction of Sec. 4.3.1: base class of the built-in laws, which add rolling and spinning friction.
+class SlidingFriction : public FrictionModel {
 public:
     Tracking tracking() const final { return p.tracking; }
-    /// Reduced, or the mean of Eqs. 4.4 and 4.10
+    /// Reduced mass, or the mean of Eqs. 4.4 and 4.10. If one is infinite, the other.
     double fictitious(double a, double b) const final
     {
         if (p.reduced_mass || !std::isfinite(a) || !std::isfinite(b)) return reduced(a, b);
@@ -51,24 +54,26 @@ public:
     }
 
 protected:
-    explicit Sliding(const FrictionParameters& p) : p(p) { p.validate(); }
+    explicit SlidingFriction(const FrictionParameters& p) : p(p) { p.validate(); }
 
-    void slide(const ContactState& now, Deflections& deflections) const
+    /// S ← S + Δs with |S| ≤ μ N / K_E                                                                Eq. 4.1
+    void advance_sliding(const ContactState& now, Deflections& deflections) const
     {
         const Vec3& n = now.slip.n;
         deflections.S += components(now.slip.ds, n, now.slip.u);
         return_to_bound(deflections.S, deflections.slide, p.mu_s * now.N / p.K_E, p.mu_k * now.N / p.K_E);
     }
 
-    /// F = K_E S + D Δs/h                                                                            Eq. 4.2
+    /// F = K_E S + D ṡ                                                                               Eq. 4.2
     void add_sliding(const ContactState& now, const Rates& rates, const Deflections& deflections,
                      Wrench& out) const
     {
         out.F_E = p.K_E * tangent(deflections.S, now.slip.n, now.slip.u);
         const Vec3 damping = deflections.slide.damped ? Vec3(D_slide(now) * rates.s) : Vec3(Vec3::Zero());
-        out.F = within(out.F_E, damping, p.mu_s * now.N, p.capped);
+        out.F = sum_within_bound(out.F_E, damping, p.mu_s * now.N, p.capped);
     }
 
+    /// D = ζ 2 √(m K_E) [N s/m], unless given                                                         Eq. 4.4
     double D_slide(const ContactState& now) const
     {
         return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The Coulomb cone of one contact.
+/// Projection on the Coulomb friction cone.
 
 #pragma once
 
@@ -10,12 +10,13 @@ namespace hilda::contact {
 using lie::Mat3;
 using lie::Vec3;
 
-/// The point nearest to γ = (γ_n, γ_u, γ_w) of the cone
+/// Projection of γ = (γ_n, γ_u, γ_w) on the friction cone, the nearest point of
 ///
 ///     K = {γ: |γ_t| ≤ μ γ_n},   γ_t = (γ_u, γ_w)
 ///
-/// within which it stays, to whose apex it goes where it lies in the polar cone μ |γ_t| ≤ -γ_n, and to whose side it
-/// goes otherwise, along the normal of that side (Anitescu and Tasora 2010). For μ = 0 the cone is the half line γ_n ≥ 0.
+/// A point in the cone is unchanged. A point of the polar cone μ |γ_t| ≤ -γ_n is projected on the apex. Any
+/// other point is projected on the lateral surface, along its normal (Anitescu and Tasora 2010). For μ = 0
+/// the cone is the half-line γ_n ≥ 0.
 inline Vec3 project_on_cone(const Vec3& gamma, double mu)
 {
     const double n = gamma[0], t = std::hypot(gamma[1], gamma[2]);

@@ -3,9 +3,9 @@
 
 namespace hilda::contact {
 
-void ConeProblem::respond(const std::vector<Vec3>& gamma, std::vector<Velocity>& out) const
+void ConeProblem::velocity_change(const std::vector<Vec3>& gamma, std::vector<Velocity>& out) const
 {
-    out.assign(body.size(), {});  // D γ first: impulses and their moments
+    out.assign(body.size(), {});  // first D γ: impulses and their moments
     for (size_t c = 0; c < contact.size(); ++c) {
         const ContactPair& at = contact[c];
         const Vec3 on_i = at.frame * gamma[c];
@@ -20,7 +20,7 @@ void ConeProblem::respond(const std::vector<Vec3>& gamma, std::vector<Velocity>&
     }
 }
 
-void ConeProblem::relative(const std::vector<Velocity>& v, std::vector<Vec3>& out) const
+void ConeProblem::relative_velocities(const std::vector<Velocity>& v, std::vector<Vec3>& out) const
 {
     out.resize(contact.size());
     for (size_t c = 0; c < contact.size(); ++c) {
@@ -32,11 +32,11 @@ void ConeProblem::relative(const std::vector<Velocity>& v, std::vector<Vec3>& ou
 
 ConeProblem::Block ConeProblem::block(const ContactPair& c) const
 {
-    const auto part = [&](const Body& b, const Vec3& s) -> Mat3 {
+    const auto body_block = [&](const Body& b, const Vec3& s) -> Mat3 {
         const Mat3 moment = lie::tilde(s) * c.frame;
         return b.m_inverse * Mat3::Identity() + moment.transpose() * b.J_inverse * moment;
     };
-    return {part(body[c.i], c.s_i), part(body[c.j], c.s_j)};
+    return {body_block(body[c.i], c.s_i), body_block(body[c.j], c.s_j)};
 }
 
 }  // namespace hilda::contact

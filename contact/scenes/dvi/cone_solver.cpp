@@ -8,16 +8,17 @@ namespace hilda::contact {
 
 namespace {
 
-// Of solve_coulomb(): the passes are solved better than the law, so that their errors do not keep it from its tolerance;
-// where one pass gains less than this, the next ones go half as far.
-constexpr double inner = 0.1, slower = 0.5, least_part = 1. / 16;
+// solve_coulomb(): tolerance of a pass relative to that of the law, so that the error of a pass does not
+// limit the fixed point; reduction of the change below which the iteration is relaxed; smallest relaxation
+// factor.
+constexpr double inner_tolerance = 0.1, slow_progress = 0.5, min_relaxation = 1. / 16;
 
-[[noreturn]] void fail(const char* what, size_t contacts, double residual, double tolerance, int count,
-                       const char* counted)
+[[noreturn]] void fail(const char* problem_name, size_t contacts, double residual, double tolerance,
+                       int count, const char* counted)
 {
     std::ostringstream text;
-    text << what << " of " << contacts << " contacts did not converge: residual " << residual
-         << " m/s, wanted " << tolerance << " m/s, after " << count << ' ' << counted;
+    text << problem_name << " of " << contacts << " contacts did not converge: residual " << residual
+         << " m/s above the tolerance of " << tolerance << " m/s after " << count << ' ' << counted;
     throw ConeNoConvergence(text.str(), residual, count);
 }
 
@@ -25,12 +26,12 @@ constexpr double inner = 0.1, slower = 0.5, least_part = 1. / 16;
 
 void ConeSolver::apply(const ConeProblem& problem, const std::vector<Vec3>& gamma, std::vector<Vec3>& N_gamma)
 {
-    problem.respond(gamma, change);
-    problem.relative(change, N_gamma);
+    problem.velocity_change(gamma, velocity_change);
+    problem.relative_velocities(velocity_change, N_gamma);
 }
 
-/// g and L_max: |Σ_c∈b M_b^-½ D_cb γ_c|² ≤ n_b Σ_c∈b γ_cᵀ N_cc,b γ_c, summed over the bodies
-void ConeSolver::measure(const ConeProblem& problem)
+/// Sets g and L_max, from |Σ_c∈b M_b^-½ D_cb γ_c|² ≤ n_b Σ_c∈b γ_cᵀ N_cc,b γ_c summed over the bodies b.
+void ConeSolver::set_metric(const ConeProblem& problem)
 {
     contacts.assign(problem.body.size(), 0);
     for (const ConeProblem::ContactPair& c : problem.contact) ++contacts[c.i], ++contacts[c.j];
@@ -41,8 +42,7 @@ void ConeSolver::measure(const ConeProblem& problem)
         const auto [of_i, of_j] = problem.block(at);
         g[c] = (of_i.trace() + of_j.trace()) / 3;
         if (!(g[c] > 0))
-            lie::reject("contact::ConeSolver", "a contact needs a body that moves; neither of its two does",
-                        c);
+            lie::reject("contact::ConeSolver", "a contact needs at least one movable body; contact", c);
         L_max = std::max(L_max, (contacts[at.i] * of_i.norm() + contacts[at.j] * of_j.norm()) / g[c]);
     }
 }
@@ -55,7 +55,7 @@ double ConeSolver::residual(const ConeProblem& problem, const std::vector<Vec3>&
         u[c] = N_gamma[c] + problem.contact[c].r;
         const Vec3 natural = gamma[c] - project_on_cone(gamma[c] - u[c] / g[c], problem.contact[c].mu);
         const double here = g[c] * natural.norm();
-        if (!(here <= worst)) worst = here;  // a NaN too
+        if (!(here <= worst)) worst = here;  // also true for NaN
     }
     return worst;
 }
@@ -63,7 +63,7 @@ double ConeSolver::residual(const ConeProblem& problem, const std::vector<Vec3>&
 ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, std::vector<Vec3>& gamma)
 {
     const size_t contacts = problem.contact.size();
-    measure(problem);
+    set_metric(problem);
     gamma.resize(contacts, Vec3::Zero());
     for (size_t c = 0; c < contacts; ++c) gamma[c] = project_on_cone(gamma[c], problem.contact[c].mu);
     apply(problem, gamma, N_gamma);
@@ -73,13 +73,13 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, std::vector<Ve
 
     Outcome out;
     out.residual = residual(problem, gamma);
-    double theta = 1, L = 1;  // the mean eigenvalue of G⁻¹N
+    double theta = 1, L = 1;  // 1 is the mean eigenvalue of G⁻¹ N
     while (!(out.residual <= tolerance)) {
         if (out.iterations == max_iterations || !std::isfinite(out.residual))
             fail("contact::ConeSolver: the cone problem", contacts, out.residual, tolerance, out.iterations,
                  "iterations");
         ++out.iterations;
-        for (bool steep = true; steep;) {
+        for (bool backtrack = true; backtrack;) {
             for (size_t c = 0; c < contacts; ++c) {
                 const ConeProblem::ContactPair& at = problem.contact[c];
                 next[c] = project_on_cone(y[c] - (N_y[c] + at.r) / (L * g[c]), at.mu);
@@ -91,8 +91,8 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, std::vector<Ve
                 curvature += delta.dot(N_next[c] - N_y[c]);
                 length += g[c] * delta.squaredNorm();
             }
-            steep = L < L_max && curvature > L * length;
-            if (steep) L = std::min(2 * L, L_max);
+            backtrack = L < L_max && curvature > L * length;
+            if (backtrack) L = std::min(2 * L, L_max);
         }
         double slope = 0;
         for (size_t c = 0; c < contacts; ++c)
@@ -123,41 +123,42 @@ ConeSolver::Outcome ConeSolver::solve_coulomb(ConeProblem& problem, std::vector<
     const auto restore = [&] {
         for (size_t c = 0; c < contacts; ++c) problem.contact[c].r[0] = r_n[c];
     };
-    const double wanted = tolerance;
-    Outcome all{.passes = 0};
-    double part = 1, before = std::numeric_limits<double>::infinity();
-    while (all.passes < max_passes) {
+    const double outer_tolerance = tolerance;
+    Outcome total{.passes = 0};
+    double relaxation = 1, previous_change = std::numeric_limits<double>::infinity();
+    while (total.passes < max_passes) {
         for (size_t c = 0; c < contacts; ++c) problem.contact[c].r[0] = r_n[c] + problem.contact[c].mu * s[c];
         Outcome pass;
         try {
-            tolerance = inner * wanted;
+            tolerance = inner_tolerance * outer_tolerance;
             pass = solve(problem, gamma);
         } catch (...) {
-            tolerance = wanted;
+            tolerance = outer_tolerance;
             restore();
             throw;
         }
-        tolerance = wanted;
+        tolerance = outer_tolerance;
         restore();
-        ++all.passes;
-        all.iterations += pass.iterations;
-        double change = 0;
+        ++total.passes;
+        total.iterations += pass.iterations;
+        double slip_change = 0;
         for (size_t c = 0; c < contacts; ++c) {
             const double mu = problem.contact[c].mu, slip = std::hypot(u[c][1], u[c][2]);
             u[c][0] -= mu * s[c];
-            change = std::max(change, mu * std::abs(slip - s[c]));
+            slip_change = std::max(slip_change, mu * std::abs(slip - s[c]));
         }
-        all.residual = pass.residual + change;
-        if (!(change <= slower * before)) part = std::max(0.5 * part, least_part);
-        before = change;
-        const bool done = all.residual <= tolerance;
+        total.residual = pass.residual + slip_change;
+        if (!(slip_change <= slow_progress * previous_change))
+            relaxation = std::max(0.5 * relaxation, min_relaxation);
+        previous_change = slip_change;
+        const bool done = total.residual <= tolerance;
         for (size_t c = 0; c < contacts; ++c) {
             const double slip = std::hypot(u[c][1], u[c][2]);
-            s[c] += done ? slip - s[c] : part * (slip - s[c]);
+            s[c] += done ? slip - s[c] : relaxation * (slip - s[c]);
         }
-        if (done) return all;
+        if (done) return total;
     }
-    fail("contact::ConeSolver: Coulomb's law", contacts, all.residual, tolerance, all.passes,
+    fail("contact::ConeSolver: Coulomb's law", contacts, total.residual, tolerance, total.passes,
          "cone problems");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Accelerated projected gradients for cone complementarity problems.
+/// Accelerated projected gradient descent (APGD) for cone complementarity problems.
 
 #pragma once
 
@@ -8,72 +8,79 @@
 
 namespace hilda::contact {
 
-/// The impulses of rigid contacts did not reach their tolerance.
+/// A ConeSolver did not reach its tolerance.
 class ConeNoConvergence : public lie::NumericalFailure {
 public:
     ConeNoConvergence(const std::string& what, double residual, int iterations)
         : NumericalFailure("cone_not_converged", what), residual(residual), iterations(iterations)
     {}
 
-    double residual;  ///< [m/s]
+    double residual;  ///< last residual [m/s]
     int iterations;
 };
 
-/// Nesterov's method for the minimum of a ConeProblem (Mazhar, Heyn, Negrut and Tasora 2015, algorithm APGD), with
-/// lengths of γ measured by G = diag(g_c I), g_c = tr(N_cc)/3, of which every cone stays the cone it is:
+/// Accelerated projected gradient descent for a ConeProblem (Nesterov's method; Mazhar, Heyn, Negrut and
+/// Tasora 2015, algorithm APGD).
+///
+/// Impulses are measured in the metric G = diag(g_c I), g_c = tr(N_cc)/3, in which every cone remains the
+/// same cone.
 ///
 ///     γ_{k+1} = Π_K(y_k - G⁻¹(N y_k + r)/L_k),    L_k doubled until δᵀN δ ≤ L_k δᵀG δ,  δ = γ_{k+1} - y_k
 ///     θ_{k+1} = ½ θ_k (√(θ_k² + 4) - θ_k),        β_k = θ_k (1 - θ_k)/(θ_k² + θ_{k+1})
 ///     y_{k+1} = γ_{k+1} + β_k (γ_{k+1} - γ_k),    L_{k+1} = 0.9 L_k
 ///
-/// It begins anew, y_{k+1} = γ_{k+1} and θ_{k+1} = 1, where (N y_k + r)·(γ_{k+1} - γ_k) > 0: it would go uphill. As
-/// N y_{k+1} follows from N γ_{k+1} and N γ_k, N is applied once an iteration, and once for each doubling. Beside the
-/// paper: L never exceeds the bound L_max = max_c Σ_b n_b |N_cc,b|/g_c, with n_b contacts on body b, above which no
-/// test is needed; the test itself is lost in rounding near the solution.
+/// The method restarts, y_{k+1} = γ_{k+1} and θ_{k+1} = 1, if (N y_k + r) · (γ_{k+1} - γ_k) > 0, an ascent
+/// direction. N y_{k+1} is combined from N γ_{k+1} and N γ_k, so N is applied once per iteration and once per
+/// doubling.
+///
+/// Addition to the paper: L_k does not exceed L_max = max_c Σ_b n_b |N_cc,b|/g_c, with n_b contacts on body
+/// b. Above this bound the test always holds; near the solution the test fails by rounding.
 ///
 /// The residual is that of the natural map, a velocity:
 ///
 ///     max_c g_c |γ_c - Π_K(γ_c - u_c/g_c)|  [m/s],     u = N γ + r
 class ConeSolver {
 public:
-    double tolerance = 1e-6;  ///< of the residual [m/s]; an impulse is wrong by about the mass times this
-    int max_iterations = 10000;
-    int max_passes = 200;  ///< of solve_coulomb()
+    double tolerance = 1e-6;  ///< of the residual [m/s]; the error of an impulse is about the mass times this
+    int max_iterations = 10000;  ///< of one cone problem
+    int max_passes = 200;        ///< cone problems of solve_coulomb()
 
     struct Outcome {
-        int iterations = 0;   ///< all together
-        double residual = 0;  ///< [m/s]
+        int iterations = 0;   ///< of all passes together
+        double residual = 0;  ///< last residual [m/s]
         int passes = 1;       ///< cone problems solved
     };
 
-    /// From the γ given to that of the minimum. ConeNoConvergence, InvalidInput for a contact of two bodies neither of
-    /// which moves.
+    /// Solves the cone problem; γ is the initial guess and the result. Throws ConeNoConvergence, and
+    /// lie::InvalidInput for a contact between two fixed bodies.
     Outcome solve(const ConeProblem& problem, std::vector<Vec3>& gamma);
 
-    /// Coulomb's law without the relaxation, by a fixed point (Acary, Cadoux, Lemaréchal and Malick 2011): a cone problem
-    /// with the slip speeds s_c = |u_t| given,
+    /// Solves Coulomb's law without the relaxation by a fixed-point iteration (Acary, Cadoux, Lemaréchal and
+    /// Malick 2011). Each pass solves a cone problem with given slip speeds s_c = |u_t|:
     ///
     ///     r_n + μ s  in place of  r_n,      s_{k+1} = |u_t| of its solution
     ///
-    /// until the residual and μ |s_{k+1} - s_k| together are within the tolerance. Where a pass gains less than a half, the
-    /// next ones go half as far. Nothing is relaxed where no contact slides. s [m/s] is where to begin, and the result; from
-    /// s = 0 the first pass is the relaxation. r is as it was when it returns. Unlike the cone problem the law may have many
-    /// solutions or none, and the fixed point need not be found: ConeNoConvergence.
+    /// until the residual plus max μ |s_{k+1} - s_k| is within the tolerance. If a pass reduces this change
+    /// by less than a half, the later passes are relaxed: the relaxation factor is halved, down to 1/16.
+    /// Without a sliding contact the result is that of solve(). s [m/s] is the initial guess and the result;
+    /// from s = 0 the first pass is the relaxed problem. r is restored on return. Unlike the cone problem,
+    /// Coulomb's law can have several solutions or none, and the iteration need not converge:
+    /// ConeNoConvergence.
     Outcome solve_coulomb(ConeProblem& problem, std::vector<Vec3>& gamma, std::vector<double>& s);
 
-    /// u = N γ + r of what was solved last [m/s]
+    /// u = N γ + r of the last solution, in the contact frames [m/s]
     const std::vector<Vec3>& velocities() const { return u; }
 
 private:
     void apply(const ConeProblem& problem, const std::vector<Vec3>& gamma, std::vector<Vec3>& N_gamma);
-    void measure(const ConeProblem& problem);
+    void set_metric(const ConeProblem& problem);
     double residual(const ConeProblem& problem, const std::vector<Vec3>& gamma);
 
     std::vector<double> g, r_n;
     double L_max = 0;
-    std::vector<ConeProblem::Velocity> change;
+    std::vector<ConeProblem::Velocity> velocity_change;
     std::vector<Vec3> y, next, N_gamma, N_y, N_next, u;
-    std::vector<int> contacts;  // on each body
+    std::vector<int> contacts;  // number of contacts of each body
 };
 
 }  // namespace hilda::contact

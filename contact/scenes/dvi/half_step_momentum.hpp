@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Angular momentum at the nodes of steps that turn a body by A_{n+1} = A_n exp(h ω̄).
+/// Angular momentum at the nodes of steps A_{n+1} = A_n exp(h ω̄) with constant ω̄.
 
 #pragma once
 
@@ -13,13 +13,14 @@ namespace hilda::contact {
 using lie::Mat3;
 using lie::Vec3;
 
-/// What of a momentum J̄ ω̄, constant on a step that turns by θ̄ = h ω̄, stands at its first node (θ̄ as it is) or at
-/// its last one (-θ̄), body frame of that node:
+/// Angular momentum of a step at one of its nodes, in the body frame of that node. The step has J̄ ω̄ and
+/// rotates the body by θ̄ = h ω̄. theta_bar is θ̄ for the first node and -θ̄ for the last one.
 ///
 ///     (I + θ̃/2 + c θ̃θ̃) J̄ ω̄,   c = (1 - (θ/2) cot(θ/2))/θ²
 ///
-/// The two are equal in global axes: A_n of the one is A_{n+1} of the other. A step in which each node passes on what
-/// it has received, and the impulsive moments on top, keeps the angular momentum exactly, and is of second order.
+/// In global axes both are the same vector. A step that receives the momentum of its first node from the step
+/// before and adds the moments of impulses there conserves angular momentum exactly and is of second order.
+/// See docs/theory/schemes/rA-half-1-momentum.md.
 inline Vec3 node_momentum(const Vec3& theta_bar, const Vec3& J_omega)
 {
     const double theta = theta_bar.norm(), squared = theta * theta;
@@ -29,25 +30,29 @@ inline Vec3 node_momentum(const Vec3& theta_bar, const Vec3& J_omega)
     return J_omega + 0.5 * once + c * theta_bar.cross(once);
 }
 
-/// The ω̄ of a step h that has this momentum at its first node, from a guess: iterated with J̄ alone, which gains the
-/// factor h|ω̄| each time. lie::NumericalFailure "newton_diverged" where the body turns by a radian or so in a step.
+/// ω̄ of a step h from the angular momentum at its first node (body frame). omega_bar is the initial guess.
+/// The iteration uses J̄⁻¹ as approximate inverse; it reduces the error by a factor of about h|ω̄| per
+/// iteration. Throws lie::NumericalFailure "newton_diverged" if the body rotates by about a radian or more in
+/// a step.
 inline Vec3 half_step_omega(const Mat3& J_bar, const Mat3& J_bar_inverse, const Vec3& momentum, double h,
                             Vec3 omega_bar)
 {
-    constexpr int most = 100;
+    constexpr int max_iterations = 100;
     constexpr double rounding = 1e-15;
     double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most; ++k) {
+    for (int k = 0; k < max_iterations; ++k) {
         const Vec3 correction = J_bar_inverse * (momentum - node_momentum(h * omega_bar, J_bar * omega_bar));
         omega_bar += correction;
         const double size = correction.norm();
         if (size <= rounding * omega_bar.norm()) return omega_bar;
         if (size >= before && size <= 1e2 * rounding * omega_bar.norm())
-            return omega_bar;  // as far as rounding lets
+            return omega_bar;  // limited by rounding
         before = size;
     }
     throw lie::NumericalFailure(
-        "newton_diverged", "contact::DviScene: a body turns too far in one step for its angular momentum");
+        "newton_diverged",
+        "contact::DviScene: the angular velocity of a body was not found from its angular momentum; "
+        "it rotates too far in one step, reduce the step");
 }
 
 }  // namespace hilda::contact

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Attraction of constant size while bodies touch.                                            Fang (2022), Sec. 6.2
+/// Constant attractive force while two bodies overlap.
+///
+/// Fang (2022), Ch. 6 (introduction), lists cohesion among the force models of Chrono::GPU and gives no
+/// formula. Chrono::GPU uses a constant force, which it specifies as a multiple of the weight of a particle.
 
 #pragma once
 
@@ -7,11 +10,11 @@
 
 namespace hilda::granular {
 
-/// F_c, however deep they overlap
+///     F_c = const.,    independent of the overlap
 struct ConstantCohesion {
     static constexpr const char* name = "constant";
 
-    float F_c = 0;  ///< [N]
+    float F_c = 0;  ///< attraction [N]
 
     template <class R>
     HILDA_HD R operator()(const ContactPoint<R>&) const

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Dry grains.
+/// No attraction between bodies.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Attraction over the area of contact: the simplified law of Johnson, Kendall and Roberts.
+/// Attraction proportional to the contact area: the simplified Johnson-Kendall-Roberts law (SJKR).
 
 #pragma once
 
@@ -9,16 +9,17 @@ namespace hilda::granular {
 
 ///     F_c = k A,   A = π a² = π R* δ
 ///
-/// with an energy density k [J/m³]. The area is that of Hertz; of two equal spheres cut through it would be twice that.
+/// k: cohesion energy density [J/m³]. A is the contact area of Hertz's theory. The intersection circle of two
+/// overlapping spheres, which some programs use, has twice this area.
 struct Sjkr {
     static constexpr const char* name = "sjkr";
 
-    float k = 0;
+    float k = 0;  ///< [J/m³]
 
     template <class R>
-    HILDA_HD R operator()(const ContactPoint<R>& t) const
+    HILDA_HD R operator()(const ContactPoint<R>& contact) const
     {
-        return Number<R>(3.14159265358979323846) * k * t.R_eff * t.delta;
+        return Number<R>(3.14159265358979323846) * k * contact.R_eff * contact.delta;
     }
     template <class Keys>
     static Sjkr read(Keys& keys)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Hertz, damped for a coefficient of restitution.                      Fang (2022), Eq. 2.42; Sec. A.5, corrected
+/// Hertzian contact, damping from a coefficient of restitution.  Fang (2022), Eq. 2.42; Sec. A.5, corrected
 
 #pragma once
 
@@ -10,20 +10,21 @@ namespace hilda::granular {
 
 ///     F = 2/3 S δ + c √(m* S) δ̇,    S = 2 E* √(R* δ),   c = -2 √(5/6) ln e / √(ln² e + π²)
 ///
-/// Tension at the end of a contact is part of what gives the restitution e. Without it, for which `clamped` asks, the
-/// rebound is faster: 0.25 for e = 0.1, 0.55 for 0.5.
+/// The force becomes tensile at the end of a contact; the coefficient of restitution e is obtained with this
+/// tension. `clamped` = 1 sets a tensile force to zero. The rebound is then faster: the ratio of
+/// rebound to impact velocity is 0.25 for e = 0.1 and 0.55 for e = 0.5.
 struct Hertz {
     static constexpr const char* name = "hertz";
 
-    float E_eff = 0;  ///< [Pa]
-    float c = 0;
-    int clamped = 0;
+    float E_eff = 0;  ///< effective modulus E* [Pa]
+    float c = 0;      ///< damping coefficient [-]; see damping()
+    int clamped = 0;  ///< 1: no tensile force
 
     template <class R>
-    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& contact) const
     {
-        const R a = sqrt(t.R_eff * t.delta), S = 2 * E_eff * a;
-        const R F = Number<R>(2) / 3 * S * t.delta + c * sqrt(t.m_eff * S) * t.v_n;
+        const R a = sqrt(contact.R_eff * contact.delta), S = 2 * E_eff * a;
+        const R F = Number<R>(2) / 3 * S * contact.delta + c * sqrt(contact.m_eff * S) * contact.v_n;
         return {clamped != 0 ? larger(F, R(0.f)) : F, a, Number<R>(0.5)};
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A linear spring and dashpot.                                                             Fang (2022), Eq. 2.41
+/// Linear spring and dashpot.                                                           Fang (2022), Eq. 2.41
 
 #pragma once
 
@@ -8,17 +8,19 @@
 namespace hilda::granular {
 
 ///     F = k_n δ + γ_n m* δ̇
+///
+/// γ_n is a rate; the damping constant of Eq. 2.41 is γ_n m*.
 struct Hooke {
     static constexpr const char* name = "hooke";
 
     float k_n = 0;      ///< [N/m]
     float gamma_n = 0;  ///< [1/s]
-    int clamped = 0;    ///< no tension
+    int clamped = 0;    ///< 1: no tensile force
 
     template <class R>
-    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& contact) const
     {
-        const R F = k_n * t.delta + gamma_n * t.m_eff * t.v_n;
+        const R F = k_n * contact.delta + gamma_n * contact.m_eff * contact.v_n;
         return {clamped != 0 ? larger(F, R(0.f)) : F, R(1.f)};
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Hertz's exponent with a stiffness that is given.                                         Fang (2022), Eq. 2.42
+/// Hertzian contact with a prescribed stiffness.                                        Fang (2022), Eq. 2.42
 
 #pragma once
 
@@ -9,19 +9,21 @@ namespace hilda::granular {
 
 ///     F = √(δ/R) (k_n δ + γ_n m* δ̇)
 ///
-/// R is the radius for equal spheres and for a sphere on a wall: 2 R* and R*.
+/// R is the larger radius: R = 2 R* for equal spheres, and R = R* for a sphere and a plane. The elastic part
+/// is that of Eq. 2.42 with the stiffness k_n/√R. The damping is scaled as well, as in the law of Chrono::GPU
+/// for prescribed stiffnesses.
 struct ScaledHooke {
     static constexpr const char* name = "scaled-hooke";
 
-    float k_n = 0;      ///< [N/m]: the stiffness where δ is R
+    float k_n = 0;      ///< [N/m]; F/δ at δ = R
     float gamma_n = 0;  ///< [1/s]
-    int clamped = 0;    ///< no tension
+    int clamped = 0;    ///< 1: no tensile force
 
     template <class R>
-    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& t) const
+    HILDA_HD NormalForce<R> operator()(const ContactPoint<R>& contact) const
     {
-        const R scale = sqrt(t.delta / larger(t.R_i, t.R_j));
-        const R F = scale * (k_n * t.delta + gamma_n * t.m_eff * t.v_n);
+        const R scale = sqrt(contact.delta / larger(contact.R_i, contact.R_j));
+        const R F = scale * (k_n * contact.delta + gamma_n * contact.m_eff * contact.v_n);
         return {clamped != 0 ? larger(F, R(0.f)) : F, scale, Number<R>(0.5)};
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A torque of constant size against the relative turning.                                     Fang (2022), Eq. 2.48
+/// Rolling resistance: torque of constant magnitude against the relative rotation.      Fang (2022), Eq. 2.48
 
 #pragma once
 
@@ -9,28 +9,33 @@ namespace hilda::granular {
 
 ///     M = -μ_r R* |F_n| ω_rel/|ω_rel|
 ///
-/// Smooth below the turning `slow`, and below what the torque would stop in 20 steps, so that what rests is left at rest.
-/// The lever is R*; with `half_radius` it is half of the radius against a wall too, which the stacking experiments of the
-/// dissertation agree with. With `after` the torque begins only when a contact has that age.
+/// The torque is proportional to ω_rel, and thus continuous, for |ω_rel| below the larger of `slow` and the
+/// angular velocity that the full torque would stop in 20 steps. It therefore does not reverse a
+/// rotation.
+///
+/// The lever arm is R*. With `half_radius` = 1 it is R/2, R the larger radius, for contacts with boundaries
+/// as well; the results of the stacking test of the dissertation (Sec. 7.1.4) agree with R/2. The torque is
+/// zero until the contact has the age `after`.
 struct ConstantTorque {
     static constexpr const char* name = "constant-torque";
 
-    float mu_r = 0;
-    float slow = 0;   ///< [rad/s]
-    float after = 0;  ///< [s]
-    int half_radius = 0;
+    float mu_r = 0;       ///< coefficient of rolling friction
+    float slow = 0;       ///< angular velocity below which the torque is regularised [rad/s]
+    float after = 0;      ///< age of the contact from which the torque acts [s]
+    int half_radius = 0;  ///< 1: lever arm R/2 instead of R*
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R,
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R,
                                History<R>& history) const
     {
-        const R turning = t.omega.norm();
-        const R lever = half_radius != 0 ? Number<R>(0.5) * larger(t.R_i, t.R_j) : t.R_eff;
-        const R most = mu_r * lever * abs(p.F);
-        constexpr float steps = 20;  // several contacts of one particle may brake it together
-        const R stopped = (steps * t.h) * most / (Number<R>(0.4) * t.m_eff * t.R_eff * t.R_eff);
-        const R M = most / larger(larger(turning, stopped), R(slow > tiny ? slow : tiny));
-        return select(history.age >= R(after), -M, R(0.f)) * t.omega;
+        const R speed = contact.omega.norm();
+        const R lever = half_radius != 0 ? Number<R>(0.5) * larger(contact.R_i, contact.R_j) : contact.R_eff;
+        const R bound = mu_r * lever * abs(normal.F);
+        constexpr float steps = 20;  // a margin, because several contacts may act on one particle
+        const R stop_limit =
+            (steps * contact.h) * bound / (Number<R>(0.4) * contact.m_eff * contact.R_eff * contact.R_eff);
+        const R M = bound / larger(larger(speed, stop_limit), R(slow > tiny ? slow : tiny));
+        return select(history.age >= R(after), -M, R(0.f)) * contact.omega;
     }
 
     template <class Keys>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A torsional spring and dashpot between bodies that roll on each other.                Fang (2022), Sec. 2.2.1.4
+/// Rolling resistance: elastic-plastic spring-dashpot (EPSD).                       Fang (2022), Sec. 2.2.1.4
 
 #pragma once
 
@@ -8,26 +8,28 @@
 namespace hilda::granular {
 
 ///     M_k ← M_k - h k_r ω_r,  |M_k| ≤ μ_r R* |F_n|;    k_r = k_t R*²
-///     M = M_k - C_r ω_r,  C_r = 2 η_r √(I_r k_r);      without the dashpot where M_k is at its bound
+///     M = M_k - C_r ω_r,  C_r = 2 η_r √(I_r k_r) if |M_k| is below its bound, else C_r = 0
 ///
-/// ω_r is the relative turning without its part along n, and I_r = 7/5 m* R*² that of spheres about their contact.
+/// k_t is the current stiffness of the tangential law [N/m]; without friction it is 0, and so is M. ω_r is
+/// the part of the relative angular velocity normal to n. I_r = 7/5 m* R*² is the moment of inertia of a
+/// sphere about a point of its surface, with m* and R*.
 struct Epsd {
     static constexpr const char* name = "epsd";
 
-    float mu_r = 0, eta_r = 0;
+    float mu_r = 0, eta_r = 0;  ///< coefficient of rolling friction, damping ratio
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t,
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R k_t,
                                History<R>& history) const
     {
-        const R k_r = k_t * t.R_eff * t.R_eff, bound = mu_r * t.R_eff * abs(p.F);
-        const Vec<R> omega_r = t.omega - t.omega.dot(t.n) * t.n;
-        const Vec<R> psi = carried(history.psi, t.n) + R(t.h) * omega_r;
+        const R k_r = k_t * contact.R_eff * contact.R_eff, bound = mu_r * contact.R_eff * abs(normal.F);
+        const Vec<R> omega_r = contact.omega - contact.omega.dot(contact.n) * contact.n;
+        const Vec<R> psi = to_tangent_plane(history.psi, contact.n) + R(contact.h) * omega_r;
         const R size = k_r * psi.norm();
-        const Mask<R> full = size > bound;
-        history.psi = select(full, bound / larger(size, R(tiny)), R(1.f)) * psi;
-        const R I_r = Number<R>(1.4) * t.m_eff * t.R_eff * t.R_eff;
-        const R C = select(full, R(0.f), 2 * eta_r * sqrt(I_r * k_r));
+        const Mask<R> saturated = size > bound;
+        history.psi = select(saturated, bound / larger(size, R(tiny)), R(1.f)) * psi;
+        const R I_r = Number<R>(1.4) * contact.m_eff * contact.R_eff * contact.R_eff;
+        const R C = select(saturated, R(0.f), 2 * eta_r * sqrt(I_r * k_r));
         return -(k_r * history.psi) - C * omega_r;
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// No resistance to rolling.
+/// No rolling resistance.
 
 #pragma once
 

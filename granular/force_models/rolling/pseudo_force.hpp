@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Resistance to rolling as a pseudo-force of the objective rolling velocity.              Fang (2022), Sec. 2.2.1.4
+/// Rolling resistance: pseudo-force from the objective rolling velocity.            Fang (2022), Sec. 2.2.1.4
 
 #pragma once
 
@@ -9,26 +9,29 @@ namespace hilda::granular {
 
 ///     v_r = -R* n × (ω_i - ω_j),   F_r from ∫ v_r as the tangential force from ∫ v_t, bounded by μ_r |F_n|
 ///     M = R* n × F_r on body i
+///
+/// The stiffness of F_r is k_r times the current stiffness of the tangential law. The signs of v_r and F_r
+/// depend on the direction of n; M does not.
 struct PseudoForce {
     static constexpr const char* name = "pseudo-force";
 
-    float mu_r = 0;
-    float k_r = 0;    ///< stiffness over that of the tangential spring
-    float eta_r = 0;  ///< damping over critical
+    float mu_r = 0;   ///< coefficient of rolling friction
+    float k_r = 0;    ///< ratio of the stiffness to that of the tangential spring
+    float eta_r = 0;  ///< damping ratio
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t,
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R k_t,
                                History<R>& history) const
     {
-        const R k = k_r * k_t, gamma = 2 * eta_r * sqrt(t.m_eff * k);
-        const Vec<R> v_r = -(t.R_eff * t.n.cross(t.omega));
-        // kept as the angle over R*, so that one history serves all models
-        const Vec<R> s = t.R_eff * carried(history.psi, t.n) + R(t.h) * v_r;
+        const R k = k_r * k_t, gamma = 2 * eta_r * sqrt(contact.m_eff * k);
+        const Vec<R> v_r = -(contact.R_eff * contact.n.cross(contact.omega));
+        // stored as an angle, s/R*, as in the other rolling laws
+        const Vec<R> s = contact.R_eff * to_tangent_plane(history.psi, contact.n) + R(contact.h) * v_r;
         const Vec<R> test = -(k * s) - gamma * v_r;
-        const auto [F, full] = Cap{mu_r, mu_r}(test, abs(p.F), history.slid);
-        const Vec<R> kept = select(full, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * v_r), s);
-        history.psi = (R(1.f) / t.R_eff) * kept;
-        return t.R_eff * t.n.cross(F);
+        const auto [F, saturated] = Cap{mu_r, mu_r}(test, abs(normal.F), history.slid);
+        const Vec<R> elastic = select(saturated, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * v_r), s);
+        history.psi = (R(1.f) / contact.R_eff) * elastic;
+        return contact.R_eff * contact.n.cross(F);
     }
 
     template <class Keys>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// No resistance to turning about the normal.
+/// No resistance to relative rotation about the contact normal.
 
 #pragma once
 

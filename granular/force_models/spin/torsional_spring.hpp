@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A torsional spring about the normal, capped.                                                Fang (2022), Eq. 2.51
+/// Spin resistance: bounded torsional spring-dashpot about the contact normal.      Fang (2022), Sec. 2.2.1.5
 
 #pragma once
 
@@ -7,23 +7,28 @@
 
 namespace hilda::granular {
 
-///     M = -K ∫ω_sp - D ω_sp,   |M| ≤ 2/3 μ |F_n| a;    K = k_t a²/2,  D = γ_t a²/2,  a = √(R* δ)
+///     M = -K ∫ω_sp dt - D ω_sp   (Eq. 2.51),   |M| ≤ 2/3 μ |F_n| a
+///     K = k_t a²/2,  D = γ_t a²/2,  a = √(R* δ),  ω_sp = n · (ω_i - ω_j)
+///
+/// k_t [N/m] and γ_t [N s/m] are the current stiffness and damping constant of the tangential law. The bound
+/// holds for the sum of spring and dashpot; at the bound the angle is computed back from M.
 struct TorsionalSpring {
     static constexpr const char* name = "torsional-spring";
 
-    float mu = 0;
+    float mu = 0;  ///< coefficient of kinetic friction
 
     template <class R>
-    HILDA_HD R operator()(const ContactPoint<R>& t, const NormalForce<R>& p, R k_t, R gamma_t,
+    HILDA_HD R operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R k_t, R gamma_t,
                           History<R>& history) const
     {
-        const R a2 = t.R_eff * t.delta, K = Number<R>(0.5) * k_t * a2, D = Number<R>(0.5) * gamma_t * a2;
-        const R omega_sp = t.n.dot(t.omega), angle = history.spin + R(t.h) * omega_sp;
+        const R a2 = contact.R_eff * contact.delta, K = Number<R>(0.5) * k_t * a2,
+                D = Number<R>(0.5) * gamma_t * a2;
+        const R omega_sp = contact.n.dot(contact.omega), angle = history.spin + R(contact.h) * omega_sp;
         const R test = -(K * angle) - D * omega_sp, size = abs(test);
-        const R bound = Number<R>(2) / 3 * mu * abs(p.F) * sqrt(a2);
-        const Mask<R> full = size > bound;
-        const R M = select(full, bound / larger(size, R(tiny)), R(1.f)) * test;
-        history.spin = select(full, -(M + D * omega_sp) / larger(K, R(tiny)), angle);
+        const R bound = Number<R>(2) / 3 * mu * abs(normal.F) * sqrt(a2);
+        const Mask<R> saturated = size > bound;
+        const R M = select(saturated, bound / larger(size, R(tiny)), R(1.f)) * test;
+        history.spin = select(saturated, -(M + D * omega_sp) / larger(K, R(tiny)), angle);
         return M;
     }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Coulomb's friction of what slides now, without a history: nothing sticks, what should creeps.
+/// Coulomb friction with viscous regularisation, without history.
+///
+/// There is no static friction: a body under a tangential load below the bound creeps.
 
 #pragma once
 
@@ -12,13 +14,15 @@ struct Coulomb {
     static constexpr const char* name = "coulomb";
 
     TangentialSpring spring = {};
-    float mu_k = 0;
+    float mu_k = 0;  ///< coefficient of kinetic friction
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>&) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal,
+                               History<R>&) const
     {
-        const R gamma = spring.damping(t, p), F = gamma * t.v_t.norm(), bound = mu_k * abs(p.F);
-        return -(select(F > bound, bound / larger(F, R(tiny)), R(1.f)) * gamma) * t.v_t;
+        const R gamma = spring.damping(contact, normal), F = gamma * contact.v_t.norm(),
+                bound = mu_k * abs(normal.F);
+        return -(select(F > bound, bound / larger(F, R(tiny)), R(1.f)) * gamma) * contact.v_t;
     }
 
     template <class Keys>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A spring and dashpot that remembers how far the surfaces have slid.                 Fang (2022), Eqs. 2.45 to 2.47
+/// Friction with a tangential spring and dashpot of the displacement u.        Fang (2022), Eqs. 2.45 to 2.47
 
 #pragma once
 
@@ -7,11 +7,16 @@
 
 namespace hilda::granular {
 
-///     u ← u + h v_t,   F° = -k u - γ v_t;   F_t = F° where |F°| ≤ μ_s |F_n|,  else μ_k |F_n| F°/|F°| and u = -(F_t + γ v_t)/k
+///     u ← u + h v_t,   F° = -k u - γ v_t
+///     F_t = F°                                              if |F°| ≤ μ_s |F_n|  (sticking)
+///     F_t = μ_k |F_n| F°/|F°|,   u = -(F_t + γ v_t)/k       otherwise            (sliding)
 ///
-/// The cap is on spring and dashpot together, and the spring is solved back from it (Luding 2008); (2.46) caps the spring
-/// alone, and stops a sliding body up to 4 % too early. With μ_s above μ_k what slides goes on with μ_k until the test force
-/// is below that.
+/// The bound holds for the sum of spring and dashpot, and u is computed from the bounded force (Luding 2008;
+/// Sec. 2.2.1.3). Eq. 2.46 bounds the spring alone; the sliding distance of a body is then up to 4 % too
+/// short. While a contact slides the bound of F° is μ_k |F_n|, so that for μ_s > μ_k it sticks again only
+/// below μ_k |F_n|.
+///
+/// Before each step u is rotated into the tangent plane; see to_tangent_plane().
 struct Mindlin {
     static constexpr const char* name = "mindlin";
 
@@ -19,14 +24,15 @@ struct Mindlin {
     Cap cap = {};
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal,
+                               History<R>& history) const
     {
-        const R k = spring.stiffness(p), gamma = spring.damping(t, p);
-        const Vec<R> u = carried(history.u, t.n) + R(t.h) * t.v_t;
-        const Vec<R> test = -(k * u) - gamma * t.v_t;
-        const auto [F, slides] = cap(test, abs(p.F), history.slid);
+        const R k = spring.stiffness(normal), gamma = spring.damping(contact, normal);
+        const Vec<R> u = to_tangent_plane(history.u, contact.n) + R(contact.h) * contact.v_t;
+        const Vec<R> test = -(k * u) - gamma * contact.v_t;
+        const auto [F, slides] = cap(test, abs(normal.F), history.slid);
         history.slid = slides;
-        history.u = select(slides, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * t.v_t), u);
+        history.u = select(slides, (R(-1.f) / larger(k, R(tiny))) * (F + gamma * contact.v_t), u);
         return F;
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Mindlin's force by increments.                                                              Fang (2022), Eq. 2.44
+/// Friction with an incremental elastic force (Mindlin and Deresiewicz, simplified).    Fang (2022), Eq. 2.44
 
 #pragma once
 
@@ -7,10 +7,14 @@
 
 namespace hilda::granular {
 
-///     T ← T - h k v_t,  |T| ≤ μ_k |F_n|;   F_t = T - γ v_t while it is within that bound
+///     T ← s T - h k v_t,   F° = T - γ v_t
+///     F_t = F°                                              if |F°| ≤ μ_s |F_n|  (sticking)
+///     F_t = μ_k |F_n| F°/|F°|,   T = F_t + γ v_t            otherwise            (sliding)
 ///
-/// What is remembered is the elastic force T [N]: with a stiffness that changes with the overlap it is not k u. Where the
-/// normal force falls, T is taken down with the stiffness (Thornton and Walton), so that no energy is made.
+/// The history stores the elastic force T [N] instead of a displacement: with a stiffness k that depends on
+/// the overlap, T is not -k u. While the contact is unloaded T is reduced with the stiffness, s =
+/// k(t_n)/k(t_{n-1}) (Thornton and Walton); otherwise s = 1. Without the reduction the law would generate
+/// energy.
 struct MindlinIncremental {
     static constexpr const char* name = "mindlin-incremental";
 
@@ -18,17 +22,20 @@ struct MindlinIncremental {
     Cap cap = {};
 
     template <class R>
-    HILDA_HD Vec<R> operator()(const ContactPoint<R>& t, const NormalForce<R>& p, History<R>& history) const
+    HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal,
+                               History<R>& history) const
     {
-        const R k = spring.stiffness(p), gamma = spring.damping(t, p);
-        // k over that of the last step, when the overlap was δ - h δ̇
-        const R fell =
-            select(t.v_n < R(0.f), larger(R(1.f) + R(p.power * t.h) * t.v_n / t.delta, R(0.f)), R(1.f));
-        const Vec<R> T = fell * carried(history.u, t.n) - (R(t.h) * k) * t.v_t;
-        const Vec<R> test = T - gamma * t.v_t;
-        const auto [F, slides] = cap(test, abs(p.F), history.slid);
+        const R k = spring.stiffness(normal), gamma = spring.damping(contact, normal);
+        // s to first order in h: the overlap of the previous step was δ - h dδ/dt
+        const R reduction = select(
+            contact.v_n < R(0.f),
+            larger(R(1.f) + R(normal.power * contact.h) * contact.v_n / contact.delta, R(0.f)), R(1.f));
+        const Vec<R> T =
+            reduction * to_tangent_plane(history.u, contact.n) - (R(contact.h) * k) * contact.v_t;
+        const Vec<R> test = T - gamma * contact.v_t;
+        const auto [F, slides] = cap(test, abs(normal.F), history.slid);
         history.slid = slides;
-        history.u = select(slides, F + gamma * t.v_t, T);
+        history.u = select(slides, F + gamma * contact.v_t, T);
         return F;
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Smooth surfaces.
+/// No friction.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The spring and dashpot across a contact.                                            Fang (2022), Sec. A.5, corrected
+/// Tangential spring and dashpot of a contact, and Coulomb's bound.          Fang (2022), Sec. A.5, corrected
 
 #pragma once
 
@@ -8,23 +8,28 @@
 
 namespace hilda::granular {
 
-constexpr float tiny = 1e-30f;  // keeps a quotient finite whose numerator is zero
+constexpr float tiny = 1e-30f;  // lower bound of denominators, against 0/0
 
-/// Stiffness k_t times the scale of the normal law. With Hertz of materials k_t is 8 G*, else it is given [N/m].
+/// Stiffness k [N/m] and damping constant γ [N s/m] of the tangential spring and dashpot:
 ///
-///     k = k_t scale,    γ = c √(m* k)  of materials,   γ_t m* scale  where it is given [1/s]
+///     k = k_t s,    γ = c √(m* k) + γ_t m* s
+///
+/// s is NormalForce::scale. With `hertz` k_t = 8 G* [Pa], c = damping(e) and γ_t = 0. With the other normal
+/// laws k_t and γ_t are prescribed and c = 0.
 struct TangentialSpring {
-    float k_t = 0, c = 0, gamma_t = 0;
+    float k_t = 0;      ///< [Pa] with `hertz`, else [N/m]
+    float c = 0;        ///< damping coefficient [-]
+    float gamma_t = 0;  ///< [1/s]
 
     template <class R>
-    HILDA_HD R stiffness(const NormalForce<R>& p) const
+    HILDA_HD R stiffness(const NormalForce<R>& normal) const
     {
-        return k_t * p.scale;
+        return k_t * normal.scale;
     }
     template <class R>
-    HILDA_HD R damping(const ContactPoint<R>& t, const NormalForce<R>& p) const
+    HILDA_HD R damping(const ContactPoint<R>& contact, const NormalForce<R>& normal) const
     {
-        return c * sqrt(t.m_eff * stiffness(p)) + gamma_t * t.m_eff * p.scale;
+        return c * sqrt(contact.m_eff * stiffness(normal)) + gamma_t * contact.m_eff * normal.scale;
     }
 
     template <class Keys>
@@ -42,16 +47,17 @@ struct TangentialSpring {
     }
 };
 
-/// Coulomb's bound on spring and dashpot together
+/// Coulomb's bound of the tangential force, the sum of spring and dashpot
 struct Cap {
-    float mu_s = 0, mu_k = 0;
+    float mu_s = 0, mu_k = 0;  ///< coefficients of static and kinetic friction
 
     template <class R>
     struct Capped {
         Vec<R> F;
         Mask<R> slides;
     };
-    /// The test force, or μ_k N along it where it is above μ_s N; above μ_k N for what slides already
+    /// The test force if it is within the bound, else a force of magnitude μ_k N in its direction. The bound
+    /// is μ_s N, or μ_k N if the contact was sliding in the previous step.
     template <class R>
     HILDA_HD Capped<R> operator()(const Vec<R>& test, const R& N, const Mask<R>& slid) const
     {
@@ -67,14 +73,15 @@ struct Cap {
     }
 };
 
-/// A displacement of the last step in the tangent plane of this one: without its part along n, and as long as before
+/// Rotates a tangential displacement of the previous step into the tangent plane of the normal n: the
+/// component along n is removed and the length is restored. Zero if u is parallel to n.
 template <class R>
-HILDA_HD inline Vec<R> carried(const Vec<R>& u, const Vec<R>& n)
+HILDA_HD inline Vec<R> to_tangent_plane(const Vec<R>& u, const Vec<R>& n)
 {
-    const R along = u.dot(n), before = u.dot(u);
+    const R along = u.dot(n), u2 = u.dot(u);
     const Vec<R> in_plane = u - along * n;
-    const R now = in_plane.dot(in_plane);
-    return select(now > R(0.f), sqrt(before / larger(now, R(tiny))), R(0.f)) * in_plane;
+    const R in_plane2 = in_plane.dot(in_plane);
+    return select(in_plane2 > R(0.f), sqrt(u2 / larger(in_plane2, R(tiny))), R(0.f)) * in_plane;
 }
 
 }  // namespace hilda::granular

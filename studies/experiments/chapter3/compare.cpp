@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One model, several integrators: their trajectories side by side, and how far each is from the reference.
+/// Comparison of several integrators on one model with a reference solution.
 ///
-/// compare.csv has, at every row time, the watched scalar and the position of the watched body of the reference
-/// and of each integrator, and the differences in r, A, velocity and ω̄: Euclidean norms over all bodies, A by
-/// its Frobenius norm. The table has the largest and the last of them.
+/// compare.csv contains, for each row time, the observable and the position of its body of the reference
+/// solution and of each integrator, and the differences in r, A, velocity and ω̄ (Euclidean norms over all
+/// bodies, Frobenius norm for A). The table contains the largest and the final differences.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/csv.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/framework/evaluated_run.hpp"
@@ -24,24 +27,25 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "compare";
-constexpr long fewest_rows = 100, most_rows = 1000;  // of compare.csv
+constexpr long min_rows = 100, max_rows = 1000;  // limits on the number of rows of compare.csv
 constexpr std::array<const char*, 4> quantities = {"r", "A", "v", "omega"};
 
 struct ComparedRun : Run {
-    std::vector<lie::State> row;  ///< at the instants, as far as the run went
+    std::vector<lie::State> row;  ///< at the instants; fewer if the run failed
     std::vector<Difference> difference;
     std::array<double, 4> largest{}, last{};
 };
 
-/// Rows lie on nodes: every so-many-th that leaves about fewest_rows … most_rows, and the end is one of them
-/// where the number of steps has such a divisor.
-Instants rows_on(double end, double h)
+/// The instants of compare.csv: every stride-th node, with a stride that gives between min_rows and max_rows
+/// rows. A stride that divides the number of steps is preferred, so that the end of the run is a row. Without
+/// such a divisor the run ends at the last instant.
+Instants choose_instants(double end, double h)
 {
-    const long steps = std::lround(end / h), least = (steps + most_rows - 1) / most_rows;
-    long every = least;
-    while (steps % every != 0 && steps / every > fewest_rows) ++every;
-    if (steps % every != 0) every = least;
-    return {.dt = static_cast<double>(every) * h, .stride = 1, .count = steps / every};
+    const long steps = std::lround(end / h), min_stride = (steps + max_rows - 1) / max_rows;
+    long stride = min_stride;
+    while (steps % stride != 0 && steps / stride > min_rows) ++stride;
+    if (steps % stride != 0) stride = min_stride;
+    return {.dt = static_cast<double>(stride) * h, .stride = 1, .count = steps / stride};
 }
 
 void compute(ComparedRun& run, const StudyOptions& options)
@@ -63,7 +67,7 @@ void compute(ComparedRun& run, const StudyOptions& options)
 Table as_table(const std::vector<ComparedRun>& runs)
 {
     std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
-                                          {"rtol"},    {"reference"},  {"watched_scalar"}};
+                                          {"rtol"},    {"reference"},  {"observable_scalar"}};
     for (const char* q : quantities) columns.push_back({std::string("max_") + q});
     for (const char* q : quantities) columns.push_back({std::string("end_") + q});
     for (const char* name : {"steps", "iterations_per_step", "cpu_seconds", "status"})
@@ -91,24 +95,24 @@ Table as_table(const std::vector<ComparedRun>& runs)
 void print(const std::vector<ComparedRun>& runs, const Benchmark& c, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}, {"step or rtol"}};
-    for (const char* head : {"max dr [m]", "max dA", "max dv [m/s]", "max domega [rad/s]", "end dr [m]",
-                             "end dA", "end dv [m/s]", "end domega [rad/s]"})
-        columns.push_back({head});
+    for (const char* heading : {"max dr [m]", "max dA", "max dv [m/s]", "max domega [rad/s]", "end dr [m]",
+                                "end dA", "end dv [m/s]", "end domega [rad/s]"})
+        columns.push_back({heading});
     columns.push_back({"status"});
     Table table(columns);
     for (const ComparedRun& run : runs) {
-        std::vector<Table::Cell> row = {run.scheme->name, run.grain()};
+        std::vector<Table::Cell> row = {run.scheme->name, run.resolution()};
         for (const double d : run.largest) row.emplace_back(d);
         for (const double d : run.last) row.emplace_back(d);
         row.emplace_back(run.status);
         table.add(row);
     }
-    out << fmt::format("\n{}, over {:g} s, {} instants; differences to: {}\n", c.problem.name, c.end,
+    out << fmt::format("\n{}, end time {:g} s, {} instants; reference solution: {}\n", c.problem.name, c.end,
                        c.instants.count + 1, c.reference_name);
     table.print(out);
 }
 
-/// The watched scalar and the position of the watched body
+/// Appends the observable and the position of its body.
 void append(std::string& csv, const lie::State& x, const Observable& observable, int body)
 {
     csv += ',';
@@ -116,20 +120,21 @@ void append(std::string& csv, const lie::State& x, const Observable& observable,
     append_vector(csv, x.body[body].r);
 }
 
-std::string side_by_side(const Benchmark& c, const std::vector<ComparedRun>& runs)
+std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>& runs)
 {
     const int body = c.started->model->find(c.observable.body);
     std::string csv = "t";
-    for (const char* column : {"watched", "rx", "ry", "rz"}) csv += std::string(",reference.") + column;
+    for (const char* column : {"observable", "rx", "ry", "rz"}) csv += std::string(",reference.") + column;
     for (const ComparedRun& run : runs)
-        for (const char* column : {"watched", "rx", "ry", "rz", "diff_r", "diff_A", "diff_v", "diff_omega"})
+        for (const char* column :
+             {"observable", "rx", "ry", "rz", "diff_r", "diff_A", "diff_v", "diff_omega"})
             csv += ',' + csv_field(run.scheme->name + '.' + column);
     csv += '\n';
     for (long k = 0; k <= c.instants.count; ++k) {
         append_number(csv, static_cast<double>(k) * c.instants.dt);
         append(csv, c.reference_solution.row[k], c.observable, body);
         for (const ComparedRun& run : runs) {
-            if (k >= static_cast<long>(run.row.size())) {  // it failed before
+            if (k >= static_cast<long>(run.row.size())) {  // the run failed before this instant
                 csv += ",,,,,,,,";
                 continue;
             }
@@ -182,7 +187,7 @@ int compare(const StudyOptions& options)
     std::vector<Benchmark> all = benchmarks(kind, options, {"double_pendulum"});
     Benchmark& c = all.front();
     check_steps(kind, c, {h});
-    c.instants = rows_on(c.end, h);
+    c.instants = choose_instants(c.end, h);
     c.end = static_cast<double>(c.instants.count) * c.instants.dt;
     reference.evaluate(all);
 
@@ -197,29 +202,31 @@ int compare(const StudyOptions& options)
         compute(runs[k], options);
     });
 
-    StudyOutput output{
-        .kind = kind,
-        .table = as_table(runs).csv(),
-        .json = {{"truth", c.reference_name}, {"watched", c.observable.name()}, {"runs", as_json(runs)}},
-        .files = {{"compare.csv", side_by_side(c, runs)}},
-        .figures = {"compare.png"}};
+    StudyOutput output{.kind = kind,
+                       .table = as_table(runs).csv(),
+                       .json = {{"reference", c.reference_name},
+                                {"observable", c.observable.name()},
+                                {"runs", as_json(runs)}},
+                       .files = {{"compare.csv", trajectories_csv(c, runs)}},
+                       .figures = {"compare.png"}};
     print(runs, c, output.text);
-    std::vector<Measured> came;
+    std::vector<Measured> measurements;
     for (const ComparedRun& run : runs) {
-        came.push_back({.of = run.name(), .value = {}});
+        measurements.push_back({.of = run.name(), .value = {}});
         for (size_t q = 0; q < 4; ++q) {
-            came.back().value[std::string("max_") + quantities[q]] = run.largest[q];
-            came.back().value[std::string("end_") + quantities[q]] = run.last[q];
+            measurements.back().value[std::string("max_") + quantities[q]] = run.largest[q];
+            measurements.back().value[std::string("end_") + quantities[q]] = run.last[q];
         }
     }
-    return finish(options, output, run_pointers(runs), came);
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
-const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "one model, several integrators: trajectories and differences",
-                         .also = takes::reference,
-                         .run = compare});
+const bool registered = register_study(Study{
+    .kind = kind,
+    .answers =
+        "trajectories of several integrators on one model and their differences to the reference solution",
+    .accepted = takes::reference,
+    .run = compare});
 
 }  // namespace
 

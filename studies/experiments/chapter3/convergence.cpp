@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Order of the schemes against a trusted solution (Fang 2022, Figs. 3.4, 3.6, 3.7, 3.8).
+/// Order of convergence of the schemes (Fang 2022, Figs. 3.4, 3.6, 3.7, 3.8).
 ///
-/// For each problem, scheme and step: the errors of errors.hpp, the order each shows against the row before,
-/// iterations and factorizations. A line is fitted through the rows that are neither at rounding nor at the
-/// floor that the Newton tolerance sets: each run is repeated with a hundredth of the tolerance, and an error
-/// that this changes is not the scheme's own.
+/// For each problem, scheme and step the study computes the errors of errors.hpp against a reference
+/// solution, the order between neighbouring steps, the Newton iterations and the factorizations. The order of
+/// a scheme is the slope of a least-squares line through log(error) over log(h). Errors at the floor are left
+/// out of this line. An error is at the floor if it is at rounding level or if it depends on the Newton
+/// tolerance. To detect the latter, each run is repeated with a hundredth of the tolerance.
+///
+/// Without --all, --problem, --integrator and --steps the study is a subset: the schemes of the dissertation
+/// and their second-order relatives on two mechanisms, with a short table and two figures.
 
 #include "studies/experiments/chapter3/convergence.hpp"
 
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/reference_solution.hpp"
@@ -28,16 +34,18 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "convergence";
-constexpr double rounding = 2e-12;  // of the size of a quantity: what a truth computed to 1e-13 is good for
-constexpr double floor_change =
-    0.05;  // an error that changes by more with a tighter tolerance is at its floor
-constexpr double asymptotic_step = 1e-3;  // a line is fitted through steps up to this [s]
+// Rounding level of an error, relative to the size of the quantity; reference solutions are accurate to 1e-13
+constexpr double rounding = 2e-12;
+// An error that changes by more than this fraction with a tighter Newton tolerance is at the floor.
+constexpr double floor_change = 0.05;
+constexpr double asymptotic_step = 1e-3;  // the order is fitted through steps up to this one [s]
 
 struct ConvergenceRun : EvaluatedRun {
-    std::array<bool, norm::count> at_floor{};
-    std::array<double, norm::count> order{};
+    std::array<bool, norm::count> at_floor{};  ///< the error is at rounding level or at the Newton tolerance
+    std::array<double, norm::count> order{};   ///< between this step and the next larger one; NaN: unknown
 };
 
+/// Integrates with the given Newton tolerance and with a hundredth of it; errors and floor flags into `run`.
 void compute(ConvergenceRun& run, const StudyOptions& options)
 {
     evaluate(run, options.settings);
@@ -46,7 +54,7 @@ void compute(ConvergenceRun& run, const StudyOptions& options)
     lie::Settings settings = options.settings;
     settings.tolerance /= 100;
     evaluate(tighter, settings);
-    if (tighter.failed()) return;  // below rounding already; no floor to see
+    if (tighter.failed()) return;  // the tighter tolerance is below rounding: no error is marked
     for (int n = 0; n < norm::count; ++n) {
         const double e = run.errors.value[n], e_tighter = tighter.errors.value[n];
         run.at_floor[n] = !(e > rounding * std::max(run.c->size.value[n], 1e-3)) ||
@@ -54,11 +62,12 @@ void compute(ConvergenceRun& run, const StudyOptions& options)
     }
 }
 
-/// The rows of one scheme on one problem, from the largest step down
+/// The runs of one scheme on one problem, in descending order of the step
 using Series = std::vector<const ConvergenceRun*>;
 
-/// Slope through the clean rows with steps up to asymptotic_step; where there are fewer than three of these, as
-/// of a scheme of high order, which is at rounding there, through the three smallest.
+/// Order of convergence in norm n: the slope fitted through the errors above the floor with steps up to
+/// asymptotic_step. If there are fewer than three of these, the three smallest steps above the floor are
+/// used. This is the case for schemes of high order, whose errors are at rounding level for small steps.
 double fit(const Series& series, int n)
 {
     std::vector<double> h, e;
@@ -74,12 +83,20 @@ double fit(const Series& series, int n)
     return fitted_order(h, e);
 }
 
+/// The error in norm n, with a * if it is at the floor; the status of a run that failed
+std::string error_text(const ConvergenceRun& run, int n, int decimals)
+{
+    const double e = run.errors.value[n];
+    return std::isnan(e) ? run.status : fmt::format("{:.{}e}{}", e, decimals, run.at_floor[n] ? "*" : " ");
+}
+
+/// All steps of one scheme on one problem
 void print(const Series& series, std::ostream& out)
 {
     const ConvergenceRun& first = *series.front();
-    out << fmt::format("\n{}, {} (declared order {}, of lambda {}); truth: {}\n", first.c->problem.name,
-                       first.scheme->name, first.scheme->order, first.scheme->order_lambda,
-                       first.c->reference_name);
+    out << fmt::format("\n{}, {} (declared order {}, of lambda {}); reference solution: {}\n",
+                       first.c->problem.name, first.scheme->name, first.scheme->order,
+                       first.scheme->order_lambda, first.c->reference_name);
     std::vector<Table::Column> columns = {{"h [s]", "{:.1e}"}};
     const char* heads[] = {"r [m]", "A", "v [m/s]", "omega [rad/s]", "Q"};
     for (int n = norm::r; n <= norm::Q; ++n) {
@@ -91,9 +108,7 @@ void print(const Series& series, std::ostream& out)
     for (const ConvergenceRun* run : series) {
         std::vector<Table::Cell> row = {run->h};
         for (int n = norm::r; n <= norm::Q; ++n) {
-            const double e = run->errors.value[n];
-            row.emplace_back(std::isnan(e) ? run->status
-                                           : fmt::format("{:.3e}{}", e, run->at_floor[n] ? "*" : " "));
+            row.emplace_back(error_text(*run, n, 3));
             row.emplace_back(run->order[n]);
         }
         row.emplace_back(run->statistics.iterations_per_step());
@@ -111,7 +126,7 @@ void print(const Series& series, std::ostream& out)
     table.print(out);
 }
 
-/// Fitted orders of all schemes on one problem, side by side
+/// Fitted orders of all schemes on one problem
 void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream& out)
 {
     Table table({{c.problem.name},
@@ -140,10 +155,51 @@ void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream
     table.print(out);
 }
 
+/// The table of the default selection: orders, and errors at two steps, of position and constraint loads
+void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>& problems, std::ostream& out)
+{
+    const auto at = [](const Series& series, double h) {
+        return *std::find_if(series.begin(), series.end(),
+                             [h](const ConvergenceRun* run) { return run->h <= h * (1 + 1e-9); });
+    };
+    const double large = asymptotic_step, small = all.front().back()->h;
+    out << fmt::format(
+        "r: position error, rms over {0} instants [m]. Q: relative error of constraint loads, rms.\n"
+        "order: slope of log(error) over log(h), h <= {1} s. iter: Newton iterations per step, h={1} s.\n",
+        problems.front().instants.count / problems.front().instants.stride, step_text(large));
+    bool floor = false;
+    for (const Benchmark& c : problems) {
+        out << fmt::format("\n{}, {} s; reference solution: {}\n", c.problem.name, c.end, c.reference_name);
+        Table table({{"integrator"},
+                     {"order of r", "{:.2f}"},
+                     {"r, h=" + step_text(large)},
+                     {"r, h=" + step_text(small)},
+                     {"order of Q", "{:.2f}"},
+                     {"Q, h=" + step_text(large)},
+                     {"Q, h=" + step_text(small)},
+                     {"iter", "{:.2f}"}});
+        for (const Series& series : all) {
+            if (series.front()->c != &c) continue;
+            std::vector<Table::Cell> row = {series.front()->scheme->name};
+            for (const int n : {norm::r, norm::Q}) {
+                row.emplace_back(fit(series, n));
+                for (const double h : {large, small}) row.emplace_back(error_text(*at(series, h), n, 1));
+                floor = floor || at(series, large)->at_floor[n] || at(series, small)->at_floor[n];
+            }
+            row.emplace_back(at(series, large)->statistics.iterations_per_step());
+            table.add(row);
+        }
+        table.print(out);
+    }
+    if (floor)
+        out << "\n* at rounding, or at the floor set by the Newton tolerance: not used for the order\n";
+}
+
+/// study.csv: one row for each run
 Table as_table(const std::vector<ConvergenceRun>& runs)
 {
     std::vector<Table::Column> columns = {
-        {"problem"}, {"integrator"}, {"h"}, {"instants"}, {"watched_scalar"}};
+        {"problem"}, {"integrator"}, {"h"}, {"instants"}, {"observable_scalar"}};
     for (const char* name : norm::names) columns.push_back({name});
     for (const char* name : norm::names) columns.push_back({std::string("order_") + name});
     for (const char* name : norm::names) columns.push_back({std::string("floor_") + name});
@@ -170,6 +226,7 @@ Table as_table(const std::vector<ConvergenceRun>& runs)
     return table;
 }
 
+/// The series of study.json
 ordered_json as_json(const std::vector<Series>& all)
 {
     ordered_json out = ordered_json::array();
@@ -190,15 +247,16 @@ ordered_json as_json(const std::vector<Series>& all)
                        {"integrator", first.scheme->name},
                        {"declared_order", first.scheme->order},
                        {"declared_order_lambda", first.scheme->order_lambda},
-                       {"truth", first.c->reference_name},
-                       {"watched", first.c->observable.name()},
+                       {"reference", first.c->reference_name},
+                       {"observable", first.c->observable.name()},
                        {"fitted_order", fits},
                        {"rows", rows}});
     }
     return out;
 }
 
-/// What --expect knows: order (of the first quantity whose order shows), order_X, and X at the smallest step
+/// Keys of --expect. For each norm X: order_X, the fitted order, and X, the error at the smallest step.
+/// `order` is the order_X of the first norm X for which a fit exists.
 std::vector<std::string> keys()
 {
     std::vector<std::string> all = {"order"};
@@ -220,11 +278,39 @@ Measured measured(const Series& series)
     return m;
 }
 
-std::vector<double> default_steps() { return {1e-2, 4e-3, 2e-3, 1e-3, 8e-4, 4e-4, 2e-4, 1e-4}; }
+/// The problems, integrators and steps that are not named on the command line
+struct Defaults {
+    std::vector<std::string> problems;
+    std::vector<std::string> integrators;  ///< empty: all with a fixed step
+    std::vector<double> steps;             ///< [s]
+};
 
-std::vector<std::string> default_problems()
+Defaults complete()
 {
-    return {"double_pendulum", "double_pendulum_moving", "n_pendulum_2_spin", "slider_crank", "four_link"};
+    return {.problems = {"double_pendulum", "double_pendulum_moving", "n_pendulum_2_spin", "slider_crank",
+                         "four_link"},
+            .integrators = {},
+            .steps = {1e-2, 4e-3, 2e-3, 1e-3, 8e-4, 4e-4, 2e-4, 1e-4}};
+}
+
+/// A planar and a spatial mechanism. Both have degrees of freedom that are not driven, and both move at the
+/// start: positions and constraint loads show their orders, and no first-order term vanishes as after a start
+/// at rest. The steps are consecutive steps of the complete study, so that the orders between neighbouring
+/// steps are the same.
+Defaults overview()
+{
+    return {.problems = {"double_pendulum_moving", "n_pendulum_2_spin"},
+            .integrators = {"rA-full-1", "rA-half-1", "rA-half-2", "rA-half-1-kick", "rA-half-1-momentum",
+                            "rA-half-2-bdf2"},
+            .steps = {4e-3, 2e-3, 1e-3, 8e-4, 4e-4, 2e-4, 1e-4}};
+}
+
+/// The name of the selection in study.json, from which convergence.py chooses its figures
+std::string selection(const StudyOptions& options)
+{
+    if (!options.problems.empty() || !options.integrators.empty() || !options.steps.empty())
+        return "selected";
+    return options.all ? "all" : "default";
 }
 
 }  // namespace
@@ -232,18 +318,20 @@ std::vector<std::string> default_problems()
 int convergence(const StudyOptions& options)
 {
     check_keys(kind, options, keys());
-    const std::vector<double> steps = steps_or(options, default_steps());
-    const Schemes schemes = fixed_step_schemes(kind, options);
+    const bool short_form = selection(options) == "default";
+    const Defaults defaults = short_form ? overview() : complete();
+    const std::vector<double> steps = steps_or(options, defaults.steps);
+    const Schemes schemes = fixed_step_schemes(kind, options, defaults.integrators);
     Evaluated evaluated{.smallest_step = steps.back()};
     for (const lie::Scheme* s : schemes)
         evaluated.highest_order = std::max(evaluated.highest_order, s->order);
     const Reference reference(kind, options, evaluated);
-    std::vector<Benchmark> all_cases = benchmarks(kind, options, default_problems());
-    for (const Benchmark& c : all_cases) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.evaluate(all_cases);
+    std::vector<Benchmark> problems = benchmarks(kind, options, defaults.problems);
+    for (const Benchmark& c : problems) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
+    reference.evaluate(problems);
 
     std::vector<ConvergenceRun> runs;
-    for (const Benchmark& c : all_cases)
+    for (const Benchmark& c : problems)
         for (const lie::Scheme* s : schemes)
             for (const double h : steps) {
                 ConvergenceRun run;
@@ -252,7 +340,7 @@ int convergence(const StudyOptions& options)
                 runs.push_back(run);
             }
 
-    // Small steps first: they take longest, and the last job to end decides when all have.
+    // Small steps take longest. They start first, so that no long run is alone at the end.
     std::vector<long> queue(runs.size());
     std::iota(queue.begin(), queue.end(), 0);
     std::stable_sort(queue.begin(), queue.end(), [&](long a, long b) { return runs[a].h < runs[b].h; });
@@ -270,25 +358,35 @@ int convergence(const StudyOptions& options)
         all.back().push_back(&runs[k]);
     }
 
-    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(all)}}};
-    for (const Series& series : all) print(series, output.text);
-    output.text
-        << "\n* at rounding, or at the floor that the Newton tolerance sets: not in the fit, which takes "
-           "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of lambda\n";
-    for (const Benchmark& c : all_cases) print_fits(all, c, output.text);
-    for (const Benchmark& c : all_cases) output.figures.push_back("convergence-" + c.problem.name + ".png");
-    std::vector<Measured> came;
-    for (const Series& series : all) came.push_back(measured(series));
-    return finish(options, output, run_pointers(runs), came);
+    StudyOutput output{.kind = kind,
+                       .table = as_table(runs).csv(),
+                       .json = {{"selection", selection(options)}, {"series", as_json(all)}}};
+    if (short_form) {
+        print_overview(all, problems, output.text);
+        output.figures = {"convergence-position.png", "convergence-loads.png"};
+    } else {
+        for (const Series& series : all) print(series, output.text);
+        output.text
+            << "\n* at rounding, or at the floor set by the Newton tolerance: not in the fit, which uses the "
+               "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of "
+               "lambda\n";
+        for (const Benchmark& c : problems) {
+            print_fits(all, c, output.text);
+            output.figures.push_back("convergence-" + c.problem.name + ".png");
+        }
+    }
+    std::vector<Measured> results;
+    for (const Series& series : all) results.push_back(measured(series));
+    return finish(options, output, run_pointers(runs), results);
 }
 
 namespace {
 
-const bool registered = register_study(
-    Study{.kind = kind,
-          .answers = "order of the schemes against a trusted solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-          .also = takes::reference,
-          .run = convergence});
+const bool registered = register_study(Study{
+    .kind = kind,
+    .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
+    .accepted = takes::reference | takes::all,
+    .run = convergence});
 
 }  // namespace
 

@@ -5,8 +5,10 @@
 
 namespace hilda::studies {
 
-/// The study of the order of the schemes; returns the exit code. Writes study.csv, study.json and a figure
-/// for each problem into options.output.
+/// Runs the convergence study (Fang 2022, Figs. 3.4, 3.6-3.8) and returns the exit code.
+///
+/// Writes study.csv, study.json and figures into options.output. The default selection has one figure for the
+/// positions and one for the constraint loads; any other selection has one figure for each problem.
 int convergence(const StudyOptions& options);
 
 }  // namespace hilda::studies

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Energy of undamped systems over time (Fang 2022, Fig. 3.5).
 ///
-/// For each problem, scheme and step: E(t) - E(0) at every node, E the kinetic and potential energy of the node
-/// with all of its velocities at its own time. The table gives the change at the end and the largest on the
-/// way, in J and over the largest kinetic energy of the run; energy.csv has the curves.
+/// For each problem, scheme and step size, E(t) - E(0) is evaluated at every node. E = T + V is the total
+/// energy with all velocities at the time of the node. The table contains the change at the end of the run
+/// and the largest change, in J and relative to the largest kinetic energy of the run. energy.csv contains
+/// the curves.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/csv.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
@@ -21,12 +25,12 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "energy";
-constexpr long most_rows = 1000;  // of one run in energy.csv
+constexpr long max_rows = 1000;  // limit on the rows per run in energy.csv
 
-/// E and T of every node; the curve of E, thinned
-class EnergyOfNodes final : public lie::Observer {
+/// Records the energy of every node; the curve keeps only the rows of the grid.
+class EnergyRecorder final : public lie::Observer {
 public:
-    EnergyOfNodes(const dae::Model& model, const lie::TimeGrid& grid) : model(model), grid(grid) {}
+    EnergyRecorder(const dae::Model& model, const lie::TimeGrid& grid) : model(model), grid(grid) {}
 
     void accepted(const lie::State& x, long n, int) override
     {
@@ -38,8 +42,8 @@ public:
         if (grid.is_row(n)) curve.emplace_back(x.t, end);
     }
 
-    double start = 0, end = 0;  ///< E of the first and of the last node [J]
-    double largest = 0;         ///< |E - E(0)| [J]
+    double start = 0, end = 0;  ///< E at the first and at the last node [J]
+    double largest = 0;         ///< largest |E - E(0)| [J]
     double kinetic = 0;         ///< largest T [J]
     std::vector<std::pair<double, double>> curve;
 
@@ -50,20 +54,21 @@ private:
 
 struct EnergyRun : Run {
     double start = 0, drift = 0, largest = 0, kinetic = 0;  ///< [J]
-    std::vector<std::pair<double, double>> curve;           ///< t, E
+    std::vector<std::pair<double, double>> curve;           ///< t [s], E [J]
 };
 
 void compute(EnergyRun& run, const StudyOptions& options)
 {
-    EnergyOfNodes nodes(*run.c->started->model,
-                        lie::TimeGrid::over(run.c->end, run.h, run.c->end / static_cast<double>(most_rows)));
-    lie::Observer* observers[] = {&nodes};
+    EnergyRecorder recorder(
+        *run.c->started->model,
+        lie::TimeGrid::over(run.c->end, run.h, run.c->end / static_cast<double>(max_rows)));
+    lie::Observer* observers[] = {&recorder};
     march(run, options.settings, observers);
-    run.start = nodes.start;
-    run.drift = run.failed() ? std::nan("") : nodes.end - nodes.start;
-    run.largest = run.failed() ? std::nan("") : nodes.largest;
-    run.kinetic = nodes.kinetic;
-    run.curve = std::move(nodes.curve);
+    run.start = recorder.start;
+    run.drift = run.failed() ? std::nan("") : recorder.end - recorder.start;
+    run.largest = run.failed() ? std::nan("") : recorder.largest;
+    run.kinetic = recorder.kinetic;
+    run.curve = std::move(recorder.curve);
 }
 
 Table as_table(const std::vector<EnergyRun>& runs)
@@ -96,15 +101,15 @@ void print(const std::vector<EnergyRun>& runs, const Benchmark& c, std::ostream&
                  {"h [s]", "{:.1e}"},
                  {"E-E0 at end [J]", "{:+.4g}"},
                  {"max |E-E0| [J]", "{:.4g}"},
-                 {"over max T: end", "{:+.1e}"},
-                 {"max", "{:.1e}"},
+                 {"end / max T", "{:+.1e}"},
+                 {"max / max T", "{:.1e}"},
                  {"max T [J]", "{:.5g}"},
                  {"status"}});
     for (const EnergyRun& run : runs)
         if (run.c == &c)
             table.add({run.scheme->name, run.h, run.drift, run.largest, run.drift / run.kinetic,
                        run.largest / run.kinetic, run.kinetic, run.status});
-    out << fmt::format("\n{}, over {:g} s: change of the energy E = T + V\n", c.problem.name, c.end);
+    out << fmt::format("\n{}, end time {:g} s: change of the energy E = T + V\n", c.problem.name, c.end);
     table.print(out);
 }
 
@@ -164,17 +169,17 @@ int energy(const StudyOptions& options)
         print(runs, c, output.text);
         output.figures.push_back("energy-" + c.problem.name + ".png");
     }
-    std::vector<Measured> came;
+    std::vector<Measured> measurements;
     for (const EnergyRun& run : runs)
-        came.push_back({.of = run.name(),
-                        .value = {{"end_drift", run.drift},
-                                  {"max_drift", run.largest},
-                                  {"max_drift_relative", run.largest / run.kinetic}}});
-    return finish(options, output, run_pointers(runs), came);
+        measurements.push_back({.of = run.name(),
+                                .value = {{"end_drift", run.drift},
+                                          {"max_drift", run.largest},
+                                          {"max_drift_relative", run.largest / run.kinetic}}});
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
 const bool registered = register_study(
-    Study{.kind = kind, .answers = "energy of undamped systems over time (Fig. 3.5)", .run = energy});
+    Study{.kind = kind, .answers = "energy drift of undamped systems over time (Fig. 3.5)", .run = energy});
 
 }  // namespace
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Newton iterations of a step (Fang 2022, Figs. 3.9, 3.11, 3.12, 3.13).
+/// Newton iterations per step (Fang 2022, Figs. 3.9, 3.11, 3.12, 3.13).
 ///
-/// For each problem, scheme and step: the mean and the most iterations of a step, all schemes at the same
-/// Newton tolerance in the same lengths; iterations.csv has mean and most over short stretches of time. A
-/// scheme that solves without iterating counts none.
+/// For each problem, scheme and step size: mean and maximum number of Newton iterations per step. All schemes
+/// have the same Newton tolerance, in the same units. iterations.csv contains mean and maximum over short
+/// time intervals. Schemes without Newton iterations count zero.
 
+#include "lie/schemes.hpp"
 #include "studies/csv.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
@@ -21,52 +22,52 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "iterations";
-constexpr long most_bins = 300;  // of one run in iterations.csv
+constexpr long max_bins = 300;  // limit on the rows per run in iterations.csv
 
-/// Iterations of the steps of a stretch of time
-struct Bin {
+/// Iterations of the steps in one time interval
+struct IterationBin {
     double end = 0;  ///< [s]
     long steps = 0, sum = 0;
-    int most = 0;
+    int max_iterations = 0;
 };
 
-class IterationsOfSteps final : public lie::Observer {
+class IterationRecorder final : public lie::Observer {
 public:
-    explicit IterationsOfSteps(long steps) : in_a_bin((steps + most_bins - 1) / most_bins) {}
+    explicit IterationRecorder(long steps) : steps_per_bin((steps + max_bins - 1) / max_bins) {}
 
     void accepted(const lie::State& x, long n, int iterations) override
     {
-        if (n == 0) return;  // no step leads to the start
-        if (bins.empty() || bins.back().steps == in_a_bin) bins.emplace_back();
-        Bin& bin = bins.back();
+        if (n == 0) return;  // node 0 is the start; it is not the result of a step
+        if (bins.empty() || bins.back().steps == steps_per_bin) bins.emplace_back();
+        IterationBin& bin = bins.back();
         bin.end = x.t;
         ++bin.steps;
         bin.sum += iterations;
-        bin.most = std::max(bin.most, iterations);
-        most = std::max(most, iterations);
+        bin.max_iterations = std::max(bin.max_iterations, iterations);
+        max_iterations = std::max(max_iterations, iterations);
     }
 
-    std::vector<Bin> bins;
-    int most = 0;
+    std::vector<IterationBin> bins;
+    int max_iterations = 0;
 
 private:
-    const long in_a_bin;
+    const long steps_per_bin;
 };
 
 struct IterationsRun : Run {
-    std::vector<Bin> bins;
-    int most = 0;
+    std::vector<IterationBin> bins;
+    int max_iterations = 0;
 
     double mean() const { return failed() ? std::nan("") : statistics.iterations_per_step(); }
 };
 
 void compute(IterationsRun& run, const StudyOptions& options)
 {
-    IterationsOfSteps steps(lie::TimeGrid::over(run.c->end, run.h).steps);
-    lie::Observer* observers[] = {&steps};
+    IterationRecorder recorder(lie::TimeGrid::over(run.c->end, run.h).steps);
+    lie::Observer* observers[] = {&recorder};
     march(run, options.settings, observers);
-    run.bins = std::move(steps.bins);
-    run.most = steps.most;
+    run.bins = std::move(recorder.bins);
+    run.max_iterations = recorder.max_iterations;
 }
 
 Table as_table(const std::vector<IterationsRun>& runs)
@@ -82,33 +83,33 @@ Table as_table(const std::vector<IterationsRun>& runs)
                  {"status"}});
     for (const IterationsRun& run : runs)
         table.add({run.c->problem.name, run.scheme->name, run.h, static_cast<double>(run.statistics.steps),
-                   run.mean(), static_cast<double>(run.most),
+                   run.mean(), static_cast<double>(run.max_iterations),
                    static_cast<double>(run.statistics.factorizations),
                    static_cast<double>(run.statistics.refactorizations), run.status});
     return table;
 }
 
-/// A line for each scheme, mean and most for each step
+/// One row for each scheme; mean and maximum for each step size
 void print(const std::vector<IterationsRun>& runs, const Benchmark& c, const Schemes& schemes,
            const std::vector<double>& steps, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}};
-    std::vector<std::string> heads;
-    for (const double h : steps) heads.push_back(fmt::format("h = {:.0e} s", h));
-    for (const std::string& head : heads)
-        columns.insert(columns.end(), {{head, "{:.2f}"}, {"most", "{:.0f}"}});
+    std::vector<std::string> headings;
+    for (const double h : steps) headings.push_back(fmt::format("h = {:.0e} s", h));
+    for (const std::string& heading : headings)
+        columns.insert(columns.end(), {{heading, "{:.2f}"}, {"max", "{:.0f}"}});
     Table table(columns);
     for (const lie::Scheme* s : schemes) {
         std::vector<Table::Cell> row = {s->name};
         for (const IterationsRun& run : runs) {
             if (run.c != &c || run.scheme != s) continue;
             row.emplace_back(run.failed() ? Table::Cell(run.status) : Table::Cell(run.mean()));
-            row.emplace_back(static_cast<double>(run.most));
+            row.emplace_back(static_cast<double>(run.max_iterations));
         }
         table.add(row);
     }
-    out << fmt::format("\n{}, over {:g} s: Newton iterations of a step, mean and most\n", c.problem.name,
-                       c.end);
+    out << fmt::format("\n{}, end time {:g} s: Newton iterations per step, mean and maximum\n",
+                       c.problem.name, c.end);
     table.print(out);
 }
 
@@ -116,11 +117,11 @@ std::string over_time(const std::vector<IterationsRun>& runs)
 {
     std::string csv = "problem,integrator,h,t,mean,max\n";
     for (const IterationsRun& run : runs) {
-        for (const Bin& bin : run.bins) {
+        for (const IterationBin& bin : run.bins) {
             csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
             for (const double value :
                  {run.h, bin.end, static_cast<double>(bin.sum) / static_cast<double>(bin.steps),
-                  static_cast<double>(bin.most)}) {
+                  static_cast<double>(bin.max_iterations)}) {
                 csv += ',';
                 append_number(csv, value);
             }
@@ -137,7 +138,7 @@ ordered_json as_json(const std::vector<IterationsRun>& runs)
         ordered_json row = as_json(static_cast<const Run&>(run));
         row.update({{"steps", run.statistics.steps},
                     {"iterations_per_step", number_or_null(run.mean())},
-                    {"max_iterations", run.most},
+                    {"max_iterations", run.max_iterations},
                     {"factorizations", run.statistics.factorizations}});
         rows.push_back(row);
     }
@@ -171,16 +172,17 @@ int iterations(const StudyOptions& options)
         print(runs, c, schemes, steps, output.text);
         output.figures.push_back("iterations-" + c.problem.name + ".png");
     }
-    std::vector<Measured> came;
+    std::vector<Measured> measurements;
     for (const IterationsRun& run : runs)
-        came.push_back(
-            {.of = run.name(), .value = {{"iterations", run.mean()}, {"max_iterations", run.most}}});
-    return finish(options, output, run_pointers(runs), came);
+        measurements.push_back(
+            {.of = run.name(),
+             .value = {{"iterations", run.mean()}, {"max_iterations", run.max_iterations}}});
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
 const bool registered = register_study(
     Study{.kind = kind,
-          .answers = "Newton iterations of a step, over step size and time (Figs. 3.9, 3.11-3.13)",
+          .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
           .run = iterations});
 
 }  // namespace

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// CPU time of a step of the N-bar pendulum over N (Fang 2022, Figs. 3.14, 3.15).
+/// CPU time per step of the N-bar pendulum over N (Fang 2022, Figs. 3.14, 3.15).
 ///
-/// Bars on ball joints fall from rest under gravity in a slanting direction, each spinning about its own long
-/// axis at a rate from --seed. For each N and scheme: thread CPU time of a step, the median of the repeats, its
-/// ratio to rA-full-1, and the exponent p of time ~ N^p over N >= 64.
+/// N bars are connected by spherical joints. The gravity vector is inclined, and each bar initially spins
+/// about its longitudinal axis at a random rate (--seed); the bars have no other velocity. For each N and
+/// scheme: thread CPU time per step (median of the repeats), its ratio to rA-full-1, and the exponent p of
+/// time ~ N^p, fitted for N >= 64.
 
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
@@ -23,44 +26,45 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "scaling";
-const std::string compared_with = "rA-full-1";
-constexpr int many = 64;  // bars, from which the exponent is taken: below, what does not grow with N shows
+const std::string baseline = "rA-full-1";
+constexpr int fit_from = 64;  // smallest N of the fit; below, the costs independent of N matter
 
 struct ScalingRun : TimedRun {
     int N = 0;
-    double start_seconds = 0;     ///< wall time of reading the model and starting it
-    double ratio = std::nan("");  ///< to rA-full-1
+    double start_seconds = 0;     ///< wall time to read the model and find its start [s]
+    double ratio = std::nan("");  ///< of the time per step to that of rA-full-1
 };
 
-struct Chains {
+struct ChainBenchmarks {
     std::vector<int> N;
     std::vector<Benchmark> all;
     std::vector<double> start_seconds;
 };
 
-Chains chains(const StudyOptions& options)
+ChainBenchmarks chains(const StudyOptions& options)
 {
-    Chains chains;
+    ChainBenchmarks chains;
     chains.N =
         options.bars.empty() ? std::vector<int>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024} : options.bars;
     chains.all.resize(chains.N.size());
     chains.start_seconds.resize(chains.N.size());
     const auto end = [](const dae::Description&) { return 0.1; };
-    Pool(options.jobs, options.quiet ? "" : "starts", static_cast<long>(chains.N.size())).run([&](long k) {
-        const auto begin = std::chrono::steady_clock::now();
-        chains.all[k] = make_benchmark(spinning_n_pendulum(chains.N[k], options.seed), options, end);
-        chains.start_seconds[k] =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    });
+    Pool(options.jobs, options.quiet ? "" : "reading models", static_cast<long>(chains.N.size()))
+        .run([&](long k) {
+            const auto begin = std::chrono::steady_clock::now();
+            chains.all[k] = make_benchmark(spinning_n_pendulum(chains.N[k], options.seed), options, end);
+            chains.start_seconds[k] =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        });
     return chains;
 }
 
-/// Time over N of one scheme, N >= many
+/// Exponent of the time per step over N of one scheme, N >= fit_from
 Exponent exponent_of(const std::vector<ScalingRun>& runs, const lie::Scheme* scheme)
 {
     std::vector<double> N, seconds;
     for (const ScalingRun& run : runs)
-        if (run.scheme == scheme && run.N >= many && !run.failed()) {
+        if (run.scheme == scheme && run.N >= fit_from && !run.failed()) {
             N.push_back(run.N);
             seconds.push_back(run.microseconds().median);
         }
@@ -102,25 +106,25 @@ void print(const std::vector<ScalingRun>& runs, const StudyOptions& options, std
                  {"max", "{:.2f}"},
                  {"us/step/N", "{:.3f}"},
                  {"iter", "{:.2f}"},
-                 {"over " + compared_with, "{:.3f}"},
+                 {"time / " + baseline, "{:.3f}"},
                  {"status"}});
     for (const ScalingRun& run : runs)
         table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
                    run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
                    run.statistics.iterations_per_step(), run.ratio, run.status});
     const ScalingRun& first = runs.front();
-    out << fmt::format("\nN-bar pendulum, h = {:g} s, over {:g} s, seed {}: thread CPU time of a step\n",
+    out << fmt::format("\nN-bar pendulum, h = {:g} s, end time {:g} s, seed {}: thread CPU time per step\n",
                        first.h, first.c->end, options.seed);
     table.print(out);
 }
 
-/// The exponents, and the mean ratio over N: the dissertation's 52 %
+/// The exponents, and the mean over N of the time ratio (52 % in the dissertation)
 void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std::ostream& out)
 {
     Table table({{"integrator"},
-                 {fmt::format("exponent, N >= {}", many), "{:.3f}"},
-                 {"largest between neighbours", "{:.3f}"},
-                 {"mean over " + compared_with, "{:.3f}"}});
+                 {fmt::format("exponent, N >= {}", fit_from), "{:.3f}"},
+                 {"largest local exponent", "{:.3f}"},
+                 {"mean time / " + baseline, "{:.3f}"}});
     for (const lie::Scheme* s : schemes) {
         double sum = 0;
         int count = 0;
@@ -154,18 +158,20 @@ int scaling(const StudyOptions& options)
 {
     check_keys(kind, options, std::vector<std::string>{"exponent", "largest_exponent", "ratio_to_full"});
     if (!options.problems.empty())
-        throw UsageError("study scaling: is of the N-bar pendulum; --bars N1,N2,... says of which N");
+        throw UsageError(
+            "study scaling: the model is the N-bar pendulum and --problem is not accepted; set N by --bars "
+            "N1,N2,...");
     const double h = one_step(kind, options, 1e-3);
     const Schemes schemes =
         fixed_step_schemes(kind, options, {"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
-    const Chains of = chains(options);
+    const ChainBenchmarks chain = chains(options);
     std::vector<ScalingRun> runs;
-    for (size_t k = 0; k < of.N.size(); ++k) {
-        check_steps(kind, of.all[k], {h});
+    for (size_t k = 0; k < chain.N.size(); ++k) {
+        check_steps(kind, chain.all[k], {h});
         for (const lie::Scheme* s : schemes) {
             ScalingRun run;
-            run.c = &of.all[k], run.scheme = s, run.h = h, run.N = of.N[k];
-            run.start_seconds = of.start_seconds[k];
+            run.c = &chain.all[k], run.scheme = s, run.h = h, run.N = chain.N[k];
+            run.start_seconds = chain.start_seconds[k];
             runs.push_back(run);
         }
     }
@@ -175,36 +181,39 @@ int scaling(const StudyOptions& options)
     for (ScalingRun& run : runs) timed.push_back(&run);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
     for (ScalingRun& run : runs)
-        for (const ScalingRun& full : runs)
-            if (full.N == run.N && full.scheme->name == compared_with) run.ratio = studies::ratio(run, full);
+        for (const ScalingRun& baseline_run : runs)
+            if (baseline_run.N == run.N && baseline_run.scheme->name == baseline)
+                run.ratio = studies::ratio(run, baseline_run);
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
     output.figures = {"scaling.png"};
     print(runs, options, output.text);
     print_fits(runs, schemes, output.text);
     output.text << fmt::format(
-        "\nmedian, min and max of {} repeats, {} side by side; slowest start {:.2f} s\n", options.repeats,
-        options.jobs, *std::max_element(of.start_seconds.begin(), of.start_seconds.end()));
-    std::vector<Measured> came;
+        "\nmedian, min and max of {} repeats; parallel runs: {}; longest time to read a model and find its "
+        "start: {:.2f} s\n",
+        options.repeats, options.jobs,
+        *std::max_element(chain.start_seconds.begin(), chain.start_seconds.end()));
+    std::vector<Measured> measurements;
     ordered_json exponents = ordered_json::object();
     for (const lie::Scheme* s : schemes) {
         const Exponent p = exponent_of(runs, s);
-        came.push_back(
+        measurements.push_back(
             {.of = s->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
         exponents[s->name] = {{"fitted", number_or_null(p.fitted)},
                               {"largest_local", number_or_null(p.largest_local)}};
     }
     output.json["exponents"] = exponents;
     for (const ScalingRun& run : runs)
-        if (run.scheme->name != compared_with)
-            came.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
-    return finish(options, output, run_pointers(runs), came);
+        if (run.scheme->name != baseline)
+            measurements.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
 const bool registered =
     register_study(Study{.kind = kind,
-                         .answers = "CPU time of a step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                         .also = takes::repeats | takes::bars,
+                         .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+                         .accepted = takes::repeats | takes::bars,
                          .run = scaling});
 
 }  // namespace

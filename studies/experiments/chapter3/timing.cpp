@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// CPU time of a step (Fang 2022, Fig. 3.10).
+/// CPU time per step (Fang 2022, Fig. 3.10).
 ///
-/// For each problem, step and scheme: thread CPU time over the whole run, divided by its steps; the median of
-/// the repeats, the least and the most. Nothing is observed or written while the clock runs. The ratio is that
-/// to rA-full-1 on the same problem at the same step: below 1 is faster.
+/// For each problem, step size and scheme, the thread CPU time of the whole run is divided by the number of
+/// steps. The table contains the median, minimum and maximum of the repeats. No observer is active and
+/// nothing is written during the measurement. The ratio is relative to rA-full-1 on the same problem with the
+/// same step; a ratio below 1 means faster.
 
+#include "lie/schemes.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
 #include "studies/framework/stopwatch.hpp"
@@ -19,13 +21,13 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "timing";
-const std::string compared_with = "rA-full-1";
+const std::string baseline = "rA-full-1";
 
 struct StepTimeRun : TimedRun {
     double ratio = std::nan("");  ///< to rA-full-1
 };
 
-/// Problem by problem, step by step, all schemes: neighbours are timed one right after the other.
+/// All runs, ordered by problem, step and scheme. Runs that are compared are timed directly after each other.
 std::vector<StepTimeRun> runs_of(const std::vector<Benchmark>& all, const Schemes& schemes,
                                  const std::vector<double>& steps)
 {
@@ -43,9 +45,9 @@ std::vector<StepTimeRun> runs_of(const std::vector<Benchmark>& all, const Scheme
 void set_ratios(std::vector<StepTimeRun>& runs)
 {
     for (StepTimeRun& run : runs)
-        for (const StepTimeRun& full : runs)
-            if (full.c == run.c && full.h == run.h && full.scheme->name == compared_with)
-                run.ratio = studies::ratio(run, full);
+        for (const StepTimeRun& baseline_run : runs)
+            if (baseline_run.c == run.c && baseline_run.h == run.h && baseline_run.scheme->name == baseline)
+                run.ratio = studies::ratio(run, baseline_run);
 }
 
 Table as_table(const std::vector<StepTimeRun>& runs)
@@ -80,17 +82,17 @@ void print(const std::vector<StepTimeRun>& runs, const Benchmark& c, std::ostrea
                  {"min", "{:.3f}"},
                  {"max", "{:.3f}"},
                  {"iter", "{:.2f}"},
-                 {"over " + compared_with, "{:.3f}"},
+                 {"time / " + baseline, "{:.3f}"},
                  {"status"}});
     for (const StepTimeRun& run : runs)
         if (run.c == &c)
             table.add({run.h, run.scheme->name, run.microseconds().median, run.microseconds().least,
                        run.microseconds().most, run.statistics.iterations_per_step(), run.ratio, run.status});
-    out << fmt::format("\n{}, over {:g} s: thread CPU time of a step\n", c.problem.name, c.end);
+    out << fmt::format("\n{}, end time {:g} s: thread CPU time per step\n", c.problem.name, c.end);
     table.print(out);
 }
 
-/// What the dissertation reports: half-implicit over fully implicit
+/// CPU time ratio reported in the dissertation: half-implicit over fully implicit scheme
 void print_half_over_full(const std::vector<StepTimeRun>& runs, std::ostream& out)
 {
     Table table({{"problem"}, {"h [s]", "{:.1e}"}, {"rA-half-1 / rA-full-1", "{:.3f}"}});
@@ -102,7 +104,7 @@ void print_half_over_full(const std::vector<StepTimeRun>& runs, std::ostream& ou
         sum += run.ratio, ++count;
     }
     if (count == 0) return;
-    out << "\nhalf-implicit over fully implicit, CPU time of a step\n";
+    out << "\nratio of the CPU times per step, half-implicit over fully implicit\n";
     table.print(out);
     out << fmt::format("mean {:.3f}\n", sum / static_cast<double>(count));
 }
@@ -143,20 +145,20 @@ int timing(const StudyOptions& options)
     output.figures = {"timing.png"};
     for (const Benchmark& c : all) print(runs, c, output.text);
     print_half_over_full(runs, output.text);
-    output.text << fmt::format("\nmedian, min and max of {} repeats, {} side by side\n", options.repeats,
+    output.text << fmt::format("\nmedian, min and max of {} repeats; parallel runs: {}\n", options.repeats,
                                options.jobs);
-    std::vector<Measured> came;
+    std::vector<Measured> measurements;
     for (const StepTimeRun& run : runs) {
-        came.push_back({.of = run.name(), .value = {{"us_per_step", run.microseconds().median}}});
-        if (run.scheme->name != compared_with) came.back().value["ratio_to_full"] = run.ratio;
+        measurements.push_back({.of = run.name(), .value = {{"us_per_step", run.microseconds().median}}});
+        if (run.scheme->name != baseline) measurements.back().value["ratio_to_full"] = run.ratio;
     }
-    return finish(options, output, run_pointers(runs), came);
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
 const bool registered =
     register_study(Study{.kind = kind,
-                         .answers = "CPU time of a step by problem, scheme and step size (Fig. 3.10)",
-                         .also = takes::repeats,
+                         .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
+                         .accepted = takes::repeats,
                          .run = timing});
 
 }  // namespace

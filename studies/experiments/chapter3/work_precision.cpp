@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Error against CPU time: what each integrator asks for an accuracy.
+/// Work-precision diagrams: error against CPU time of each integrator.
 ///
-/// Schemes with a fixed step go through --steps, those that choose their own through --rtols. For each run: the
-/// errors of errors.hpp, and the thread CPU time of the march, the median of the repeats, with nothing observed
-/// or written while the clock runs. For each problem a table says what each needs for an rms error of 1e-3 m in
-/// r, interpolated between its neighbouring runs on logarithmic axes.
+/// Schemes with a fixed step run with each of --steps, schemes with step-size control with each of --rtols.
+/// Each run has the errors of errors.hpp and the thread CPU time of the integration (median of the repeats,
+/// without observers or output). A second table for each problem contains the CPU time that an integrator
+/// needs for an rms error of 1e-3 m in r, interpolated between neighbouring runs on logarithmic axes.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/reference_solution.hpp"
@@ -25,7 +28,7 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "work-precision";
-constexpr double asked = 1e-3;  // rms of r [m]
+constexpr double target_error = 1e-3;  // rms error of r for which the CPU time is interpolated [m]
 
 struct WorkRun : TimedRun {
     Errors errors;
@@ -40,19 +43,20 @@ void compute(WorkRun& run, const StudyOptions& options)
     run.errors = evaluated.errors;
 }
 
-/// Chains of many bars are chaotic: after a second or two the errors of all but the smallest steps are as large
-/// as the motion, and their order cannot be seen. 1.2 s, so that steps like 4e-3 s meet all the instants.
+/// End time [s]. Chains of more than two bars are chaotic: after one or two seconds the errors of all but the
+/// smallest steps are as large as the motion, and the order is not visible. The end time of 1.2 s is a
+/// multiple of steps such as 4e-3 s, so that all instants of the reference solution are nodes.
 double end_of(const dae::Description& d)
 {
     return d.name.starts_with("n_pendulum") && d.model->bodies() > 2 ? std::min(d.end, 1.2) : d.end;
 }
 
-/// Of one scheme on one problem, from the largest step or tolerance down
-using Series = std::vector<const WorkRun*>;
+/// Runs of one scheme on one problem, by decreasing step or tolerance
+using WorkSeries = std::vector<const WorkRun*>;
 
-std::vector<Series> series_of(const std::vector<WorkRun>& runs)
+std::vector<WorkSeries> series_of(const std::vector<WorkRun>& runs)
 {
-    std::vector<Series> all;
+    std::vector<WorkSeries> all;
     for (const WorkRun& run : runs) {
         if (all.empty() || all.back().front()->c != run.c || all.back().front()->scheme != run.scheme)
             all.emplace_back();
@@ -61,12 +65,12 @@ std::vector<Series> series_of(const std::vector<WorkRun>& runs)
     return all;
 }
 
-WorkNeeded needed(const Series& series)
+WorkNeeded work_to_target(const WorkSeries& series)
 {
     std::vector<double> e, seconds;
     for (const WorkRun* run : series)
         e.push_back(run->errors.value[norm::r]), seconds.push_back(run->seconds_of_repeats().median);
-    return work_needed(e, seconds, asked);
+    return work_needed(e, seconds, target_error);
 }
 
 Table as_table(const std::vector<WorkRun>& runs)
@@ -113,43 +117,46 @@ void print(const std::vector<WorkRun>& runs, const Benchmark& c, std::ostream& o
                  {"status"}});
     for (const WorkRun& run : runs)
         if (run.c == &c)
-            table.add({run.scheme->name, run.grain(), run.errors.value[norm::r], run.errors.value[norm::v],
-                       run.errors.value[norm::Q], 1e3 * run.seconds_of_repeats().median,
-                       static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
-                       run.status});
-    out << fmt::format("\n{}, over {:g} s; truth: {}\n", c.problem.name, c.end, c.reference_name);
+            table.add({run.scheme->name, run.resolution(), run.errors.value[norm::r],
+                       run.errors.value[norm::v], run.errors.value[norm::Q],
+                       1e3 * run.seconds_of_repeats().median, static_cast<double>(run.statistics.steps),
+                       run.statistics.iterations_per_step(), run.status});
+    out << fmt::format("\n{}, end time {:g} s; reference solution: {}\n", c.problem.name, c.end,
+                       c.reference_name);
     table.print(out);
 }
 
-void print_needed(const std::vector<Series>& all, const Benchmark& c, std::ostream& out)
+void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ostream& out)
 {
-    const Series* fastest = nullptr;
-    for (const Series& series : all)
-        if (series.front()->c == &c && !std::isnan(needed(series).seconds) &&
-            (fastest == nullptr || needed(series).seconds < needed(*fastest).seconds))
+    const WorkSeries* fastest = nullptr;
+    for (const WorkSeries& series : all)
+        if (series.front()->c == &c && !std::isnan(work_to_target(series).seconds) &&
+            (fastest == nullptr || work_to_target(series).seconds < work_to_target(*fastest).seconds))
             fastest = &series;
-    Table table(
-        {{"integrator"}, {fmt::format("CPU [ms] for r = {:.0e} m", asked)}, {"over the fastest", "{:.2f}"}});
-    for (const Series& series : all) {
+    Table table({{"integrator"},
+                 {fmt::format("CPU [ms] for error r = {:.0e} m", target_error)},
+                 {"time / fastest", "{:.2f}"}});
+    for (const WorkSeries& series : all) {
         if (series.front()->c != &c) continue;
-        const WorkNeeded w = needed(series);
+        const WorkNeeded w = work_to_target(series);
         table.add(
             {series.front()->scheme->name,
              std::isnan(w.seconds) ? "-" : fmt::format("{}{:.3f}", w.at_most ? "<= " : "", 1e3 * w.seconds),
-             fastest != nullptr ? w.seconds / needed(*fastest).seconds : std::nan("")});
+             fastest != nullptr ? w.seconds / work_to_target(*fastest).seconds : std::nan("")});
     }
     out << '\n';
     table.print(out);
     out << (fastest != nullptr
-                ? fmt::format("fastest to an rms of {:.0e} m: {}\n", asked, fastest->front()->scheme->name)
-                : fmt::format("none reaches an rms of {:.0e} m\n", asked));
+                ? fmt::format("fastest integrator for an rms error of {:.0e} m: {}\n", target_error,
+                              fastest->front()->scheme->name)
+                : fmt::format("no integrator reaches an rms error of {:.0e} m\n", target_error));
 }
 
-ordered_json as_json(const std::vector<Series>& all)
+ordered_json as_json(const std::vector<WorkSeries>& all)
 {
     ordered_json out = ordered_json::array();
-    for (const Series& series : all) {
-        const WorkNeeded w = needed(series);
+    for (const WorkSeries& series : all) {
+        const WorkNeeded w = work_to_target(series);
         ordered_json rows = ordered_json::array();
         for (const WorkRun* run : series) {
             ordered_json row = as_json(static_cast<const Run&>(*run));
@@ -162,8 +169,8 @@ ordered_json as_json(const std::vector<Series>& all)
         }
         out.push_back({{"problem", series.front()->c->problem.name},
                        {"integrator", series.front()->scheme->name},
-                       {"truth", series.front()->c->reference_name},
-                       {"asked_r", asked},
+                       {"reference", series.front()->c->reference_name},
+                       {"asked_r", target_error},
                        {"cpu_seconds_needed", number_or_null(w.seconds)},
                        {"at_most", w.at_most},
                        {"rows", rows}});
@@ -196,12 +203,13 @@ int work_precision(const StudyOptions& options)
     std::vector<WorkRun> runs;
     for (const Benchmark& c : all)
         for (const lie::Scheme* s : schemes)
-            for (const double grain : s->adaptive ? rtols : steps) {
+            for (const double resolution : s->adaptive ? rtols : steps) {
                 WorkRun run;
                 run.c = &c, run.scheme = s;
-                // No more nodes than the rms norms need: an adaptive scheme may stop at each.
-                run.h = s->adaptive ? c.instants.dt * c.instants.stride : grain;
-                run.rtol = s->adaptive ? grain : 0;
+                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each
+                // node.
+                run.h = s->adaptive ? c.instants.dt * c.instants.stride : resolution;
+                run.rtol = s->adaptive ? resolution : 0;
                 runs.push_back(run);
             }
     Pool(options.jobs, options.quiet ? "" : kind + ", errors", static_cast<long>(runs.size()))
@@ -210,30 +218,30 @@ int work_precision(const StudyOptions& options)
     for (WorkRun& run : runs) timed.push_back(&run);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
 
-    const std::vector<Series> series = series_of(runs);
+    const std::vector<WorkSeries> series = series_of(runs);
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(series)}}};
     for (const Benchmark& c : all) print(runs, c, output.text);
     for (const Benchmark& c : all) {
         output.text << '\n' << c.problem.name << ':';
-        print_needed(series, c, output.text);
+        print_work(series, c, output.text);
         output.figures.push_back("work-precision-" + c.problem.name + ".png");
     }
     output.text << fmt::format(
-        "\nCPU time of a run: median of {} repeats, {} side by side. <=: the cheapest run is "
-        "already this accurate\n",
+        "\nCPU time of a run: median of {} repeats; parallel runs: {}. <=: the fastest run already "
+        "reaches this accuracy\n",
         options.repeats, options.jobs);
-    std::vector<Measured> came;
-    for (const Series& s : series)
-        came.push_back({.of = s.front()->scheme->name + " on " + s.front()->c->problem.name,
-                        .value = {{"cpu_seconds_needed", needed(s).seconds}}});
-    return finish(options, output, run_pointers(runs), came);
+    std::vector<Measured> measurements;
+    for (const WorkSeries& s : series)
+        measurements.push_back({.of = s.front()->scheme->name + " on " + s.front()->c->problem.name,
+                                .value = {{"cpu_seconds_needed", work_to_target(s).seconds}}});
+    return finish(options, output, run_pointers(runs), measurements);
 }
 
-const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "error against CPU time, also of integrators that choose their own steps",
-                         .also = takes::reference | takes::rtols | takes::repeats,
-                         .run = work_precision});
+const bool registered = register_study(
+    Study{.kind = kind,
+          .answers = "error against CPU time of all integrators, including those with step-size control",
+          .accepted = takes::reference | takes::rtols | takes::repeats,
+          .run = work_precision});
 
 }  // namespace
 

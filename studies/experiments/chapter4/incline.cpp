@@ -32,11 +32,12 @@ contact::Scene scene(const Incline& incline)
     return scene;
 }
 
-Motions motions(const contact::Scene& of)
+InclineState state_of(const contact::Scene& scene)
 {
-    const contact::Deflections& history = of.pair[0].history.deflections;
-    if (history.slide.slipping) return history.roll_i.slipping ? Motions::rolls_and_slips : Motions::slips;
-    return history.roll_i.slipping ? Motions::rolls : Motions::rest;
+    const contact::Deflections& history = scene.pair[0].history.deflections;
+    if (history.slide.slipping)
+        return history.roll_i.slipping ? InclineState::rolling_with_slip : InclineState::slip;
+    return history.roll_i.slipping ? InclineState::rolling : InclineState::rest;
 }
 
 double rest_limit(double eta_r) { return std::atan(std::min(2 * eta_r * Incline::mu_k, Incline::mu_s)); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A sphere that is pushed up an incline.                                              Fang (2022), Secs. 4.4.4, A.7
+/// A sphere pushed up an incline.                                               Fang (2022), Secs. 4.4.4, A.7
 
 #pragma once
 
@@ -7,14 +7,15 @@
 
 namespace hilda::studies {
 
-/// R = 0.2 m, m = 5 kg, g = 9.8 m/s², pressed on the incline by m g cos α; μ_s = 0.25, μ_k = 0.2, K_E = 1e5 N/m. It
-/// begins without turning, at v_0 up the slope. The published sweep has half of the critical damping.
+/// Parameters of the sphere: R = 0.2 m, m = 5 kg, g = 9.8 m/s², constant normal force m g cos α, μ_s = 0.25,
+/// μ_k = 0.2, K_E = 1e5 N/m. The sphere starts with velocity v_0 up the slope and without rotation. The
+/// damping ratio ζ = 0.5 is that of the published sweep.
 struct Incline {
     double alpha = 0;  ///< [rad]
     double eta_r = 0.3;
-    bool dissertation = true;  ///< friction with the dissertation's choices, or balanced
-    double v_0 = 0.5;          ///< [m/s]
-    double zeta = 0.5;
+    bool dissertation = true;  ///< preset of the friction law: dissertation or balanced
+    double v_0 = 0.5;          ///< initial velocity [m/s]
+    double zeta = 0.5;         ///< damping ratio of the friction springs
 
     static constexpr double R = 0.2;  ///< [m]
     static constexpr double mu_s = 0.25, mu_k = 0.2;
@@ -23,14 +24,16 @@ struct Incline {
 /// Body 0 is the sphere, body 1 the incline; x points up the slope, z away from it.
 contact::Scene scene(const Incline& incline);
 
-/// Whether the sphere slides and rolls, by what its friction springs do                           Table 4.4
-enum class Motions { rest, rolls, rolls_and_slips, slips };
-Motions motions(const contact::Scene& of);
+/// State of motion, from the modes of the sliding and rolling friction springs                      Table 4.4
+enum class InclineState { rest, rolling, rolling_with_slip, slip };
+InclineState state_of(const contact::Scene& scene);
 
-/// Where one motion goes over into another, by the Coulomb bounds alone [rad]. A sphere that comes to rest after
-/// rolling back is held by the kinetic torque, tan α = 2 η_r μ_k, where A.7 has μ_s.
+/// Largest slope on which the sphere comes to rest [rad], from the Coulomb bounds: tan α = 2 η_r μ_k, at most
+/// μ_s. A.7 has μ_s instead of μ_k. The kinetic value applies, because the sphere rolls back before it comes
+/// to rest.
 double rest_limit(double eta_r);
-/// tan α = 7/2 μ_s - 5 η_r μ_k: beyond, rolling would take more than μ_s N                                A.7
+/// Largest slope of rolling without slip [rad]: tan α = 7/2 μ_s - 5 η_r μ_k. On steeper slopes rolling
+/// requires a friction force above μ_s N (A.7).
 double rolling_limit(double eta_r);
 
 }  // namespace hilda::studies

@@ -12,11 +12,11 @@ using contact::Inertia;
 using contact::Motion;
 using lie::Mat3;
 
-constexpr double m = 1;     // of a lower sphere [kg]
+constexpr double m = 1;     // mass of a lower sphere [kg]
 constexpr double g = 9.81;  // [m/s²]
 constexpr double restitution = 0.4;
-constexpr double fallen = 0.1;  // over R
-constexpr double quiet = 0.2;   // [s]
+constexpr double collapse_drop = 0.1;      // descent of the upper sphere that counts as collapse, over R
+constexpr double time_without_slip = 0.2;  // after this time the stack is stable [s]
 
 Inertia ball(double mass) { return {mass, 0.4 * mass * Stack::R * Stack::R * Mat3::Identity()}; }
 
@@ -27,8 +27,8 @@ Motion at(double x, double z)
     return motion;
 }
 
-/// Whether a friction spring slips, or there is no contact
-bool gives(const contact::ContactHistory& history)
+/// Whether a friction spring slips or the contact is open
+bool slips_or_separated(const contact::ContactHistory& history)
 {
     const contact::Deflections& h = history.deflections;
     return !history.touching || h.slide.slipping || h.roll_i.slipping || h.roll_j.slipping || h.spin.slipping;
@@ -67,24 +67,24 @@ contact::Scene scene(const Stack& stack)
     return scene;
 }
 
-Fate fate(contact::Scene& of, double h, double end)
+StackOutcome run_until_decided(contact::Scene& scene, double h, double end)
 {
-    const double lowest = of.body[stacked::top].r.z() - fallen * Stack::R;
-    Fate fate;
-    for (double slipped = of.t; of.t < end && fate.is == Fate::undecided;) {
-        of.step(h);
-        for (const contact::Scene::Pair& pair : of.pair)
-            if (gives(pair.history)) slipped = of.t;
-        if (of.body[stacked::top].r.z() < lowest)
-            fate.is = Fate::collapses;
-        else if (of.t - slipped > quiet)
-            fate.is = Fate::stands;
+    const double lowest = scene.body[stacked::top].r.z() - collapse_drop * Stack::R;
+    StackOutcome outcome;
+    for (double last_slip = scene.t; scene.t < end && outcome.state == StackOutcome::undecided;) {
+        scene.step(h);
+        for (const contact::Scene::Pair& pair : scene.pair)
+            if (slips_or_separated(pair.history)) last_slip = scene.t;
+        if (scene.body[stacked::top].r.z() < lowest)
+            outcome.state = StackOutcome::collapses;
+        else if (scene.t - last_slip > time_without_slip)
+            outcome.state = StackOutcome::stable;
     }
-    const contact::Deflections& history = of.pair[stacked::right_ground].history.deflections;
-    fate.t = of.t;
-    fate.rolls = history.roll_i.slipping;
-    fate.slides = history.slide.slipping;
-    return fate;
+    const contact::Deflections& history = scene.pair[stacked::right_ground].history.deflections;
+    outcome.t = scene.t;
+    outcome.rolls = history.roll_i.slipping;
+    outcome.slides = history.slide.slipping;
+    return outcome;
 }
 
 }  // namespace hilda::studies

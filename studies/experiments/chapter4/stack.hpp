@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Three stacked spheres: two on the ground, one above and between them.                Fang (2022), Sec. 4.4.7
+/// Stack of three spheres: two on the ground and one on top of them.                  Fang (2022), Sec. 4.4.7
 
 #pragma once
 
@@ -7,14 +7,15 @@
 
 namespace hilda::studies {
 
-/// R = 0.15 m; 1 kg below, each with E = 2 MPa, ν = 0.3, a restitution of 0.4, and so the ground. What the text
-/// leaves open was found by repeating the published run: μ_s = 0.25, μ_k = 0.2, K_E = 1e5 N/m, ζ = 1, g = 9.81 m/s²,
-/// and an effective mass of 0.5 kg in the normal damping on the ground, as if the ground had the mass of a sphere.
+/// Parameters of the stack: R = 0.15 m, lower spheres of 1 kg; spheres and ground have E = 2 MPa, ν = 0.3 and
+/// a coefficient of restitution of 0.4. The dissertation does not state the following values; they were
+/// identified from the published run: μ_s = 0.25, μ_k = 0.2, K_E = 1e5 N/m, ζ = 1, g = 9.81 m/s², and an
+/// effective mass of 0.5 kg in the normal damping on the ground (as if the ground had the mass of a sphere).
 struct Stack {
-    double gap = 0.3;  ///< between the lower spheres, over R
-    double top = 1;    ///< mass of the upper one [kg]
-    double eta_r = 0.2;
-    bool dissertation = true;  ///< friction with the dissertation's choices, or balanced
+    double gap = 0.3;          ///< gap between the lower spheres, over R
+    double top = 1;            ///< mass of the upper sphere [kg]
+    double eta_r = 0.2;        ///< rolling resistance
+    bool dissertation = true;  ///< preset of the friction law: dissertation or balanced
 
     static constexpr double R = 0.15;  ///< [m]
 };
@@ -24,20 +25,23 @@ enum Body { left, right, top, ground };
 enum ContactNumber { top_left, top_right, left_ground, right_ground };
 }  // namespace stacked
 
-/// At t = 0, at rest: the lower spheres as deep in the ground as carries them alone, the upper one touches them
-/// with no overlap.
+/// Initial state, at rest: the overlap of the lower spheres with the ground supports their own weight; the
+/// upper sphere touches them with zero overlap.
 contact::Scene scene(const Stack& stack);
 
-/// What becomes of a stack
-struct Fate {
-    enum { stands, collapses, undecided } is = undecided;
-    double t = 0;                        ///< when that was clear [s]
-    bool rolls = false, slides = false;  ///< the lower spheres on the ground, at that time
+/// Outcome of a run
+struct StackOutcome {
+    enum { stable, collapses, undecided } state = undecided;
+    double t = 0;                        ///< time at which the outcome was determined [s]
+    bool rolls = false, slides = false;  ///< motion of the right lower sphere on the ground at time t
 };
 
-/// Steps until the upper sphere has come down by a tenth of R, which no stack survives (a lower top pushes the
-/// lower spheres apart the harder), or until for 0.2 s no friction spring has slipped. By then the spheres only swing
-/// on springs that are damped, with a period of about 0.1 s, and what an amplitude did not break a smaller one does not.
-Fate fate(contact::Scene& of, double h, double end);
+/// Integrates with step h [s] until the outcome is determined, at most until `end` [s].
+///
+/// The stack collapses if the upper sphere has descended by R/10: the lower it is, the larger is the force
+/// that separates the lower spheres. The stack is stable if no friction spring has slipped for 0.2 s: the
+/// spheres then perform damped oscillations with a period of about 0.1 s, and the decreasing amplitude cannot
+/// cause slip again.
+StackOutcome run_until_decided(contact::Scene& scene, double h, double end);
 
 }  // namespace hilda::studies

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The mass that brings a stack of three spheres down, over the rolling resistance (Fang 2022, Fig. 4.19a).
+/// Critical mass of a stack of three spheres over the rolling resistance (Fang 2022, Fig. 4.19a).
 ///
-/// For each gap between the lower spheres and each η_r: the smallest mass of the upper sphere, in steps of a
-/// gram, with which the stack collapses, by bisection between a quarter of a kilogram and four. What gives way is what
-/// the lower spheres do on the ground when that mass comes down (Figs. 4.19c, e, g). --check sets what comes out beside
-/// what must, with one cell at a fifth of the step, and exits with 6 where a demand is not met.
+/// For each gap between the lower spheres and each η_r, the critical mass is the smallest mass of the upper
+/// sphere for which the stack collapses. It is found by bisection between 0.25 kg and 4 kg to one gram. The
+/// collapse mode is the motion of the lower spheres on the ground at the critical mass: rolling, sliding or
+/// both (Figs. 4.19c, e, g). The default preset is `dissertation`. --check compares the results with
+/// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
+/// fails.
 
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter4/stack.hpp"
@@ -29,11 +31,12 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kind = "stacking";
-constexpr double kilogram = 1000;               // [g]
-constexpr int finer_by = 5;                     // the step of the cell that --check runs again
-constexpr int lightest = 250, heaviest = 4000;  // a lighter sphere is unstable on dashpots of the mean mass
+constexpr double kilogram = 1000;  // [g]
+constexpr int refinement = 5;      // ratio of the steps of the cell that --check computes again
+// Bounds of the bisection [g]. A lighter upper sphere is unstable with the normal damping of the mean mass.
+constexpr int min_grams = 250, max_grams = 4000;
 
-struct ParameterGrid {
+struct StackGrid {
     std::string name;
     std::vector<double> gaps, etas;
 };
@@ -46,59 +49,60 @@ std::vector<double> etas()
     return all;
 }
 
-/// The default first
-const std::vector<ParameterGrid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
-                                          {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
+/// Grids of --grid; the first is the default
+const std::vector<StackGrid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
+                                      {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
 
-const ParameterGrid& grid(const StudyOptions& options)
+const StackGrid& grid(const StudyOptions& options)
 {
     std::vector<std::string> names;
-    for (const ParameterGrid& g : grids) names.push_back(g.name);
+    for (const StackGrid& g : grids) names.push_back(g.name);
     const std::string name = options.grid.empty() ? names.front() : one_of("--grid", options.grid, names);
     return grids[std::find(names.begin(), names.end(), name) - names.begin()];
 }
 
-struct Cell {
-    Stack stack;         ///< with the critical mass
-    Fate light, heavy;   ///< of a gram less, and of the critical mass
-    bool found = false;  ///< the critical mass lies between the lightest and the heaviest
+struct StackCell {
+    Stack stack;                      ///< the upper sphere has the critical mass
+    StackOutcome below, at_critical;  ///< outcomes one gram below and at the critical mass
+    bool found = false;               ///< the critical mass is within the bounds of the bisection
     double published = std::nan("");
     int runs = 0, undecided = 0;
 
     double m_c() const { return found ? stack.top : std::nan(""); }
 };
 
-std::string in_gaps(double gap) { return fmt::format("{:.2f}R", gap); }
+std::string gap_text(double gap) { return fmt::format("{:.2f}R", gap); }
 
-void bisect(Cell& cell, double h, double end)
+void bisect(StackCell& cell, double h, double end)
 {
-    const auto with = [&](int grams) {
+    const auto run_with = [&](int grams) {
         cell.stack.top = grams / kilogram;
-        contact::Scene of = scene(cell.stack);
-        if (cell.runs == 0) of.check(h);
-        const Fate f = fate(of, h, end);
+        contact::Scene run_scene = scene(cell.stack);
+        if (cell.runs == 0) run_scene.check(h);
+        const StackOutcome f = run_until_decided(run_scene, h, end);
         ++cell.runs;
-        cell.undecided += f.is == Fate::undecided;
+        cell.undecided += f.state == StackOutcome::undecided;
         return f;
     };
-    int lower = lightest, upper = heaviest;
-    cell.light = with(lower), cell.heavy = with(upper);
-    if (cell.light.is == Fate::collapses || cell.heavy.is != Fate::collapses) return;
+    int lower = min_grams, upper = max_grams;
+    cell.below = run_with(lower), cell.at_critical = run_with(upper);
+    if (cell.below.state == StackOutcome::collapses || cell.at_critical.state != StackOutcome::collapses)
+        return;
     while (upper - lower > 1) {
         const int middle = (lower + upper) / 2;
-        const Fate f = with(middle);
-        if (f.is == Fate::collapses)
-            upper = middle, cell.heavy = f;
+        const StackOutcome f = run_with(middle);
+        if (f.state == StackOutcome::collapses)
+            upper = middle, cell.at_critical = f;
         else
-            lower = middle, cell.light = f;
+            lower = middle, cell.below = f;
     }
     cell.stack.top = upper / kilogram;
     cell.found = true;
 }
 
-std::string is_regularised(const Cell& cell)
+std::string collapse_mode(const StackCell& cell)
 {
-    const Fate& f = cell.heavy;
+    const StackOutcome& f = cell.at_critical;
     return !cell.found           ? "-"
            : f.rolls && f.slides ? "both"
            : f.rolls             ? "rolling"
@@ -106,16 +110,16 @@ std::string is_regularised(const Cell& cell)
                                  : "-";
 }
 
-/// Of the masses that FILE has too
-struct Agreement {
+/// Differences to the masses of the file
+struct MassAgreement {
     long compared = 0;
     double rms = 0, largest = 0;  ///< [kg]
 };
 
-Agreement agreement(const std::vector<Cell>& cells)
+MassAgreement agreement(const std::vector<StackCell>& cells)
 {
-    Agreement a;
-    for (const Cell& cell : cells) {
+    MassAgreement a;
+    for (const StackCell& cell : cells) {
         const double difference = cell.m_c() - cell.published;
         if (std::isnan(difference)) continue;
         ++a.compared;
@@ -126,14 +130,14 @@ Agreement agreement(const std::vector<Cell>& cells)
     return a;
 }
 
-/// The masses of a table with columns eta_r, m_c_gap_0.20R, ... into their cells
-void read_published(std::vector<Cell>& cells, const std::string& file)
+/// Reads published masses from a table with columns eta_r, m_c_gap_0.20R, ... into the cells
+void read_published(std::vector<StackCell>& cells, const std::string& file)
 {
     const CsvTable table = read_csv_table(file);
     const std::vector<double> eta = table.values("eta_r");
     bool any = false;
-    for (Cell& cell : cells) {
-        const size_t column = table.column("m_c_gap_" + in_gaps(cell.stack.gap));
+    for (StackCell& cell : cells) {
+        const size_t column = table.column("m_c_gap_" + gap_text(cell.stack.gap));
         for (size_t k = 0; k < eta.size(); ++k)
             if (std::abs(eta[k] - cell.stack.eta_r) < 1e-9)
                 cell.published = table.rows[k][column], any = true;
@@ -141,15 +145,16 @@ void read_published(std::vector<Cell>& cells, const std::string& file)
     if (!any) throw lie::InvalidInput(file + ": has no eta_r of this grid");
 }
 
-/// Of the curve of one gap
-struct Curve {
-    double peak_eta = std::nan(""), peak_mass = 0, plateau = std::nan("");  ///< plateau: of the largest η_r
+/// Features of the curve of one gap
+struct MassCurve {
+    double peak_eta = std::nan(""), peak_mass = 0;
+    double plateau = std::nan("");  ///< mass at the largest η_r [kg]
 };
 
-Curve curve(const std::vector<Cell>& cells, double gap)
+MassCurve curve(const std::vector<StackCell>& cells, double gap)
 {
-    Curve c;
-    for (const Cell& cell : cells) {
+    MassCurve c;
+    for (const StackCell& cell : cells) {
         if (cell.stack.gap != gap) continue;
         if (cell.m_c() > c.peak_mass) c.peak_eta = cell.stack.eta_r, c.peak_mass = cell.m_c();
         c.plateau = cell.m_c();
@@ -157,85 +162,89 @@ Curve curve(const std::vector<Cell>& cells, double gap)
     return c;
 }
 
-Table as_table(const std::vector<Cell>& cells)
+Table as_table(const std::vector<StackCell>& cells)
 {
     Table table({{"gap"},
                  {"eta_r"},
                  {"critical_mass"},
-                 {"gives_way"},
+                 {"collapse_mode"},
                  {"published"},
                  {"difference"},
                  {"t_stands"},
                  {"t_collapses"},
                  {"runs"},
                  {"undecided"}});
-    for (const Cell& c : cells)
-        table.add({c.stack.gap, c.stack.eta_r, c.m_c(), is_regularised(c), c.published, c.m_c() - c.published,
-                   c.light.t, c.heavy.t, static_cast<double>(c.runs), static_cast<double>(c.undecided)});
+    for (const StackCell& c : cells)
+        table.add({c.stack.gap, c.stack.eta_r, c.m_c(), collapse_mode(c), c.published, c.m_c() - c.published,
+                   c.below.t, c.at_critical.t, static_cast<double>(c.runs),
+                   static_cast<double>(c.undecided)});
     return table;
 }
 
-void print(const std::vector<Cell>& cells, const ParameterGrid& g, std::ostream& out)
+void print(const std::vector<StackCell>& cells, const StackGrid& g, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"eta_r", "{:.2f}"}};
     for (const double gap : g.gaps)
-        columns.push_back({"gap " + in_gaps(gap), "{:.3f}"}), columns.push_back({"by"});
+        columns.push_back({"gap " + gap_text(gap), "{:.3f}"}), columns.push_back({"mode"});
     Table table(columns);
     for (size_t e = 0; e < g.etas.size(); ++e) {
         std::vector<Table::Cell> row = {g.etas[e]};
         for (size_t k = 0; k < g.gaps.size(); ++k) {
-            const Cell& cell = cells[k * g.etas.size() + e];
+            const StackCell& cell = cells[k * g.etas.size() + e];
             row.emplace_back(cell.m_c());
-            row.emplace_back(is_regularised(cell));
+            row.emplace_back(collapse_mode(cell));
         }
         table.add(row);
     }
     table.print(out);
 }
 
-/// What a curve must show with either preset: peaks where the published ones are, and the masses that came out when the
-/// published ones were reproduced
-struct Known {
+/// Reference values for both presets: the η_r of the published peaks, and the plateau masses [kg] computed
+/// when the published curves were reproduced
+struct ExpectedCurve {
     double gap, peak_eta, plateau;
 };
-constexpr std::array<Known, 5> known = {{{0.20, 0.21, 1.840},
-                                         {0.25, 0.22, 1.701},
-                                         {0.30, 0.23, 1.579},
-                                         {0.35, 0.23, 1.471},
-                                         {0.40, 0.24, 1.374}}};
-constexpr double same_mass = 0.005;  // [kg]: what the step and the preset change
+constexpr std::array<ExpectedCurve, 5> expected_curves = {{{0.20, 0.21, 1.840},
+                                                           {0.25, 0.22, 1.701},
+                                                           {0.30, 0.23, 1.579},
+                                                           {0.35, 0.23, 1.471},
+                                                           {0.40, 0.24, 1.374}}};
+constexpr double mass_tolerance = 0.005;  // [kg]; covers the influence of the step and of the preset
 
-const Known& known_of(double gap)
+const ExpectedCurve& expected_curve(double gap)
 {
-    return *std::find_if(known.begin(), known.end(), [&](const Known& k) { return k.gap == gap; });
+    return *std::find_if(expected_curves.begin(), expected_curves.end(),
+                         [&](const ExpectedCurve& k) { return k.gap == gap; });
 }
 
-/// The cell that is run with a fifth of the step too: at the peak of the middle gap, where rolling goes over into sliding
-const Cell& tried_finer(const std::vector<Cell>& cells, const ParameterGrid& g)
+/// The cell that is computed again with a smaller step: the peak of the middle gap, at the transition from
+/// rolling to sliding
+const StackCell& refined_cell_of(const std::vector<StackCell>& cells, const StackGrid& g)
 {
-    const Known& k = known_of(g.gaps[g.gaps.size() / 2]);
-    return *std::find_if(cells.begin(), cells.end(),
-                         [&](const Cell& c) { return c.stack.gap == k.gap && c.stack.eta_r == k.peak_eta; });
+    const ExpectedCurve& k = expected_curve(g.gaps[g.gaps.size() / 2]);
+    return *std::find_if(cells.begin(), cells.end(), [&](const StackCell& c) {
+        return c.stack.gap == k.gap && c.stack.eta_r == k.peak_eta;
+    });
 }
 
-std::vector<Criterion> criteria(const std::vector<Cell>& cells, const ParameterGrid& g, const Cell& finer,
-                                double h)
+std::vector<Criterion> criteria(const std::vector<StackCell>& cells, const StackGrid& g,
+                                const StackCell& refined, double h)
 {
     std::vector<Criterion> all;
     for (const double gap : g.gaps) {
-        const Known& must = known_of(gap);
-        const Curve c = curve(cells, gap);
-        all.push_back(
-            criterion("eta_r of the largest mass, gap " + in_gaps(gap), c.peak_eta, must.peak_eta, 1e-9));
-        all.push_back(
-            criterion(fmt::format("mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), in_gaps(gap)),
-                      c.plateau, must.plateau, same_mass));
+        const ExpectedCurve& expected = expected_curve(gap);
+        const MassCurve c = curve(cells, gap);
+        all.push_back(criterion("eta_r of the largest critical mass, gap " + gap_text(gap), c.peak_eta,
+                                expected.peak_eta, 1e-9));
+        all.push_back(criterion(
+            fmt::format("critical mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), gap_text(gap)),
+            c.plateau, expected.plateau, mass_tolerance));
     }
-    const Cell& coarse = tried_finer(cells, g);
-    all.push_back(
-        criterion(fmt::format("mass with h = {:g} s less that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
-                              h / finer_by, h, in_gaps(coarse.stack.gap), coarse.stack.eta_r),
-                  finer.m_c() - coarse.m_c(), 0, same_mass));
+    const StackCell& coarse = refined_cell_of(cells, g);
+    all.push_back(criterion(
+        fmt::format("critical mass with h = {:g} s minus that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
+                    h / refinement, h, gap_text(coarse.stack.gap), coarse.stack.eta_r),
+        refined.m_c() - coarse.m_c(), 0, mass_tolerance));
     return all;
 }
 
@@ -243,85 +252,87 @@ int stacking(const StudyOptions& options)
 {
     std::vector<std::string> keys = {"rms", "largest", "undecided"};
     for (const double gap : grids.front().gaps)
-        for (const char* what : {"peak_eta_", "peak_mass_", "plateau_"}) keys.push_back(what + in_gaps(gap));
+        for (const char* what : {"peak_eta_", "peak_mass_", "plateau_"}) keys.push_back(what + gap_text(gap));
     check_keys(kind, options, keys);
     refuse_models(kind, options);
     const double h = one_step(kind, options, 1e-4), end = options.end.value_or(10);
     const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const ParameterGrid& g = grid(options);
-    std::vector<Cell> cells;
+    const StackGrid& g = grid(options);
+    std::vector<StackCell> cells;
     for (const double gap : g.gaps)
         for (const double eta : g.etas) {
             cells.emplace_back();
             cells.back().stack = {.gap = gap, .eta_r = eta, .dissertation = preset == "dissertation"};
         }
     if (!options.against.empty()) read_published(cells, options.against);
-    Cell finer;
-    finer.stack = tried_finer(cells, g).stack;
+    StackCell refined;
+    refined.stack = refined_cell_of(cells, g).stack;
     const auto jobs = static_cast<long>(cells.size());
     Pool(options.jobs, options.quiet ? "" : kind, jobs + options.check).run([&](long k) {
         if (k < jobs)
             bisect(cells[k], h, end);
         else
-            bisect(finer, h / finer_by, end);
+            bisect(refined, h / refinement, end);
     });
 
     StudyOutput output{.kind = kind};
-    std::vector<Measured> came;
+    std::vector<Measured> measurements;
     output.json = {{"preset", preset}, {"h", h}, {"end", end}, {"grid", g.name}};
     output.text << fmt::format(
-        "\nsmallest mass [kg] of the upper sphere that brings the stack down, and by what of the lower "
-        "ones;\n"
+        "\ncritical mass [kg] of the upper sphere and collapse mode of the lower spheres; "
         "{} friction, h = {:g} s\n",
         preset, h);
     print(cells, g, output.text);
-    std::vector<Criterion> must;
-    if (options.check) must = criteria(cells, g, finer, h);
+    std::vector<Criterion> checks;
+    if (options.check) checks = criteria(cells, g, refined, h);
     int undecided = 0;
-    for (const Cell& c : cells) undecided += c.undecided;
+    for (const StackCell& c : cells) undecided += c.undecided;
     ordered_json curves = ordered_json::array();
     output.text << '\n';
     for (const double gap : g.gaps) {
-        const Curve c = curve(cells, gap);
+        const MassCurve c = curve(cells, gap);
         output.text << fmt::format(
-            "gap {}: largest at eta_r = {:.2f}, {:.3f} kg; at eta_r = {:.2f}, {:.3f} kg\n", in_gaps(gap),
+            "gap {0}: maximum {2:.3f} kg at eta_r = {1:.2f}; {4:.3f} kg at eta_r = {3:.2f}\n", gap_text(gap),
             c.peak_eta, c.peak_mass, g.etas.back(), c.plateau);
-        came.push_back({.of = "gap " + in_gaps(gap),
-                        .value = {{"peak_eta_" + in_gaps(gap), c.peak_eta},
-                                  {"peak_mass_" + in_gaps(gap), c.peak_mass},
-                                  {"plateau_" + in_gaps(gap), c.plateau}}});
+        measurements.push_back({.of = "gap " + gap_text(gap),
+                                .value = {{"peak_eta_" + gap_text(gap), c.peak_eta},
+                                          {"peak_mass_" + gap_text(gap), c.peak_mass},
+                                          {"plateau_" + gap_text(gap), c.plateau}}});
         curves.push_back({{"gap", gap},
                           {"peak_eta", number_or_null(c.peak_eta)},
                           {"peak_mass", c.peak_mass},
                           {"plateau", number_or_null(c.plateau)}});
     }
     if (undecided > 0)
-        output.text << fmt::format(
-            "{} runs neither stood nor collapsed within {:g} s; they count as standing\n", undecided, end);
-    came.push_back({.of = kind, .value = {{"undecided", undecided}}});
+        output.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,
+                                   end);
+    measurements.push_back({.of = kind, .value = {{"undecided", undecided}}});
     output.json.update({{"undecided", undecided}, {"curves", curves}});
     if (!options.against.empty()) {
-        const Agreement a = agreement(cells);
-        output.text << fmt::format("against {}: {} masses, rms {:.4f} kg, largest difference {:.3f} kg\n",
-                                   options.against, a.compared, a.rms, a.largest);
-        came.push_back({.of = options.against, .value = {{"rms", a.rms}, {"largest", a.largest}}});
+        const MassAgreement a = agreement(cells);
+        output.text << fmt::format(
+            "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n",
+            options.against, a.compared, a.rms, a.largest);
+        measurements.push_back({.of = options.against, .value = {{"rms", a.rms}, {"largest", a.largest}}});
         output.json["against"] = {
             {"file", options.against}, {"compared", a.compared}, {"rms", a.rms}, {"largest", a.largest}};
-        must.push_back(between("against the file, rms [kg]", a.rms, 0, 0.01));
-        must.push_back(between("against the file, largest [kg]", a.largest, 0, 0.02));
+        checks.push_back(between("rms difference to the file [kg]", a.rms, 0, 0.01));
+        checks.push_back(between("largest difference to the file [kg]", a.largest, 0, 0.02));
     }
-    const bool passed = !options.check || evaluate(must, output.text, output.json);
+    const bool passed = !options.check || evaluate(checks, output.text, output.json);
     output.table = as_table(cells).csv();
     output.figures = {"stacking.png"};
-    const int code = finish(options, output, {}, came);
+    const int code = finish(options, output, {}, measurements);
     return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool registered = register_study(
-    Study{.kind = kind,
-          .answers = "critical mass of three stacked spheres over rolling resistance (Fig. 4.19)",
-          .also = takes::preset | takes::against | takes::grid | takes::check,
-          .run = stacking});
+const bool registered = register_study(Study{
+    .kind = kind,
+    .answers =
+        "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
+        "dissertation",
+    .accepted = takes::preset | takes::against | takes::grid | takes::check,
+    .run = stacking});
 
 }  // namespace
 

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A ball in an ellipsoidal bowl with the contact points as unknowns (Fang 2022, Sec. 5.5.1, Figs. 5.2-5.6).
 ///
-/// The ball is let go at the contact point (0, 1.5), from which it swings in a plane, and at (1, 1.5); it slides without
-/// friction or rolls. SCENE.csv has the contact points on both bodies, the residuals of Ψ, N and G, the normal force, the
-/// multipliers that must vanish and the change of energy at every node. The scene `loop` throws the ball right round the
-/// ellipsoid, through normals that lie in the plane of x and y, with N projected on the tangents and, as (5.16) has it, on
-/// the global x and y. --vtk N writes frames for ParaView. The table sets what comes out beside closed forms; --check does runs at half of the step too, and
-/// exits with 6 where a demand is not met.
+/// The ball is released from rest at the contact point (0, 1.5), where its motion is planar, and at (1, 1.5).
+/// It either slides without friction or rolls without slip. SCENE.csv contains, at every node, the contact
+/// points on both bodies, the residuals of Ψ, N and G, the normal force, the multipliers that vanish for the
+/// exact solution, and the change of energy.
+///
+/// In the scene `loop` the ball runs around the inside of the whole ellipsoid and passes points where the
+/// normal is horizontal (n_z = 0). The rows N are projected on the surface tangents and, as in Eq. 5.16, on
+/// the global x and y axes. The second choice is singular at n_z = 0.
+///
+/// The results are compared with closed forms. --vtk N writes frames for ParaView. --check adds runs with
+/// half of the step and returns exit code 6 if an acceptance criterion fails.
 
 #include "studies/csv.hpp"
 #include "studies/exit_codes.hpp"
@@ -21,7 +26,11 @@
 #include "studies/program/named_model.hpp"
 #include "studies/running/model_frames.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "lie/check.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 
 #include <fmt/format.h>
 
@@ -36,38 +45,38 @@ using nlohmann::ordered_json;
 namespace norm = evolving_norm;
 
 const std::string kind = "evolving-contact";
-const std::string text = "rA-half-1", recommended = "rA-half-1-momentum";
-constexpr size_t most_rows = 2000;  // of one run in a CSV
-constexpr double usual_step = 5e-3, usual_end = 10;
+const std::string dissertation_scheme = "rA-half-1", recommended_scheme = "rA-half-1-momentum";
+constexpr size_t max_rows = 2000;  // limit on the rows per run in SCENE.csv
+constexpr double default_step = 5e-3, default_end = 10;
 
 struct BowlVariant {
     std::string name, problem, what;
     std::vector<std::string> set;
-    double end = usual_end;
+    double end = default_end;
     bool rolls = false, loop = false;
 };
 
-const std::vector<BowlVariant> scenes = {
-    {.name = "planar", .problem = "ball_in_bowl", .what = "from (0, 1.5), without friction", .set = {}},
-    {.name = "xy", .problem = "ball_in_bowl_xy", .what = "from (1, 1.5), without friction", .set = {}},
+const std::vector<BowlVariant> variants = {
+    {.name = "planar", .problem = "ball_in_bowl", .what = "released at (0, 1.5), frictionless", .set = {}},
+    {.name = "xy", .problem = "ball_in_bowl_xy", .what = "released at (1, 1.5), frictionless", .set = {}},
     {.name = "planar-roll",
      .problem = "rolling_ball_in_bowl",
-     .what = "from (0, 1.5), rolling",
+     .what = "released at (0, 1.5), rolling",
      .set = {},
      .rolls = true},
     {.name = "xy-roll",
      .problem = "rolling_ball_in_bowl_xy",
-     .what = "from (1, 1.5), rolling",
+     .what = "released at (1, 1.5), rolling",
      .set = {},
      .rolls = true},
     {.name = "loop",
      .problem = "ball_in_bowl",
-     .what = "from the bottom with 14 m/s, right round the ellipsoid",
+     .what = "started at the bottom with 14 m/s, around the whole ellipsoid",
      .set = {"/bodies/0/r=[0, 0, -1.5]", "/bodies/0/r_dot=[0, 14, 0]"},
      .end = 3,
      .loop = true}};
 
-/// What a node says, in the order of the columns of SCENE.csv
+/// Quantities recorded at every node, in the order of the columns of SCENE.csv
 enum : int {
     t,
     aj_x,
@@ -87,61 +96,64 @@ enum : int {
     y,
     speed,
     n_z,
-    samples
+    sample_size
 };
-constexpr std::array<const char*, samples> columns = {
+constexpr std::array<const char*, sample_size> columns = {
     "t", "aj_x", "aj_y",     "aj_z",     "ai_x",     "ai_y",          "ai_z", "Psi",   "N",
     "G", "F_N",  "lambda_N", "lambda_t", "friction", "energy_change", "y",    "speed", "n_z"};
-using Sample = std::array<double, samples>;
+using BowlSample = std::array<double, sample_size>;
 
 struct BowlRun : Run {
-    const BowlVariant* scene = nullptr;
+    const BowlVariant* variant = nullptr;
     std::string rows;
     bool for_check = false;
-    std::vector<Sample> sample;
+    std::vector<BowlSample> sample;
     std::array<double, norm::count> error{};
 
     std::string label() const { return scheme->name + (rows == "tangent" ? "" : ", " + rows); }
     double largest(int column) const
     {
         double most = 0;
-        for (const Sample& s : sample)
+        for (const BowlSample& s : sample)
             if (!(std::abs(s[column]) <= most) && !std::isnan(s[column])) most = std::abs(s[column]);
         return most;
     }
 };
 
-/// Samples every node. The text stores velocities of the middle of a step: its energy at a node is that of the mean of
-/// two of them.
-class Watch final : public lie::Observer {
+/// Records every node.
+///
+/// rA-half-1 stores the velocities of the middle of the step (v_{n-1/2}). The energy at a node is then
+/// computed with the mean of the velocities before and after it, so it is available one step later.
+class BowlSampler final : public lie::Observer {
 public:
-    Watch(BowlRun& run, bool between)
+    BowlSampler(BowlRun& run, bool half_step_velocities)
         : run(run), model(*run.c->started->model), contact(*evolving_contacts(model).front()),
-          at_start(lie::energy(model, run.c->started->x)), between(between)
+          initial_energy(lie::energy(model, run.c->started->x)), half_step_velocities(half_step_velocities)
     {}
 
     void accepted(const lie::State& x, long /*n*/, int) override
     {
-        const dae::Constraint::At at = model.at(contact, x);
-        const EvolvingContact::Multipliers of = contact.multipliers(at, x.lambda);
+        const dae::Constraint::Arguments at = model.arguments(contact, x);
+        const EvolvingContact::Multipliers multipliers = contact.multipliers(at, x.lambda);
         double Phi[7];
         contact.phi(at, Phi);
-        Sample s{};
+        BowlSample s{};
         s[t] = x.t;
         for (int k = 0; k < 3; ++k) s[ai_x + k] = x.alpha[k], s[aj_x + k] = x.alpha[3 + k];
         s[Psi] = lie::Vec3::Map(Phi).norm(), s[N] = std::hypot(Phi[3], Phi[4]),
         s[G] = std::hypot(Phi[5], Phi[6]);
-        s[F_N] = of.F_N, s[lambda_N] = of.N.norm(), s[lambda_t] = of.tangential.norm();
-        s[friction] = of.friction.norm();
-        s[energy] = lie::energy(model, x) - at_start;
+        s[F_N] = multipliers.F_N, s[lambda_N] = multipliers.N.norm(),
+        s[lambda_t] = multipliers.tangential.norm();
+        s[friction] = multipliers.friction.norm();
+        s[energy] = lie::energy(model, x) - initial_energy;
         s[y] = x.body[0].r.y(), s[speed] = x.body[0].rdot.norm(), s[n_z] = contact.contact_point(at).n.z();
-        if (between && !run.sample.empty()) {
+        if (half_step_velocities && !run.sample.empty()) {
             last.body[0].rdot = 0.5 * (last.body[0].rdot + x.body[0].rdot);
             last.body[0].omega_bar = 0.5 * (last.body[0].omega_bar + x.body[0].omega_bar);
-            run.sample.back()[energy] = lie::energy(model, last) - at_start;
+            run.sample.back()[energy] = lie::energy(model, last) - initial_energy;
             run.sample.back()[speed] = last.body[0].rdot.norm();
         }
-        if (between) s[energy] = std::nan("");  // until the next node is known
+        if (half_step_velocities) s[energy] = std::nan("");  // set when the next node is available
         run.sample.push_back(s);
         last = x;
     }
@@ -150,33 +162,33 @@ private:
     BowlRun& run;
     const dae::Model& model;
     const EvolvingContact& contact;
-    const double at_start;
-    const bool between;
+    const double initial_energy;
+    const bool half_step_velocities;
     lie::State last;
 };
 
 void compute(BowlRun& run, const StudyOptions& options)
 {
-    ReferenceErrors against(*run.c, run.h);
-    Watch watch(run, run.scheme->name == text);
-    std::vector<lie::Observer*> observers = {&watch, &against};
+    ReferenceErrors comparison(*run.c, run.h);
+    BowlSampler sampler(run, run.scheme->name == dissertation_scheme);
+    std::vector<lie::Observer*> observers = {&sampler, &comparison};
     std::optional<ModelFrames> frames;
     if (options.vtk > 0 && !run.for_check) {
-        frames.emplace(*run.c->started->model, EvenChoice(options.vtk, std::lround(run.c->end / run.h)));
+        frames.emplace(*run.c->started->model, EvenSelection(options.vtk, std::lround(run.c->end / run.h)));
         observers.push_back(&*frames);
     }
     lie::Settings settings = options.settings;
-    settings.tolerance = std::min(settings.tolerance, 1e-14);  // residuals are shown down to rounding
+    settings.tolerance = std::min(settings.tolerance, 1e-14);  // residuals down to rounding
     march(run, settings, observers);
-    run.error = against.error;
+    run.error = comparison.error;
     if (run.failed()) run.error.fill(std::nan(""));
     const std::string name =
-        run.scene->name + '-' + run.scheme->name + (run.rows == "tangent" ? "" : '-' + run.rows);
+        run.variant->name + '-' + run.scheme->name + (run.rows == "tangent" ? "" : '-' + run.rows);
     if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
     if (frames) frames->snapshots.write(options.output, name);
 }
 
-/// Of a quantity at its largest node, by a parabola through it and its neighbours
+/// Maximum of a recorded quantity, from a parabola through the largest sample and its two neighbours
 double peak(const BowlRun& run, int column)
 {
     const auto& s = run.sample;
@@ -188,12 +200,13 @@ double peak(const BowlRun& run, int column)
     return curvature == 0 ? b : b - (a - c) * (a - c) / (8 * curvature);
 }
 
-/// Between the first and the last passage of y = 0 downwards
+/// Mean period [s], from the first to the last downward crossing of y = 0 (linear interpolation between
+/// nodes)
 double period(const BowlRun& run)
 {
     std::vector<double> down;
     for (size_t k = 1; k < run.sample.size(); ++k) {
-        const Sample &before = run.sample[k - 1], &after = run.sample[k];
+        const BowlSample &before = run.sample[k - 1], &after = run.sample[k];
         if (before[y] > 0 && after[y] <= 0)
             down.push_back(before[t] + (after[t] - before[t]) * before[y] / (before[y] - after[y]));
     }
@@ -204,101 +217,108 @@ double period(const BowlRun& run)
 double F_N_at_start(const Benchmark& c)
 {
     const dae::Model& model = *c.started->model;
-    const EvolvingContact& of = *evolving_contacts(model).front();
-    return of.multipliers(model.at(of, c.started->x), c.started->x.lambda).F_N;
+    const EvolvingContact& contact = *evolving_contacts(model).front();
+    return contact.multipliers(model.arguments(contact, c.started->x), c.started->x.lambda).F_N;
 }
 
 double friction_at_start(const Benchmark& c)
 {
     const dae::Model& model = *c.started->model;
-    const EvolvingContact& of = *evolving_contacts(model).front();
-    return of.multipliers(model.at(of, c.started->x), c.started->x.lambda).friction.norm();
+    const EvolvingContact& contact = *evolving_contacts(model).front();
+    return contact.multipliers(model.arguments(contact, c.started->x), c.started->x.lambda).friction.norm();
 }
 
-/// What an error of position and of normal force may be at the usual step, and, of the planar swing, the energy
-struct Bounds {
+/// Largest accepted errors of position [m] and normal force [N] at the default step, and for the planar
+/// motion the largest accepted change of energy [J]
+struct ErrorBounds {
     double r, F_N, energy;
 };
-Bounds bounds(const BowlRun& run)
+ErrorBounds bounds(const BowlRun& run)
 {
-    const bool planar = run.scene->name == "planar";
-    if (run.scheme->name == text) return planar ? Bounds{6e-3, 7.8e-3, 4e-5} : Bounds{6.4e-3, 9e-3, 0};
-    return planar ? Bounds{7e-5, 9.5e-5, 4e-5} : Bounds{7e-5, 1e-4, 0};
+    const bool planar = run.variant->name == "planar";
+    if (run.scheme->name == dissertation_scheme)
+        return planar ? ErrorBounds{6e-3, 7.8e-3, 4e-5} : ErrorBounds{6.4e-3, 9e-3, 0};
+    return planar ? ErrorBounds{7e-5, 9.5e-5, 4e-5} : ErrorBounds{7e-5, 1e-4, 0};
 }
 
-/// Closed forms of the planar swing: F_N and the speed at the bottom, the period
-struct Swing {
+/// Closed forms of the planar motion: normal force [N] and speed [m/s] at the bottom, period [s]
+struct PlanarSwing {
     double F_N, speed, period;
 };
-constexpr Swing sliding = {10.960602417068388, 2.145322742217019, 3.918321172588791},
-                rolling = {10.631858869334563, 1.8131286433505626, 4.636220134568755};
+constexpr PlanarSwing sliding_swing = {10.960602417068388, 2.145322742217019, 3.918321172588791},
+                      rolling_swing = {10.631858869334563, 1.8131286433505626, 4.636220134568755};
 
-void evaluate_run(const BowlRun& run, const BowlRun* half, std::vector<Criterion>& must)
+void check_run(const BowlRun& run, const BowlRun* half, std::vector<Criterion>& checks)
 {
-    const std::string of = ", " + run.scene->name + " by " + run.label();
-    must.push_back(between("residual of Psi, N, G [m]" + of,
-                           std::max({run.largest(Psi), run.largest(N), run.largest(G)}), 0, 8e-15));
+    const std::string suffix = ", " + run.variant->name + " by " + run.label();
+    checks.push_back(between("residual of Psi, N, G [m]" + suffix,
+                             std::max({run.largest(Psi), run.largest(N), run.largest(G)}), 0, 8e-15));
     const double F = run.largest(F_N);
-    must.push_back(between("|lambda_N| over F_N" + of, run.largest(lambda_N) / F, 0, 1e-12));
-    must.push_back(between("tangential part of lambda over F_N" + of, run.largest(lambda_t) / F, 0, 1e-12));
-    if (run.h != usual_step || run.c->end != usual_end) return;
-    const bool is_text = run.scheme->name == text;
-    if (!is_text && run.scheme->name != recommended) return;
-    const bool planar = run.scene->name == "planar";
-    if (!run.scene->rolls) {
-        const Bounds b = bounds(run);
-        must.push_back(between("error of position [m]" + of, run.error[norm::r], 0, b.r));
-        must.push_back(between("error of the normal force [N]" + of, run.error[norm::F_N], 0, b.F_N));
-        if (planar) must.push_back(between("change of energy [J]" + of, run.largest(energy), 0, b.energy));
+    checks.push_back(between("|lambda_N| over F_N" + suffix, run.largest(lambda_N) / F, 0, 1e-12));
+    checks.push_back(
+        between("tangential part of lambda over F_N" + suffix, run.largest(lambda_t) / F, 0, 1e-12));
+    if (run.h != default_step || run.c->end != default_end) return;
+    const bool is_dissertation_scheme = run.scheme->name == dissertation_scheme;
+    if (!is_dissertation_scheme && run.scheme->name != recommended_scheme) return;
+    const bool planar = run.variant->name == "planar";
+    if (!run.variant->rolls) {
+        const ErrorBounds b = bounds(run);
+        checks.push_back(between("error of position [m]" + suffix, run.error[norm::r], 0, b.r));
+        checks.push_back(between("error of the normal force [N]" + suffix, run.error[norm::F_N], 0, b.F_N));
+        if (planar)
+            checks.push_back(between("change of energy [J]" + suffix, run.largest(energy), 0, b.energy));
         if (half != nullptr && !half->failed())
-            must.push_back(criterion("that over that of half of the step" + of,
-                                     run.largest(energy) / half->largest(energy), 4, 0.2));
+            checks.push_back(criterion("change of energy over that with half of the step" + suffix,
+                                       run.largest(energy) / half->largest(energy), 4, 0.2));
     }
     if (half != nullptr && !half->failed())
-        must.push_back(criterion("order of position" + of,
-                                 std::log2(run.error[norm::r] / half->error[norm::r]), is_text ? 1 : 2,
-                                 0.03));
-    if (!planar && run.scene->name != "planar-roll") return;
-    const Swing& swing = run.scene->rolls ? rolling : sliding;
-    const double tolerance = is_text ? 5e-3 : 1e-4;
-    must.push_back(criterion("F_N at the bottom [N]" + of, peak(run, F_N), swing.F_N, tolerance));
-    must.push_back(criterion("speed at the bottom [m/s]" + of, peak(run, speed), swing.speed, tolerance));
-    must.push_back(criterion("period [s]" + of, period(run), swing.period, tolerance));
+        checks.push_back(criterion("order of position" + suffix,
+                                   std::log2(run.error[norm::r] / half->error[norm::r]),
+                                   is_dissertation_scheme ? 1 : 2, 0.03));
+    if (!planar && run.variant->name != "planar-roll") return;
+    const PlanarSwing& swing = run.variant->rolls ? rolling_swing : sliding_swing;
+    const double tolerance = is_dissertation_scheme ? 5e-3 : 1e-4;
+    checks.push_back(criterion("F_N at the bottom [N]" + suffix, peak(run, F_N), swing.F_N, tolerance));
+    checks.push_back(
+        criterion("speed at the bottom [m/s]" + suffix, peak(run, speed), swing.speed, tolerance));
+    checks.push_back(criterion("period [s]" + suffix, period(run), swing.period, tolerance));
 }
 
-void evaluate_starts(const std::vector<Benchmark>& benchmarks,
-                     const std::vector<const BowlVariant*>& selected, std::vector<Criterion>& must)
+void check_initial_forces(const std::vector<Benchmark>& benchmarks,
+                          const std::vector<const BowlVariant*>& selected, std::vector<Criterion>& checks)
 {
     for (size_t k = 0; k < selected.size(); ++k) {
         const BowlVariant& s = *selected[k];
         if (s.name == "planar")
-            must.push_back(
+            checks.push_back(
                 criterion("F_N(0) [N], planar", F_N_at_start(benchmarks[k]), 9.155246512774925, 1e-11));
         if (s.name == "xy")
-            must.push_back(
+            checks.push_back(
                 criterion("F_N(0) [N], xy", F_N_at_start(benchmarks[k]), 9.014262047215154, 1e-11));
         if (s.name == "planar-roll")
-            must.push_back(criterion("friction at release [N], planar-roll", friction_at_start(benchmarks[k]),
-                                     1.006816007361521, 1e-11));
+            checks.push_back(criterion("friction at release [N], planar-roll",
+                                       friction_at_start(benchmarks[k]), 1.006816007361521, 1e-11));
     }
 }
 
-/// The loop goes through n_z = 0, which the tangents do not feel and the global x and y do not survive.
-void evaluate_loop(const BowlRun& run, std::vector<Criterion>& must)
+/// The loop passes n_z = 0. The run with tangent rows must reach the end. The run with rows along the global
+/// x and y must fail before it, because those rows are singular there.
+void check_loop(const BowlRun& run, std::vector<Criterion>& checks)
 {
-    const std::string of = ", loop by " + run.label();
+    const std::string suffix = ", loop by " + run.label();
     double least = 1, most = -1;
-    for (const Sample& s : run.sample) least = std::min(least, s[n_z]), most = std::max(most, s[n_z]);
+    for (const BowlSample& s : run.sample) least = std::min(least, s[n_z]), most = std::max(most, s[n_z]);
     if (run.rows == "tangent") {
-        must.push_back(between("reaches the end [s]" + of, run.failed() ? std::nan("") : run.sample.back()[t],
-                               run.c->end - 1e-9, run.c->end + run.h));
-        must.push_back(between("least n_z" + of, least, -1, -0.99));
-        must.push_back(between("largest n_z" + of, most, 0.99, 1));
-        must.push_back(between("residual of Psi, N, G [m]" + of,
-                               std::max({run.largest(Psi), run.largest(N), run.largest(G)}), 0, 1e-12));
+        checks.push_back(between("time reached [s]" + suffix,
+                                 run.failed() ? std::nan("") : run.sample.back()[t], run.c->end - 1e-9,
+                                 run.c->end + run.h));
+        checks.push_back(between("least n_z" + suffix, least, -1, -0.99));
+        checks.push_back(between("largest n_z" + suffix, most, 0.99, 1));
+        checks.push_back(between("residual of Psi, N, G [m]" + suffix,
+                                 std::max({run.largest(Psi), run.largest(N), run.largest(G)}), 0, 1e-12));
     } else {
-        must.push_back(between("last node before it fails [s]" + of,
-                               run.failed() ? run.sample.back()[t] : run.c->end, 0, 0.99 * run.c->end));
+        checks.push_back(between("last node before the failure [s]" + suffix,
+                                 run.failed() ? run.sample.back()[t] : run.c->end, 0, 0.99 * run.c->end));
     }
 }
 
@@ -308,8 +328,8 @@ std::string curves(const std::vector<const BowlRun*>& runs)
     for (const char* column : columns) csv += std::string(",") + column;
     csv += '\n';
     for (const BowlRun* run : runs) {
-        const size_t every = std::max<size_t>(1, (run->sample.size() + most_rows - 1) / most_rows);
-        for (size_t k = 0; k < run->sample.size(); k += every) {
+        const size_t stride = std::max<size_t>(1, (run->sample.size() + max_rows - 1) / max_rows);
+        for (size_t k = 0; k < run->sample.size(); k += stride) {
             csv += csv_field(run->label()) + ',';
             append_number(csv, run->h);
             for (const double value : run->sample[k]) {
@@ -342,7 +362,7 @@ Table as_table(const std::vector<BowlRun>& runs)
                  {"cpu_seconds"},
                  {"status"}});
     for (const BowlRun& run : runs)
-        table.add({run.scene->name, run.scheme->name, run.rows, run.h, run.error[norm::r],
+        table.add({run.variant->name, run.scheme->name, run.rows, run.h, run.error[norm::r],
                    run.error[norm::alpha], run.error[norm::F_N], run.largest(Psi), run.largest(N),
                    run.largest(G), run.largest(lambda_N), run.largest(lambda_t), run.largest(energy),
                    run.largest(F_N), run.statistics.iterations_per_step(), run.seconds, run.status});
@@ -366,7 +386,7 @@ void print(const std::vector<const BowlRun*>& runs, const BowlVariant& s, std::o
                    std::max({run->largest(Psi), run->largest(N), run->largest(G)}),
                    std::max(run->largest(lambda_N), run->largest(lambda_t)), run->largest(energy),
                    run->statistics.iterations_per_step(), run->status});
-    out << fmt::format("\n{}: a ball in a bowl, {}; errors against {}\n", s.name, s.what,
+    out << fmt::format("\n{}: ball in a bowl, {}; reference solution: {}\n", s.name, s.what,
                        runs.front()->c->reference_name);
     table.print(out);
 }
@@ -374,56 +394,57 @@ void print(const std::vector<const BowlRun*>& runs, const BowlVariant& s, std::o
 std::vector<const BowlVariant*> selected_variants(const StudyOptions& options)
 {
     std::vector<std::string> known;
-    for (const BowlVariant& s : scenes) known.push_back(s.name);
+    for (const BowlVariant& s : variants) known.push_back(s.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
             throw UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
     std::vector<const BowlVariant*> selected;
-    for (const BowlVariant& s : scenes)
+    for (const BowlVariant& s : variants)
         if (options.problems.empty() ||
             std::find(options.problems.begin(), options.problems.end(), s.name) != options.problems.end())
             selected.push_back(&s);
     return selected;
 }
 
-/// The settings of the scene go into the text of its model, of which the truth is made too.
+/// The changes of the variant are written into the model text, so that the reference solution has them as
+/// well.
 Benchmark benchmark_of(const BowlVariant& s, const StudyOptions& options, const std::string& rows)
 {
-    Problem of = problem(s.problem);
-    of.model = dae::read_model(of.model, of.name, normal_rows(s.problem, s.set, rows)).text;
-    return make_benchmark(std::move(of), options, [&](const dae::Description&) { return s.end; });
+    Problem p = problem(s.problem);
+    p.model = dae::read_model(p.model, p.name, normal_rows(s.problem, s.set, rows)).text;
+    return make_benchmark(std::move(p), options, [&](const dae::Description&) { return s.end; });
 }
 
 int study(const StudyOptions& options)
 {
     check_keys(kind, options, std::vector<std::string>{"r", "alpha", "F_N", "energy"});
     check_vtk(kind, options);
-    const double h = one_step(kind, options, usual_step);
-    const Schemes schemes = fixed_step_schemes(kind, options, {text, recommended});
+    const double h = one_step(kind, options, default_step);
+    const Schemes schemes = fixed_step_schemes(kind, options, {dissertation_scheme, recommended_scheme});
     const std::string rows = options.normal_rows.empty() ? "tangent" : options.normal_rows;
     const std::vector<const BowlVariant*> selected = selected_variants(options);
     Evaluated evaluated{.smallest_step = h};
     for (const lie::Scheme* s : schemes)
         evaluated.highest_order = std::max(evaluated.highest_order, s->order);
     const Reference reference(kind, options, evaluated);
-    std::vector<Benchmark> benchmarks, fixed;  // fixed: the loop again, with the global x and y
+    std::vector<Benchmark> benchmarks, fixed_xy;  // fixed_xy: the loop with rows along x and y
     for (const BowlVariant* s : selected) {
         benchmarks.push_back(benchmark_of(*s, options, rows));
         check_steps(kind, benchmarks.back(), {h},
                     benchmarks.back().instants.dt * benchmarks.back().instants.stride);
-        if (s->loop && options.normal_rows.empty()) fixed.push_back(benchmark_of(*s, options, "fixed-xy"));
+        if (s->loop && options.normal_rows.empty()) fixed_xy.push_back(benchmark_of(*s, options, "fixed-xy"));
     }
     reference.evaluate(benchmarks);
-    for (Benchmark& c : fixed)
+    for (Benchmark& c : fixed_xy)
         for (size_t k = 0; k < selected.size(); ++k)
             if (selected[k]->loop) c.reference_solution = benchmarks[k].reference_solution;
 
     std::vector<BowlRun> runs;
     const auto add = [&](const Benchmark& c, const BowlVariant& s, const lie::Scheme& scheme,
-                         const std::string& with, double step, bool for_check) {
+                         const std::string& normal_rows_of_run, double step, bool for_check) {
         BowlRun run;
         run.c = &c, run.scheme = &scheme, run.h = step;
-        run.scene = &s, run.rows = with, run.for_check = for_check;
+        run.variant = &s, run.rows = normal_rows_of_run, run.for_check = for_check;
         runs.push_back(std::move(run));
     };
     for (size_t k = 0; k < selected.size(); ++k)
@@ -431,7 +452,7 @@ int study(const StudyOptions& options)
             add(benchmarks[k], *selected[k], *scheme, rows, h, false);
             if (options.check && !selected[k]->loop)
                 add(benchmarks[k], *selected[k], *scheme, rows, h / 2, true);
-            for (const Benchmark& c : fixed)
+            for (const Benchmark& c : fixed_xy)
                 if (selected[k]->loop) add(c, *selected[k], *scheme, "fixed-xy", h, false);
         }
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
@@ -439,43 +460,45 @@ int study(const StudyOptions& options)
     });
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv()};
-    std::vector<Criterion> must;
-    evaluate_starts(benchmarks, selected, must);
-    std::vector<Measured> came;
-    std::vector<const Run*> to_end;  // but those whose failure is what is shown
+    std::vector<Criterion> checks;
+    check_initial_forces(benchmarks, selected, checks);
+    std::vector<Measured> measurements;
+    std::vector<const Run*> expected_to_finish;  // without the runs that are expected to fail
     for (const BowlVariant* s : selected) {
         std::vector<const BowlRun*> shown, drawn;
         for (const BowlRun& run : runs) {
-            if (run.scene != s) continue;
+            if (run.variant != s) continue;
             shown.push_back(&run);
             if (!run.for_check) drawn.push_back(&run);
-            if (run.rows == rows) to_end.push_back(&run);
-            if (s->loop) evaluate_loop(run, must);
+            if (run.rows == rows) expected_to_finish.push_back(&run);
+            if (s->loop) check_loop(run, checks);
             if (run.for_check || s->loop) continue;
             const auto half = std::find_if(runs.begin(), runs.end(), [&](const BowlRun& other) {
-                return other.for_check && other.scene == s && other.scheme == run.scheme;
+                return other.for_check && other.variant == s && other.scheme == run.scheme;
             });
-            evaluate_run(run, half == runs.end() ? nullptr : &*half, must);
-            came.push_back({.of = run.label() + " on " + s->name,
-                            .value = {{"r", run.error[norm::r]},
-                                      {"alpha", run.error[norm::alpha]},
-                                      {"F_N", run.error[norm::F_N]},
-                                      {"energy", run.largest(energy)}}});
+            check_run(run, half == runs.end() ? nullptr : &*half, checks);
+            measurements.push_back({.of = run.label() + " on " + s->name,
+                                    .value = {{"r", run.error[norm::r]},
+                                              {"alpha", run.error[norm::alpha]},
+                                              {"F_N", run.error[norm::F_N]},
+                                              {"energy", run.largest(energy)}}});
         }
         print(shown, *s, output.text);
         output.files.emplace_back(s->name + ".csv", curves(drawn));
         output.figures.push_back(kind + '-' + s->name + ".png");
     }
-    const bool passed = evaluate(must, output.text, output.json);
-    if (!options.check) output.text << "--check does runs at half of the step too, and judges by all\n";
-    const int code = finish(options, output, to_end, came);
+    const bool passed = evaluate(checks, output.text, output.json);
+    if (!options.check)
+        output.text << "--check adds runs with half of the step and evaluates all acceptance criteria\n";
+    const int code = finish(options, output, expected_to_finish, measurements);
     return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
 }
 
 const bool registered =
     register_study(Study{.kind = kind,
-                         .answers = "ball in a bowl with the contact points as unknowns (Figs. 5.2-5.6)",
-                         .also = takes::reference | takes::check | takes::vtk | takes::normal_rows,
+                         .answers = "ball in an ellipsoidal bowl, contact points as unknowns: forces, "
+                                    "residuals and energy (Figs. 5.2-5.6)",
+                         .accepted = takes::reference | takes::check | takes::vtk | takes::normal_rows,
                          .run = study});
 
 }  // namespace

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter5/evolving_errors.hpp"
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+
 #include <algorithm>
 
 namespace hilda::studies {
@@ -18,15 +21,15 @@ void ReferenceErrors::accepted(const lie::State& x, long n, int)
     ++instants;
     const lie::State& reference_solution = c.reference_solution.row[nearest];
     const Difference d = difference(x, reference_solution);
-    const auto take = [&](int norm, double e) {
+    const auto update_maximum = [&](int norm, double e) {
         if (!(e <= error[norm])) error[norm] = e;
     };
-    take(evolving_norm::r, d.r);
-    take(evolving_norm::A, d.A);
-    take(evolving_norm::alpha, (x.alpha - reference_solution.alpha).norm());
-    for (const contact::EvolvingContact* of : contacts)
-        take(evolving_norm::F_N,
-             std::abs(forces(model, *of, x).F_N - forces(model, *of, reference_solution).F_N));
+    update_maximum(evolving_norm::r, d.r);
+    update_maximum(evolving_norm::A, d.A);
+    update_maximum(evolving_norm::alpha, (x.alpha - reference_solution.alpha).norm());
+    for (const contact::EvolvingContact* contact : contacts)
+        update_maximum(evolving_norm::F_N, std::abs(forces(model, *contact, x).F_N -
+                                                    forces(model, *contact, reference_solution).F_N));
 }
 
 }  // namespace hilda::studies

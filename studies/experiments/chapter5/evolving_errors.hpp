@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How far a run with contacts that evolve is from the truth of its case.
+/// Errors of a run with evolving contacts relative to the reference solution of its benchmark.
 
 #pragma once
 
@@ -12,23 +12,29 @@ namespace hilda::studies {
 
 namespace evolving_norm {
 
-/// Largest over the instants: r [m] and A (Frobenius) stacked over the bodies, α stacked over the contacts [m], the
-/// normal force of any contact [N]
+/// Maximum norms over the instants of the reference solution:
+///
+///     r        Euclidean norm over all bodies [m]
+///     A        Frobenius norm over all bodies
+///     alpha    Euclidean norm of the contact-point coordinates of all contacts [m]
+///     F_N      largest error of the normal force of a contact [N]
 enum : int { r, A, alpha, F_N, count };
 inline constexpr std::array<const char*, count> names = {"r", "A", "alpha", "F_N"};
 
 }  // namespace evolving_norm
 
+/// Observer that accumulates the errors of a run.
 class ReferenceErrors final : public lie::Observer {
 public:
-    /// Compares the nodes that are instants of the truth; at others it only takes the residual.
+    /// h is the interval between nodes [s]. Errors are evaluated at the nodes that coincide with an instant
+    /// of the reference solution; the constraint residual is evaluated at every node.
     ReferenceErrors(const Benchmark& c, double h);
 
     void accepted(const lie::State& x, long n, int iterations) override;
 
     std::array<double, evolving_norm::count> error{};
-    double constraint_norm = 0;  ///< at any node [m or rad]
-    int instants = 0;
+    double constraint_norm = 0;  ///< largest constraint residual at any node [m or rad]
+    int instants = 0;            ///< number of compared instants
 
 private:
     const Benchmark& c;

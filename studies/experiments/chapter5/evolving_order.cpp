@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Order of the half-implicit schemes on contacts that are constraints (Fang 2022, Ch. 5).
+/// Order of convergence of the half-implicit schemes for evolving contacts (Fang 2022, Ch. 5).
 ///
-/// rA-half-1 is the text: its start takes v_0 for v_{-1/2}, and its gyroscopic torque is late by half a step; on a ball,
-/// which has none, the start alone makes it first order. rA-half-1-kick starts with half a kick and extrapolates
-/// velocities to the node. rA-half-1-momentum balances angular momentum and needs no gyroscopic torque. Each is judged by
-/// the largest error of position, orientation, contact points and normal force over the instants of the truth. --check
-/// demands the orders.
+/// rA-half-1 is the scheme of the dissertation. It starts with v_{-1/2} = v_0 and evaluates the gyroscopic
+/// torque half a step late, so it is of first order. A ball has no gyroscopic torque; there the start alone
+/// limits the order. rA-half-1-kick starts with a half step of the accelerations and extrapolates the
+/// velocities to the node (leapfrog). rA-half-1-momentum balances the angular momentum and needs no
+/// gyroscopic torque.
+///
+/// The errors are the largest errors of position, orientation, contact points and normal force over the
+/// instants of the reference solution. The order is fitted through steps up to 5e-3 s. --check compares the
+/// fitted orders with the declared ones and returns exit code 6 if an acceptance criterion fails.
 
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter5/evolving_errors.hpp"
 #include "studies/framework/acceptance.hpp"
@@ -30,8 +37,8 @@ using nlohmann::ordered_json;
 namespace norm = evolving_norm;
 
 const std::string kind = "evolving-order";
-constexpr double asymptotic_step = 5e-3;  // a line is fitted through steps up to this [s]
-constexpr double rounding = 1e-9;  // errors below it say nothing of the order: F_N has a noise of ε m/h²
+constexpr double largest_fitted_step = 5e-3;  // steps above this are not used in the fit [s]
+constexpr double rounding = 1e-9;  // smaller errors are not used in the fit: rounding in F_N is ε m/h²
 
 struct OrderRun : Run {
     std::array<double, norm::count> error{}, order{};
@@ -40,31 +47,32 @@ struct OrderRun : Run {
 
 void compute(OrderRun& run, const StudyOptions& options)
 {
-    ReferenceErrors against(*run.c, run.h);
-    lie::Observer* observers[] = {&against};
+    ReferenceErrors comparison(*run.c, run.h);
+    lie::Observer* observers[] = {&comparison};
     lie::Settings settings = options.settings;
-    settings.tolerance = std::min(settings.tolerance, 1e-13);  // forces are judged: lengths times m/h²
+    settings.tolerance = std::min(settings.tolerance, 1e-13);  // error of F_N: Newton error times m/h²
     march(run, settings, observers);
-    run.error = against.error;
-    run.constraint_norm = against.constraint_norm;
+    run.error = comparison.error;
+    run.constraint_norm = comparison.constraint_norm;
     if (run.failed()) run.error.fill(std::nan(""));
 }
 
-using Series = std::vector<const OrderRun*>;
+using OrderSeries = std::vector<const OrderRun*>;
 
-double fit(const Series& series, int n)
+double fit(const OrderSeries& series, int n)
 {
     std::vector<double> h, e;
     for (const OrderRun* run : series)
         if (!run->failed() && run->error[n] > rounding) h.push_back(run->h), e.push_back(run->error[n]);
-    while (h.size() > 2 && h.front() > asymptotic_step * (1 + 1e-9)) h.erase(h.begin()), e.erase(e.begin());
+    while (h.size() > 2 && h.front() > largest_fitted_step * (1 + 1e-9))
+        h.erase(h.begin()), e.erase(e.begin());
     return fitted_order(h, e);
 }
 
-void print(const Series& series, std::ostream& out)
+void print(const OrderSeries& series, std::ostream& out)
 {
     const OrderRun& first = *series.front();
-    out << fmt::format("\n{}, {}; truth: {}\n", first.c->problem.name, first.scheme->name,
+    out << fmt::format("\n{}, {}; reference solution: {}\n", first.c->problem.name, first.scheme->name,
                        first.c->reference_name);
     std::vector<Table::Column> columns = {{"h [s]", "{:.2e}"}};
     for (const char* head : {"r [m]", "A", "alpha [m]", "F_N [N]"}) {
@@ -82,7 +90,7 @@ void print(const Series& series, std::ostream& out)
     table.print(out);
 }
 
-void print_fits(const std::vector<Series>& all, std::ostream& out)
+void print_fits(const std::vector<OrderSeries>& all, std::ostream& out)
 {
     Table table({{"problem"},
                  {"integrator"},
@@ -90,12 +98,12 @@ void print_fits(const std::vector<Series>& all, std::ostream& out)
                  {"A", "{:.2f}"},
                  {"alpha", "{:.2f}"},
                  {"F_N", "{:.2f}"}});
-    for (const Series& series : all) {
+    for (const OrderSeries& series : all) {
         std::vector<Table::Cell> row = {series.front()->c->problem.name, series.front()->scheme->name};
         for (int n = 0; n < norm::count; ++n) row.emplace_back(fit(series, n));
         table.add(row);
     }
-    out << "\nfitted orders, through steps up to 5e-3 s\n";
+    out << "\nfitted orders, steps up to 5e-3 s\n";
     table.print(out);
 }
 
@@ -119,10 +127,10 @@ Table as_table(const std::vector<OrderRun>& runs)
     return table;
 }
 
-ordered_json as_json(const std::vector<Series>& all)
+ordered_json as_json(const std::vector<OrderSeries>& all)
 {
     ordered_json out = ordered_json::array();
-    for (const Series& series : all) {
+    for (const OrderSeries& series : all) {
         const OrderRun& first = *series.front();
         ordered_json fits = ordered_json::object(), rows = ordered_json::array();
         for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
@@ -133,28 +141,28 @@ ordered_json as_json(const std::vector<Series>& all)
         }
         out.push_back({{"problem", first.c->problem.name},
                        {"integrator", first.scheme->name},
-                       {"truth", first.c->reference_name},
+                       {"reference", first.c->reference_name},
                        {"fitted_order", fits},
                        {"rows", rows}});
     }
     return out;
 }
 
-/// What must come out
-std::vector<Criterion> criteria(const std::vector<Series>& all)
+/// Acceptance criteria: the declared orders
+std::vector<Criterion> criteria(const std::vector<OrderSeries>& all)
 {
-    std::vector<Criterion> must;
-    for (const Series& series : all) {
+    std::vector<Criterion> checks;
+    for (const OrderSeries& series : all) {
         const lie::Scheme& scheme = *series.front()->scheme;
         const bool ball = series.front()->c->problem.name.find("ball") != std::string::npos;
         for (const int n : {norm::r, norm::alpha, norm::F_N}) {
             const double order = n == norm::F_N ? scheme.order_lambda : scheme.order;
-            must.push_back(criterion(fmt::format("order of {}, {} by {}", norm::names[n],
-                                                 series.front()->c->problem.name, scheme.name),
-                                     fit(series, n), order, ball ? 0.03 : 0.05));
+            checks.push_back(criterion(fmt::format("order of {}, {} by {}", norm::names[n],
+                                                   series.front()->c->problem.name, scheme.name),
+                                       fit(series, n), order, ball ? 0.03 : 0.05));
         }
     }
-    return must;
+    return checks;
 }
 
 std::vector<std::string> keys()
@@ -164,7 +172,7 @@ std::vector<std::string> keys()
     return all;
 }
 
-Measured measured(const Series& series)
+Measured measured(const OrderSeries& series)
 {
     Measured m{.of = series.front()->scheme->name + " on " + series.front()->c->problem.name, .value = {}};
     for (int n = 0; n < norm::count; ++n) {
@@ -175,7 +183,7 @@ Measured measured(const Series& series)
     return m;
 }
 
-/// The cases, each with the rows for the normals that were asked for
+/// The benchmarks, with the normal rows of --normal-rows
 std::vector<Benchmark> selected_benchmarks(const StudyOptions& options)
 {
     std::vector<Benchmark> all;
@@ -188,7 +196,8 @@ std::vector<Benchmark> selected_benchmarks(const StudyOptions& options)
                 dae::read_model(p.model, p.name, normal_rows(name, options.set, options.normal_rows)).text;
         all.push_back(make_benchmark(std::move(p), options));
         if (evolving_contacts(*all.back().started->model).empty())
-            throw UsageError("study " + kind + ": " + name + " has no contact that is a constraint");
+            throw UsageError("study " + kind + ": " + name +
+                             " has no evolving contact, which this study needs");
     }
     return all;
 }
@@ -216,14 +225,14 @@ int study(const StudyOptions& options)
                 run.order.fill(std::nan(""));
                 runs.push_back(run);
             }
-    std::vector<long> queue(runs.size());  // small steps first: they take longest
+    std::vector<long> queue(runs.size());  // small steps first: they take the longest time
     std::iota(queue.begin(), queue.end(), 0);
     std::stable_sort(queue.begin(), queue.end(), [&](long a, long b) { return runs[a].h < runs[b].h; });
     Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
         compute(runs[queue[k]], options);
     });
 
-    std::vector<Series> all;
+    std::vector<OrderSeries> all;
     for (size_t k = 0; k < runs.size(); ++k) {
         if (k % steps.size() == 0) all.emplace_back();
         if (k % steps.size() != 0)
@@ -233,21 +242,21 @@ int study(const StudyOptions& options)
     }
 
     StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(all)}}};
-    for (const Series& series : all) print(series, output.text);
+    for (const OrderSeries& series : all) print(series, output.text);
     print_fits(all, output.text);
     for (const Benchmark& c : benchmarks) output.figures.push_back(kind + '-' + c.problem.name + ".png");
-    std::vector<Measured> came;
-    for (const Series& series : all) came.push_back(measured(series));
+    std::vector<Measured> measurements;
+    for (const OrderSeries& series : all) measurements.push_back(measured(series));
     const bool passed = !options.check || evaluate(criteria(all), output.text, output.json);
-    const int code = finish(options, output, run_pointers(runs), came);
+    const int code = finish(options, output, run_pointers(runs), measurements);
     return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
 }
 
-const bool registered = register_study(
-    Study{.kind = kind,
-          .answers = "order of the schemes on contacts that are constraints (Fang 2022, Ch. 5)",
-          .also = takes::reference | takes::check | takes::normal_rows,
-          .run = study});
+const bool registered =
+    register_study(Study{.kind = kind,
+                         .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
+                         .accepted = takes::reference | takes::check | takes::normal_rows,
+                         .run = study});
 
 }  // namespace
 

@@ -5,6 +5,8 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
 #include "dae/start.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 #include "reference/motions/ellipsoid_on_plane.hpp"
@@ -19,10 +21,12 @@ using lie::Mat3;
 using lie::Vec3;
 using reference::ContactInstant;
 
-constexpr double fine = 1e-4;        // [s]
-constexpr double agreement = 1e-12;  // of a start with that of the minimal coordinates [m, m/s, rad/s]
+constexpr double small_step = 1e-4;  // [s]
+/// Largest accepted difference between the start of the model and that of the minimal coordinates [m, m/s,
+/// rad/s]
+constexpr double start_tolerance = 1e-12;
 
-bool lies_as_its_body(const contact::Shape& s) { return s.position.isZero(0) && s.orientation.isIdentity(0); }
+bool has_body_frame(const contact::Shape& s) { return s.position.isZero(0) && s.orientation.isIdentity(0); }
 
 template <class Surface>
 const Surface* surface(const contact::Shape& s)
@@ -36,19 +40,21 @@ double distance(const lie::Motion& a, const lie::Motion& b)
            (a.omega_bar - b.omega_bar).norm();
 }
 
-/// The contact of body 0 with the ground under gravity along -z, if that is all there is of the model
+/// The contact of body 0 with the ground if the model consists of one body, this contact and gravity along
+/// -z; nullptr otherwise
 const EvolvingContact* only_contact(const dae::Model& model)
 {
     const auto contacts = evolving_contacts(model);
-    if (model.bodies() != 1 || contacts.size() != 1 || model.evolving().size() != 1 || model.rows() > 9 ||
-        !model.forces().empty() || !model.all_rows().empty() || contacts[0]->j != dae::ground)
+    if (model.bodies() != 1 || contacts.size() != 1 || model.general_constraints().size() != 1 ||
+        model.rows() > 9 || !model.forces().empty() || !model.all_rows().empty() ||
+        contacts[0]->j != dae::ground)
         return nullptr;
     if (model.gravity.x() != 0 || model.gravity.y() != 0 || !(model.gravity.z() < 0)) return nullptr;
-    if (!lies_as_its_body(contacts[0]->shape_i) || !lies_as_its_body(contacts[0]->shape_j)) return nullptr;
+    if (!has_body_frame(contacts[0]->shape_i) || !has_body_frame(contacts[0]->shape_j)) return nullptr;
     return contacts[0];
 }
 
-/// Empty where the model is not of this kind
+/// Solution for a ball in an ellipsoidal bowl; empty for any other model
 std::vector<ContactInstant> ball_in_bowl(const dae::Description& d, const EvolvingContact& c,
                                          const std::vector<double>& instants)
 {
@@ -65,12 +71,13 @@ std::vector<ContactInstant> ball_in_bowl(const dae::Description& d, const Evolvi
                                         .J = J_bar(0, 0),
                                         .g = -d.model->gravity.z()};
     const Vec3 p = Vec3::Map(d.x.alpha.data() + 3);
-    const reference::BallInBowl::InitialState from{
+    const reference::BallInBowl::InitialState start_state{
         .p = p, .rdot = start.rdot, .spin = problem.normal(p).dot(start.A * start.omega_bar), .A = start.A};
-    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
-                                                            : problem.slide(from, instants);
+    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(start_state, instants)
+                                                            : problem.slide(start_state, instants);
 }
 
+/// Solution for an ellipsoid on a plane; empty for any other model
 std::vector<ContactInstant> ellipsoid_on_plane(const dae::Description& d, const EvolvingContact& c,
                                                const std::vector<double>& instants)
 {
@@ -82,18 +89,19 @@ std::vector<ContactInstant> ellipsoid_on_plane(const dae::Description& d, const 
                                               .m = d.model->mass().m[0],
                                               .J_bar = d.model->mass().J_bar[0],
                                               .g = -d.model->gravity.z()};
-    const reference::EllipsoidOnPlane::InitialState from{.A = start.A,
-                                                         .omega_bar = start.omega_bar,
-                                                         .x = start.r.x(),
-                                                         .y = start.r.y(),
-                                                         .xdot = start.rdot.x(),
-                                                         .ydot = start.rdot.y()};
-    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(from, instants)
-                                                            : problem.slide(from, instants);
+    const reference::EllipsoidOnPlane::InitialState start_state{.A = start.A,
+                                                                .omega_bar = start.omega_bar,
+                                                                .x = start.r.x(),
+                                                                .y = start.r.y(),
+                                                                .xdot = start.rdot.x(),
+                                                                .ydot = start.rdot.y()};
+    return c.friction == EvolvingContact::Friction::rolling ? problem.roll(start_state, instants)
+                                                            : problem.slide(start_state, instants);
 }
 
-/// Empty where there are none, or where their start is not that of the model
-std::vector<ContactInstant> by_minimal_coordinates(const dae::Description& d, std::vector<double> instants)
+/// Solution in minimal coordinates; empty if the model is not covered or its start differs
+std::vector<ContactInstant> minimal_coordinate_solution(const dae::Description& d,
+                                                        std::vector<double> instants)
 {
     const EvolvingContact* c = only_contact(*d.model);
     if (c == nullptr || d.x.t != 0) return {};
@@ -101,10 +109,10 @@ std::vector<ContactInstant> by_minimal_coordinates(const dae::Description& d, st
     try {
         std::vector<ContactInstant> all = ball_in_bowl(d, *c, instants);
         if (all.empty()) all = ellipsoid_on_plane(d, *c, instants);
-        if (all.empty() || !(distance(all.front().body, d.x.body[0]) <= agreement)) return {};
+        if (all.empty() || !(distance(all.front().body, d.x.body[0]) <= start_tolerance)) return {};
         all.erase(all.begin());
         return all;
-    } catch (const lie::InvalidInput&) {  // a start that they do not cover
+    } catch (const lie::InvalidInput&) {  // the start is outside the range of the minimal coordinates
     } catch (const lie::NumericalFailure&) {
     }
     return {};
@@ -114,17 +122,17 @@ std::vector<ContactInstant> by_minimal_coordinates(const dae::Description& d, st
 
 lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double>& instants)
 {
-    const std::vector<ContactInstant> known = by_minimal_coordinates(d, instants);
-    if (known.empty()) return run_with_small_steps(d, instants, lie::scheme("rA-rkmk-4"), fine);
+    const std::vector<ContactInstant> exact = minimal_coordinate_solution(d, instants);
+    if (exact.empty()) return run_with_small_steps(d, instants, lie::scheme("rA-rkmk-4"), small_step);
     lie::Saddle K(*d.model);
     lie::Trajectory run;
-    for (const ContactInstant& at : known) {
+    for (const ContactInstant& at : exact) {
         lie::State x = d.x;
         x.t = at.t;
         x.body[0] = at.body;
         x.alpha << at.a_bar, at.p;
         d.model->set_internal_state_at_start(x);
-        dae::solve_accelerations(*d.model, K, x);  // for the multipliers
+        dae::solve_accelerations(*d.model, K, x);  // sets the multipliers
         run.row.push_back(std::move(x));
     }
     return run;

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What models with contacts that evolve are judged by.
+/// Reference solutions of models with evolving contacts.
 
 #pragma once
 
+#include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 
 namespace hilda::studies {
 
-/// Complete states at these instants: of a ball in a fixed ellipsoidal bowl and of an ellipsoid on a fixed plane, without
-/// friction or rolling, from the equations in minimal coordinates, which know neither constraint nor multiplier; of
-/// anything else, such as a model that has been changed, from rA-rkmk-4 with small steps.
+/// Complete states (with accelerations and multipliers) at the given instants [s].
+///
+/// A ball in a fixed ellipsoidal bowl and an ellipsoid on a fixed plane, frictionless or rolling without
+/// slip, are integrated in minimal coordinates, independently of the constraint equations. All other models,
+/// including built-in models changed with --set, are integrated by rA-rkmk-4 with steps of at most 1e-4 s.
 lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double>& instants);
 
-/// What the truth is, for tables
-constexpr const char* evolving_truth_name =
+/// Name of the reference solution in tables
+constexpr const char* evolving_reference_name =
     "minimal coordinates (GSL rk8pd) at 1e-13, or rA-rkmk-4 at h = 1e-4 s";
 
-/// Marches from d.x, with steps of at most h that end in the instants.
+/// Integrates from d.x with steps of at most h [s], adjusted so that every instant is a node.
 lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vector<double>& instants,
                                      const lie::Scheme& scheme, double h);
 

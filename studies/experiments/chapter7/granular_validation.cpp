@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The validations of the granular room as studies, granular-NAME: their tables as files, their checks as demands.
+/// Studies granular-NAME: the validations of `granular` (Fang 2022, Ch. 7), run through the study framework.
+///
+/// The tables of a validation become files, its checks become acceptance criteria.
 
 #include "studies/exit_codes.hpp"
 #include "studies/framework/acceptance.hpp"
@@ -23,33 +25,33 @@ namespace {
 using granular::Validation;
 using granular::ValidationTable;
 
-constexpr std::size_t most_rows = 60;  // of a table after the first that is printed; a curve has more
+constexpr std::size_t most_rows = 60;  // longer tables (curves) are only written to files
 
-Table as_table(const ValidationTable& of)
+Table as_table(const ValidationTable& validation_table)
 {
     std::vector<Table::Column> columns;
-    for (const std::string& name : of.columns) columns.push_back({name, "{:.6g}"});
+    for (const std::string& name : validation_table.columns) columns.push_back({name, "{:.6g}"});
     Table table(columns);
-    for (const auto& row : of.rows) table.add(row);
+    for (const auto& row : validation_table.rows) table.add(row);
     return table;
 }
 
-/// What a validation has no use for is refused.
-void refuse_idle(const std::string& kind, const StudyOptions& options)
+/// UsageError for options that a validation does not have.
+void reject_unused_options(const std::string& kind, const StudyOptions& options)
 {
-    const auto refuse = [&](bool given, const std::string& name) {
-        if (given) throw UsageError("study " + kind + ": " + name + " is for other studies");
+    const auto reject_if = [&](bool given, const std::string& name) {
+        if (given) throw UsageError("study " + kind + ": " + name + " is not an option of this study");
     };
-    refuse(!options.problems.empty(), "--problem");
-    refuse(!options.integrators.empty(), "--integrator");
-    refuse(!options.steps.empty(), "--steps");
-    refuse(options.end.has_value(), "--end");
-    refuse(!options.set.empty(), "--set");
-    refuse(!options.expect.empty(), "--expect");
+    reject_if(!options.problems.empty(), "--problem");
+    reject_if(!options.integrators.empty(), "--integrator");
+    reject_if(!options.steps.empty(), "--steps");
+    reject_if(options.end.has_value(), "--end");
+    reject_if(!options.set.empty(), "--set");
+    reject_if(!options.expect.empty(), "--expect");
     if (!options.grid.empty()) one_of("--grid", options.grid, std::vector<std::string>{"full"});
 }
 
-/// A line on a terminal, rewritten at most five times a second
+/// Progress line on a terminal, updated at most five times per second
 std::function<void(double)> progress(const std::string& kind, bool quiet)
 {
     using Clock = std::chrono::steady_clock;
@@ -66,14 +68,14 @@ std::function<void(double)> progress(const std::string& kind, bool quiet)
 granular::ValidationResult result_of(const Validation& validation, const std::string& kind,
                                      const StudyOptions& options)
 {
-    granular::ValidationOptions wanted;
-    wanted.full = options.grid == "full";
-    wanted.progress = progress(kind, options.quiet);
+    granular::ValidationOptions validation_options;
+    validation_options.full = options.grid == "full";
+    validation_options.progress = progress(kind, options.quiet);
     const auto clear = [&] {
         if (!options.quiet && isatty(STDERR_FILENO) != 0) message("\r\033[K");
     };
     try {
-        auto result = validation.run(wanted);
+        auto result = validation.run(validation_options);
         clear();
         return result;
     } catch (const granular::ParticleLost& e) {
@@ -86,11 +88,11 @@ int study(const Validation& validation, const StudyOptions& options)
 {
     StudyOutput output;
     output.kind = "granular-" + validation.name;
-    refuse_idle(output.kind, options);
+    reject_unused_options(output.kind, options);
     const granular::ValidationResult result = result_of(validation, output.kind, options);
 
     output.json["grid"] = options.grid.empty() ? "quick" : options.grid;
-    output.text << validation.answers << '\n';
+    output.text << validation.description << '\n';
     for (const ValidationTable& t : result.tables) {
         const Table table = as_table(t);
         const bool first = &t == &result.tables.front();
@@ -104,7 +106,7 @@ int study(const Validation& validation, const StudyOptions& options)
     }
     std::vector<Criterion> criteria;
     for (const granular::ValidationCheck& c : result.checks)
-        criteria.push_back(between(c.what, c.measured, c.least, c.most));
+        criteria.push_back(between(c.what, c.measured, c.lower, c.upper));
     const bool passed = evaluate(criteria, output.text, output.json);
     output.figures = {output.kind + ".png"};
     const int code = finish(options, output, {}, {});
@@ -116,8 +118,8 @@ std::vector<Study> all()
     std::vector<Study> studies;
     for (const Validation& v : granular::validations())
         studies.push_back({.kind = "granular-" + v.name,
-                           .answers = v.answers,
-                           .also = takes::check | takes::grid,
+                           .answers = v.description,
+                           .accepted = takes::check | takes::grid,
                            .run = [v](const StudyOptions& options) { return study(v, options); }});
     return studies;
 }

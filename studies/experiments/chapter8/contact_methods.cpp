@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What evolving contact, a differential variational inequality (DVI) and springs (DEM) ask for an accuracy, and where
-/// each of them ends. (The comparison that Fang 2022, Sec. 8.2 leaves to do.)
+/// Accuracy and cost of three contact methods: evolving contact constraints, a differential variational
+/// inequality (DVI) and springs (DEM). Fang (2022), Sec. 8.2 names this comparison as future work.
 ///
-/// bowl    A ball slides in the bowl of Sec. 5.5 from (1, 1.5) for 2 s: position against the motion in minimal
-///         coordinates, over CPU time. All methods start with half a kick, so that what shows is the method.
-/// many    That ball 1 to 10000 times in one bowl, each by itself: CPU time of a step and contact.
-/// chain   Balls in a row in a groove down a slope, held by the first, 1 to 3333, three contacts a ball: forces that go
-///         through all of them. At rest; what moves is wrong.
-/// pile    Balls fall into a bowl without friction: contacts come and go, and may be more than the freedoms.
+/// bowl    A ball slides without friction in the bowl of Sec. 5.5 for 2 s, released at (1, 1.5). Error of the
+///         position relative to the solution in minimal coordinates, over CPU time. Except for the variants "text",
+///         all methods start with half a kick, so that the differences are caused by the contact method.
+/// many    1 to 10000 independent balls in the bowl: CPU time per step and contact.
+/// chain   1 to 3333 balls in a row in an inclined groove, supported by a fixed ball, three contacts per ball. The
+///         contact forces are coupled through the whole chain. The exact solution is at rest; any motion is an
+///         error.
+/// pile    Balls fall into a bowl without friction: contacts open and close, and the number of contacts may exceed
+///         the number of degrees of freedom.
 
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter8/method.hpp"
@@ -22,6 +25,7 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "lie/check.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 
 #include <fmt/format.h>
@@ -43,10 +47,10 @@ const std::vector<std::string> parts = {"bowl", "many", "chain", "pile"};
 struct MethodRun {
     std::string part, method;
     double h = 0, end = 0;
-    double stiffness = std::nan("");  ///< of springs [N/m]
+    double stiffness = std::nan("");  ///< of the contact springs [N/m]; NaN without springs
     int bodies = 1;
     std::function<std::unique_ptr<Method>()> make = {};
-    /// What is wrong at the end of a step [m], where that is known; and how it is judged at the end
+    /// Position error after a step [m]; empty if there is no reference solution
     std::function<double(const Method&, double t)> error = {};
 
     int contacts = 0, events = 0;
@@ -55,94 +59,99 @@ struct MethodRun {
     std::string status = "ok", message = {};
 
     double microseconds() const { return 1e6 * seconds / static_cast<double>(steps); }
-    double of_contact() const { return microseconds() / std::max(1, contacts); }
+    double microseconds_per_contact() const { return microseconds() / std::max(1, contacts); }
 };
 
-// ---- the bowl of Sec. 5.5 --------------------------------------------------------------------------------------------
+// ---- the bowl of Sec. 5.5 ---------------------------------------------------------------------------------
 
 const reference::BallInBowl bowl;
 
-/// The bowl, which is body 0, and balls that start at rest where these points of it are touched
-ContactScene bowl_with(const std::vector<Vec3>& touched)
+/// The bowl (body 0) and one ball for each of these contact points on it; the balls start at rest.
+ContactScene bowl_scene(const std::vector<Vec3>& contact_points)
 {
-    ContactScene of;
-    of.R = bowl.R, of.m = bowl.m;
-    contact::BodyType hollow;
-    hollow.shape = {std::make_shared<contact::Ellipsoid>(bowl.semi_axes, true)};
-    of.kind = {hollow,
-               {.inertia = {bowl.m, bowl.J * lie::Mat3::Identity()},
-                .shape = {std::make_shared<contact::Sphere>(bowl.R)},
-                .reach = bowl.R}};
-    of.interaction = {{"ball-bowl", 1, 0, 0}};
-    of.body = {{0, {}}};
-    for (const Vec3& p : touched) {
+    ContactScene setup;
+    setup.R = bowl.R, setup.m = bowl.m;
+    contact::BodyType bowl_type;
+    bowl_type.shape = {std::make_shared<contact::Ellipsoid>(bowl.semi_axes, true)};
+    setup.body_types = {bowl_type,
+                        {.inertia = {bowl.m, bowl.J * lie::Mat3::Identity()},
+                         .shape = {std::make_shared<contact::Sphere>(bowl.R)},
+                         .reach = bowl.R}};
+    setup.interaction = {{"ball-bowl", 1, 0, 0}};
+    setup.body = {{0, {}}};
+    for (const Vec3& p : contact_points) {
         lie::Motion start;
         start.r = p + bowl.R * bowl.normal(p);
-        of.body.push_back({1, start});
+        setup.body.push_back({1, start});
     }
-    return of;
+    return setup;
 }
 
-/// So that springs of stiffness k carry from the first step on, and velocities are half a step back
-ContactScene leaning(ContactScene of, const reference::ContactInstant& at_rest, double k, double h)
+/// The same scene with the ball pressed into the bowl by the static deflection F_N/k of springs of stiffness
+/// k, and with the velocity at t = -h/2
+ContactScene with_static_compression(ContactScene setup, const reference::ContactInstant& at_rest, double k,
+                                     double h)
 {
-    lie::Motion& ball = of.body[1].start;
+    lie::Motion& ball = setup.body[1].start;
     ball.r -= at_rest.F_N / k * at_rest.n;
     ball.rdot = -0.5 * h * at_rest.body.rddot;
-    return of;
+    return setup;
 }
 
-struct Stiffness {
+struct StiffnessAndStep {
     double k, h;
 };
-/// A tenth of what the period of the contact allows
-const std::vector<Stiffness> stiffnesses = {{1e5, 5e-3}, {1e6, 1e-3}, {1e7, 2e-4}, {1e8, 5e-5}};
+/// Stiffness [N/m] and step [s]; the steps are a tenth of the limit given by the oscillation period of the
+/// contact.
+const std::vector<StiffnessAndStep> stiffnesses = {{1e5, 5e-3}, {1e6, 1e-3}, {1e7, 2e-4}, {1e8, 5e-5}};
 
 void add_bowl(std::vector<MethodRun>& runs)
 {
-    constexpr double end = 2, every = 0.1;
+    constexpr double end = 2, interval = 0.1;
     std::vector<double> instants;
-    for (int k = 0; k <= std::lround(end / every); ++k) instants.push_back(every * k);
+    for (int k = 0; k <= std::lround(end / interval); ++k) instants.push_back(interval * k);
     const auto reference_solution = std::make_shared<const std::vector<reference::ContactInstant>>(
         bowl.slide({.p = bowl.point(1, 1.5)}, instants));
-    const auto off = [reference_solution](const Method& m, double t) {
-        const double k = t / every;
+    const auto position_error = [reference_solution](const Method& m, double t) {
+        const double k = t / interval;
         if (std::abs(k - std::round(k)) > 1e-6) return 0.;
         return (m.body(1).r - (*reference_solution)[std::lround(k)].body.r).norm();
     };
-    const ContactScene of = bowl_with({bowl.point(1, 1.5)});
+    const ContactScene setup = bowl_scene({bowl.point(1, 1.5)});
     const auto add = [&](const std::string& method, double h, double k,
                          std::function<std::unique_ptr<Method>()> make) {
         MethodRun run{.part = "bowl", .method = method, .h = h, .end = end, .stiffness = k};
-        run.make = std::move(make), run.error = off;
+        run.make = std::move(make), run.error = position_error;
         runs.push_back(run);
     };
     for (const double h : {2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3, 5e-4}) {
-        add("evolving", h, std::nan(""), [=] { return methods::evolving(of, {.reach = 1e-6}); });
+        add("evolving", h, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
         add("evolving, text", h, std::nan(""),
-            [=] { return methods::evolving(of, {.scheme = "rA-half-1", .reach = 1e-6}); });
-        add("DVI", h, std::nan(""), [=] { return methods::rigid(of, {}); });
+            [=] { return methods::evolving(setup, {.scheme = "rA-half-1", .reach = 1e-6}); });
+        add("DVI", h, std::nan(""), [=] { return methods::dvi(setup, {}); });
         add("DVI, not stabilised", h, std::nan(""),
-            [=] { return methods::rigid(of, {.stabilised = false}); });
-        add("DVI, text", h, std::nan(""), [=] { return methods::rigid(of, {.half_kick = false}); });
+            [=] { return methods::dvi(setup, {.stabilised = false}); });
+        add("DVI, text", h, std::nan(""), [=] { return methods::dvi(setup, {.half_kick = false}); });
     }
-    for (const Stiffness& s : stiffnesses)
+    for (const StiffnessAndStep& s : stiffnesses)
         add("DEM", s.h, s.k, [=, at_rest = reference_solution->front()] {
-            return methods::springs(leaning(of, at_rest, s.k, s.h), {.stiffness = s.k, .restitution = 1});
+            return methods::compliant_springs(with_static_compression(setup, at_rest, s.k, s.h),
+                                              {.stiffness = s.k, .restitution = 1});
         });
 }
 
-// ---- many contacts that do not know of each other ----------------------------------------------------------------------
+// ---- many independent contacts ----------------------------------------------------------------------------
 
 void add_many(std::vector<MethodRun>& runs)
 {
     for (const int balls : {1, 10, 100, 1000, 10000}) {
-        std::vector<Vec3> touched;
+        std::vector<Vec3> contact_points;
         for (int k = 0; k < balls; ++k) {
-            const double angle = 2.399963 * k, r = std::sqrt((k + 0.5) / balls);  // even over the lower bowl
-            touched.push_back(bowl.point(2 * r * std::cos(angle), 1.5 * r * std::sin(angle)));
+            const double angle = 2.399963 * k,
+                         r = std::sqrt((k + 0.5) / balls);  // uniform over the lower part
+            contact_points.push_back(bowl.point(2 * r * std::cos(angle), 1.5 * r * std::sin(angle)));
         }
-        const ContactScene of = bowl_with(touched);
+        const ContactScene setup = bowl_scene(contact_points);
         const double steps = std::clamp(2e4 / balls, 20., 2000.);
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
@@ -151,37 +160,39 @@ void add_many(std::vector<MethodRun>& runs)
             run.make = std::move(make);
             runs.push_back(run);
         };
-        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(of, {.reach = 1e-6}); });
+        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
         add("evolving, KLU", 5e-3, std::nan(""),
-            [=] { return methods::evolving(of, {.solver = lie::LinearSolver::klu, .reach = 1e-6}); });
-        add("DVI", 5e-3, std::nan(""), [=] { return methods::rigid(of, {}); });
-        add("DEM", 1e-3, 1e6, [=] { return methods::springs(of, {.stiffness = 1e6, .restitution = 1}); });
+            [=] { return methods::evolving(setup, {.solver = lie::LinearSolver::klu, .reach = 1e-6}); });
+        add("DVI", 5e-3, std::nan(""), [=] { return methods::dvi(setup, {}); });
+        add("DEM", 1e-3, 1e6,
+            [=] { return methods::compliant_springs(setup, {.stiffness = 1e6, .restitution = 1}); });
     }
 }
 
-// ---- a chain in a groove ------------------------------------------------------------------------------------------------
+// ---- a chain in a groove ----------------------------------------------------------------------------------
 
-/// Balls in a row that touch each other in a groove down a slope, held by one that is fixed: at rest, each pressed by all
-/// that are above it. Down the slope is -x.
+/// Balls in contact with each other in an inclined groove, supported by a fixed ball at the lower end. All
+/// balls are at rest; each carries the weight component of all balls above it. -x points down the slope.
 void add_chain(std::vector<MethodRun>& runs)
 {
     for (const int balls : {1, 10, 100, 1000, 3333}) {
         RollingChain chain;
         chain.balls = balls, chain.speed = 0, chain.mu_wall = 0;
-        ContactScene of = scene(chain);
-        contact::BodyType stop = of.kind.back();
+        ContactScene setup = scene(chain);
+        contact::BodyType stop = setup.body_types.back();
         stop.inertia = {};
-        of.kind.push_back(stop);
-        of.interaction.push_back({"stop", of.body.back().kind, static_cast<int>(of.kind.size()) - 1, 0});
-        lie::Motion before_the_first = of.body[2].start;
-        before_the_first.r.x() -= 2 * chain.R;
-        of.body.push_back({static_cast<int>(of.kind.size()) - 1, before_the_first});
+        setup.body_types.push_back(stop);
+        setup.interaction.push_back(
+            {"stop", setup.body.back().type, static_cast<int>(setup.body_types.size()) - 1, 0});
+        lie::Motion stop_start = setup.body[2].start;
+        stop_start.r.x() -= 2 * chain.R;
+        setup.body.push_back({static_cast<int>(setup.body_types.size()) - 1, stop_start});
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
             MethodRun run{
                 .part = "chain", .method = method, .h = h, .end = 0.05, .stiffness = k, .bodies = balls};
             run.make = std::move(make);
-            run.error = [at = of.body, balls](const Method& m, double) {
+            run.error = [at = setup.body, balls](const Method& m, double) {
                 double largest = 0;
                 for (int b = 2; b < balls + 2; ++b)
                     largest = std::max(largest, (m.body(b).r - at[b].start.r).norm());
@@ -189,21 +200,21 @@ void add_chain(std::vector<MethodRun>& runs)
             };
             runs.push_back(run);
         };
-        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(of, {.reach = 1e-6}); });
+        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
         add("DVI", 5e-3, std::nan(""),
-            [=] { return methods::rigid(of, {.tolerance = 1e-6, .most_iterations = 3000}); });
-        add("DEM", 2e-4, 1e6, [=] { return methods::springs(of, {.stiffness = 1e6}); });
+            [=] { return methods::dvi(setup, {.tolerance = 1e-6, .max_iterations = 3000}); });
+        add("DEM", 2e-4, 1e6, [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
     }
 }
 
-// ---- a pile ---------------------------------------------------------------------------------------------------------------
+// ---- a pile -----------------------------------------------------------------------------------------------
 
 void add_pile(std::vector<MethodRun>& runs)
 {
     for (const int balls : {2, 4, 8, 16, 32}) {
         Pile pile;
         pile.balls = balls, pile.mu = 0;
-        const ContactScene of = scene(pile);
+        const ContactScene setup = scene(pile);
         const auto add = [&](const std::string& method, double h, double k,
                              std::function<std::unique_ptr<Method>()> make) {
             MethodRun run{
@@ -211,16 +222,17 @@ void add_pile(std::vector<MethodRun>& runs)
             run.make = std::move(make);
             runs.push_back(run);
         };
-        if (balls <= 4)  // with more, contacts that bear nothing open and close without end
+        if (balls <= 4)  // with more balls, contacts without load open and close indefinitely
             add("evolving", 2e-3, std::nan(""),
-                [=] { return methods::evolving(of, {.reach = 100, .unilateral = true}); });
+                [=] { return methods::evolving(setup, {.reach = 100, .unilateral = true}); });
         add("DVI", 1e-3, std::nan(""),
-            [=] { return methods::rigid(of, {.tolerance = 1e-5, .most_iterations = 2000}); });
-        add("DEM", 2e-4, 1e6, [=] { return methods::springs(of, {.stiffness = 1e6}); });
+            [=] { return methods::dvi(setup, {.tolerance = 1e-5, .max_iterations = 2000}); });
+        add("DEM", 2e-4, 1e6, [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
     }
 }
 
-/// Runs it from the start to the end; the clock stands still while it is judged, and in the first step, which sets up.
+/// Runs one method from start to end. The measured time excludes the error evaluation and the first step,
+/// which allocates and sets up.
 void compute(MethodRun& run)
 {
     run.steps = std::lround(run.end / run.h);
@@ -257,17 +269,17 @@ Table as_table(const std::vector<MethodRun>& runs)
         table.add({run.part, run.method, run.h, run.stiffness, static_cast<double>(run.bodies), run.end,
                    static_cast<double>(run.steps), static_cast<double>(run.contacts),
                    static_cast<double>(run.iterations), static_cast<double>(run.events), run.largest_error,
-                   run.seconds, run.microseconds(), run.of_contact(), run.status});
+                   run.seconds, run.microseconds(), run.microseconds_per_contact(), run.status});
     return table;
 }
 
 void print(const std::vector<MethodRun>& runs, std::ostream& out)
 {
     static const std::map<std::string, std::string> title = {
-        {"bowl", "A ball slides in a bowl for 2 s: largest error of its position"},
-        {"many", "Balls in a bowl, each by itself: cost of a step"},
-        {"chain", "Balls in a row in a groove, held by the first, 0.05 s: what moves of what is at rest"},
-        {"pile", "Balls that fall into a bowl, 1 s"}};
+        {"bowl", "Ball sliding in a bowl for 2 s: largest position error"},
+        {"many", "Independent balls in a bowl: CPU time per step"},
+        {"chain", "Chain of balls at rest in an inclined groove, 0.05 s: largest displacement"},
+        {"pile", "Balls falling into a bowl, 1 s"}};
     for (const std::string& part : parts) {
         Table table({{"method"},
                      {"h [s]", "{:g}"},
@@ -285,7 +297,7 @@ void print(const std::vector<MethodRun>& runs, std::ostream& out)
                 table.add({run.method, run.h, run.stiffness, static_cast<double>(run.bodies),
                            static_cast<double>(run.contacts), static_cast<double>(run.events),
                            static_cast<double>(run.iterations) / static_cast<double>(run.steps),
-                           run.largest_error, 1e3 * run.seconds, run.of_contact(), run.status});
+                           run.largest_error, 1e3 * run.seconds, run.microseconds_per_contact(), run.status});
         if (table.rows() == 0) continue;
         out << '\n' << title.at(part) << '\n';
         table.print(out);
@@ -298,15 +310,15 @@ int contact_methods(const StudyOptions& options)
     for (const std::string& name : options.problems)
         if (std::find(parts.begin(), parts.end(), name) == parts.end())
             throw UsageError("study contact-methods: unknown part" + with_nearest(name, parts));
-    const auto wanted = [&](const std::string& part) {
+    const auto is_selected = [&](const std::string& part) {
         return options.problems.empty() ||
                std::find(options.problems.begin(), options.problems.end(), part) != options.problems.end();
     };
     std::vector<MethodRun> runs;
-    if (wanted("bowl")) add_bowl(runs);
-    if (wanted("many")) add_many(runs);
-    if (wanted("chain")) add_chain(runs);
-    if (wanted("pile")) add_pile(runs);
+    if (is_selected("bowl")) add_bowl(runs);
+    if (is_selected("many")) add_many(runs);
+    if (is_selected("chain")) add_chain(runs);
+    if (is_selected("pile")) add_pile(runs);
     const Pool pool(1, options.quiet ? "" : "contact-methods", static_cast<long>(runs.size()));
     pool.run([&](long k) { compute(runs[k]); });
 
@@ -319,13 +331,13 @@ int contact_methods(const StudyOptions& options)
     output.table = as_table(runs).csv();
     output.figures = {};
     for (const std::string& part : parts)
-        if (wanted(part)) output.figures.push_back("contact-methods-" + part + ".png");
-    std::vector<Measured> came;
+        if (is_selected(part)) output.figures.push_back("contact-methods-" + part + ".png");
+    std::vector<Measured> measurements;
     for (const MethodRun& run : runs)
         if (!std::isnan(run.largest_error))
-            came.push_back({fmt::format("{} of {} at h = {:g} s", run.method, run.part, run.h),
-                            {{"error", run.largest_error}}});
-    return finish(options, output, {}, came);
+            measurements.push_back({fmt::format("{} of {} at h = {:g} s", run.method, run.part, run.h),
+                                    {{"error", run.largest_error}}});
+    return finish(options, output, {}, measurements);
 }
 
 const bool registered =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Scenes of many contacts for the comparison of contact methods: a pile of balls in a bowl, a chain of balls that roll.
+/// Scenes with many contacts for the comparison of contact methods (Fang 2022, Sec. 8.2): a pile of balls in
+/// a bowl and a chain of rolling balls.
 
 #pragma once
 
@@ -8,77 +9,83 @@
 
 namespace hilda::studies {
 
-/// What a scene is, whatever steps it
+/// Description of a scene, independent of the contact method: body types, bodies, and the type pairs in
+/// contact.
 struct ContactScene {
     struct Body {
-        int kind;
+        int type;
         lie::Motion start;
     };
-    /// Two kinds that touch each other
+    /// Contact law of two body types; pairs of types without an interaction do not collide.
     struct Interaction {
         std::string name;
-        int kind_i, kind_j;
+        int type_i, type_j;
         double mu;
     };
 
     lie::Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
-    std::vector<contact::BodyType> kind;
+    std::vector<contact::BodyType> body_types;
     std::vector<Body> body;
     std::vector<Interaction> interaction;
     double R = 0;  ///< of a ball [m]
     double m = 0;  ///< of a ball [kg]
 };
 
-/// Balls that fall a little and come to rest in the bowl of an ellipsoid with semi-axes in the ratio 4 : 3 : 2. At the
-/// start they stand in layers without touching, the lowest that have room, in a bowl of about three times their volume.
+/// Balls that fall and come to rest in an ellipsoidal bowl with semi-axes in the ratio 4 : 3 : 2. At the
+/// start the balls are arranged in layers without contact, filled from the bottom; the volume of the bowl is
+/// about three times the volume that they occupy.
 struct Pile {
     int balls = 100;
-    double mu = 0.3;        ///< between balls, and with the bowl
+    double mu = 0.3;        ///< friction coefficient, ball-ball and ball-bowl
     double R = 0.1, m = 1;  ///< [m, kg]
 };
-/// Body 0 is the bowl, fixed; the others are the balls.
+/// Body 0 is the fixed bowl; the other bodies are the balls. InvalidInput for less than one ball or a radius
+/// or mass that is not positive.
 ContactScene scene(const Pile& pile);
 
-/// Balls in a row that touch each other, and the two walls of a groove along x: three contacts a ball. They begin to roll
-/// up a slope at a given speed, pushed from behind by a ball that keeps that speed and does not turn, or, at speed zero,
-/// from rest down the slope by their weight.
+/// A row of balls in contact with each other and with the two walls of a groove along x (three contacts per
+/// ball).
 ///
-/// With c = μ R/ρ, ρ = R cos 50° the distance of a ball's centre from the line through its two wall contacts, rolling balls
-/// that are pushed press on each other with P_k, the last one on nothing:
+/// With speed > 0 the balls roll up the slope, pushed by a ball that moves at constant speed without
+/// rotation. With speed 0 they roll down the slope from rest.
 ///
-///     P_k = (m g sin α + (1 + c) P_{k+1})/(1 - c)
+/// Let ρ = R cos 50° be the distance of the centre of a ball from the line through its two wall contacts, and
+/// c = μ R/ρ. Each pushed ball slides on both neighbours, and the walls supply the traction. The force
+/// between neighbours is
 ///
-/// as each ball slides on both neighbours, which needs traction of the walls. Freely they go with g sin α/(1 + 0.4 R²/ρ²)
-/// as one.
+///     P_k = (m g sin α + (1 + c) P_{k+1})/(1 - c),     P_{N+1} = 0 for N balls
+///
+/// Without the pushing ball all balls have the acceleration g sin α/(1 + 0.4 R²/ρ²).
 struct RollingChain {
     int balls = 10;
     double slope = 0.1;     ///< α [rad]
     double speed = 0.5;     ///< [m/s]
-    double mu_between = 0;  ///< of ball on ball
-    double mu_wall = 0.6;
+    double mu_between = 0;  ///< friction coefficient, ball-ball
+    double mu_wall = 0.6;   ///< friction coefficient, ball-wall
     double R = 0.1, m = 1;  ///< [m, kg]
 
     static constexpr double wall =
-        50 * 3.14159265358979323846 / 180;  ///< angle of each wall from the level [rad]
+        50 * 3.14159265358979323846 / 180;  ///< angle of each wall from the horizontal [rad]
     double rho() const { return R * std::cos(wall); }
-    /// P_1 [N], with the ball that pushes, or on it
+    /// P_1 [N], the force between the pushing ball and the first ball
     double push() const;
 };
-/// Bodies 0 and 1 are the walls, left and right of x; then come the balls, from the hindmost on; the last one is the ball
-/// that pushes, if there is one.
+/// Bodies 0 and 1 are the left and the right wall; the balls follow from the rear to the front. The last body
+/// is the pushing ball if speed > 0. InvalidInput for less than one ball or a radius or mass that is not
+/// positive.
 ContactScene scene(const RollingChain& chain);
 
-/// Pairs of bodies that touch at the start, to a gap [m]; for methods that are told their contacts
-std::vector<contact::Candidate> touching(const ContactScene& of, double gap);
+/// Pairs of bodies with a gap below `gap` [m] at the start, for methods with a fixed set of contacts
+std::vector<contact::Candidate> contact_pairs(const ContactScene& setup, double gap);
 
-/// Rigid, as a differential variational inequality. crowd.margin is R/5.
-contact::DviScene rigid(const ContactScene& of);
+/// Rigid contacts, as a differential variational inequality. The margin of the neighbour list is R/5.
+contact::DviScene rigid(const ContactScene& setup);
 
-/// Compliant: linear springs, friction by slide-roll-spin without rolling resistance
+/// Compliant contacts: linear normal springs, friction law slide-roll-spin without rolling resistance
 struct Compliance {
-    double stiffness = 1e6;    ///< of a contact [N/m], and of its friction
-    double restitution = 0.2;  ///< of two balls
+    double stiffness = 1e6;    ///< normal and tangential contact stiffness [N/m]
+    double restitution = 0.2;  ///< coefficient of restitution of two balls
 };
-contact::Scene compliant(const ContactScene& of, const Compliance& how);
+contact::Scene compliant(const ContactScene& setup, const Compliance& compliance);
 
 }  // namespace hilda::studies

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter8/method.hpp"
 
+#include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 
 namespace hilda::studies::methods {
@@ -12,29 +15,34 @@ using contact::EvolvingContact;
 using contact::Shape;
 using lie::Motion;
 
-bool moves(const ContactScene& of, int b) { return std::isfinite(of.kind[of.body[b].kind].inertia.m); }
+bool has_finite_mass(const ContactScene& setup, int b)
+{
+    return std::isfinite(setup.body_types[setup.body[b].type].inertia.m);
+}
 
-class ByConstraints final : public Method {
+class EvolvingContactMethod final : public Method {
 public:
-    ByConstraints(const ContactScene& of, const Evolving& how)
+    EvolvingContactMethod(const ContactScene& setup, const EvolvingOptions& options)
     {
-        for (const ContactScene::Interaction& interaction : of.interaction)
+        for (const ContactScene::Interaction& interaction : setup.interaction)
             if (interaction.mu > 0)
-                lie::reject("studies::methods::evolving", "contacts must be without friction, mu",
+                lie::reject("studies::methods::evolving", "the contacts must be frictionless, mu",
                             interaction.mu);
-        model.gravity = of.gravity;
+        model.gravity = setup.gravity;
         lie::State x;
-        for (size_t b = 0; b < of.body.size(); ++b) {
-            const contact::BodyType& kind = of.kind[of.body[b].kind];
+        for (size_t b = 0; b < setup.body.size(); ++b) {
+            const contact::BodyType& type = setup.body_types[setup.body[b].type];
             number.push_back(dae::ground);
-            if (!moves(of, static_cast<int>(b))) continue;
-            number.back() = model.add({"body " + std::to_string(b), kind.inertia.m, kind.inertia.J_bar});
-            x.body.push_back(of.body[b].start);
+            if (!has_finite_mass(setup, static_cast<int>(b))) continue;
+            number.back() = model.add({"body " + std::to_string(b), type.inertia.m, type.inertia.J_bar});
+            x.body.push_back(setup.body[b].start);
         }
-        for (const contact::Candidate& pair : touching(of, how.reach)) add(of, how, pair.i, pair.j);
+        for (const contact::Candidate& pair : contact_pairs(setup, options.reach))
+            add(setup, options, pair.i, pair.j);
         dae::start(model, x, {.fix_initial = true});
-        integrator = contact::make_integrator(model, lie::scheme(how.scheme),
-                                              {.tolerance = how.tolerance, .linear_solver = how.solver});
+        integrator =
+            contact::make_integrator(model, lie::scheme(options.scheme),
+                                     {.tolerance = options.tolerance, .linear_solver = options.solver});
         start = x;
     }
 
@@ -51,7 +59,7 @@ public:
     {
         int closed = 0;
         const lie::State& x = march ? march->node() : start;
-        for (const auto& c : model.evolving()) closed += !dae::Model::inactive(*c, x);
+        for (const auto& c : model.general_constraints()) closed += !dae::Model::inactive(*c, x);
         return closed;
     }
     long iterations() const override { return integrator->statistics().iterations; }
@@ -62,49 +70,49 @@ public:
     }
 
 private:
-    void add(const ContactScene& of, const Evolving& how, int i, int j)
+    void add(const ContactScene& setup, const EvolvingOptions& options, int i, int j)
     {
-        if (!moves(of, i) && !moves(of, j)) return;
-        model.constrain("contact " + std::to_string(i) + "-" + std::to_string(j),
-                        std::make_unique<EvolvingContact>(number[i], shape(of, i), number[j], shape(of, j),
-                                                          EvolvingContact::Friction::none,
-                                                          EvolvingContact::NormalRows::tangent,
-                                                          contact::Unilateral{.enabled = how.unilateral}));
+        if (!has_finite_mass(setup, i) && !has_finite_mass(setup, j)) return;
+        model.constrain(
+            "contact " + std::to_string(i) + "-" + std::to_string(j),
+            std::make_unique<EvolvingContact>(
+                number[i], shape(setup, i), number[j], shape(setup, j), EvolvingContact::Friction::none,
+                EvolvingContact::NormalRows::tangent, contact::Unilateral{.enabled = options.unilateral}));
     }
 
-    /// Of the body, or of the ground where it is part of that
-    Shape shape(const ContactScene& of, int b) const
+    /// Shape of body b, in the frame of the ground if the body is part of the ground
+    Shape shape(const ContactScene& setup, int b) const
     {
-        Shape s = of.kind[of.body[b].kind].shape;
+        Shape s = setup.body_types[setup.body[b].type].shape;
         if (number[b] != dae::ground) return s;
-        const Motion& at = of.body[b].start;
+        const Motion& at = setup.body[b].start;
         if (at.rdot != lie::Vec3::Zero() || at.omega_bar != lie::Vec3::Zero())
-            lie::reject("studies::methods::evolving", "a body without a finite mass must stand still", b);
+            lie::reject("studies::methods::evolving", "a body without a finite mass must be at rest", b);
         s.position = at.r + at.A * s.position;
         s.orientation = at.A * s.orientation;
         return s;
     }
 
     dae::Model model;
-    std::vector<int> number;  // of each body in the model
+    std::vector<int> number;  // index of each body in the model; ground for fixed bodies
     lie::State start;
     std::unique_ptr<lie::Integrator> integrator;
     std::unique_ptr<lie::March> march;
 };
 
-class ByInequality final : public Method {
+class DviMethod final : public Method {
 public:
-    ByInequality(const ContactScene& of, const Rigid& how) : scene(studies::rigid(of))
+    DviMethod(const ContactScene& setup, const DviMethodOptions& options) : scene(studies::rigid(setup))
     {
-        scene.options.stabilised = how.stabilised;
-        scene.options.half_kick = how.half_kick;
-        scene.solver.tolerance = how.tolerance;
-        scene.solver.max_iterations = how.most_iterations;
+        scene.options.stabilised = options.stabilised;
+        scene.options.half_kick = options.half_kick;
+        scene.solver.tolerance = options.tolerance;
+        scene.solver.max_iterations = options.max_iterations;
     }
     void step(double h) override
     {
         scene.step(h);
-        sum += scene.solved.iterations;
+        sum += scene.outcome.iterations;
     }
     const Motion& body(int b) const override { return scene.body[b]; }
     int contacts() const override { return scene.contacts(); }
@@ -115,9 +123,10 @@ private:
     long sum = 0;
 };
 
-class BySprings final : public Method {
+class CompliantMethod final : public Method {
 public:
-    BySprings(const ContactScene& of, const Compliance& how) : scene(compliant(of, how)) {}
+    CompliantMethod(const ContactScene& setup, const Compliance& options) : scene(compliant(setup, options))
+    {}
     void step(double h) override
     {
         scene.step(h);
@@ -126,9 +135,9 @@ public:
     const Motion& body(int b) const override { return scene.body[b]; }
     int contacts() const override
     {
-        int touching = 0;
-        for (const auto& p : scene.neighbors.pair()) touching += p.state.contact_state.N > 0;
-        return touching;
+        int count = 0;
+        for (const auto& p : scene.neighbors.pair()) count += p.state.contact_state.N > 0;
+        return count;
     }
     long iterations() const override { return steps; }
 
@@ -139,19 +148,19 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Method> evolving(const ContactScene& of, const Evolving& how)
+std::unique_ptr<Method> evolving(const ContactScene& setup, const EvolvingOptions& options)
 {
-    return std::make_unique<ByConstraints>(of, how);
+    return std::make_unique<EvolvingContactMethod>(setup, options);
 }
 
-std::unique_ptr<Method> rigid(const ContactScene& of, const Rigid& how)
+std::unique_ptr<Method> dvi(const ContactScene& setup, const DviMethodOptions& options)
 {
-    return std::make_unique<ByInequality>(of, how);
+    return std::make_unique<DviMethod>(setup, options);
 }
 
-std::unique_ptr<Method> springs(const ContactScene& of, const Compliance& how)
+std::unique_ptr<Method> compliant_springs(const ContactScene& setup, const Compliance& options)
 {
-    return std::make_unique<BySprings>(of, how);
+    return std::make_unique<CompliantMethod>(setup, options);
 }
 
 }  // namespace hilda::studies::methods

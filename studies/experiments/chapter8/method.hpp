@@ -1,49 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One scene by three ways to treat contact: constraints whose contact points evolve, a differential variational
-/// inequality, springs.
+/// Common interface of the contact methods: evolving contact constraints, a differential variational
+/// inequality (DVI) and springs (DEM).
 
 #pragma once
 
 #include "contact/evolving/unilateral.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "studies/experiments/chapter8/contact_scenes.hpp"
 
 namespace hilda::studies::methods {
 
-/// A scene under way
+/// A scene being integrated by one contact method
 class Method {
 public:
     virtual ~Method() = default;
     virtual void step(double h) = 0;
-    /// Body b of the scene, at the node; velocities are those the method stores
+    /// Body b of the scene at the current node, with the velocities that the method stores
     virtual const lie::Motion& body(int b) const = 0;
-    virtual int contacts() const = 0;  ///< that touched in the last step
-    /// Iterations so far: of Newton's method, of the cone solver; of springs the steps
+    virtual int contacts() const = 0;  ///< number of active contacts in the last step
+    /// Accumulated iterations: of Newton's method or of the cone solver; for springs the number of steps
     virtual long iterations() const = 0;
-    virtual int events() const { return 0; }  ///< contacts that came or went, where each is an event
+    /// Number of opened and closed contacts, for methods that locate these events
+    virtual int events() const { return 0; }
 };
 
-/// Contact by constraints
-struct Evolving {
+/// Options of evolving contact constraints
+struct EvolvingOptions {
     std::string scheme = "rA-half-1-momentum";
     lie::LinearSolver solver = lie::LinearSolver::automatic;
     double tolerance = 1e-12;  ///< of Newton's method
-    double reach = 0;          ///< pairs that are nearer than this at the start are contacts [m]
-    bool unilateral = false;        ///< whether contacts come and go, without rebound
+    double reach = 0;          ///< pairs with a smaller gap at the start are contacts [m]
+    bool unilateral = false;   ///< contacts open and close, restitution 0
 };
-/// Without friction. Bodies without a finite mass are the ground; InvalidInput where one of those moves, and for a scene
-/// with friction.
-std::unique_ptr<Method> evolving(const ContactScene& of, const Evolving& how);
+/// Frictionless evolving contacts. Bodies without a finite mass are part of the ground. InvalidInput for a
+/// moving body without a finite mass and for a scene with friction.
+std::unique_ptr<Method> evolving(const ContactScene& setup, const EvolvingOptions& options);
 
-/// As a differential variational inequality, stabilised or not, with this tolerance of impulses over masses [m/s]
-struct Rigid {
+/// Options of the differential variational inequality; the tolerance is on impulse over mass [m/s]
+struct DviMethodOptions {
     bool stabilised = true;
     bool half_kick = true;
     double tolerance = 1e-10;
-    int most_iterations = 10000;
+    int max_iterations = 10000;
 };
-std::unique_ptr<Method> rigid(const ContactScene& of, const Rigid& how);
+std::unique_ptr<Method> dvi(const ContactScene& setup, const DviMethodOptions& options);
 
-/// By springs, started from the scene as it is
-std::unique_ptr<Method> springs(const ContactScene& of, const Compliance& how);
+/// Contact springs; the bodies start exactly as in the scene
+std::unique_ptr<Method> compliant_springs(const ContactScene& setup, const Compliance& options);
 
 }  // namespace hilda::studies::methods

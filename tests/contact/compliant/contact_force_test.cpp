@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A contact as a force of a model: a pure function of the state, by every scheme.
+// ContactForce in a model: the loads are a function of the state, with all integrators.
 #include <catch2/catch.hpp>
 
 #include "contact/compliant/contact_force.hpp"
@@ -7,8 +7,12 @@
 #include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
 #include "lie/euler_parameters.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
 
@@ -30,13 +34,13 @@ FrictionParameters rubber()
     return {.mu_s = 0.25, .mu_k = 0.2, .K_E = 2e4, .zeta = 0.5, .eta_r = 0.05, .eta_psi = 0.05};
 }
 
-std::shared_ptr<const NormalLaw> spring() { return std::make_shared<Hooke>(Hooke::rebounding(k, 0.5)); }
+std::shared_ptr<const NormalLaw> spring() { return std::make_shared<Hooke>(Hooke::with_restitution(k, 0.5)); }
 
 Inertia ball() { return {.m = m, .J_bar = 0.4 * m * R * R * Mat3::Identity()}; }
 Shape sphere(double radius = R) { return {.surface = std::make_shared<Sphere>(radius)}; }
 Shape floor() { return {.surface = std::make_shared<Plane>()}; }
 
-/// Thrown along x with a spin about the vertical, pressing on the floor with its weight
+/// A ball sliding along x with a spin about the vertical; the overlap carries its weight
 Motion thrown(double v, double spin = 3)
 {
     Motion b;
@@ -45,7 +49,7 @@ Motion thrown(double v, double spin = 3)
     b.omega_bar = {0, 0, spin};
     return b;
 }
-/// Turning so fast as to roll, times a factor
+/// A rolling ball; its angular velocity is multiplied by `factor`
 Motion rolling(double v, double factor = 1)
 {
     Motion b = thrown(v, 1);
@@ -99,7 +103,7 @@ bool same(const State& a, const State& b)
 
 }  // namespace
 
-TEST_CASE("a ball of a model and of a scene move alike, and the more so the smaller the step (long)",
+TEST_CASE("the motion of a ball in a model and in a scene converges to the same solution (long)",
           "[contact][force]")
 {
     const auto apart = [](double h, const Motion& start) {
@@ -129,14 +133,14 @@ TEST_CASE("the loads of a contact are a function of the state", "[contact][force
     CHECK(first.n_bar[0] == second.n_bar[0]);
     CHECK(same(x, before));
 
-    // elsewhere, and back
+    // the loads of another state do not change those of x
     State other = x;
     other.t += 1e-3;
     other.body[0].r += Vec3(1e-3, 0, 0);
     loads(one.model, other);
     CHECK(loads(one.model, x).F[0] == first.F[0]);
 
-    // a step that is refused leaves nothing behind
+    // a step that fails does not change the state
     const auto hasty = lie::scheme("rA-full-1").make(one.model, {.max_iterations = 1});
     CHECK_THROWS_AS(hasty->step(x, 1e-4), lie::NoConvergence);
     CHECK(same(x, before));
@@ -148,29 +152,29 @@ TEST_CASE("the loads of a contact are a function of the state", "[contact][force
     CHECK(same(x, y));
 }
 
-TEST_CASE("a contact that slips slips on where nothing moves", "[contact][force]")
+TEST_CASE("a slipping contact remains slipping if the pose changes by rounding only", "[contact][force]")
 {
     const OneBall one(thrown(2));
     State x = one.after("rA-half-1", 0.05, 1e-4);
-    const ContactHistory history = one.contact().recall(x);
+    const ContactHistory history = one.contact().saved_history(x);
     REQUIRE(history.deflections.slide.slipping);
     const double pressed = one.contact().at(x).contact_state.N, most = rubber().mu_k * pressed;
     CHECK(one.contact().friction(x).F.norm() == Approx(most).epsilon(1e-12));
 
-    // through Euler parameters and back
+    // conversion to Euler parameters and back
     lie::Motion& b = x.body[0];
     b.A = lie::rotation(lie::euler_parameters(b.A));
     b.r += Vec3(1, -1, 0) * 1e-16;
     CHECK(one.contact().friction(x).F.norm() == Approx(most).epsilon(1e-9));
-    State kept = x;
-    one.model.accepted(x, kept);
-    CHECK(one.contact().recall(kept).deflections.slide.slipping);
-    // but a way back, however short, is one
+    State accepted = x;
+    one.model.accepted(x, accepted);
+    CHECK(one.contact().saved_history(accepted).deflections.slide.slipping);
+    // a displacement above rounding against the direction of slip leads to stick
     x.body[0].r -= 1e-9 * x.body[0].rdot;
     CHECK(!one.contact().at(x).history.deflections.slide.slipping);
 }
 
-TEST_CASE("two free bodies in contact keep their momentum", "[contact][force]")
+TEST_CASE("an impact of two free bodies conserves linear and angular momentum", "[contact][force]")
 {
     dae::Model model;
     model.gravity.setZero();
@@ -201,30 +205,30 @@ TEST_CASE("two free bodies in contact keep their momentum", "[contact][force]")
     lie::March march(x, *integrator, 1e-5);
     for (int n = 0; n < 4000; ++n) {
         march.advance({});
-        touched = touched || contact.recall(march.node()).touching;
+        touched = touched || contact.saved_history(march.node()).touching;
     }
     CHECK(touched);
-    CHECK(!contact.recall(march.node()).touching);  // they part again
+    CHECK(!contact.saved_history(march.node()).touching);  // the bodies have separated
     CHECK((march.node().body[1].rdot - x.body[1].rdot).norm() > 1);
     CHECK((momentum(march.node()) - before).norm() < 1e-12);
 }
 
-TEST_CASE("every scheme takes a rolling ball to the same place (long)", "[contact][force][order]")
+TEST_CASE("all integrators converge to the same position of a rolling ball (long)", "[contact][force][order]")
 {
     const FrictionParameters sticking{.mu_s = 0.25, .mu_k = 0.25, .K_E = 2e4, .zeta = 0.5};
     const OneBall one(rolling(1, 0.98), sticking);
-    const State truth = one.after("rA-rkmk-4", 0.1, 1e-5);
+    const State reference = one.after("rA-rkmk-4", 0.1, 1e-5);
     for (const lie::Scheme& s : lie::schemes()) {
         if (s.adaptive) continue;
-        const double a = distance(one.after(s.name, 0.1, 5e-4).body[0], truth.body[0]),
-                     b = distance(one.after(s.name, 0.1, 2.5e-4).body[0], truth.body[0]);
+        const double a = distance(one.after(s.name, 0.1, 5e-4).body[0], reference.body[0]),
+                     b = distance(one.after(s.name, 0.1, 2.5e-4).body[0], reference.body[0]);
         INFO(s.name << " declares " << s.order << ", errors " << a << ' ' << b);
         CHECK(b < (s.order == 1 ? 5e-6 : 1e-7));
         CHECK(std::log2(a / b) > std::min(s.order, 2) - 0.3);
     }
 }
 
-TEST_CASE("the dashpots work from the first touch on", "[contact][force]")
+TEST_CASE("the dampers are active from the beginning of contact", "[contact][force]")
 {
     const FrictionParameters p{.mu_s = 0.25, .mu_k = 0.25, .K_E = 2e4, .zeta = 0.5};
     const OneBall one(rolling(1, 0.98), p);
@@ -232,7 +236,7 @@ TEST_CASE("the dashpots work from the first touch on", "[contact][force]")
     CHECK(one.contact().friction(one.x).F.norm() == Approx(D * 0.02 * std::hypot(1, 0.1)).epsilon(1e-3));
 }
 
-TEST_CASE("a contact allocates nothing", "[contact][force][allocation]")
+TEST_CASE("a contact does not allocate memory", "[contact][force][allocation]")
 {
     const OneBall one(thrown(2));
     State x = one.x;
@@ -249,7 +253,7 @@ TEST_CASE("a contact allocates nothing", "[contact][force][allocation]")
     if (tests::counts_allocations) CHECK(taken == 0);
 }
 
-TEST_CASE("a step is judged before bodies touch", "[contact][force]")
+TEST_CASE("the stability limit is estimated before the bodies are in contact", "[contact][force]")
 {
     const OneBall resting(thrown(0));
     Motion high = thrown(0);
@@ -260,7 +264,7 @@ TEST_CASE("a step is judged before bodies touch", "[contact][force]")
     CHECK(h < 0.01);
     CHECK(falling.model.stable_step(falling.x).h == Approx(h).epsilon(1e-3));
 
-    // a Hertzian contact is the stiffer the harder it is hit
+    // the stiffness of a Hertzian contact increases with the speed of the impact
     const auto bound = [](double height, double overlap) {
         dae::Model model;
         model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
@@ -279,7 +283,7 @@ TEST_CASE("a step is judged before bodies touch", "[contact][force]")
     CHECK(bound(0.01, 0) > bound(0.1, 0));
 }
 
-TEST_CASE("where no touch can be found, the message has the pair and the time", "[contact][force]")
+TEST_CASE("the message of a failed detection has the names of the bodies and the time", "[contact][force]")
 {
     dae::Model model;
     model.add({.name = "left", .m = 1, .J_bar = Mat3::Identity()});
@@ -304,7 +308,7 @@ TEST_CASE("where no touch can be found, the message has the pair and the time", 
                       Catch::Contains("two different bodies, got 'right' twice"));
 }
 
-TEST_CASE("what needs curvature is refused where there is none", "[contact][force]")
+TEST_CASE("laws that need curvature are rejected if the surfaces have none", "[contact][force]")
 {
     const auto why = [](std::shared_ptr<const NormalLaw> law,
                         std::shared_ptr<const FrictionModel> law_of_friction, Shape shape) {
@@ -312,7 +316,7 @@ TEST_CASE("what needs curvature is refused where there is none", "[contact][forc
                                  std::move(law_of_friction));
         Motion on;
         on.r.z() = R;
-        return c.objection(on, {});
+        return c.start_error(on, {});
     };
     const Shape foot{.surface = std::make_shared<Foot>(), .position = {0, 0, -R}};
     const std::string curve = "the sum of the curvatures must be positive, got 0";

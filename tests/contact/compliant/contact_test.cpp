@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One contact: what it refuses, how large a step its springs allow, how its deflections give way.
+// CompliantContact: rejected starts, stability limit of the step, bounds of the deflections.
 #include "contact/compliant/contact.hpp"
 
 #include "contact/friction/laws/spring.hpp"
@@ -66,8 +66,8 @@ double bound(const contact::CompliantContact& c)
     return c.stable_step(c.evaluate(up, ground, {}), up, ground);
 }
 
-/// Largest speed of the material at the contact over the last tenth of two thousand steps of h, when the ball is
-/// pushed at 1e-7 m/s: a linear system that is stable or is not.
+/// Largest angular velocity of a ball over the last tenth of 2000 steps of h, after a start with 1e-7 m/s. At
+/// this speed the system is linear, so that it decays or grows.
 double late_speed(double eta_r, double h)
 {
     contact::Scene scene;
@@ -87,7 +87,7 @@ double late_speed(double eta_r, double h)
 
 }  // namespace
 
-TEST_CASE("the stability bound of a sphere is that of its damped tangential oscillation",
+TEST_CASE("the stability limit of a sphere is that of its damped tangential oscillation",
           "[contact][stability]")
 {
     // ω² = 3.5 K_E / m, damping ratio √3.5: h < 2 (√4.5 - √3.5) / ω
@@ -95,14 +95,14 @@ TEST_CASE("the stability bound of a sphere is that of its damped tangential osci
     const double omega = std::sqrt(3.5 * K_E / m);
     CHECK(bound(rolling_ball({.mu_s = 1, .mu_k = 1, .K_E = K_E})) ==
           Approx(2 * (std::sqrt(4.5) - std::sqrt(3.5)) / omega).epsilon(1e-9));
-    // Without dashpot: 2/ω
+    // without damping: 2/ω
     CHECK(bound(rolling_ball({.mu_s = 1, .mu_k = 1, .K_E = K_E, .zeta = 0})) ==
           Approx(2 / omega).epsilon(1e-9));
-    // Nothing that could become unstable
+    // without stiffness and damping there is no limit
     CHECK(std::isinf(bound(rolling_ball({.mu_s = 0, .mu_k = 0, .K_E = 1e-300}))));
 }
 
-TEST_CASE("a step below the stability bound comes to rest and one above it does not", "[contact][stability]")
+TEST_CASE("a step below the stability limit is stable and a step above it is not", "[contact][stability]")
 {
     const double eta_r = GENERATE(0., 0.3);
     const double h = bound(rolling_ball({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5, .eta_r = eta_r}));
@@ -112,13 +112,13 @@ TEST_CASE("a step below the stability bound comes to rest and one above it does 
         CHECK(h < 1.6e-3);
         CHECK(late_speed(eta_r, 0.98 * h) < 1e-10);
         CHECK(late_speed(eta_r, 1.02 * h) > 1e-6);
-    } else {  // rolls on
+    } else {  // the ball continues to roll
         CHECK(late_speed(eta_r, 0.98 * h) < 1e-6);
         CHECK(late_speed(eta_r, 1.02 * h) > 1e-4);
     }
 }
 
-TEST_CASE("a scene refuses a step above the bound and says it", "[contact][stability]")
+TEST_CASE("a scene rejects a step above the stability limit", "[contact][stability]")
 {
     contact::Scene scene;
     scene.add(ball(5, 0.2), at({0, 0, 0.2}));
@@ -130,7 +130,8 @@ TEST_CASE("a scene refuses a step above the bound and says it", "[contact][stabi
           "contact 'ball-floor': the step must not exceed its stability bound of 0.00189354 s, got 0.002");
 }
 
-TEST_CASE("a light ball under a heavy one needs the step of both its contacts", "[contact][stability]")
+TEST_CASE("the stability limit of a light ball under a heavy ball takes both contacts into account",
+          "[contact][stability]")
 {
     const auto energy_after = [](double part) {
         contact::Scene scene;
@@ -141,7 +142,7 @@ TEST_CASE("a light ball under a heavy one needs the step of both its contacts", 
         const auto law = std::make_shared<contact::Hertz>(1e8);
         scene.add("floor", light, sphere(R), floor, plane, law, contact::frictionless());
         scene.add("ball", light, sphere(R), heavy, sphere(2 * R), law, contact::frictionless());
-        double h = 1;  // the bound, by bisection of what is refused
+        double h = 1;  // the limit, by bisection of the rejected steps
         for (double lower = 1e-9; h > lower * 1.001;) {
             const double middle = std::sqrt(lower * h);
             (refusal([&] { scene.check(middle); }).empty() ? lower : h) = middle;
@@ -150,77 +151,78 @@ TEST_CASE("a light ball under a heavy one needs the step of both its contacts", 
         for (double t = 0; t < 0.02; t += h) scene.step(h);
         return scene.kinetic_energy();
     };
-    CHECK(energy_after(0.99) < 1000 * 9.81 * 0.01);  // what a fall of a centimetre gives
+    CHECK(energy_after(0.99) < 1000 * 9.81 * 0.01);  // energy of a fall of 1 cm
     CHECK(energy_after(3) > 1e3);
 }
 
-TEST_CASE("the bound of bodies that do not touch yet is that of the impact to come", "[contact][stability]")
+TEST_CASE("the stability limit of bodies not yet in contact is that of the expected impact",
+          "[contact][stability]")
 {
     const auto bound_at = [](double gap) {
         const contact::CompliantContact c("ball", sphere(0.2), plane, ball(5, 0.2), {},
                                           std::make_shared<contact::Hertz>(1e8), contact::frictionless());
         const Motion up = at({0, 0, 0.2 + gap}), ground;
-        return c.stable_step(c.hardest(up, ground, {}, 5 * 9.81), up, ground);
+        return c.stable_step(c.state_at_largest_compression(up, ground, {}, 5 * 9.81), up, ground);
     };
     CHECK(bound_at(1e-6) == Approx(bound_at(-1e-9)).epsilon(1e-2));
     CHECK(bound_at(1) < bound_at(1e-6));
 }
 
-TEST_CASE("a start that no contact can have is refused", "[contact]")
+TEST_CASE("an invalid initial pose of a contact is rejected", "[contact]")
 {
-    const auto objection = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {
+    const auto start_error = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {
         const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
                                           std::make_shared<contact::Hooke>(1e5, 0), friction(p));
-        return c.objection(at(r), Motion());
+        return c.start_error(at(r), Motion());
     };
     const FrictionParameters slides{.K_E = 1}, rolls{.K_E = 1, .eta_r = 0.1};
-    CHECK(objection(sphere(0.2), plane, {0, 0, 0.2}, rolls).empty());
-    CHECK(objection(sphere(0.2), plane, {0, 0, 0.1801}, slides).empty());
-    CHECK(objection(sphere(0.2), plane, {0, 0, 0.17}, slides) ==
-          "the surfaces must not overlap by more than a tenth of a radius of curvature, 0.2 m, got 0.03 m");
-    CHECK(objection(sphere(0.2), sphere(0.5, true), {0, 0, -0.3}, rolls).empty());
+    CHECK(start_error(sphere(0.2), plane, {0, 0, 0.2}, rolls).empty());
+    CHECK(start_error(sphere(0.2), plane, {0, 0, 0.1801}, slides).empty());
+    CHECK(start_error(sphere(0.2), plane, {0, 0, 0.17}, slides) ==
+          "the surfaces must not overlap by more than a tenth of the radius of curvature 0.2 m, got 0.03 m");
+    CHECK(start_error(sphere(0.2), sphere(0.5, true), {0, 0, -0.3}, rolls).empty());
     const Shape flat{
-        std::make_shared<contact::Ellipsoid>(Vec3(0.4, 0.4, 0.2))};  // of curvature 1.25 at its pole
-    CHECK(objection(flat, sphere(0.5, true), {0, 0, -0.3}, slides)
-              .starts_with("no touch of two surfaces: the surfaces do not curve away from each "
-                           "other, least "
-                           "sum of their curvatures -0.75 1/m; "));
+        std::make_shared<contact::Ellipsoid>(Vec3(0.4, 0.4, 0.2))};  // curvature 1.25 1/m at the pole
+    CHECK(
+        start_error(flat, sphere(0.5, true), {0, 0, -0.3}, slides)
+            .starts_with("no contact point of two surfaces: the surfaces do not curve away from each other, "
+                         "smallest principal curvature of K_i + K_j -0.75 1/m; "));
     const Shape foot{std::make_shared<contact::Foot>()};
-    CHECK(objection(foot, plane, {0, 0, 0}, slides).empty());
-    CHECK(objection(foot, plane, {0, 0, 0}, rolls) ==
-          "rolling and spinning friction need curvature: the sum of the curvatures must be positive, got 0 "
-          "1/m");
+    CHECK(start_error(foot, plane, {0, 0, 0}, slides).empty());
+    CHECK(
+        start_error(foot, plane, {0, 0, 0}, rolls) ==
+        "the normal or friction law needs curvature: the sum of the curvatures must be positive, got 0 1/m");
 }
 
-TEST_CASE("the overlap of a start is measured by the sharpest curvature and the size", "[contact]")
+TEST_CASE("the initial overlap is compared with the smallest radius of curvature and the size", "[contact]")
 {
-    const auto objection = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
+    const auto start_error = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
         const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
                                           std::make_shared<contact::Hooke>(1e5, 0),
                                           friction({.K_E = 1, .eta_r = eta_r}));
-        return c.objection(bi, Motion());
+        return c.start_error(bi, Motion());
     };
     const std::string deep = "the surfaces must not overlap by more than a tenth of ";
     const Shape shaft{std::make_shared<contact::Cylinder>(0.3)};
-    CHECK(objection(sphere(0.9), shaft, at({1.171, 0, 0})).empty());
-    CHECK(objection(sphere(0.9), shaft, at({1.16, 0, 0})) ==
-          deep + "a radius of curvature, 0.3 m, got 0.04 m");
+    CHECK(start_error(sphere(0.9), shaft, at({1.171, 0, 0})).empty());
+    CHECK(start_error(sphere(0.9), shaft, at({1.16, 0, 0})) ==
+          deep + "the radius of curvature 0.3 m, got 0.04 m");
     const Shape box{std::make_shared<contact::Superquadric>(Vec3(0.1, 0.1, 0.1), 8)};
-    CHECK(objection(box, plane, at({0, 0, 0.091})).empty());
-    CHECK(objection(box, plane, at({0, 0, -0.05})) == deep + "the size of one, 0.1 m, got 0.15 m");
+    CHECK(start_error(box, plane, at({0, 0, 0.091})).empty());
+    CHECK(start_error(box, plane, at({0, 0, -0.05})) == deep + "the size 0.1 m, got 0.15 m");
     const Shape coin{std::make_shared<contact::Disk>(0.1)};
     Motion leaning = at({0, 0, -0.01});
     leaning.A = lie::exp({0.05, 0, 0});
-    CHECK(objection(coin, plane, leaning) == deep + "the size of one, 0.1 m, got 0.0149979 m");
-    // flat in the air, where it has no curvature
-    CHECK(objection(coin, plane, at({0, 0, 1}), 0.1).empty());
-    CHECK(objection(coin, plane, at({0, 0, 0})) ==
-          "a disk lies flat on a plane: it touches with all of its rim");
+    CHECK(start_error(coin, plane, leaning) == deep + "the size 0.1 m, got 0.0149979 m");
+    // parallel to the plane and above it, where the curvature is zero
+    CHECK(start_error(coin, plane, at({0, 0, 1}), 0.1).empty());
+    CHECK(start_error(coin, plane, at({0, 0, 0})) ==
+          "a disk lies flat on a plane: the contact is the whole rim");
 }
 
-TEST_CASE("a search that fails at the start is a failure of the numerics", "[contact]")
+TEST_CASE("a failed search at the start is a NumericalFailure", "[contact]")
 {
-    class Lost final : public contact::Surface {  // G has no root
+    class Lost final : public contact::Surface {  // G = 0 has no solution
     public:
         double value(const Vec3& a) const override { return a.squaredNorm() + 1; }
         Vec3 gradient(const Vec3& a) const override { return 2 * a; }
@@ -230,15 +232,15 @@ TEST_CASE("a search that fails at the start is a failure of the numerics", "[con
     const contact::CompliantContact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
                                       std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
     try {
-        c.objection(at({1, 0.2, 0}), Motion());
+        c.start_error(at({1, 0.2, 0}), Motion());
         FAIL("accepted");
     } catch (const lie::NumericalFailure& e) {
         CHECK(e.status == "contact_not_converged");
-        CHECK_THAT(e.what(), Catch::StartsWith("contact 'c': no touch of two surfaces: "));
+        CHECK_THAT(e.what(), Catch::StartsWith("contact 'c': no contact point of two surfaces: "));
     }
 }
 
-TEST_CASE("a friction law refuses parameters that are none", "[contact][friction]")
+TEST_CASE("a friction law rejects invalid parameters", "[contact][friction]")
 {
     const auto why = [](const FrictionParameters& p) { return refusal([&] { friction(p); }); };
     CHECK(why({.mu_s = 0.2, .mu_k = 0.3, .K_E = 1}) ==
@@ -250,10 +252,12 @@ TEST_CASE("a friction law refuses parameters that are none", "[contact][friction
     CHECK(why({.K_E = 1, .eta_psi = 0.1, .E_star = 1e9}) ==
           "friction: eta_psi and E_star exclude each other; E_star, got 1000000000");
     CHECK(refusal([] { contact::friction_law("coulomb"); }) ==
-          "contact::friction_law: there are constant-torque, epsd, slide-roll-spin, got 'coulomb'");
+          "contact::friction_law: the name must be one of the registered laws constant-torque, epsd, "
+          "slide-roll-spin, got 'coulomb'");
 }
 
-TEST_CASE("a micro-deflection sticks to its static bound and slips at its kinetic one", "[contact][friction]")
+TEST_CASE("a micro-deflection sticks up to the static bound and slips at the kinetic bound",
+          "[contact][friction]")
 {
     double H = 0;
     contact::Regime regime;
@@ -261,12 +265,12 @@ TEST_CASE("a micro-deflection sticks to its static bound and slips at its kineti
         H += by;
         contact::return_to_bound(H, regime, 1.25, 1.0);
     };
-    grow(-1.2);  // sticks beyond the kinetic bound
+    grow(-1.2);  // sticks above the kinetic bound
     CHECK((H == -1.2 && !regime.slipping && regime.damped));
-    grow(-0.2);  // gives way, at the static bound for one step, its sign kept
+    grow(-0.2);  // slips: scaled to the static bound in this step, with its sign
     CHECK((H == -1.25 && regime.slipping && !regime.damped));
     grow(-0.2);
     CHECK((H == -1.0 && regime.slipping && !regime.damped));
-    grow(0.5);  // back below the kinetic bound: sticks again
+    grow(0.5);  // below the kinetic bound: sticks
     CHECK((H == -0.5 && !regime.slipping && regime.damped));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The force on a rigid ball that slides in a bowl, known exactly, sampled and meshed: curvature, and with it the force,
-/// must converge, and no border between cells, patches or triangles may be felt.
+/// The contact force on a rigid ball that slides in an ellipsoidal bowl: exact bowl against height map and
+/// mesh. The force depends on the curvature; it must converge and must not jump at the borders of cells,
+/// patches or triangles.
 
 #include "contact/mesh/height_map.hpp"
 #include "contact/mesh/mesh_surface.hpp"
@@ -20,7 +21,7 @@ namespace {
 const Vec3 D(2.5, 2.7, 2.3), gravity(0, 0, -9.81);
 constexpr double R = 0.5, m = 1;
 
-/// The centre of a ball that touches the bowl with semi-axes D from inside, on a curve around its bottom
+/// The centre of a ball in contact with the bowl of semi-axes D, on a curve around the bottom of the bowl
 Vec3 centre(double t)
 {
     const double down = 0.35 + 0.15 * std::sin(3 * t), around = 2 * t;
@@ -29,8 +30,8 @@ Vec3 centre(double t)
     return a + R * Ellipsoid(D, true).normal(a);
 }
 
-/// On a ball at c with the velocity ċ, without friction: with n out of the ball and s = Tᵀċ the second derivative
-/// of the gap without contact, and the force that makes it zero, are
+/// The contact force on a ball at c with velocity ċ, without friction. With n out of the ball and s = Tᵀċ,
+/// the second derivative of the gap without contact force and the force that makes it zero are
 ///
 ///     g̈_0 = -n·g - sᵀ K_i (K_i + K_j)⁻¹ K_j s,   F_N = -m g̈_0
 double normal_force(const Surface& bowl, const Vec3& c, const Vec3& cdot)
@@ -44,10 +45,10 @@ double normal_force(const Surface& bowl, const Vec3& c, const Vec3& cdot)
 }
 
 struct Difference {
-    double rms, most, peak;  // over the exact force: the differences, and the largest force
+    double rms, largest, peak;  // relative to the exact force: rms and largest difference, largest force
 };
 
-/// Along the curve
+/// The differences along the curve
 Difference difference(const Surface& bowl)
 {
     const Ellipsoid exact(D, true);
@@ -59,7 +60,7 @@ Difference difference(const Surface& bowl)
         const double F = normal_force(exact, c, cdot), F_h = normal_force(bowl, c, cdot);
         REQUIRE(F > 9);
         d.rms += std::pow(F_h / F - 1, 2) / instants;
-        d.most = std::max(d.most, std::abs(F_h / F - 1));
+        d.largest = std::max(d.largest, std::abs(F_h / F - 1));
         d.peak = std::max(d.peak, F_h / F);
     }
     d.rms = std::sqrt(d.rms);
@@ -68,21 +69,22 @@ Difference difference(const Surface& bowl)
 
 void check_order(const Difference& coarse, const Difference& fine, double refined)
 {
-    const double of_rms = std::log(coarse.rms / fine.rms) / std::log(refined);
-    const double of_most = std::log(coarse.most / fine.most) / std::log(refined);
-    INFO("rms " << coarse.rms << " and " << fine.rms << ", order " << of_rms << "; most " << coarse.most
-                << " and " << fine.most << ", order " << of_most);
-    CHECK(of_rms == Approx(2).margin(0.3));
-    CHECK(of_most == Approx(2).margin(0.6));
+    const double order_rms = std::log(coarse.rms / fine.rms) / std::log(refined);
+    const double order_largest = std::log(coarse.largest / fine.largest) / std::log(refined);
+    INFO("rms " << coarse.rms << " and " << fine.rms << ", order " << order_rms << "; most " << coarse.largest
+                << " and " << fine.largest << ", order " << order_largest);
+    CHECK(order_rms == Approx(2).margin(0.3));
+    CHECK(order_largest == Approx(2).margin(0.6));
     CHECK(coarse.peak < 1.02);
     CHECK(fine.peak < 1.005);
 }
 
 }  // namespace
 
-TEST_CASE("the force on a ball in a bowl is that of its acceleration", "[contact][sampled]")
+TEST_CASE("the normal force in a spherical bowl equals the closed form", "[contact][sampled]")
 {
-    // In a spherical bowl, centre at ρ - R from its middle: F_N = m (v²/(ρ - R) + g cos θ)
+    // In a spherical bowl, with the ball centre at the distance ρ - R from the centre of the bowl: F_N = m
+    // (v²/(ρ - R) + g cos θ)
     const double rho = 2, theta = 0.4;
     const Ellipsoid bowl({rho, rho, rho}, true);
     const Vec3 down(std::sin(theta), 0, -std::cos(theta)),
@@ -91,7 +93,7 @@ TEST_CASE("the force on a ball in a bowl is that of its acceleration", "[contact
           Approx(m * (cdot.squaredNorm() / (rho - R) + 9.81 * std::cos(theta))).epsilon(1e-13));
 }
 
-TEST_CASE("the force on a height map converges with order 2 and without peaks", "[contact][sampled]")
+TEST_CASE("the contact force on a height map converges with order 2 and has no peaks", "[contact][sampled]")
 {
     const auto bowl = [](double x, double y) {
         return -D.z() * std::sqrt(1 - x * x / (D.x() * D.x()) - y * y / (D.y() * D.y()));
@@ -102,7 +104,7 @@ TEST_CASE("the force on a height map converges with order 2 and without peaks", 
     check_order(difference(sampled(16)), difference(sampled(64)), 4);  // spacing 0.2 and 0.05
 }
 
-TEST_CASE("the force on a mesh converges with order 2 and without peaks", "[contact][sampled][mesh]")
+TEST_CASE("the contact force on a mesh converges with order 2 and has no peaks", "[contact][sampled][mesh]")
 {
     const auto meshed = [](int levels) {
         return MeshSurface(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells against all pairs, and pairs that are remembered.
+// Broad phase against a search of all pairs; neighbour list with states of the pairs.
 #include "contact/detection/broad_phase.hpp"
 
 #include "contact/detection/neighbor_list.hpp"
@@ -66,22 +66,24 @@ Cloud random_cloud(unsigned seed, int n, double size, double smallest, double la
 
 }  // namespace
 
-TEST_CASE("cells find the pairs that a search of all pairs finds and in the same order", "[contact][broad]")
+TEST_CASE("the broad phase finds the same pairs in the same order as a search of all pairs",
+          "[contact][broad]")
 {
     const unsigned seed = GENERATE(1u, 2u, 3u);
     const double smallest = GENERATE(0.05, 0.1), margin = GENERATE(0., 0.02);
     Cloud cloud = random_cloud(seed, 300, 0.6, smallest, 0.1);
-    cloud.reach[7] = cloud.reach[200] = infinite;  // big: with all balls but not with one another
-    cloud.reach[11] = -1;                          // takes no part
+    cloud.reach[7] = cloud.reach[200] = infinite;  // unbounded: pairs with all balls but not with each other
+    cloud.reach[11] = -1;                          // ignored
     BroadPhase cells;
     const auto& found = cells.find(cloud.centre, cloud.reach, margin);
     CHECK(found.size() > 800);
     CHECK(found == cloud.all_pairs(margin));
 }
 
-TEST_CASE("balls on the borders of cells and far from the origin have their neighbours", "[contact][broad]")
+TEST_CASE("the broad phase finds neighbours on cell borders and far from the origin", "[contact][broad]")
 {
-    // a lattice with the pitch of a diameter, so that whole rows lie on borders, and touch within rounding
+    // a lattice with the spacing of a diameter: whole rows lie on cell borders, and the balls touch to
+    // round-off
     const double offset = GENERATE(0., -0.3, 1e5, 1e14);
     Cloud cloud;
     for (int x = -3; x < 3; ++x)
@@ -95,8 +97,7 @@ TEST_CASE("balls on the borders of cells and far from the origin have their neig
         CHECK(cells.find(cloud.centre, cloud.reach, margin) == cloud.all_pairs(margin));
 }
 
-TEST_CASE("a broad phase takes points and clouds that have flown apart and nothing at all",
-          "[contact][broad]")
+TEST_CASE("the broad phase accepts no bodies, points and widely separated bodies", "[contact][broad]")
 {
     BroadPhase cells;
     CHECK(cells.find({}, {}, 0).empty());
@@ -109,24 +110,24 @@ TEST_CASE("a broad phase takes points and clouds that have flown apart and nothi
     CHECK(cells.find(apart.centre, apart.reach, 0) == apart.all_pairs(0));
 }
 
-TEST_CASE("a broad phase refuses what is no reach and no margin and reports a ball that is nowhere",
-          "[contact][broad]")
+TEST_CASE("the broad phase rejects invalid reaches, margins and positions", "[contact][broad]")
 {
     BroadPhase cells;
     const std::vector<Vec3> at = {Vec3::Zero(), Vec3(NAN, 0, 0)};
     const std::vector<double> balls = {1, 1}, big = {1, infinite}, none = {1, NAN};
     CHECK_THROWS_WITH(cells.find(at, balls, 0), "contact::BroadPhase: the centre of body 1 is not finite");
-    CHECK(cells.find(at, big, 0).size() == 1);  // a floor has no centre
-    CHECK_THROWS_WITH(cells.find(at, none, 0), "contact::BroadPhase: a reach must be a number, got nan");
+    CHECK(cells.find(at, big, 0).size() == 1);  // the centre of an unbounded body is not used
+    CHECK_THROWS_WITH(cells.find(at, none, 0),
+                      "contact::BroadPhase: the reach of a body must be a number, got nan");
     CHECK_THROWS_WITH(cells.find(at, big, -1),
                       "contact::BroadPhase: the margin must be finite and not negative, got -1");
     CHECK_THROWS_AS(cells.find(at, std::vector<double>{1}, 0), lie::InvalidInput);
 }
 
-TEST_CASE("a search that has grown its buffers takes nothing from the heap", "[contact][broad][allocation]")
+TEST_CASE("a repeated broad phase does not allocate memory", "[contact][broad][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted: a sanitizer replaces malloc");
         return;
     }
     const Cloud cloud = random_cloud(5, 500, 0.6, 0.05, 0.1);
@@ -149,44 +150,45 @@ BodyType ball(double R) { return {{1, lie::Mat3::Identity()}, {std::make_shared<
 
 }  // namespace
 
-TEST_CASE("a crowd finds every pair within its margin at every step and remembers those that stay near",
+TEST_CASE("a neighbour list contains all pairs within the margin at each step and preserves their states",
           "[contact][broad]")
 {
     tests::Random random(6);
     Balls neighbors;
     neighbors.margin = 0.02;
-    const int small = neighbors.add(ball(0.1)), large = neighbors.add(ball(0.15));
-    const int floor = neighbors.add({{}, {std::make_shared<contact::Plane>()}});
-    neighbors.set(small, small, std::make_unique<Law>(Law{1}));
-    neighbors.set(large, small, std::make_unique<Law>(Law{2}));
-    neighbors.set(large, large, std::make_unique<Law>(Law{3}));
-    neighbors.set(large, floor, std::make_unique<Law>(Law{4}));  // the small ones fall through
+    const int small = neighbors.add_type(ball(0.1)), large = neighbors.add_type(ball(0.15));
+    const int floor = neighbors.add_type({{}, {std::make_shared<contact::Plane>()}});
+    neighbors.set_law(small, small, std::make_unique<Law>(Law{1}));
+    neighbors.set_law(large, small, std::make_unique<Law>(Law{2}));
+    neighbors.set_law(large, large, std::make_unique<Law>(Law{3}));
+    neighbors.set_law(large, floor,
+                      std::make_unique<Law>(Law{4}));  // no law for the small balls and the floor
 
     std::vector<Motion> body;
-    std::vector<int> kind;
+    std::vector<int> type;
     for (int b = 0; b < 60; ++b) {
         Motion m;
         m.r = random.vector(0.5);
         m.rdot = random.vector(1);
-        kind.push_back(b == 30 ? floor : b % 3 == 0 ? large : small);
-        neighbors.enter(b, kind.back());
+        type.push_back(b == 30 ? floor : b % 3 == 0 ? large : small);
+        neighbors.add_body(b, type.back());
         body.push_back(m);
     }
-    std::map<std::pair<int, int>, int> near;  // steps since they came near
+    std::map<std::pair<int, int>, int> near;  // number of steps within the margin
     for (int step = 0; step < 200; ++step) {
         for (Motion& m : body) m.r += 1e-3 * m.rdot;
         std::set<std::pair<int, int>> listed;
         for (auto& p : neighbors.find(body)) {
             ++p.state.steps;
             CHECK(listed.insert(std::minmax(p.i, p.j)).second);
-            const int ki = kind[p.i], kj = kind[p.j];
+            const int ki = type[p.i], kj = type[p.j];
             CHECK(p.law->number == (kj == floor ? 4 : ki == small ? 1 : kj == small ? 2 : 3));
         }
         std::map<std::pair<int, int>, int> now;
         for (int i = 0; i < 60; ++i)
             for (int j = i + 1; j < 60; ++j) {
-                if (kind[i] == floor || kind[j] == floor) continue;
-                const double R = (kind[i] == large ? 0.15 : 0.1) + (kind[j] == large ? 0.15 : 0.1);
+                if (type[i] == floor || type[j] == floor) continue;
+                const double R = (type[i] == large ? 0.15 : 0.1) + (type[j] == large ? 0.15 : 0.1);
                 if ((body[i].r - body[j].r).norm() >= R + 0.02) continue;
                 REQUIRE(listed.count({i, j}) == 1);
                 now[{i, j}] = near.count({i, j}) != 0 ? near[{i, j}] + 1 : 1;
@@ -199,26 +201,30 @@ TEST_CASE("a crowd finds every pair within its margin at every step and remember
     CHECK(near.size() > 20);
 }
 
-TEST_CASE("a crowd says what is wrong with a kind", "[contact][broad]")
+TEST_CASE("a neighbour list rejects invalid body types and laws", "[contact][broad]")
 {
     Balls neighbors;
-    const int floor = neighbors.add({{}, {std::make_shared<contact::Plane>()}}),
-              small = neighbors.add(ball(0.1));
+    const int floor = neighbors.add_type({{}, {std::make_shared<contact::Plane>()}}),
+              small = neighbors.add_type(ball(0.1));
     const auto law = [] { return std::make_unique<Law>(); };
-    CHECK_THROWS_WITH(neighbors.set(floor, floor, law()),
-                      "contact::Crowd: one of two kinds that meet must have a finite reach, got inf");
-    CHECK_THROWS_WITH(neighbors.set(floor, 2, law()), "contact::Crowd: no kind has this number, got 2");
-    neighbors.set(small, floor, law());
-    CHECK_THROWS_WITH(neighbors.set(floor, small, law()),
-                      "contact::Crowd: two kinds have one law, and these have it already; kind, got 1");
-    CHECK_THROWS_WITH(neighbors.add(BodyType{{}, {}, 0}),
-                      "contact::Crowd: the reach of a kind must be positive, got 0");
+    CHECK_THROWS_WITH(
+        neighbors.set_law(floor, floor, law()),
+        "contact::NeighborList: one of the two body types of a law must have a finite reach, got inf");
+    CHECK_THROWS_WITH(neighbors.set_law(floor, 2, law()),
+                      "contact::NeighborList: there is no body type with this number, got 2");
+    neighbors.set_law(small, floor, law());
+    CHECK_THROWS_WITH(
+        neighbors.set_law(floor, small, law()),
+        "contact::NeighborList: a pair of body types must have one law only; law set again for type, got 1");
+    CHECK_THROWS_WITH(neighbors.add_type(BodyType{{}, {}, 0}),
+                      "contact::NeighborList: the reach of a body type must be positive, got 0");
 }
 
-TEST_CASE("compliant contacts that come and go are those that were there all the time (long)",
+TEST_CASE("contacts of a neighbour list give the same motion as permanent contacts (long)",
           "[contact][broad][scene]")
 {
-    // Five balls tumble over each other and the floor: once with every pair named, once with the pairs that are found.
+    // Five balls fall on each other and on the floor: with all pairs listed, and with the pairs of the
+    // neighbour list.
     const double R = 0.1;
     const contact::Shape sphere{std::make_shared<contact::Sphere>(R)},
         plane{std::make_shared<contact::Plane>()};
@@ -239,10 +245,10 @@ TEST_CASE("compliant contacts that come and go are those that were there all the
         named.add("floor", i, sphere, 5, plane, law, friction);
     }
     const int ball = found.add(BodyType{inertia, sphere, R}), floor = found.add(BodyType{{}, plane});
-    found.between("balls", ball, ball, law, friction);
-    found.between("floor", ball, floor, law, friction);
-    for (const Motion& m : start) found.enter(ball, m);
-    found.enter(floor, Motion{});
+    found.set_contact_law("balls", ball, ball, law, friction);
+    found.set_contact_law("floor", ball, floor, law, friction);
+    for (const Motion& m : start) found.add_body(ball, m);
+    found.add_body(floor, Motion{});
     const double h = 1e-4;
     named.check(h);
     found.check(h);
@@ -255,7 +261,7 @@ TEST_CASE("compliant contacts that come and go are those that were there all the
         most = std::max(most, found.neighbors.pair().size());
         least = std::min(least, found.neighbors.pair().size());
     }
-    CHECK(least < most);  // of the 15 pairs
+    CHECK(least < most);  // the list changes; there are 15 pairs
     for (int b = 0; b < 5; ++b) {
         CHECK(found.body[b].r == named.body[b].r);
         CHECK(found.body[b].omega_bar == named.body[b].omega_bar);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Contact points against closed forms, brute force, and what cannot matter: the order of the bodies, and where
-/// they are in space.
+/// Contact detection against closed forms and brute force; symmetry in the bodies i and j; objectivity.
 
 #include "contact/detection/detector.hpp"
 #include "contact/detection/common_normal.hpp"
@@ -55,10 +54,10 @@ Shape egg()
 struct Pair {
     std::string name;
     Shape i, j;
-    double distance;  ///< between the origins, at which they are near to touch
+    double distance;  ///< distance of the origins at which the bodies are close to contact
 };
 
-/// Every kind of pair; add the next one here.
+/// All types of pairs. Add new pairs here.
 std::vector<Pair> pairs()
 {
     return {
@@ -86,8 +85,8 @@ std::vector<Pair> pairs()
     };
 }
 
-/// The shapes of a pair placed at random on two bodies, so that i lies in the direction +z or so of j, at its
-/// distance and up to a fifth of it more or less
+/// The shapes of a pair at random poses on two bodies. Shape i lies approximately in the direction +z of
+/// shape j, at the distance of the pair ± 20 %.
 struct Scene {
     Shape i, j;
     Motion bi, bj;
@@ -145,7 +144,7 @@ TEST_CASE("the contact points lie on their surfaces along opposite normals", "[c
     }
 }
 
-TEST_CASE("exchanging the bodies exchanges the points and turns the normal", "[contact][detection]")
+TEST_CASE("exchanging the bodies exchanges the points and reverses the normal", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 10u)));
     for (const Pair& pair : pairs()) {
@@ -161,7 +160,7 @@ TEST_CASE("exchanging the bodies exchanges the points and turns the normal", "[c
     }
 }
 
-TEST_CASE("a touch moves with its bodies", "[contact][detection]")
+TEST_CASE("the contact point moves with a common rigid motion of the bodies", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 10u)));
     for (const Pair& pair : pairs()) {
@@ -180,7 +179,7 @@ TEST_CASE("a touch moves with its bodies", "[contact][detection]")
     }
 }
 
-TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocation]")
+TEST_CASE("detection does not allocate memory", "[contact][detection][allocation]")
 {
     Random random(3);
     for (const Pair& pair : pairs()) {
@@ -188,7 +187,8 @@ TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocat
         const Scene s(pair, random);
         const auto detector = make_detector(s.i, s.j);
         const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
-        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        const PreviousPoints from{s.bi.A.transpose() * (t.C_i - s.bi.r),
+                                  s.bj.A.transpose() * (t.C_j - s.bj.r)};
         double gap = 0;
         const long taken = tests::allocations_during([&] {
             gap = detector->detect(s.bi, s.bj, nullptr).gap + detector->detect(s.bi, s.bj, &from).gap;
@@ -198,7 +198,7 @@ TEST_CASE("detection takes nothing from the heap", "[contact][detection][allocat
     }
 }
 
-TEST_CASE("a ball above a plane and sunk into it", "[contact][detection]")
+TEST_CASE("a ball above a plane, on it and overlapping it has the exact gap", "[contact][detection]")
 {
     const auto detector = make_detector(shape<Sphere>(0.5), shape<Plane>());
     Motion ball, ground;
@@ -213,7 +213,7 @@ TEST_CASE("a ball above a plane and sunk into it", "[contact][detection]")
     }
 }
 
-TEST_CASE("a ball in a bowl touches the nearest wall", "[contact][detection]")
+TEST_CASE("a ball in a bowl has its contact point at the closest wall", "[contact][detection]")
 {
     const auto detector = make_detector(shape<Sphere>(0.5), shape<Sphere>(2.0, true));
     Motion ball, ground;
@@ -227,7 +227,7 @@ TEST_CASE("a ball in a bowl touches the nearest wall", "[contact][detection]")
     CHECK(t.K_j == Mat3(Vec3(-0.5, -0.5, 0).asDiagonal()));
 }
 
-TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[contact][detection]")
+TEST_CASE("the contact point of an ellipsoid on a plane is its support point", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 D(0.3, 0.2, 0.5);
@@ -240,7 +240,8 @@ TEST_CASE("the lowest point of an ellipsoid is that of its support function", "[
 TEST_CASE("the gap of two ellipsoids is the largest of all distances between parallel tangent planes",
           "[contact][detection]")
 {
-    // n·(o_i - o_j) - |D_i A_iᵀ n| - |D_j A_jᵀ n| of two ellipsoids, apart (> 0) or not, climbed without derivatives
+    // n·(o_i - o_j) - |D_i A_iᵀ n| - |D_j A_jᵀ n| of two ellipsoids, separated (> 0) or overlapping;
+    // maximised without derivatives
     Random random(GENERATE(range(0u, 20u)));
     const Vec3 D_i(0.3, 0.2, 0.4), D_j(0.5, 0.45, 0.15);
     Motion bi = random.motion(), bj = random.motion();
@@ -276,9 +277,9 @@ TEST_CASE("Newton's method on the common normal converges quadratically", "[cont
         CommonNormal::Pair p = newton.placed(s.bi, s.bj);
         p.a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r)) + random.vector(0.003);
         p.a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r)) + random.vector(0.003);
-        double before = newton.improve(p);
+        double before = newton.newton_step(p);
         for (int k = 0; k < 4; ++k) {
-            const double correction = newton.improve(p);
+            const double correction = newton.newton_step(p);
             CHECK(correction < 100 * before * before + 1e-13);
             before = correction;
         }
@@ -286,7 +287,7 @@ TEST_CASE("Newton's method on the common normal converges quadratically", "[cont
     }
 }
 
-TEST_CASE("from a near touch and from nothing the same touch is found", "[contact][detection]")
+TEST_CASE("the search finds the same contact point with and without an initial guess", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const Pair& pair : pairs()) {
@@ -294,7 +295,8 @@ TEST_CASE("from a near touch and from nothing the same touch is found", "[contac
         Scene s(pair, random);
         const auto detector = make_detector(s.i, s.j);
         const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
-        const Points from{s.bi.A.transpose() * (t.C_i - s.bi.r), s.bj.A.transpose() * (t.C_j - s.bj.r)};
+        const PreviousPoints from{s.bi.A.transpose() * (t.C_i - s.bi.r),
+                                  s.bj.A.transpose() * (t.C_j - s.bj.r)};
         s.bi.r += random.vector(1e-3), s.bi.A *= lie::exp(random.vector(1e-2));
         const ContactPoint cold = detector->detect(s.bi, s.bj, nullptr),
                            warm = detector->detect(s.bi, s.bj, &from);
@@ -304,7 +306,8 @@ TEST_CASE("from a near touch and from nothing the same touch is found", "[contac
     }
 }
 
-TEST_CASE("long and flat ellipsoids find each other from nothing", "[contact][detection]")
+TEST_CASE("the contact point of long and flat ellipsoids is found without an initial guess",
+          "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 200u)));
     const auto axes = [&] {
@@ -317,13 +320,13 @@ TEST_CASE("long and flat ellipsoids find each other from nothing", "[contact][de
     CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-14);
 }
 
-TEST_CASE("a ball rolls through a bowl and keeps its touch", "[contact][detection]")
+TEST_CASE("the contact point of a ball that rolls through a bowl is followed", "[contact][detection]")
 {
     const Vec3 D(1.0, 0.8, 1.2);
     const auto detector = make_detector(shape<Sphere>(0.2), shape<Ellipsoid>(D, true));
     const Ellipsoid bowl(D);
     Motion ball, ground;
-    Points from{{0, 0, -0.2}, {0, 0, -1.2}};
+    PreviousPoints from{{0, 0, -0.2}, {0, 0, -1.2}};
     for (double angle = 0; angle < 6.3; angle += 0.1) {
         const Vec3 u(std::sin(angle) * 0.6, std::sin(angle) * 0.8, -std::cos(angle));
         const Vec3 C_j = *bowl.support(u);
@@ -336,7 +339,7 @@ TEST_CASE("a ball rolls through a bowl and keeps its touch", "[contact][detectio
     }
 }
 
-TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest", "[contact][detection]")
+TEST_CASE("a torus has the exact gap to a ball and to a plane", "[contact][detection]")
 {
     Motion ring, ball, ground;
     ball.r = {1.5, 0, 0.5};
@@ -349,7 +352,7 @@ TEST_CASE("a ring touches a ball at its nearest point and a plane at its lowest"
     CHECK(low.gap == Approx(1 - std::sin(0.3) - 0.1));
 }
 
-TEST_CASE("a touch is found from nothing when the centre of a ball is inside the other body",
+TEST_CASE("the contact point is found if the centre of the ball lies inside the other body",
           "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 50u)));
@@ -366,9 +369,10 @@ TEST_CASE("a touch is found from nothing when the centre of a ball is inside the
     CHECK((t.C_j - C).norm() < 1e-13);
 }
 
-TEST_CASE("where the surfaces do not curve away from each other there is no touch", "[contact][detection]")
+TEST_CASE("surfaces that do not curve away from each other have no unique contact point",
+          "[contact][detection]")
 {
-    const auto trouble = [](const Shape& i, const Shape& j, const Motion& bi, const Points* from) {
+    const auto failure = [](const Shape& i, const Shape& j, const Motion& bi, const PreviousPoints* from) {
         try {
             make_detector(i, j)->detect(bi, {}, from);
         } catch (const lie::NumericalFailure& e) {
@@ -377,20 +381,21 @@ TEST_CASE("where the surfaces do not curve away from each other there is no touc
         }
         return std::string("none");
     };
-    const std::string start = "no touch of two surfaces: the surfaces do not curve away from each other, ";
-    // flatter than the bowl where they would touch
+    const std::string start =
+        "no contact point of two surfaces: the surfaces do not curve away from each other, ";
+    // the ellipsoid is flatter than the bowl at the contact point
     Motion m;
     m.r = {0, 0, -0.65};
-    const Points low{{0, 0, -0.3}, {0, 0, -1}};
+    const PreviousPoints low{{0, 0, -0.3}, {0, 0, -1}};
     CHECK(
-        trouble(shape<Ellipsoid>(Vec3(0.9, 0.8, 0.3)), shape<Sphere>(1.0, true), m, &low).starts_with(start));
+        failure(shape<Ellipsoid>(Vec3(0.9, 0.8, 0.3)), shape<Sphere>(1.0, true), m, &low).starts_with(start));
     // parallel axes
     m.r = {0.5, 0, 0};
-    CHECK(trouble(shape<Cylinder>(0.3), shape<Cylinder>(0.2), m, nullptr) ==
-          "two cylinders are parallel: they touch along a line");
+    CHECK(failure(shape<Cylinder>(0.3), shape<Cylinder>(0.2), m, nullptr) ==
+          "the axes of two cylinders are parallel: the contact is a line");
 }
 
-TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "[contact][detection]")
+TEST_CASE("a tilted disk has the normal curvature of its rim", "[contact][detection]")
 {
     const auto detector = make_detector(shape<Disk>(0.5), shape<Plane>());
     Motion disk, ground;
@@ -404,33 +409,35 @@ TEST_CASE("a leaning disk has the curvature of its rim seen along the normal", "
     }
 }
 
-TEST_CASE("from points that lead to no touch the search begins anew", "[contact][detection]")
+TEST_CASE("the search restarts if the initial guess does not lead to a contact point", "[contact][detection]")
 {
     Motion m, ground;
     m.r = {0, 0, 1};
     const auto detector =
         make_detector(shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)), shape<Ellipsoid>(Vec3(0.3, 0.2, 0.5)));
-    const Points far{{0, 0, 0.5}, {0, 0, -0.5}};  // the far sides
+    const PreviousPoints far{{0, 0, 0.5}, {0, 0, -0.5}};  // on the far sides
     const ContactPoint t = detector->detect(m, ground, &far);
     CHECK(t.gap == Approx(0).margin(1e-15));
     CHECK((t.C_j - Vec3(0, 0, 0.5)).norm() < 1e-13);
 }
 
-TEST_CASE("a ball that flies across a bowl meets the wall that it comes to", "[contact][detection]")
+TEST_CASE("a ball that crosses a bowl has its contact point at the closest wall", "[contact][detection]")
 {
     Motion ball, ground;
-    const Points first{{-0.05, 0, 0}, {-1, 0, 0}};
+    const PreviousPoints first{{-0.05, 0, 0}, {-1, 0, 0}};
     for (const Vec3& axes : {Vec3(1, 2, 2), Vec3(1, 1.2, 0.9)}) {
         const Ellipsoid bowl(axes);
         const auto detector = make_detector(shape<Sphere>(0.05), shape<Ellipsoid>(axes, true));
-        Points from = first;
+        PreviousPoints from = first;
         double last = 0;
         for (int k = -90; k <= 96; ++k) {
             ball.r = {0.01 * k, 0.003, 0};
             const ContactPoint t = detector->detect(ball, ground, &from);
             INFO(axes.transpose() << ", x = " << ball.r.x());
             CHECK(t.gap == Approx((ball.r - bowl.project(ball.r)).norm() - 0.05).margin(1e-12));
-            if (k > -90) CHECK(std::abs(t.gap - last) < 0.0101);  // no faster than the ball
+            if (k > -90)
+                CHECK(std::abs(t.gap - last) <
+                      0.0101);  // the gap changes by the displacement of the ball at most
             last = t.gap;
             from = {t.C_i - ball.r, t.C_j};
         }
@@ -439,7 +446,7 @@ TEST_CASE("a ball that flies across a bowl meets the wall that it comes to", "[c
     }
 }
 
-TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection]")
+TEST_CASE("separated bodies have a gap in every pose", "[contact][detection]")
 {
     const double upright = GENERATE(0., 1e-14, 1e-11, 1e-6);
     const Shape ring = shape<Torus>(0.5, 0.1), plane = shape<Plane>();
@@ -451,16 +458,16 @@ TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection
         CHECK((t.C_i - t.C_j - t.gap * t.n).norm() < 1e-8);
         CHECK(t.K_i.allFinite());
         CHECK(t.K_j.allFinite());
-        const Points from{m.A.transpose() * (t.C_i - m.r), t.C_j};
+        const PreviousPoints from{m.A.transpose() * (t.C_i - m.r), t.C_j};
         CHECK(make_detector(i, j)->detect(m, ground, &from).gap == Approx(t.gap).margin(1e-6));
         return t.gap;
     };
     const auto about = [](double g) { return Approx(g).margin(2e-6); };
     CHECK(gap(shape<Disk>(0.3), plane, {0, 0, 1}) == about(1));
     CHECK(gap(ring, plane, {0, 0, 1}) == about(0.9));
-    const double ahead = 1.3 - 0.5;  // of infinite cylinders that are not quite parallel it is not the least
+    const double ahead = 1.3 - 0.5;  // infinite cylinders that are not parallel have a smaller gap elsewhere
     if (upright < 1e-9) CHECK(gap(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {1.3, 0, 2}) == about(ahead));
-    // on the axis: above a ring, within its hole, in a pipe, in the tube of another ring
+    // on the axis: above a torus, in its hole, in a concave cylinder, in a concave torus
     CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 1.2}) == about(1.3 - 0.3));
     CHECK(gap(shape<Sphere>(0.2), ring, {0, 0, 0}) == about(0.2));
     CHECK(gap(shape<Sphere>(0.2), shape<Cylinder>(0.5, true), {0, 0, 1}) == about(0.3));
@@ -470,7 +477,7 @@ TEST_CASE("bodies that are apart have a gap in every pose", "[contact][detection
     CHECK(gap(shape<Sphere>(0.2), shape<Ellipsoid>(Vec3(0.5, 0.5, 1), true), {0, 0, 0}) == about(0.3));
 }
 
-TEST_CASE("bodies that touch in many points are refused", "[contact][detection]")
+TEST_CASE("a pose without a unique contact point is rejected", "[contact][detection]")
 {
     const auto refusal = [](const Shape& i, const Shape& j, const Vec3& r) {
         Motion m;
@@ -485,15 +492,15 @@ TEST_CASE("bodies that touch in many points are refused", "[contact][detection]"
     };
     for (double sunk : {0., 1e-3}) {
         CHECK(refusal(shape<Disk>(0.3), shape<Plane>(), {0, 0, -sunk}) ==
-              "a disk lies flat on a plane: it touches with all of its rim");
+              "a disk lies flat on a plane: the contact is the whole rim");
         CHECK(refusal(shape<Torus>(0.5, 0.1), shape<Plane>(), {0, 0, 0.1 - sunk}) ==
-              "a torus lies flat: it touches along a circle");
+              "a torus lies flat on a plane: the contact is a circle");
         CHECK(refusal(shape<Cylinder>(0.3), shape<Cylinder>(0.2), {0.5 - sunk, 0, 0}) ==
-              "two cylinders are parallel: they touch along a line");
+              "the axes of two cylinders are parallel: the contact is a line");
     }
 }
 
-TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
+TEST_CASE("two approaching tori have the exact gap (long)", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Torus ring(0.3, 0.05);
@@ -501,10 +508,10 @@ TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
     Motion m, ground;
     m.A = random.rotation();
     const Vec3 u = random.unit();
-    std::optional<Points> from;
+    std::optional<PreviousPoints> from;
     for (double distance = 1.2; distance > 0.3; distance -= 0.01) {
         m.r = distance * u;
-        // from circle to circle, over the whole of one
+        // smallest distance of the two centre circles, by sampling one of them
         double least = INFINITY;
         for (int k = 0; k < 2000; ++k) {
             const double angle = 2 * 3.14159265358979 / 2000 * k;
@@ -521,7 +528,7 @@ TEST_CASE("two rings are apart until they touch (long)", "[contact][detection]")
     }
 }
 
-TEST_CASE("the principal curvatures of a touch", "[contact][detection]")
+TEST_CASE("the principal curvatures are the eigenvalues of the shape operator", "[contact][detection]")
 {
     Random random(GENERATE(range(0u, 5u)));
     const Mat3 A = random.rotation();
@@ -536,7 +543,7 @@ TEST_CASE("the principal curvatures of a touch", "[contact][detection]")
     CHECK(least_curvature(t) == Approx(1));
 }
 
-TEST_CASE("pairs without a single touch are refused", "[contact][detection]")
+TEST_CASE("pairs of surfaces without a single contact point are rejected", "[contact][detection]")
 {
     const Shape plane = shape<Plane>(), foot = shape<Foot>(), disk = shape<Disk>(1.0),
                 ball = shape<Sphere>(1.0), bowl = shape<Sphere>(1.0, true);
@@ -550,22 +557,25 @@ TEST_CASE("pairs without a single touch are refused", "[contact][detection]")
     };
     const std::string where = "contact::make_detector: ";
     CHECK(refusal(plane, plane) ==
-          where + "a pair of surfaces must touch in a single point, got plane and plane");
-    CHECK(refusal(foot, foot) == where + "a foot touches planes only, got foot and foot");
-    CHECK(refusal(ball, foot) == where + "a foot touches planes only, got sphere and foot");
-    CHECK(refusal(disk, ball) == where + "a disk touches planes only, got disk and sphere");
+          where + "a pair of surfaces must have a single contact point, got plane and plane");
+    CHECK(refusal(foot, foot) == where + "a foot can be paired with a plane only, got foot and foot");
+    CHECK(refusal(ball, foot) == where + "a foot can be paired with a plane only, got sphere and foot");
+    CHECK(refusal(disk, ball) == where + "a disk can be paired with a plane only, got disk and sphere");
     CHECK(refusal(plane, bowl) ==
-          where + "a concave surface can be touched from inside only, got plane and concave sphere");
-    CHECK(refusal(bowl, bowl) ==
-          where + "a concave surface can be touched from inside only, got concave sphere and concave sphere");
-    CHECK(refusal(ball, bowl) ==
-          where +
-              "a ball must be smaller than the bowl it touches, got a ball of radius 1 in a bowl of "
-              "radius 1");
+          where + "a concave surface can be in contact on its inside only, got plane and concave sphere");
+    CHECK(
+        refusal(bowl, bowl) ==
+        where +
+            "a concave surface can be in contact on its inside only, got concave sphere and concave sphere");
+    CHECK(
+        refusal(ball, bowl) ==
+        where +
+            "the radius of a sphere must be less than that of the concave sphere around it, got 1 m in 1 m");
     CHECK(refusal(shape<Cylinder>(1.0), plane) ==
-          where + "a pair of surfaces must touch in a single point, got cylinder and plane");
+          where + "a pair of surfaces must have a single contact point, got cylinder and plane");
     CHECK(refusal(shape<Cylinder>(0.5), shape<Cylinder>(1.0, true)) ==
-          where + "a pair of surfaces must touch in a single point, got a cylinder in a pipe");
+          where +
+              "a pair of surfaces must have a single contact point, got a cylinder and a concave cylinder");
     CHECK(refusal(ball, {}) == where + "a shape must have a surface, got none");
 
     Shape turned = ball;

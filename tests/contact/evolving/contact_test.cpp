@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rows of a contact that evolves, its kinematics and its multipliers, at one instant.
+/// Rows, kinematics and multipliers of an evolving contact at one instant.
 
+#include "dae/model.hpp"
+#include "lie/solver/saddle.hpp"
 #include "tests/support/evolving.hpp"
 #include "tests/support/finite_difference.hpp"
 
@@ -16,28 +18,28 @@ namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-dae::Constraint::Derivatives derivatives_of(const EvolvingContact& c, const dae::Constraint::At& at)
+dae::Constraint::Derivatives derivatives_of(const EvolvingContact& c, const dae::Constraint::Arguments& at)
 {
     dae::Constraint::Derivatives d;
-    d.of_i.setZero(c.rows() + c.velocity_rows(), 6);
-    d.of_j.setZero(c.rows() + c.velocity_rows(), 6);
-    d.of_alpha.setZero(c.rows(), c.unknowns());
+    d.C_i.setZero(c.position_rows() + c.velocity_rows(), 6);
+    d.C_j.setZero(c.position_rows() + c.velocity_rows(), 6);
+    d.Phi_alpha.setZero(c.position_rows(), c.algebraic_variables());
     c.variation(at, d);
     return d;
 }
 
-/// The difference of the velocities of the two material points in contact
+/// Slip velocity: velocity of the material point of i minus that of j [m/s]
 Vec3 slip(const Motion& bi, const Motion& bj, const Vec6& alpha)
 {
     const auto v = [](const Motion& b, const Vec3& a) { return Vec3(b.rdot + b.A * b.omega_bar.cross(a)); };
     return v(bi, alpha.head<3>()) - v(bj, alpha.tail<3>());
 }
 
-/// A contact that goes on while its bodies turn and one of them moves: where body i and α are after a time τ. Body i
-/// follows, moved along the common normal, which leaves the contact points where they are.
-Touching after(const EvolvingContact& c, const Touching& x, double tau)
+/// The contact after a time τ while both bodies rotate and translate: body i is moved along the common normal
+/// so that contact is kept. This does not change the contact points.
+ContactPose after(const EvolvingContact& c, const ContactPose& x, double tau)
 {
-    Touching y = x;
+    ContactPose y = x;
     y.bi = pose_after(x.bi, tau), y.bj = pose_after(x.bj, tau);
     for (int k = 0; k < 2; ++k) c.update_alpha(y.at(), false, y.alpha.data());
     const ContactPoint at = c.contact_point(y.at());
@@ -45,7 +47,7 @@ Touching after(const EvolvingContact& c, const Touching& x, double tau)
     return y;
 }
 
-/// ᾱ̇ of both points in global axes: Montana's equations without charts
+/// A ᾱ̇ of both points, by Montana's contact equations without charts
 std::pair<Vec3, Vec3> rolling_rates(const ContactPoint& at, const Vec3& omega, const Vec3& s)
 {
     const Vec3 n = -at.n;
@@ -57,18 +59,18 @@ std::pair<Vec3, Vec3> rolling_rates(const ContactPoint& at, const Vec3& omega, c
 
 }  // namespace
 
-TEST_CASE("the variation of an evolving contact is what differences give", "[contact][evolving]")
+TEST_CASE("the variation of an evolving contact equals central differences", "[contact][evolving]")
 {
     Random random(GENERATE(1u, 2u, 3u));
-    for (const Pair& pair : pairs(random))
+    for (const SurfacePair& pair : surface_pairs(random))
         for (const NormalRows normal_rows : {NormalRows::tangent, NormalRows::fixed_xy}) {
             const EvolvingContact c(0, pair.i, 1, pair.j, Friction::rolling, normal_rows);
-            Touching x = touching(pair, random);
-            x.bi = displaced(x.bi, 0.1 * Vec6::Random());  // apart, with points on the surfaces
+            ContactPose x = random_contact_pose(pair, random);
+            x.bi = displaced(x.bi, 0.1 * Vec6::Random());  // the bodies are apart
             const auto d = derivatives_of(c, x.at());
             const auto change = [&](auto&& move) {
                 return derivative([&](double tau) {
-                    Touching y = x;
+                    ContactPose y = x;
                     move(y, tau);
                     Eigen::Matrix<double, 7, 1> Phi;
                     c.phi(y.at(), Phi.data());
@@ -82,37 +84,37 @@ TEST_CASE("the variation of an evolving contact is what differences give", "[con
             for (int k = 0; k < 6; ++k) {
                 INFO("component " << k);
                 const Vec6 unit = Vec6::Unit(k);
-                const double size = c.L;  // derivatives with respect to turns are lengths
-                CHECK((d.of_i.col(k).head<7>() - change([&](Touching& y, double tau) {
+                const double size = c.L;  // derivatives with respect to rotations are lengths
+                CHECK((d.C_i.col(k).head<7>() - change([&](ContactPose& y, double tau) {
                            y.bi = displaced(y.bi, tau * unit);
                        })).norm() < 1e-8 * size);
-                CHECK((d.of_j.col(k).head<7>() - change([&](Touching& y, double tau) {
+                CHECK((d.C_j.col(k).head<7>() - change([&](ContactPose& y, double tau) {
                            y.bj = displaced(y.bj, tau * unit);
                        })).norm() < 1e-8 * size);
-                CHECK((d.of_alpha.col(k) - change([&](Touching& y, double tau) {
-                                               y.alpha += 0.1 * c.L * tau * unit;
-                                           }) / (0.1 * c.L))
+                CHECK((d.Phi_alpha.col(k) - change([&](ContactPose& y, double tau) {
+                                                y.alpha += 0.1 * c.L * tau * unit;
+                                            }) / (0.1 * c.L))
                           .norm() < 1e-8);
-                // rolling: the material points, displaced by a virtual motion, across the normal of i
+                // Rolling rows: virtual velocity of the material points, projected on the tangent plane of i
                 Motion bi = x.bi, bj = x.bj;
                 bi.rdot = unit.head<3>(), bi.omega_bar = unit.tail<3>();
                 bj.rdot.setZero(), bj.omega_bar.setZero();
-                CHECK((d.of_i.col(k).tail<2>() - across.transpose() * slip(bi, bj, x.alpha)).norm() < 1e-14);
+                CHECK((d.C_i.col(k).tail<2>() - across.transpose() * slip(bi, bj, x.alpha)).norm() < 1e-14);
                 std::swap(bi.rdot, bj.rdot), std::swap(bi.omega_bar, bj.omega_bar);
-                CHECK((d.of_j.col(k).tail<2>() - across.transpose() * slip(bi, bj, x.alpha)).norm() < 1e-14);
+                CHECK((d.C_j.col(k).tail<2>() - across.transpose() * slip(bi, bj, x.alpha)).norm() < 1e-14);
             }
             for (int row = 0; row < 9; ++row)
                 for (int k = 0; k < 12; ++k)
-                    if (!(c.nonzero(row) >> k & 1)) CHECK((k < 6 ? d.of_i(row, k) : d.of_j(row, k - 6)) == 0);
+                    if (!(c.nonzero(row) >> k & 1)) CHECK((k < 6 ? d.C_i(row, k) : d.C_j(row, k - 6)) == 0);
         }
 }
 
-TEST_CASE("contact points move as the bodies roll and slide over each other", "[contact][evolving]")
+TEST_CASE("the velocities of the contact points satisfy Montana's equations", "[contact][evolving]")
 {
     Random random(GENERATE(4u, 5u));
-    for (const Pair& pair : pairs(random)) {
+    for (const SurfacePair& pair : surface_pairs(random)) {
         const EvolvingContact c(0, pair.i, 1, pair.j);
-        Touching x = touching(pair, random);
+        ContactPose x = random_contact_pose(pair, random);
         x.bi.omega_bar *= 0.3, x.bj.omega_bar *= 0.3, x.bi.rdot *= 0.3, x.bj.rdot *= 0.3;
         INFO(pair.name << ", least curvature " << least_curvature(c.contact_point(x.at())));
         REQUIRE(least_curvature(c.contact_point(x.at())) > 0.05);
@@ -128,16 +130,17 @@ TEST_CASE("contact points move as the bodies roll and slide over each other", "[
     }
 }
 
-TEST_CASE("gamma of an evolving contact is what its second derivative leaves", "[contact][evolving]")
+TEST_CASE("gamma of an evolving contact equals its second derivative without the acceleration terms",
+          "[contact][evolving]")
 {
     Random random(GENERATE(6u, 7u));
-    for (const Pair& pair : pairs(random)) {
+    for (const SurfacePair& pair : surface_pairs(random)) {
         const EvolvingContact c(0, pair.i, 1, pair.j, Friction::rolling);
-        Touching x = touching(pair, random);
+        ContactPose x = random_contact_pose(pair, random);
         for (Motion* b : {&x.bi, &x.bj}) {
             b->omega_bar *= 0.3, b->rdot *= 0.3, b->rddot *= 0.3, b->omegadot_bar *= 0.3;
         }
-        const Touching start = x;
+        const ContactPose start = x;
         x.bi.rdot = derivative([&](double tau) { return after(c, start, tau).bi.r; });
         x.bi.rddot = second_derivative([&](double tau) { return after(c, start, tau).bi.r; });
         const Vec6 alphaddot = second_derivative([&](double tau) { return after(c, start, tau).alpha; });
@@ -149,30 +152,30 @@ TEST_CASE("gamma of an evolving contact is what its second derivative leaves", "
         const auto d = derivatives_of(c, x.at());
         INFO(pair.name);
         const Eigen::Matrix<double, 7, 1> left =
-            d.of_i.topRows<7>() * q_i + d.of_j.topRows<7>() * q_j + d.of_alpha * alphaddot;
-        const double scale = 1 + left.norm() + (d.of_alpha * alphaddot).norm() + q_i.norm();
+            d.C_i.topRows<7>() * q_i + d.C_j.topRows<7>() * q_j + d.Phi_alpha * alphaddot;
+        const double scale = 1 + left.norm() + (d.Phi_alpha * alphaddot).norm() + q_i.norm();
         CHECK((left - gamma.head<7>()).norm() < 1e-7 * scale);
 
-        // rolling: the tangential acceleration of one material point from the other, tangents held
+        // Rolling rows: relative tangential acceleration of the material points, with constant tangents
         const Vec3 slipping = derivative([&](double tau) {
-            Touching y = after(c, start, tau);
+            ContactPose y = after(c, start, tau);
             y.bi.rdot = x.bi.rdot + tau * x.bi.rddot, y.bj.rdot += tau * x.bj.rddot;
             for (Motion* b : {&y.bi, &y.bj}) b->omega_bar += tau * b->omegadot_bar;
             return slip(y.bi, y.bj, y.alpha);
         });
-        const Eigen::Vector2d rolling = d.of_i.bottomRows<2>() * q_i + d.of_j.bottomRows<2>() * q_j;
+        const Eigen::Vector2d rolling = d.C_i.bottomRows<2>() * q_i + d.C_j.bottomRows<2>() * q_j;
         CHECK((rolling - gamma.tail<2>() - x.T.transpose() * slipping).norm() < 1e-7 * scale);
     }
 }
 
 namespace {
 
-/// A contact of two free bodies under gravity and another load, with velocities that keep it
+/// A contact of two free bodies under gravity, with consistent velocities
 struct TwoBodies {
     dae::Model model;
     lie::State x;
 
-    TwoBodies(const Pair& pair, Random& random, Friction friction)
+    TwoBodies(const SurfacePair& pair, Random& random, Friction friction)
     {
         for (const char* name : {"i", "j"}) {
             const Mat3 A = random.rotation();
@@ -181,18 +184,18 @@ struct TwoBodies {
         }
         model.gravity = random.vector(9.81);
         model.constrain("contact", std::make_unique<EvolvingContact>(0, pair.i, 1, pair.j, friction));
-        const Touching at = touching(pair, random);
+        const ContactPose at = random_contact_pose(pair, random);
         x.body = {at.bi, at.bj};
         dae::start(model, x, {.fix_initial = true});
     }
     ContactPoint contact_point() const
     {
-        return contact_of(model).contact_point(model.at(contact_of(model), x));
+        return contact_of(model).contact_point(model.arguments(contact_of(model), x));
     }
 };
 
-/// Force on body i that keeps the contact, without constraints or multipliers: from the acceleration of one material
-/// point with respect to the other, which the force changes by W f.
+/// Contact force on body i without constraints or multipliers: from the relative acceleration of the two
+/// material points, which a force f changes by W f.
 Vec3 force_on_i(const TwoBodies& two, Friction friction)
 {
     const ContactPoint at = two.contact_point();
@@ -204,7 +207,7 @@ Vec3 force_on_i(const TwoBodies& two, Friction friction)
 
     Mat3 W = Mat3::Zero();
     Vec3 relative =
-        omega_i.cross(adot_i) - omega_j.cross(adot_j);  // d/dt of the slip, without the contact force
+        omega_i.cross(adot_i) - omega_j.cross(adot_j);  // d/dt of the slip without the contact force
     for (const int b : {0, 1}) {
         const Motion& body = x.body[b];
         const Mat3& J_bar = two.model.mass().J_bar[b];
@@ -224,12 +227,12 @@ Vec3 force_on_i(const TwoBodies& two, Friction friction)
 
 }  // namespace
 
-TEST_CASE("the contact force at a start is that of the accelerations of material points",
+TEST_CASE("the contact force at a start follows from the accelerations of the material points",
           "[contact][evolving]")
 {
     Random random(GENERATE(8u, 9u, 10u));
     for (const Friction friction : {Friction::none, Friction::rolling})
-        for (const Pair& pair : pairs(random)) {
+        for (const SurfacePair& pair : surface_pairs(random)) {
             const TwoBodies two(pair, random, friction);
             const auto lambda = multipliers(two.model, two.x);
             const Vec3 f = force_on_i(two, friction), n = -two.contact_point().n;
@@ -240,11 +243,11 @@ TEST_CASE("the contact force at a start is that of the accelerations of material
         }
 }
 
-TEST_CASE("the multipliers of an evolving contact are forces along the normal", "[contact][evolving]")
+TEST_CASE("the multipliers of an evolving contact are a force along the normal", "[contact][evolving]")
 {
-    // λ_N = 0, λ_Ψ = F_N n_i, λ_G = -F_N (σ_i, σ_j); and -λ_Ψ is what the bodies feel
+    // λ_N = 0, λ_Ψ = F_N n_i, λ_G = -F_N (σ_i, σ_j); the reaction on body i is -λ_Ψ
     Random random(GENERATE(11u, 12u));
-    for (const Pair& pair : pairs(random)) {
+    for (const SurfacePair& pair : surface_pairs(random)) {
         const TwoBodies two(pair, random, Friction::none);
         const auto lambda = multipliers(two.model, two.x);
         const EvolvingContact& c = contact_of(two.model);
@@ -267,7 +270,7 @@ TEST_CASE("the multipliers of an evolving contact are forces along the normal", 
 
 namespace {
 
-/// A ball of 1 kg that touches the bottom of a bowl, or a floor
+/// A ball of 1 kg in contact with the ground
 struct OnGround {
     dae::Model model;
     lie::State x;
@@ -283,7 +286,7 @@ struct OnGround {
 
 }  // namespace
 
-TEST_CASE("surfaces without a single contact point are refused", "[contact][evolving]")
+TEST_CASE("surfaces without a unique contact point are rejected", "[contact][evolving]")
 {
     const Shape ball = shape<Sphere>(0.5);
     const auto refused = [](const Shape& i, const Shape& j, const Vec3& r, const std::string& why) {
@@ -301,17 +304,17 @@ TEST_CASE("surfaces without a single contact point are refused", "[contact][evol
             }(),
             Catch::Contains(why));
     };
-    refused(ball, shape<Sphere>(0.5, true), Vec3::Zero(), "a ball must be smaller than the bowl");
+    refused(ball, shape<Sphere>(0.5, true), Vec3::Zero(), "must be less than that of the concave sphere");
     refused(shape<Ellipsoid>(Vec3(0.5, 0.5, 0.5)), shape<Sphere>(0.5, true), Vec3::Zero(), "curve");
     refused(shape<Ellipsoid>(Vec3(0.4, 0.4, 0.05)), shape<Ellipsoid>(Vec3(0.6, 0.6, 0.4), true),
             Vec3(0, 0, -0.35), "curve");
     refused(ball, shape<Ellipsoid>(Vec3(0.6, 0.6, 2), true), Vec3(0, 0, -1.5), "curve");
-    refused(shape<Cylinder>(0.5), shape<Plane>(), Vec3(0, 0, 0.5), "must touch in a single point");
+    refused(shape<Cylinder>(0.5), shape<Plane>(), Vec3(0, 0, 0.5), "must have a single contact point");
     refused(shape<Plane>(), shape<Plane>(), Vec3::Zero(), "must be curved");
     CHECK_NOTHROW(OnGround(ball, shape<Sphere>(0.51, true), Vec3(0, 0, -0.01)));
 }
 
-TEST_CASE("bodies that are not in contact at the start are refused unless they may be moved",
+TEST_CASE("bodies that are not in contact at the start are rejected unless they are projected",
           "[contact][evolving]")
 {
     const Shape ball = shape<Sphere>(0.5), bowl = shape<Ellipsoid>(Vec3(4, 3, 2), true);
@@ -320,7 +323,7 @@ TEST_CASE("bodies that are not in contact at the start are refused unless they m
         CHECK_THROWS_AS(dae::start(o.model, o.x), lie::InvalidInput);
         CHECK_THROWS_WITH(dae::start(o.model, o.x),
                           Catch::Contains("contact 'rest'; bodies 'ball', 'ground'") &&
-                              Catch::Contains("a gap or overlap of 0.1 m"));
+                              Catch::Contains("the gap or overlap is 0.1 m"));
         const dae::StartReport report = dae::start(o.model, o.x, {.fix_initial = true});
         CHECK(report.projected);
         CHECK(report.position_residual == Approx(0.1).epsilon(1e-9));
@@ -336,16 +339,16 @@ TEST_CASE("bodies that are not in contact at the start are refused unless they m
         CHECK(std::abs(o.x.body[0].rdot.z()) < 1e-14);
     }
     OnGround rolling(ball, bowl, Vec3(0, 0, -1.5), Friction::rolling);
-    rolling.x.body[0].rdot.x() = 0.3;  // slides
+    rolling.x.body[0].rdot.x() = 0.3;  // slip
     CHECK_THROWS_WITH(dae::start(rolling.model, rolling.x),
                       Catch::Contains("violate the contact by 0.3 m/s"));
     rolling.x.body[0].omega_bar.y() = 0.3 / 0.5;
     CHECK_NOTHROW(dae::start(rolling.model, rolling.x));
 }
 
-TEST_CASE("more contacts than a body has freedoms are refused by name", "[contact][evolving]")
+TEST_CASE("more contacts than degrees of freedom of a body are rejected by name", "[contact][evolving]")
 {
-    // planes that touch a ball or an ellipsoid from outside, at points scattered over it
+    // planes in contact with a ball or an ellipsoid at random points
     const auto box = [](const Shape& body, int planes) {
         dae::Model model;
         model.add({"body", 1, Vec3(0.1, 0.12, 0.15).asDiagonal()});
@@ -368,7 +371,7 @@ TEST_CASE("more contacts than a body has freedoms are refused by name", "[contac
     for (const auto& [body, planes] : {std::pair{ball, 4}, {ellipsoid, 7}}) {
         try {
             box(body, planes);
-            FAIL("not refused");
+            FAIL("not rejected");
         } catch (const lie::NumericalFailure& e) {
             CHECK(e.status == "contact_rank");
             CHECK_THAT(e.what(), Catch::EndsWith("'wall " + std::to_string(planes) + "'"));
@@ -376,40 +379,39 @@ TEST_CASE("more contacts than a body has freedoms are refused by name", "[contac
     }
 }
 
-TEST_CASE("a contact whose normals are no longer opposite or whose surfaces fit is given up",
-          "[contact][evolving]")
+TEST_CASE("a contact fails if its normals are not opposite or its curvatures match", "[contact][evolving]")
 {
     Random random(5);
-    const Pair pair = pairs(random)[2];
+    const SurfacePair pair = surface_pairs(random)[2];
     const EvolvingContact c(0, pair.i, 1, pair.j);
-    Touching x = touching(pair, random);
+    ContactPose x = random_contact_pose(pair, random);
     Eigen::VectorXd internal_state(c.internal_states());
     c.update_internal_state(x.at(), true, internal_state.data());
     const Vec3 n = -c.contact_point(x.at()).n;
     const auto T = Eigen::Matrix<double, 3, 2>::Map(internal_state.data());
     CHECK((T.transpose() * T - Eigen::Matrix2d::Identity()).norm() < 1e-15);
     CHECK((T.transpose() * n).norm() < 1e-14);
-    const auto status = [&](const EvolvingContact& contact, const Touching& at) {
+    const auto status = [&](const EvolvingContact& contact, const ContactPose& at) {
         try {
             contact.update_internal_state(at.at(), false, internal_state.data());
         } catch (const lie::NumericalFailure& e) {
             return e.status;
         }
-        return std::string("goes on");
+        return std::string("continues");
     };
-    CHECK(status(c, x) == "goes on");
-    Touching opposite = x;  // a root of Tᵀ(n_i + n_j) = 0 too: n_j = n_i
+    CHECK(status(c, x) == "continues");
+    ContactPose opposite = x;  // n_j = n_i is also a root of Tᵀ(n_i + n_j) = 0
     opposite.alpha.head<3>() = 2 * pair.i.position - x.alpha.head<3>();
     CHECK(status(c, opposite) == "contact_lost");
-    // a ball that comes to the end of a bowl, which has its radius there
+    // a ball at the end of a bowl whose radius of curvature there is that of the ball
     const EvolvingContact tight(0, shape<Sphere>(0.5), 1, shape<Ellipsoid>(Vec3(1, 1, 2), true));
-    Touching y;
+    ContactPose y;
     y.alpha << 0, 0, -0.5, 0, 0, -2;
     y.bi.r = Vec3(0, 0, -1.5);
     CHECK(status(tight, y) == "contact_singular");
 }
 
-TEST_CASE("conditioning of an evolving contact does not depend on size", "[contact][evolving]")
+TEST_CASE("the condition number of an evolving contact does not depend on size", "[contact][evolving]")
 {
     const auto at = [](double size, double mass) {
         dae::Model model;
@@ -425,7 +427,7 @@ TEST_CASE("conditioning of an evolving contact does not depend on size", "[conta
         K.assemble(x);
         INFO("size " << size << ", mass " << mass);
         CHECK(multipliers(model, x).F_N == Approx(mass * 9.155246512774925).epsilon(1e-12));
-        CHECK(K.reciprocal_condition() > 1e-3);  // KLU's estimate, which depends on its pivots
+        CHECK(K.reciprocal_condition() > 1e-3);  // KLU's estimate; it depends on the pivots
         return condition(model, x, mass, 0.5 * size);
     };
     const double one = at(1, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction on contact points that are unknowns: a ball in a bowl as in Fang (2022), Sec. 5.5.2.
+// Tracked friction on evolving contacts: a ball in a bowl as in Fang (2022), Sec. 5.5.2.
 #include "contact/evolving/friction.hpp"
 #include "contact/evolving/unilateral.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
@@ -7,6 +7,7 @@
 #include "contact/surfaces/sphere.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/start.hpp"
+#include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/watched_march.hpp"
@@ -22,7 +23,7 @@ using tests::march;
 
 namespace {
 
-// Table 5.1, the sphere homogeneous
+// Table 5.1, for a homogeneous sphere
 constexpr double m = 1, I = 0.1, R = 0.5, K_E = 1e4, K_D = 100;
 const Vec3 semi_axes(4, 3, 2);
 
@@ -37,14 +38,14 @@ Shape bowl(const Mat3& orientation = Mat3::Identity())
     return {.surface = std::make_shared<Ellipsoid>(semi_axes, true), .orientation = orientation};
 }
 
-/// Centre of the sphere that touches the bowl over (0, y)
+/// Centre of the sphere whose contact point on the bowl is at (0, y)
 Vec3 centre_over(double y)
 {
     const Vec3 p(0, y, -semi_axes.z() * std::sqrt(1 - y * y / (semi_axes.y() * semi_axes.y())));
     return p - R * p.cwiseQuotient(semi_axes.cwiseAbs2()).normalized();
 }
 
-/// One ball in the bowl, released over (0, 1.5)
+/// A ball in the bowl, with its contact point at (0, 1.5)
 struct Bowl {
     dae::Model model;
     State x;
@@ -72,8 +73,8 @@ struct Released : Bowl {
     explicit Released(double eta_r) : Bowl(rubber(eta_r)) { start(); }
 };
 
-/// The same in the plane x = 0 as an ODE in (φ, v, ω, S): the centre goes along the curve at distance R inside the
-/// ellipse (3 sin φ, -2 cos φ), and sticks by spring and dashpot,
+/// The same motion in the plane x = 0 as an ODE in (φ, v, ω, S). The centre moves along the curve at distance
+/// R inside the ellipse (3 sin φ, -2 cos φ), with a spring-damper friction that sticks:
 ///
 ///     φ̇ |p'|(1 - R κ) = v,   m v̇ = -m g t_z + F,   I ω̇ = R F,   Ṡ = v + R ω,   F = -K_E S - K_D Ṡ
 Vec3 centre_by_ode(double t)
@@ -117,7 +118,8 @@ double power(const EvolvingFriction& f, const State& x)
 
 }  // namespace
 
-TEST_CASE("the bound of a sphere in a bowl is that of one damped spring", "[contact][evolving][friction]")
+TEST_CASE("the stability limit of a sphere in a bowl is that of one damped spring",
+          "[contact][evolving][friction]")
 {
     const Released b(0);
     const double q = 1 / m + R * R / I, d = K_D * q, k = K_E * q;
@@ -126,20 +128,20 @@ TEST_CASE("the bound of a sphere in a bowl is that of one damped spring", "[cont
     CHECK(b.model.stable_step(b.x).h == Approx(h).epsilon(1e-9));
     CHECK(b.model.stable_step(b.x).force == 0);
 
-    // one that is held apart from the normal rolls more stiffly
+    // rolling resistance adds stiffness and lowers the limit
     CHECK(Released(0.1).model.stable_step(b.x).h < h);
     CHECK(Released(0.3).model.stable_step(b.x).h < Released(0.1).model.stable_step(b.x).h);
     CHECK(Released(0.3).model.stable_step(b.x).h > 2.5e-3);
 }
 
-TEST_CASE("friction in the bowl is smooth below the bound and chatters above (long)",
+TEST_CASE("friction in the bowl is smooth below the stability limit and oscillates above it (long)",
           "[contact][evolving][friction]")
 {
     const Released b(0);
     for (const char* scheme : {"rA-half-1", "rA-half-1-momentum"}) {
         const auto most = [&](double h) {
             double F = 0;
-            // what the release shook has died away by then, and the ball turns round at 2.3 s
+            // the transient of the release has decayed by then, and the ball turns round at 2.3 s
             march(b.model, b.x, scheme, 3, h, [&](const State& x) {
                 if (x.t > 1.5) F = std::max(F, b.friction().friction(x).F.norm());
             });
@@ -151,19 +153,18 @@ TEST_CASE("friction in the bowl is smooth below the bound and chatters above (lo
     }
 }
 
-TEST_CASE("the ball in the bowl moves as its equation in one angle (long)",
-          "[contact][evolving][friction][order]")
+TEST_CASE("the ball in the bowl follows the ODE in one angle (long)", "[contact][evolving][friction][order]")
 {
     const Released b(0);
     CHECK((centre_by_ode(3) - Vec3(0, -8.027347665166105e-01, -1.417395761748674e+00)).norm() < 1e-9);
-    // the text's start, of first order, and the half kick, of second
+    // the start of the dissertation, of first order, and the half kick, of second order
     for (const auto& [scheme, order, error, t] :
          {std::tuple{"rA-half-1", 1., 2.3e-3, 3.}, {"rA-half-1-momentum", 2., 3e-6, 1.}}) {
-        const Vec3 truth = centre_by_ode(t);
+        const Vec3 reference = centre_by_ode(t);
         double far[2];
         double* e = far;
         for (const double h : {2.5e-3, 1.25e-3})
-            *e++ = (march(b.model, b.x, scheme, t, h).body[0].r - truth).norm();
+            *e++ = (march(b.model, b.x, scheme, t, h).body[0].r - reference).norm();
         INFO(scheme << ' ' << far[0] << ' ' << far[1]);
         CHECK(far[0] < error);
         CHECK(far[0] > 0.1 * error);
@@ -171,7 +172,7 @@ TEST_CASE("the ball in the bowl moves as its equation in one angle (long)",
     }
 }
 
-TEST_CASE("rolling resistance brings the ball to rest where the dissertation's does (long)",
+TEST_CASE("rolling resistance stops the ball at the rest position of the dissertation (long)",
           "[contact][evolving][friction]")
 {
     struct Case {
@@ -179,7 +180,8 @@ TEST_CASE("rolling resistance brings the ball to rest where the dissertation's d
         std::array<double, 3> turns;
         int turned;
     };
-    // rest and turning points of the contact point [m]; the limit of stiff springs is within 1e-3 of all of them
+    // rest position and turning points of the contact point [m]; all within 1e-3 of the limit of stiff
+    // springs
     for (const Case& c :
          {Case{0.1, 9.8, -0.0929, 9.406, {-1.1110, 0.7137, -0.3114}, 3},
           Case{0.2, 5.0, -0.0859, 4.675, {-0.7170}, 1}, Case{0.3, 2.7, -0.3249, 2.309, {}, 0}}) {
@@ -206,7 +208,7 @@ TEST_CASE("rolling resistance brings the ball to rest where the dissertation's d
     }
 }
 
-TEST_CASE("tracked friction becomes ideal rolling as its spring becomes stiff (long)",
+TEST_CASE("tracked friction converges to ideal rolling with increasing stiffness (long)",
           "[contact][evolving][friction]")
 {
     const double t = 0.25, h = 2.5e-4;
@@ -233,16 +235,16 @@ TEST_CASE("tracked friction becomes ideal rolling as its spring becomes stiff (l
     CHECK(apart[0] < 2e-4);
     CHECK(apart[0] / apart[1] == Approx(10).epsilon(0.1));
 
-    const auto& rolling = dynamic_cast<const EvolvingContact&>(*ideal.evolving()[0]);
+    const auto& rolling = dynamic_cast<const EvolvingContact&>(*ideal.general_constraints()[0]);
     CHECK_THROWS_WITH(EvolvingFriction(ideal, rolling, friction_law("slide-roll-spin").make(rubber())),
-                      Catch::StartsWith("contact 'ball-bowl': a contact that rolls ideally"));
+                      Catch::StartsWith("contact 'ball-bowl': a contact with ideal rolling"));
 }
 
-TEST_CASE("what friction does on an evolving contact is what the energy loses",
+TEST_CASE("the work of friction on an evolving contact equals the loss of energy",
           "[contact][evolving][friction]")
 {
     FrictionParameters p = rubber(0.1);
-    p.mu_s = p.mu_k = 0.05;  // slides, and rolls, and turns about the normal
+    p.mu_s = p.mu_k = 0.05;  // sliding, rolling and spinning
     p.eta_psi = 0.05;
     double off[2], lost = 0;
     double* e = off;
@@ -268,7 +270,7 @@ TEST_CASE("what friction does on an evolving contact is what the energy loses",
     CHECK(off[1] < 0.7 * off[0]);
 }
 
-TEST_CASE("two free bodies with friction between them keep their momentum", "[contact][evolving][friction]")
+TEST_CASE("two free bodies with friction between them conserve momentum", "[contact][evolving][friction]")
 {
     dae::Model model;
     model.gravity.setZero();
@@ -312,7 +314,7 @@ TEST_CASE("two free bodies with friction between them keep their momentum", "[co
     CHECK(most > 0.1);
     CHECK(off < 1e-12);
     CHECK((end.body[1].A * end.body[1].omega_bar - x.body[1].omega_bar).norm() > 0.5);
-    // forces and torques of friction about the origin, on both bodies together
+    // resultant force and torque of friction about the origin, on both bodies together
     lie::Loads out(2);
     friction.add(end, out);
     CHECK((out.F[0] + out.F[1]).norm() < 1e-14);
@@ -322,7 +324,7 @@ TEST_CASE("two free bodies with friction between them keep their momentum", "[co
     CHECK(about.norm() < 1e-13);
 }
 
-TEST_CASE("friction does not depend on the name of a body or on the axes of the world",
+TEST_CASE("friction does not depend on the order of the bodies or on the global axes",
           "[contact][evolving][friction]")
 {
     const Mat3 turned = lie::exp(Vec3(0.4, -1.1, 0.7));
@@ -345,7 +347,8 @@ TEST_CASE("friction does not depend on the name of a body or on the axes of the 
 
 namespace {
 
-/// An egg that slides over a floor, its centre of mass beside the normal, so that friction loads or lifts it
+/// An ellipsoid that slides over a floor. Its centre of mass is not on the contact normal, so friction
+/// changes F_N.
 struct Egg {
     static constexpr double mass = 2;
     const Vec3 axes = Vec3(0.3, 0.25, 0.15), J = Vec3(0.034, 0.045, 0.061);
@@ -372,15 +375,16 @@ struct Egg {
     double F_N()
     {
         dae::start(model, x);
-        const auto& c = dynamic_cast<const EvolvingContact&>(*model.evolving()[0]);
-        return c.multipliers(model.at(c, x), x.lambda).F_N;
+        const auto& c = dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
+        return c.multipliers(model.arguments(c, x), x.lambda).F_N;
     }
-    /// c_nt / c_nn of forces at the contact point and its accelerations, t against the velocity
+    /// c_nt / c_nn: compliances of the contact point (acceleration per force); t points against the velocity
     double coupling(double v) const
     {
         const Motion& egg = x.body[0];
-        const auto& c = dynamic_cast<const EvolvingContact&>(*model.evolving()[0]);
-        const Vec3 s = c.contact_point(model.at(c, x)).C() - egg.r, n = Vec3::UnitZ(), t = -v * Vec3::UnitX();
+        const auto& c = dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
+        const Vec3 s = c.contact_point(model.arguments(c, x)).C() - egg.r, n = Vec3::UnitZ(),
+                   t = -v * Vec3::UnitX();
         const Mat3 J_inverse = egg.A * J.cwiseInverse().asDiagonal() * egg.A.transpose();
         const auto moves = [&](const Vec3& a, const Vec3& b) {
             return a.dot(b) / mass + s.cross(a).dot(J_inverse * s.cross(b));
@@ -391,20 +395,20 @@ struct Egg {
 
 }  // namespace
 
-TEST_CASE("at a start friction and the normal force agree", "[contact][evolving][friction]")
+TEST_CASE("friction and the normal force are consistent at a start", "[contact][evolving][friction]")
 {
     for (const double mu : {0.4, 2.5, 10.})
         for (const double v : {1., -1., 0.}) {
-            if (mu > 3 && v > 0) continue;  // the dashpot may still have a solution
+            if (mu > 3 && v > 0) continue;  // with the damper a solution can exist
             Egg smooth(v, 0), rough(v, mu);
             const double N_0 = smooth.F_N(), c = smooth.coupling(v);
             INFO("mu " << mu << ", v " << v << ", mu c_nt/c_nn " << mu * c);
-            if (1 + mu * c <= 0) {  // Painlevé: Coulomb's law has no solution
-                CHECK_THROWS_WITH(rough.F_N(), Catch::Contains("do not settle at the start"));
+            if (1 + mu * c <= 0) {  // Painlevé paradox: Coulomb's law has no solution
+                CHECK_THROWS_WITH(rough.F_N(), Catch::Contains("converge at the start"));
                 continue;
             }
             const double N = rough.F_N();
-            // the touching point has no acceleration along n: N (c_nn + μ c_nt) = N_0 c_nn
+            // the contact point has no normal acceleration: N (c_nn + μ c_nt) = N_0 c_nn
             CHECK(N == Approx(N_0 / (1 + mu * c)).epsilon(1e-11));
             if (v != 0) CHECK(std::abs(N / N_0 - 1) > 0.1);
             const auto& friction = dynamic_cast<const EvolvingFriction&>(*rough.model.forces()[0]);
@@ -413,9 +417,9 @@ TEST_CASE("at a start friction and the normal force agree", "[contact][evolving]
         }
 }
 
-TEST_CASE("a contact that would pull has no friction", "[contact][evolving][friction]")
+TEST_CASE("a contact under tension has no friction", "[contact][evolving][friction]")
 {
-    // On top of a sphere and too fast to stay there: the constraint holds it down
+    // on top of a sphere and too fast to stay there: the bilateral constraint pulls
     dae::Model model;
     model.add({.name = "ball", .m = m, .J_bar = I * Mat3::Identity()});
     auto contact = std::make_unique<EvolvingContact>(0, sphere(), dae::ground, sphere(1));
@@ -435,7 +439,7 @@ TEST_CASE("a contact that would pull has no friction", "[contact][evolving][fric
     CHECK(out.F[0].norm() + out.n_bar[0].norm() == 0);
 }
 
-TEST_CASE("a ball that falls has no friction and comes to roll at five sevenths of its speed",
+TEST_CASE("a bouncing ball has no friction in flight and ends rolling at five sevenths of its speed",
           "[contact][evolving][friction]")
 {
     dae::Model model;
@@ -462,9 +466,10 @@ TEST_CASE("a ball that falls has no friction and comes to roll at five sevenths 
         const State& now = march.node();
         if (!dae::Model::inactive(c, now) || !dae::Model::inactive(c, before)) continue;
         flown += now.t - before.t;
-        off = std::max(off, friction.friction(now).F.norm() + friction.recall(now).deflections.S.norm());
+        off =
+            std::max(off, friction.friction(now).F.norm() + friction.saved_history(now).deflections.S.norm());
     }
-    CHECK(flown > 0.25);  // twice at least
+    CHECK(flown > 0.25);  // at least two flights
     CHECK(off == 0);
     const Motion& end = march.node().body[0];
     CHECK(end.rdot.x() == Approx(5. / 7).epsilon(1e-6));
@@ -489,39 +494,39 @@ TEST_CASE("the friction of an evolving contact is a function of the state", "[co
     CHECK(first.F[0] == second.F[0]);
     CHECK(first.n_bar[0] == second.n_bar[0]);
 
-    // a step that is refused leaves nothing behind
+    // a step that fails does not change the state
     State z = x;
-    const auto hasty =
+    const auto failing =
         lie::scheme("rA-half-1-momentum").make(b.model, {.tolerance = 1e-30, .max_iterations = 1});
-    CHECK_THROWS_AS(hasty->step(z, 2e-3), lie::NoConvergence);
+    CHECK_THROWS_AS(failing->step(z, 2e-3), lie::NoConvergence);
     CHECK(z.internal_state == x.internal_state);
     CHECK(z.discrete_state == x.discrete_state);
     CHECK(z.alpha == x.alpha);
 }
 
-TEST_CASE("every scheme that takes evolving contacts takes their friction (long)",
+TEST_CASE("every scheme for evolving contacts converges with tracked friction (long)",
           "[contact][evolving][friction][order]")
 {
     const double t = 0.2;
-    const Vec3 truth = centre_by_ode(t);
+    const Vec3 reference = centre_by_ode(t);
     const Released b(0);
     for (const lie::Scheme& s : lie::schemes()) {
         if (!s.algebraic || s.adaptive) continue;
         const double h =
-            5e-4;  // fully implicit schemes iterate with K alone, which stiff friction is far from
-        const double far = (march(b.model, b.x, s.name, t, 2 * h).body[0].r - truth).norm(),
-                     near = (march(b.model, b.x, s.name, t, h).body[0].r - truth).norm();
+            5e-4;  // the Newton matrix of fully implicit schemes does not contain the stiff friction
+        const double far = (march(b.model, b.x, s.name, t, 2 * h).body[0].r - reference).norm(),
+                     near = (march(b.model, b.x, s.name, t, h).body[0].r - reference).norm();
         INFO(s.name << ' ' << far << ' ' << near);
         CHECK(near < (s.order == 1 ? 5e-4 : 1e-6));
         CHECK(std::log2(far / near) > 0.8);
     }
 }
 
-TEST_CASE("a step with friction on an evolving contact takes nothing from the heap",
+TEST_CASE("a step with friction on an evolving contact does not allocate",
           "[contact][evolving][friction][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted under a sanitizer");
         return;
     }
     const Released b(0.1);

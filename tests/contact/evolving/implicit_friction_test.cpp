@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction in the equations of the step: a ball in the bowl of Fang (2022), Sec. 5.5.2, and bodies that slide.
+// Implicit friction: a ball in the bowl of Fang (2022), Sec. 5.5.2, and sliding bodies.
 #include "contact/evolving/friction.hpp"
 #include "contact/evolving/unilateral.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "dae/start.hpp"
+#include "lie/schemes.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/watched_march.hpp"
@@ -26,7 +28,7 @@ constexpr ImplicitFriction rubber{.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e6, .K_D = 
 Shape sphere() { return {.surface = std::make_shared<Sphere>(R)}; }
 Shape bowl() { return {.surface = std::make_shared<Ellipsoid>(semi_axes, true)}; }
 
-/// Centre of the sphere that touches the bowl over (0, y)
+/// Centre of the sphere whose contact point on the bowl is at (0, y)
 Vec3 centre_over(double y)
 {
     const Vec3 p(0, y, -semi_axes.z() * std::sqrt(1 - y * y / (semi_axes.y() * semi_axes.y())));
@@ -47,15 +49,15 @@ struct Ball {
     }
     const EvolvingContact& contact() const
     {
-        return dynamic_cast<const EvolvingContact&>(*model.evolving()[0]);
+        return dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
     }
     EvolvingContact::Multipliers multipliers(const State& x) const
     {
-        return contact().multipliers(model.at(contact(), x), x.lambda);
+        return contact().multipliers(model.arguments(contact(), x), x.lambda);
     }
 };
 
-/// Released over (0, 1.5)
+/// A ball released at rest with its contact point at (0, 1.5)
 struct Released : Ball {
     explicit Released(const ImplicitFriction& friction) : Ball(bowl(), friction, centre_over(1.5))
     {
@@ -63,7 +65,7 @@ struct Released : Ball {
     }
 };
 
-/// With v along x on the floor
+/// A ball on the floor with velocity v along x and no spin
 struct Thrown : Ball {
     Thrown(const ImplicitFriction& friction, double v)
         : Ball({.surface = std::make_shared<Plane>()}, friction, R * Vec3::UnitZ())
@@ -73,7 +75,7 @@ struct Thrown : Ball {
     }
 };
 
-/// The same ball, with 1 m/s along x, at this height over a floor that it may leave
+/// The same ball with 1 m/s along x, at this height above a floor with a unilateral contact
 struct Dropped {
     dae::Model model;
     State x;
@@ -92,8 +94,8 @@ struct Dropped {
     }
 };
 
-/// Centre of a ball that rolls without slip in the plane x = 0, from rest over y = 1.5: it goes along the curve at the
-/// distance R inside the ellipse (3 sin φ, -2 cos φ),  φ̇ |p'|(1 - R κ) = v,  (m + I/R²) v̇ = -m g t_z
+/// Centre of a ball that rolls without slip in the plane x = 0 from rest at y = 1.5. It moves along the curve
+/// at distance R inside the ellipse (3 sin φ, -2 cos φ): φ̇ |p'|(1 - R κ) = v, (m + I/R²) v̇ = -m g t_z
 Vec3 rolled(double t)
 {
     using Vec2 = Eigen::Vector2d;
@@ -116,7 +118,7 @@ Vec3 rolled(double t)
 
 }  // namespace
 
-TEST_CASE("friction in the equations of the step takes steps that a force could not",
+TEST_CASE("implicit friction is stable for steps above the limit of a friction force",
           "[contact][evolving][implicit]")
 {
     constexpr double h = 1e-2, t = 3;
@@ -137,17 +139,19 @@ TEST_CASE("friction in the equations of the step takes steps that a force could 
 
     const Released b(rubber);
     CHECK(b.model.stable_step(b.x).h == std::numeric_limits<double>::infinity());
-    // ideal rolling needs 1.0069 N, at the release; a contact that chatters goes to its bound
+    // ideal rolling has its largest friction, 1.0069 N, at the release; friction above the stability limit
+    // would reach its bound
     double most = 0;
     march(b.model, b.x, "rA-half-1-momentum", t, h,
           [&](const State& at) { most = std::max(most, b.multipliers(at).friction.norm()); });
     CHECK(most == Approx(1.0068).margin(5e-3));
 }
 
-TEST_CASE("a ball that friction in the equations holds rolls as an ideal one (long)",
+TEST_CASE("with stiff implicit friction below its bound a ball rolls as with ideal rolling (long)",
           "[contact][evolving][implicit][order]")
 {
-    // the start of the text is of first order; behind a half kick the spring's lag of one step is all that is left of it
+    // rA-half-1 has the first-order start of the dissertation. With a half kick only the lag of the spring by
+    // one step remains.
     struct Case {
         const char* scheme;
         double K_E, order, error;
@@ -170,13 +174,13 @@ TEST_CASE("a ball that friction in the equations holds rolls as an ideal one (lo
     }
 }
 
-TEST_CASE("a ball thrown over a floor slides under mu g until it rolls with five sevenths of its speed",
+TEST_CASE("a ball decelerates with mu g until it rolls with five sevenths of its speed",
           "[contact][evolving][implicit]")
 {
     ImplicitFriction ice = rubber;
     ice.mu_s = ice.mu_k = 0.2;
     const double v = 2, mu_g = ice.mu_k * g, rolls_from = v / (mu_g * (1 + m * R * R / I));
-    const double way =
+    const double displacement =
         v * rolls_from - 0.5 * mu_g * rolls_from * rolls_from + (v - mu_g * rolls_from) * (1 - rolls_from);
     const Thrown b(ice, v);
     CHECK(b.x.body[0].rddot.x() == Approx(-mu_g).epsilon(1e-7));
@@ -191,10 +195,10 @@ TEST_CASE("a ball thrown over a floor slides under mu g until it rolls with five
             });
             CHECK(end.body[0].rdot.x() == Approx(v / (1 + I / (m * R * R))).epsilon(1e-6));
             CHECK(R * end.body[0].omega_bar.y() == Approx(end.body[0].rdot.x()).epsilon(1e-6));
-            *e++ = std::abs(end.body[0].r.x() - way);
+            *e++ = std::abs(end.body[0].r.x() - displacement);
         }
         INFO(scheme << ' ' << far[0] << ' ' << far[1]);
-        if (order > 1) {  // all that is left of the error is the stretch of the spring
+        if (order > 1) {  // the remaining error is the elastic displacement of the spring
             for (const double error : far) CHECK(error < 1.1 * ice.mu_k * m * g / ice.K_E);
         } else {
             CHECK(far[0] < 3e-3);
@@ -203,10 +207,10 @@ TEST_CASE("a ball thrown over a floor slides under mu g until it rolls with five
     }
 }
 
-TEST_CASE("friction in the equations is at its bound against the slip of bodies of any shape",
+TEST_CASE("sliding implicit friction is at its bound and opposes the slip for bodies of any shape",
           "[contact][evolving][implicit]")
 {
-    // the masses against the two rows differ, so that what would stop the slip does not point against it
+    // The effective masses of the two rows differ, so the sticking force is not parallel to the slip.
     ImplicitFriction ice = rubber;
     ice.mu_s = ice.mu_k = 0.1;
     const Vec3 axes(0.3, 0.25, 0.15);
@@ -221,16 +225,16 @@ TEST_CASE("friction in the equations is at its bound against the slip of bodies 
     x.body[0].r.z() = axes.cwiseProduct(x.body[0].A.transpose() * Vec3::UnitZ()).norm();
     x.body[0].rdot = {1, 0.7, 0};
     dae::start(model, x);
-    const auto& c = dynamic_cast<const EvolvingContact&>(*model.evolving()[0]);
+    const auto& c = dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
     double off[2];
     double* e = off;
     for (const double h : {2e-3, 1e-3}) {
         double most = 0, least_slip = 1;
         march(model, x, "rA-half-1-momentum", 0.1, h, [&](const State& s) {
-            if (s.t > 0.1 - 0.5 * h) return;  // a node is known in full one step late
-            const auto found = c.multipliers(model.at(c, s), s.lambda);
+            if (s.t > 0.1 - 0.5 * h) return;  // a node is filled in one step late
+            const auto found = c.multipliers(model.arguments(c, s), s.lambda);
             const Motion& egg = s.body[0];
-            const Vec3 arm = c.contact_point(model.at(c, s)).C() - egg.r,
+            const Vec3 arm = c.contact_point(model.arguments(c, s)).C() - egg.r,
                        slip = egg.rdot + (egg.A * egg.omega_bar).cross(arm);
             CHECK(found.friction.norm() == Approx(ice.mu_k * found.F_N).epsilon(1e-6));
             most = std::max(most, (found.friction.normalized() + slip.normalized()).norm());
@@ -240,26 +244,25 @@ TEST_CASE("friction in the equations is at its bound against the slip of bodies 
         *e++ = most;
     }
     INFO(off[0] << ' ' << off[1]);
-    CHECK(off[0] < 2e-2);  // the slip of half a step later
+    CHECK(off[0] < 2e-2);  // the slip half a step later
     CHECK(off[1] < 0.6 * off[0]);
 }
 
-TEST_CASE(
-    "rolling resistance in the equations brings the ball to rest where it rests without a spring (long)",
-    "[contact][evolving][implicit]")
+TEST_CASE("implicit rolling resistance stops the ball at the rest position of rigid-plastic friction (long)",
+          "[contact][evolving][implicit]")
 {
     struct Case {
         double eta_r, t_end, rest, stops;
         std::vector<double> turns;
     };
-    // of a moment 2 η μ_k F_N/(1/R - κ) against the rolling, the limit of stiff springs
+    // rigid-plastic limit: a moment 2 η μ_k F_N/(1/R - κ) against the rolling
     for (const Case& c : {Case{0.1, 9.8, -0.09213, 9.406, {-1.11118, 0.71410, -0.31204}},
                           Case{0.2, 5.0, -0.08509, 4.675, {-0.71747}}, Case{0.3, 2.7, -0.32581, 2.309, {}}}) {
         ImplicitFriction resisting = rubber;
         resisting.eta_r = c.eta_r;
         const Released b(resisting);
         for (const double h : {1e-2, 2.5e-3}) {
-            if (h < 5e-3 && c.eta_r < 0.3) continue;  // the long runs once
+            if (h < 5e-3 && c.eta_r < 0.3) continue;  // the long runs only once
             std::vector<double> turns;
             double y[2] = {1.5, 1.5}, stopped = 0;
             const State end = march(b.model, b.x, "rA-half-1-momentum", c.t_end, h, [&](const State& x) {
@@ -280,7 +283,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what resists rolling is the way of the contact point over the bodies",
+TEST_CASE("the rolling rows are the velocity of the contact point over the bodies",
           "[contact][evolving][implicit][derivative]")
 {
     ImplicitFriction resisting = rubber;
@@ -288,9 +291,9 @@ TEST_CASE("what resists rolling is the way of the contact point over the bodies"
     Ball b(bowl(), resisting, centre_over(1.5));
     dae::start(b.model, b.x);
     const EvolvingContact& c = b.contact();
-    const ContactPoint contact_point = c.contact_point(b.model.at(c, b.x));
+    const ContactPoint contact_point = c.contact_point(b.model.arguments(c, b.x));
     Motion& ball = b.x.body[0];
-    const Vec3 omega = Vec3(0.7, -0.4, 0.3);  // without slip
+    const Vec3 omega = Vec3(0.7, -0.4, 0.3);  // rolling without slip
     ball.omega_bar = ball.A.transpose() * omega;
     ball.rdot = -omega.cross(contact_point.C() - ball.r);
     lie::Rows C = b.model.pattern();
@@ -300,22 +303,22 @@ TEST_CASE("what resists rolling is the way of the contact point over the bodies"
     const int first = c.first_velocity_row;
     CHECK(std::abs(C.dot(first, v)) + std::abs(C.dot(first + 1, v)) < 1e-15);
 
-    constexpr double dt = 1e-5;  // central, good to dt²
+    constexpr double dt = 1e-5;  // central differences, error O(dt²)
     const auto moved = [&](double t) {
         State x = b.x;
         x.body[0].r += t * ball.rdot;
         x.body[0].A = ball.A * lie::exp(t * ball.omega_bar);
         b.model.update_alpha(x);
-        return Vec3(x.alpha.tail<3>());  // over the bowl
+        return Vec3(x.alpha.tail<3>());  // contact point on the bowl
     };
-    const Vec3 way = (moved(dt) - moved(-dt)) / (2 * dt);
+    const Vec3 displacement = (moved(dt) - moved(-dt)) / (2 * dt);
     const Eigen::Matrix<double, 3, 2> T = Eigen::Matrix<double, 3, 2>::Map(b.x.internal_state.data());
-    CHECK((T.transpose() * way - Eigen::Vector2d(C.dot(first + 2, v), C.dot(first + 3, v))).norm() <
-          1e-7 * way.norm());
-    CHECK(way.norm() > 0.1);
+    CHECK((T.transpose() * displacement - Eigen::Vector2d(C.dot(first + 2, v), C.dot(first + 3, v))).norm() <
+          1e-7 * displacement.norm());
+    CHECK(displacement.norm() > 0.1);
 }
 
-TEST_CASE("friction in the equations is found alike by blocks and from the whole matrix",
+TEST_CASE("implicit friction is the same with the condensed and with the full matrix",
           "[contact][evolving][implicit]")
 {
     ImplicitFriction resisting = rubber;
@@ -331,7 +334,7 @@ TEST_CASE("friction in the equations is found alike by blocks and from the whole
                           .body[0]
                           .r);
     CHECK((end[0] - end[1]).norm() < 1e-8);
-    // nothing is taken from the heap while it slips and rolls and sticks
+    // no allocation while it slips, rolls and sticks
     if (!tests::counts_allocations) return;
     const auto integrator = lie::scheme("rA-half-1-momentum").make(b.model, {});
     State x = b.x;
@@ -347,8 +350,7 @@ TEST_CASE("friction in the equations is found alike by blocks and from the whole
     CHECK(tests::allocations_during([&] { steps(50); }) == 0);
 }
 
-TEST_CASE("a contact that can open has no friction in its equations while it is open",
-          "[contact][evolving][implicit]")
+TEST_CASE("an inactive contact has no implicit friction", "[contact][evolving][implicit]")
 {
     const Dropped ball(1);
     for (const auto solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed}) {
@@ -361,7 +363,7 @@ TEST_CASE("a contact that can open has no friction in its equations while it is 
     }
 }
 
-TEST_CASE("a ball that lands and does not rebound slides until it rolls with five sevenths of its speed",
+TEST_CASE("a ball that lands without rebound slides until it rolls with five sevenths of its speed",
           "[contact][evolving][implicit]")
 {
     const Dropped ball(0.1);
@@ -376,7 +378,8 @@ TEST_CASE("a ball that lands and does not rebound slides until it rolls with fiv
     }
 }
 
-TEST_CASE("friction in the equations is refused where it cannot be", "[contact][evolving][implicit]")
+TEST_CASE("implicit friction is rejected by schemes, forces and parameters that do not allow it",
+          "[contact][evolving][implicit]")
 {
     const Released b(rubber);
     for (const lie::Scheme& s : lie::schemes()) {
@@ -385,13 +388,13 @@ TEST_CASE("friction in the equations is refused where it cannot be", "[contact][
             CHECK_NOTHROW(s.make(b.model, {}));
         else if (s.algebraic)
             CHECK_THROWS_WITH(s.make(b.model, {}),
-                              Catch::Contains("takes no friction in the equations of its step; those that do "
+                              Catch::Contains("does not support implicit friction; integrators that do "
                                               "are rA-half-1, rA-half-1-kick, rA-half-1-momentum"));
         else
             CHECK_THROWS_AS(s.make(b.model, {}), lie::InvalidInput);
     }
     CHECK_THROWS_WITH(EvolvingFriction(b.model, b.contact(), frictionless()),
-                      Catch::Contains("friction either in its equations or as a force"));
+                      Catch::Contains("friction must be either implicit or a force of the contact"));
     ImplicitFriction wrong = rubber;
     wrong.mu_s = 0.125;
     CHECK_THROWS_WITH(Released(wrong), "contact::ImplicitFriction: mu_s must not be below mu_k, got 0.125");

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Ways to write one motion of contacts that evolve in other words, which must not change it.
+/// Metamorphic tests of evolving contacts: equivalent descriptions of a scene give the same motion.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "tests/support/evolving.hpp"
 #include "tests/support/no_allocation.hpp"
 
@@ -12,7 +18,7 @@ using namespace hilda::tests;
 
 namespace {
 
-/// The same surface by a function that is `factor` times as large, and looks the other way where that is negative
+/// The same surface with its function multiplied by `factor`; a negative factor reverses the gradient
 class Multiplied final : public Surface {
 public:
     Multiplied(std::shared_ptr<const Surface> surface, double factor)
@@ -31,12 +37,12 @@ private:
     const double factor;
 };
 
-/// How the scene is told
-struct Words {
-    Mat3 turn = Mat3::Identity();  ///< of the whole world
-    Vec3 shift = Vec3::Zero();
-    bool swapped = false, reversed = false;  ///< bodies of each contact, order of contacts
-    double factor_egg = 1, factor_bowl = 1;  ///< of G
+/// Description of the scene: frame, order and units
+struct Description {
+    Mat3 turn = Mat3::Identity();            ///< rotation of the whole scene
+    Vec3 shift = Vec3::Zero();               ///< translation of the whole scene [m]
+    bool swapped = false, reversed = false;  ///< order of the bodies of each contact; order of the contacts
+    double factor_egg = 1, factor_bowl = 1;  ///< of the surface functions G
     double length = 1, mass = 1, time = 1;   ///< units
     lie::LinearSolver solver = lie::LinearSolver::automatic;
 };
@@ -47,12 +53,12 @@ struct Result {
     std::array<double, 3> F_N;
 };
 
-/// An egg and a ball that slide in a bowl and stay in contact with each other: three contacts; after 0.2 s. Told back in
-/// the first words.
-Result sliding(const Words& w, double h = 2e-3, double t_end = 0.2)
+/// An ellipsoid and a ball slide in a bowl in contact with each other: three contacts, 0.2 s. The result is
+/// converted to the frame and units of the default description.
+Result sliding(const Description& w, double h = 2e-3, double t_end = 0.2)
 {
     const double l = w.length;
-    Scene scene;
+    ContactModel scene;
     scene.model.gravity = w.turn * Vec3(0, 0, -9.81 * l / (w.time * w.time));
     const Vec3 axes(0.5, 0.4, 0.3);
     Motion egg, ball;
@@ -68,17 +74,18 @@ Result sliding(const Words& w, double h = 2e-3, double t_end = 0.2)
     const double inertial = w.mass * l * l;
     scene.add("egg", 1.2 * w.mass, inertial * inertia(1.2, axes), egg);
     scene.add("ball", w.mass, inertial * 0.4 * 0.09 * Mat3::Identity(), ball);
-    const auto told = [](const Shape& shape, double factor) {
+    const auto multiplied = [](const Shape& shape, double factor) {
         return factor == 1 ? shape : Shape{std::make_shared<Multiplied>(shape.surface, factor)};
     };
-    const Shape of_egg = told(shape<Ellipsoid>(l * axes), w.factor_egg), of_ball = shape<Sphere>(0.3 * l);
-    Shape bowl = told(shape<Ellipsoid>(l * bowl_axes, true), w.factor_bowl);
+    const Shape of_egg = multiplied(shape<Ellipsoid>(l * axes), w.factor_egg),
+                of_ball = shape<Sphere>(0.3 * l);
+    Shape bowl = multiplied(shape<Ellipsoid>(l * bowl_axes, true), w.factor_bowl);
     bowl.position = w.shift, bowl.orientation = w.turn;
     const auto add = [&](const std::string& name, int i, const Shape& shape_i, int j, const Shape& shape_j) {
         if (w.swapped)
-            scene.contact_point(name, j, shape_j, i, shape_i);
+            scene.add_contact(name, j, shape_j, i, shape_i);
         else
-            scene.contact_point(name, i, shape_i, j, shape_j);
+            scene.add_contact(name, i, shape_i, j, shape_j);
     };
     const std::array<std::function<void()>, 3> contacts{
         [&] { add("egg in bowl", 0, of_egg, dae::ground, bowl); },
@@ -106,35 +113,35 @@ void check_same(const Result& a, const Result& b, double tolerance)
     CHECK((a.egg - b.egg).norm() < tolerance);
     CHECK((a.ball - b.ball).norm() < tolerance);
     CHECK((a.A - b.A).norm() < 10 * tolerance);
-    // multipliers have the rounding of positions, times m/h²
+    // the rounding error of a multiplier is that of a position times m/h²
     for (int k = 0; k < 3; ++k) CHECK(std::abs(a.F_N[k] - b.F_N[k]) < 1e6 * tolerance);
 }
 
 }  // namespace
 
-TEST_CASE("contacts that evolve do not depend on how they are told (long)", "[contact][evolving]")
+TEST_CASE("evolving contacts do not depend on frame, order and units (long)", "[contact][evolving]")
 {
     const Result plain = sliding({});
-    CHECK((plain.ball - Vec3(0.5, 0.3, -1.6)).norm() > 0.05);  // something happens
+    CHECK((plain.ball - Vec3(0.5, 0.3, -1.6)).norm() > 0.05);  // the ball has moved
     INFO("F_N " << plain.F_N[0] << ", " << plain.F_N[1] << ", " << plain.F_N[2]);
     constexpr double rounding = 3e-13;
-    SECTION("a turned world")
+    SECTION("a rotated frame")
     {
         check_same(plain, sliding({.turn = lie::exp(Vec3(0.7, -1.1, 0.4))}), rounding);
         check_same(plain, sliding({.turn = lie::exp(Vec3(1.5707963267948966, 0, 0))}), rounding);
     }
-    SECTION("a world elsewhere") { check_same(plain, sliding({.shift = Vec3(3, -5, 8)}), 10 * rounding); }
-    SECTION("bodies swapped") { check_same(plain, sliding({.swapped = true}), rounding); }
+    SECTION("a translated frame") { check_same(plain, sliding({.shift = Vec3(3, -5, 8)}), 10 * rounding); }
+    SECTION("bodies of each contact swapped") { check_same(plain, sliding({.swapped = true}), rounding); }
     SECTION("contacts in another order") { check_same(plain, sliding({.reversed = true}), rounding); }
-    SECTION("the function of a surface times a factor")
+    SECTION("surface functions multiplied by a factor")
     {
         check_same(plain, sliding({.factor_egg = 7, .factor_bowl = 0.2}), rounding);
     }
-    SECTION("gradients that point the other way")
+    SECTION("gradients reversed")
     {
         check_same(plain, sliding({.factor_egg = -1, .factor_bowl = -3}), rounding);
     }
-    SECTION("units of length and mass and time")
+    SECTION("units of length, mass and time")
     {
         check_same(plain, sliding({.length = 1e3}), rounding);
         check_same(plain, sliding({.length = 1e-3}), rounding);
@@ -148,7 +155,7 @@ TEST_CASE("contacts that evolve do not depend on how they are told (long)", "[co
     }
 }
 
-TEST_CASE("four times the gravity at half the step is the same motion to the last bit", "[contact][evolving]")
+TEST_CASE("four times the gravity at half the step gives the same motion bit for bit", "[contact][evolving]")
 {
     for (const char* scheme : {"rA-half-1", "rA-half-1-kick", "rA-half-1-momentum"}) {
         const auto run_with = [&](double g, double h) {
@@ -166,8 +173,7 @@ TEST_CASE("four times the gravity at half the step is the same motion to the las
     }
 }
 
-TEST_CASE("both linear solvers take the same steps with contacts that evolve",
-          "[contact][evolving][condensed]")
+TEST_CASE("both linear solvers give the same motion of evolving contacts", "[contact][evolving][condensed]")
 {
     for (const lie::Scheme& s : lie::schemes()) {
         if (!s.algebraic) continue;
@@ -188,10 +194,10 @@ TEST_CASE("both linear solvers take the same steps with contacts that evolve",
     }
 }
 
-TEST_CASE("a step with contacts that evolve takes nothing from the heap", "[contact][evolving][allocation]")
+TEST_CASE("a step with evolving contacts does not allocate", "[contact][evolving][allocation]")
 {
     if (!counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted under a sanitizer");
         return;
     }
     for (const lie::Scheme& s : lie::schemes())

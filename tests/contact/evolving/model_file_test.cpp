@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts of a model file whose normal is a constraint: what is read, what is written, what is refused where.
+// Constraint contacts of a model file: reading, writing, and the place of errors.
 #include <catch2/catch.hpp>
 
 #include "contact/compliant/contact_force.hpp"
@@ -20,9 +20,9 @@ namespace {
 const std::filesystem::path models = std::filesystem::path(HILDA_TEST_DATA) / "models";
 const std::string ball = R"({"type": "sphere", "radius": 0.5})", flat = R"({"type": "plane"})",
                   bowl = R"({"type": "ellipsoid", "semi_axes": [4, 3, 2], "concave": true})",
-                  held = R"({"type": "constraint"})";
+                  constraint = R"({"type": "constraint"})";
 
-/// One ball of 1 kg; the contact is on line 3, its keys on lines of their own.
+/// A model with one ball of 1 kg. The contact is on line 3, its keys are on lines of their own.
 std::string model(const std::string& surface_i, const std::string& surface_j, const std::string& normal,
                   const std::string& friction = "", const std::string& r = "0, 0, 0.5",
                   const std::string& rdot = "0, 0, 0")
@@ -49,26 +49,25 @@ std::string refusal(const std::string& text, bool fix_initial = false)
 
 const EvolvingContact& first(const dae::Description& d)
 {
-    return dynamic_cast<const EvolvingContact&>(*d.model->evolving().at(0));
+    return dynamic_cast<const EvolvingContact&>(*d.model->general_constraints().at(0));
 }
 
 double normal_force(const dae::Description& d)
 {
-    return first(d).multipliers(d.model->at(first(d), d.x), d.x.lambda).F_N;
+    return first(d).multipliers(d.model->arguments(first(d), d.x), d.x.lambda).F_N;
 }
 
 }  // namespace
 
-TEST_CASE("contacts that are constraints are read and start and are written the same",
-          "[contact][model_file][evolving]")
+TEST_CASE("constraint contacts are read, start, and are written unchanged", "[contact][model_file][evolving]")
 {
     dae::Description d = dae::load_model((models / "contacts" / "evolving.json").string());
-    REQUIRE(d.model->evolving().size() == 3);
+    REQUIRE(d.model->general_constraints().size() == 3);
     CHECK(d.model->forces().empty());
     CHECK(d.contact_place.size() == 3);
     CHECK_THAT(d.contact_place[1], Catch::EndsWith("(/contacts/1)"));
     const auto& of = [&](int k) -> const EvolvingContact& {
-        return dynamic_cast<const EvolvingContact&>(*d.model->evolving()[k]);
+        return dynamic_cast<const EvolvingContact&>(*d.model->general_constraints()[k]);
     };
     CHECK(of(0).friction == EvolvingContact::Friction::rolling);
     CHECK(of(0).normal_rows == EvolvingContact::NormalRows::tangent);
@@ -82,31 +81,34 @@ TEST_CASE("contacts that are constraints are read and start and are written the 
     CHECK(dae::read_model(d.text, "again.json").text == d.text);
 
     const dae::StartReport report = dae::start(d);
-    CHECK(report.degrees_of_freedom == 3 * 6 - 5);  // three contacts, one of which rolls
+    CHECK(report.degrees_of_freedom == 3 * 6 - 5);  // three contacts, one with ideal rolling
     CHECK(d.x.alpha.size() == 18);
-    // the marble, 0.2 kg, lies on the egg that spins about the vertical through it; the egg of 2 kg carries it
-    const auto force = [&](int k) { return of(k).multipliers(d.model->at(of(k), d.x), d.x.lambda).F_N; };
+    // the marble of 0.2 kg lies on the ellipsoid of 2 kg, which spins about the vertical through the marble
+    const auto force = [&](int k) {
+        return of(k).multipliers(d.model->arguments(of(k), d.x), d.x.lambda).F_N;
+    };
     CHECK(force(2) == Approx(0.2 * 9.81).epsilon(1e-12));
     CHECK(force(1) == Approx(2.2 * 9.81).epsilon(1e-12));
 }
 
-TEST_CASE("a contact that is a constraint starts with the force of its closed form",
+TEST_CASE("a constraint contact starts with the normal force of the closed form",
           "[contact][model_file][evolving]")
 {
     const std::string at = "0, 1.320394697973225, -1.265422544940186";
-    dae::Description d = dae::read_model(model(ball, bowl, held, "", at), "m.json");
+    dae::Description d = dae::read_model(model(ball, bowl, constraint, "", at), "m.json");
     dae::start(d);
     CHECK(normal_force(d) == Approx(9.155246512774925).epsilon(1e-13));
-    // the global x and y say the same where the normal is not across them
+    // rows along the global x and y are equivalent if the normal is not in their plane
     dae::Description xy =
         dae::read_model(model(ball, bowl, R"({"type": "constraint", "rows": "fixed-xy"})", "", at), "m.json");
     dae::start(xy);
     CHECK(normal_force(xy) == Approx(normal_force(d)).epsilon(1e-13));
 }
 
-TEST_CASE("a gap at the start is closed along the normal by fix-initial", "[contact][model_file][evolving]")
+TEST_CASE("fix-initial closes a gap at the start along the normal", "[contact][model_file][evolving]")
 {
-    dae::Description d = dae::read_model(model(ball, flat, held, "", "0, 0, 0.6", "1, 0, -2"), "m.json");
+    dae::Description d =
+        dae::read_model(model(ball, flat, constraint, "", "0, 0, 0.6", "1, 0, -2"), "m.json");
     dae::start(d, {.fix_initial = true});
     CHECK(d.x.body[0].r.z() == Approx(0.5).epsilon(1e-14));
     CHECK(d.x.body[0].rdot.x() == Approx(1).epsilon(1e-14));
@@ -114,7 +116,7 @@ TEST_CASE("a gap at the start is closed along the normal by fix-initial", "[cont
     CHECK(normal_force(d) == Approx(9.81).epsilon(1e-13));
 }
 
-TEST_CASE("a contact that may open is read with its restitution and may start open",
+TEST_CASE("a unilateral contact is read with its restitution and can start inactive",
           "[contact][model_file][evolving]")
 {
     const std::string opens = R"({"type": "constraint", "unilateral": true, "restitution": 0.5})";
@@ -129,16 +131,16 @@ TEST_CASE("a contact that may open is read with its restitution and may start op
     CHECK(d.x.body[0].rdot.z() == -2);
 }
 
-TEST_CASE("tracked friction of a model file is that of the contact it stands in",
+TEST_CASE("tracked friction of a model file belongs to its contact",
           "[contact][model_file][evolving][friction]")
 {
     dae::Description d = dae::load_model((models / "contacts" / "evolving_friction.json").string());
-    REQUIRE(d.model->evolving().size() == 3);
+    REQUIRE(d.model->general_constraints().size() == 3);
     const auto of = [&](size_t k) -> const EvolvingContact& {
-        return dynamic_cast<const EvolvingContact&>(*d.model->evolving()[k]);
+        return dynamic_cast<const EvolvingContact&>(*d.model->general_constraints()[k]);
     };
     const auto& force = d.model->forces();
-    REQUIRE(force.size() == 5);  // three of friction, two that stand by
+    REQUIRE(force.size() == 5);  // three of friction, two fallbacks
     CHECK(d.force_place.size() == 5);
     CHECK(d.force_place[2] == d.contact_place[1]);
     const auto* first_friction = dynamic_cast<const EvolvingFriction*>(force[0].get());
@@ -146,12 +148,12 @@ TEST_CASE("tracked friction of a model file is that of the contact it stands in"
     CHECK(&first_friction->contact == &of(0));
     CHECK(first_friction->name == "ball-bowl");
     for (const auto& [k, contact] : {std::pair(2, 1), {4, 2}}) {
-        const auto* standing_by = dynamic_cast<const ContactForce*>(force[k].get());
-        REQUIRE(standing_by != nullptr);
-        CHECK(standing_by->held_by() == &of(contact));
+        const auto* fallback = dynamic_cast<const ContactForce*>(force[k].get());
+        REQUIRE(fallback != nullptr);
+        CHECK(fallback->normal_constraint() == &of(contact));
         CHECK(of(contact).fallback);
         const auto& friction = dynamic_cast<const EvolvingFriction&>(*force[k - 1]);
-        CHECK(friction.held_by() == &of(contact));
+        CHECK(friction.normal_constraint() == &of(contact));
     }
     CHECK_FALSE(of(0).fallback);
     CHECK_FALSE(of(0).unilateral.enabled);
@@ -164,28 +166,28 @@ TEST_CASE("tracked friction of a model file is that of the contact it stands in"
     CHECK(dae::read_model(d.text, "again.json").text == d.text);
 
     dae::start(d);
-    // of all that lies here, the ball in the bowl is alone with the springs of Table 5.1: h = (sqrt(d² + 4 k) - d)/k
+    // the ball in the bowl is isolated, with the springs of Table 5.1: h = (sqrt(d² + 4 k) - d)/k
     const double q = 1 / 1. + 0.25 / 0.1, D = 100 * q, k = 1e4 * q;
     CHECK(first_friction->stable_step(d.x) == Approx((std::sqrt(D * D + 4 * k) - D) / k).epsilon(1e-9));
     CHECK(first_friction->normal_force(d.x) == Approx(normal_force(d)).epsilon(1e-12));
-    // what stands by does nothing, and lends no mass
-    const auto& standing_by = dynamic_cast<const ContactForce&>(*force[2]);
-    CHECK_FALSE(standing_by.works(d.x));
+    // an inactive fallback has no force and takes no share of the mass
+    const auto& fallback = dynamic_cast<const ContactForce&>(*force[2]);
+    CHECK_FALSE(fallback.is_active(d.x));
     lie::Loads out(3);
-    standing_by.add(d.x, out);
+    fallback.add(d.x, out);
     CHECK(out.F[1].norm() + out.n_bar[1].norm() == 0);
     dae::Model::set_mode(of(1), d.x, dae::Constraint::fallback_active);
-    CHECK(standing_by.works(d.x));
+    CHECK(fallback.is_active(d.x));
     CHECK(force[1]->stable_step(d.x) == std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE("friction that is solved for with the step needs no small one",
+TEST_CASE("implicit friction of a model file has no stability limit",
           "[contact][model_file][evolving][friction]")
 {
     const std::string friction =
         R"({"law": "implicit", "mu_s": 0.3, "mu_k": 0.25, "K_E": 1e8, "eta_r": 0.01})";
-    dae::Description d = dae::read_model(model(ball, flat, held, friction), "m.json");
-    const auto& c = dynamic_cast<const EvolvingContact&>(*d.model->evolving()[0]);
+    dae::Description d = dae::read_model(model(ball, flat, constraint, friction), "m.json");
+    const auto& c = dynamic_cast<const EvolvingContact&>(*d.model->general_constraints()[0]);
     CHECK(c.friction == EvolvingContact::Friction::implicit);
     CHECK(d.model->forces().empty());
     CHECK(dae::read_model(d.text, "again.json").text == d.text);
@@ -199,7 +201,7 @@ TEST_CASE("friction that is solved for with the step needs no small one",
         Catch::Contains("/contacts/0/friction/law") && Catch::Contains("got \"implicit\""));
 }
 
-TEST_CASE("a fallback halves no step of the friction that it stands by for",
+TEST_CASE("an inactive fallback does not change the stability limit of the friction",
           "[contact][model_file][evolving][friction]")
 {
     const std::string friction = R"({"mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100})";
@@ -208,10 +210,11 @@ TEST_CASE("a fallback halves no step of the friction that it stands by for",
         dae::start(d);
         return d.model->forces()[0]->stable_step(d.x);
     };
-    CHECK(bound(R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1e4}})") == bound(held));
+    CHECK(bound(R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1e4}})") ==
+          bound(constraint));
 }
 
-TEST_CASE("a contact that is a constraint and is none is refused at its place",
+TEST_CASE("an invalid constraint contact is rejected at its place in the file",
           "[contact][model_file][evolving]")
 {
     struct Bad {
@@ -225,9 +228,9 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
         {normal(R"({"type": "constraint", "unilateral": true, "restitution": -0.1})"),
          "m.json:6:59 (/contacts/0/normal/restitution): restitution must be from 0 to 1, got -0.1"},
         {normal(R"({"type": "constraint", "restitution": 0.5})"),
-         "m.json:6:39 (/contacts/0/normal/restitution): restitution is of a contact that may open"},
+         "m.json:6:39 (/contacts/0/normal/restitution): restitution needs \"unilateral\": true"},
         {normal(R"({"type": "constraint", "impact": "poisson"})"),
-         "m.json:6:34 (/contacts/0/normal/impact): impact is of a contact that may open"},
+         "m.json:6:34 (/contacts/0/normal/impact): impact needs \"unilateral\": true"},
         {normal(R"({"type": "constraint", "unilateral": true, "impact": "Newton"})"),
          "m.json:6:54 (/contacts/0/normal/impact): unknown impact \"Newton\"; did you mean 'newton'?"},
         {normal(R"({"type": "constraint", "fallback": {"type": "given", "force": 1}})"),
@@ -240,12 +243,13 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
          "m.json:6:70 (/contacts/0/normal/fallback/fallback): unknown key \"fallback\""},
         {model(ball, flat, R"({"type": "constraint", "fallback": {"type": "hooke", "stiffness": 1}})",
                R"({"law": "rolling"})"),
-         "m.json:7:9 (/contacts/0/friction/law): a contact with a fallback needs a law that the fallback can "
-         "have too"},
-        {model(ball, flat, held, R"({"mu_s": 0.3})"), "m.json:7:1 (/contacts/0/friction): missing key 'K_E'"},
-        {model(ball, flat, held, R"({"mu_s": 0.3, "mu_k": 0.4, "K_E": 1e4})"),
+         "m.json:7:9 (/contacts/0/friction/law): a contact with a fallback needs a friction law that the "
+         "fallback supports"},
+        {model(ball, flat, constraint, R"({"mu_s": 0.3})"),
+         "m.json:7:1 (/contacts/0/friction): missing key 'K_E'"},
+        {model(ball, flat, constraint, R"({"mu_s": 0.3, "mu_k": 0.4, "K_E": 1e4})"),
          "m.json:7:23 (/contacts/0/friction/mu_k): mu_k must not be above mu_s, 0.3, got 0.4"},
-        {model(ball, flat, held, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})"),
+        {model(ball, flat, constraint, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})"),
          "m.json:7:1 (/contacts/0/friction): missing key 'E_star'"},
         {normal(R"({"type": "constraint", "unilateral": 1})"),
          "m.json:6:38 (/contacts/0/normal/unilateral): unilateral must be true or false, got 1"},
@@ -255,61 +259,64 @@ TEST_CASE("a contact that is a constraint and is none is refused at its place",
          "m.json:6:32 (/contacts/0/normal/rows): unknown rows \"fixed\""},
         {normal(R"({"type": "constrain"})"),
          "m.json:6:10 (/contacts/0/normal/type): unknown type \"constrain\"; did you mean 'constraint'?"},
-        {model(ball, flat, held, R"({"law": "roling"})"),
+        {model(ball, flat, constraint, R"({"law": "roling"})"),
          "m.json:7:9 (/contacts/0/friction/law): unknown law \"roling\"; did you mean 'rolling'?"},
-        {model(ball, flat, held, R"({"law": "rolling", "mu_s": 0.3})"),
+        {model(ball, flat, constraint, R"({"law": "rolling", "mu_s": 0.3})"),
          "m.json:7:20 (/contacts/0/friction/mu_s): unknown key \"mu_s\""},
         {model(ball, flat, R"({"type": "hooke", "stiffness": 1e4})", R"({"law": "rolling"})"),
-         "m.json:7:9 (/contacts/0/friction/law): ideal rolling is of a contact whose normal is a constraint"},
-        {model(flat, flat, held), place + "contact::EvolvingContact: one of the surfaces must be curved"},
-        {model(R"({"type": "disk", "radius": 0.5})", flat, held),
-         "m.json:4:1 (/contacts/0/surface_i): a contact that is a constraint needs a smooth surface, got a "
+         "m.json:7:9 (/contacts/0/friction/law): law \"rolling\" needs \"normal\": {\"type\": "
+         "\"constraint\"}"},
+        {model(flat, flat, constraint),
+         place + "contact::EvolvingContact: at least one of the two surfaces must be curved"},
+        {model(R"({"type": "disk", "radius": 0.5})", flat, constraint),
+         "m.json:4:1 (/contacts/0/surface_i): a contact of type \"constraint\" needs a smooth surface, got a "
          "disk"},
-        {model(ball, R"({"type": "sphere", "radius": 0.3, "concave": true})", held),
-         place + "contact::make_detector: a ball must be smaller than the bowl it touches"},
+        {model(ball, R"({"type": "sphere", "radius": 0.3, "concave": true})", constraint),
+         place + "contact::make_detector: the radius of a sphere must be less than that of the concave "
+                 "sphere around it"},
         // at the start
-        {model(ball, flat, held, "", "0, 0, 0.6"), place +
-                                                       "contact 'c'; bodies 'ball', 'ground': not in contact "
-                                                       "at the start, a gap or overlap of 0.1 m, more "
-                                                       "than 5e-07 m; --fix-initial closes it"},
-        {model(ball, flat, held, "", "0, 0, 0.4999"),
+        {model(ball, flat, constraint, "", "0, 0, 0.6"),
+         place + "contact 'c'; bodies 'ball', 'ground': not in contact "
+                 "at the start, the gap or overlap is 0.1 m, at most 5e-07 m is allowed; use --fix-initial"},
+        {model(ball, flat, constraint, "", "0, 0, 0.4999"),
          place + "contact 'c'; bodies 'ball', 'ground': not in contact at the start"},
-        {model(ball, flat, held, "", "0, 0, 0.5", "0, 0, 0.5"),
+        {model(ball, flat, constraint, "", "0, 0, 0.5", "0, 0, 0.5"),
          place +
              "contact 'c'; bodies 'ball', 'ground': the initial velocities violate the contact by 0.5 m/s"},
-        {model(ball, flat, held, R"({"law": "rolling"})", "0, 0, 0.5", "0.25, 0, 0"),
+        {model(ball, flat, constraint, R"({"law": "rolling"})", "0, 0, 0.5", "0.25, 0, 0"),
          place +
              "contact 'c'; bodies 'ball', 'ground': the initial velocities violate the contact by 0.25 m/s"},
-        {model(R"({"type": "cylinder", "radius": 0.5, "axis": [1, 0, 0]})", flat, held),
-         place + "contact::make_detector: a pair of surfaces must touch in a single point, got cylinder and "
-                 "plane"},
+        {model(R"({"type": "cylinder", "radius": 0.5, "axis": [1, 0, 0]})", flat, constraint),
+         place +
+             "contact::make_detector: a pair of surfaces must have a single contact point, got cylinder and "
+             "plane"},
         {model(R"({"type": "ellipsoid", "semi_axes": [0.5, 0.5, 0.5]})",
-               R"({"type": "ellipsoid", "semi_axes": [0.5, 0.5, 0.5], "concave": true})", held, "",
+               R"({"type": "ellipsoid", "semi_axes": [0.5, 0.5, 0.5], "concave": true})", constraint, "",
                "0, 0, 0"),
          place + "contact 'c'; bodies 'ball', 'ground': "},
-        {model(R"({"type": "sphere", "radius": 2.5})", bowl, held, "", "0, 0, 0.1"),
-         place + "contact 'c'; bodies 'ball', 'ground': the body is larger than the bowl it should lie in: 5 "
-                 "m across, where there is room for 4 m"},
+        {model(R"({"type": "sphere", "radius": 2.5})", bowl, constraint, "", "0, 0, 0.1"),
+         place +
+             "contact 'c'; bodies 'ball', 'ground': the convex body does not fit into the concave surface: "
+             "its width is 5 m, the width available is 4 m"},
         {model(R"({"type": "cone", "half_angle": 0.5, "axis": [0, 0, 1]})",
-               R"({"type": "sphere", "radius": 0.5, "position": [0, 0, -0.5]})", held, "", "0, 0, 0"),
-         place + "contact 'c'; bodies 'ball', 'ground': no touch of two surfaces: there is no point to begin "
-                 "from, "
-                 "the axis of a cone has no nearest point"},
-        {model(ball, R"({"type": "sphere", "radius": 2, "concave": true})", held, "", "0, 0, 0"),
+               R"({"type": "sphere", "radius": 0.5, "position": [0, 0, -0.5]})", constraint, "", "0, 0, 0"),
+         place + "contact 'c'; bodies 'ball', 'ground': no contact point of two surfaces: no starting points "
+                 "were found, a point on the axis of a cone has no unique closest point"},
+        {model(ball, R"({"type": "sphere", "radius": 2, "concave": true})", constraint, "", "0, 0, 0"),
          place + "contact 'c'; bodies 'ball', 'ground': the centres of two spheres coincide"},
     };
     for (const Bad& bad : all) {
         INFO(bad.message);
         CHECK_THAT(refusal(bad.text), Catch::StartsWith(bad.message));
     }
-    CHECK(refusal(normal(held)) == "accepted");
-    CHECK(refusal(model(ball, flat, held, "", "0, 0, 0.5000001")) == "accepted");
-    CHECK(refusal(model(ball, flat, held, "", "0, 0, 0.6", "0, 0, 1"), true) == "accepted");
+    CHECK(refusal(normal(constraint)) == "accepted");
+    CHECK(refusal(model(ball, flat, constraint, "", "0, 0, 0.5000001")) == "accepted");
+    CHECK(refusal(model(ball, flat, constraint, "", "0, 0, 0.6", "0, 0, 1"), true) == "accepted");
 }
 
 namespace {
 
-/// G³ of an ellipsoid: the same body, and no gradient anywhere on its surface
+/// G³ of an ellipsoid: the same surface, with a gradient that vanishes on it
 class Cubed final : public contact::Surface {
 public:
     double value(const lie::Vec3& a) const override { return std::pow(once.value(a), 3); }
@@ -332,7 +339,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("a surface without a normal at the contact is refused at the start", "[contact][evolving]")
+TEST_CASE("a surface without a normal at the contact is rejected at the start", "[contact][evolving]")
 {
     dae::Model model;
     model.add({.name = "egg", .m = 2, .J_bar = lie::Vec3(0.034, 0.045, 0.061).asDiagonal()});
@@ -348,9 +355,10 @@ TEST_CASE("a surface without a normal at the contact is refused at the start", "
                           Catch::Contains("a surface has no normal at (0, "));
 }
 
-TEST_CASE("two contacts of one name or of the name of a joint are refused", "[contact][model_file][evolving]")
+TEST_CASE("two contacts with the same name or with the name of a joint are rejected",
+          "[contact][model_file][evolving]")
 {
-    std::string text = model(ball, flat, held);
+    std::string text = model(ball, flat, constraint);
     text.insert(text.find(", \"contacts\""),
                 R"(, "constraints": [{"name": "c", "type": "CD", "body_i": "ball", "body_j": "ground",
   "c": [1, 0, 0], "s_bar_p_i": [0, 0, 0], "s_bar_q_j": [0, 0, 0]}])");

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Motions of contacts that evolve, against closed forms and against an independent integration of the same motions in
-/// minimal coordinates, without constraints or multipliers.
+/// Motions with evolving contacts against closed forms and against an independent integration of the same
+/// motions in minimal coordinates, without constraints or multipliers.
 
+#include "dae/model.hpp"
+#include "lie/solver/linear_solver.hpp"
 #include "tests/support/evolving.hpp"
 
 #include <catch2/catch.hpp>
@@ -21,7 +23,7 @@ const Vec3 planar_start(0, 1.3203946979732251, -1.2654225449401859),
 
 struct Row {
     double t;
-    Vec3 r, p;  ///< centre of the ball, contact point
+    Vec3 r, p;  ///< centre of the ball, contact point [m]
     double F_N;
 };
 
@@ -79,13 +81,13 @@ constexpr double long_run = 10;
 constexpr double long_run = 3.5;  // with sanitizers
 #endif
 
-/// Largest errors of a run in the bowl, at the times of the rows; and what must vanish at all nodes
+/// Largest errors of a run in the bowl at the times of the rows, and largest residuals at all nodes
 struct BowlErrors {
     double r = 0, p = 0, F_N = 0, residual = 0, N = 0, tangential = 0, G = 0, F_N_0 = 0;
 };
 
 BowlErrors bowl_errors(const char* scheme, double h, const Vec3& start, Friction friction,
-                       const std::vector<Row>& truth, const Vec3& omega = Vec3::Zero())
+                       const std::vector<Row>& reference, const Vec3& omega = Vec3::Zero())
 {
     BallInBowl scene(start, friction, omega);
     BowlErrors worst;
@@ -98,7 +100,7 @@ BowlErrors bowl_errors(const char* scheme, double h, const Vec3& start, Friction
         worst.tangential = std::max(worst.tangential, lambda.tangential.norm() / lambda.F_N);
         worst.G = std::max(worst.G, (lambda.G - lambda.F_N * Eigen::Vector2d(-1, 1)).norm() / lambda.F_N);
         if (n == 0) worst.F_N_0 = lambda.F_N;
-        for (const Row& row : truth) {
+        for (const Row& row : reference) {
             if (std::abs(x.t - row.t) > 0.1 * h) continue;
             worst.r = std::max(worst.r, (x.body[0].r - row.r).norm());
             worst.p = std::max(worst.p, (x.alpha.tail<3>() - row.p).norm());
@@ -108,7 +110,7 @@ BowlErrors bowl_errors(const char* scheme, double h, const Vec3& start, Friction
     return worst;
 }
 
-std::string in_words(const BowlErrors& e)
+std::string summary(const BowlErrors& e)
 {
     std::ostringstream text;
     text << "errors r " << e.r << ", p " << e.p << ", F_N " << e.F_N << "; residual " << e.residual
@@ -118,12 +120,12 @@ std::string in_words(const BowlErrors& e)
 
 }  // namespace
 
-TEST_CASE("a ball in a bowl starts where its closed form says", "[contact][evolving]")
+TEST_CASE("the start of a ball in a bowl agrees with the closed form", "[contact][evolving]")
 {
     // contact at (0, 1.5) on the bowl (4, 3, 2)
     BallInBowl planar(planar_start);
     const EvolvingContact& c = contact_of(planar.model);
-    const ContactPoint contact_point = c.contact_point(planar.model.at(c, planar.x));
+    const ContactPoint contact_point = c.contact_point(planar.model.arguments(c, planar.x));
     CHECK((contact_point.C_j - Vec3(0, 1.5, -1.7320508075688773)).norm() < 1e-14);
     CHECK((contact_point.n - Vec3(0, -0.3592106040535498, 0.9332565252573827)).norm() < 1e-14);
     CHECK(multipliers(planar.model, planar.x).F_N == Approx(9.155246512774925).epsilon(1e-13));
@@ -138,7 +140,7 @@ TEST_CASE("a ball in a bowl starts where its closed form says", "[contact][evolv
     CHECK(multipliers(xy.model, xy.x).F_N == Approx(9.014262047215154).epsilon(1e-13));
 }
 
-TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be (long)",
+TEST_CASE("a ball slides in a bowl for ten seconds with the order of the scheme (long)",
           "[contact][evolving][order]")
 {
     struct Bounds {
@@ -154,15 +156,15 @@ TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be (lon
                                xy ? xy_slide : planar_slide);
         };
         const BowlErrors coarse = errors(5e-3), fine = errors(2.5e-3);
-        INFO(bounds.scheme << (xy ? ", xy: " : ", planar: ") << in_words(coarse)
-                           << "; halved: " << in_words(fine));
+        INFO(bounds.scheme << (xy ? ", xy: " : ", planar: ") << summary(coarse)
+                           << "; halved: " << summary(fine));
         CHECK(coarse.r < (xy ? bounds.r_xy : bounds.r));
         CHECK(coarse.F_N < (xy ? bounds.F_N_xy : bounds.F_N));
         CHECK(std::log2(coarse.r / fine.r) == Approx(bounds.order).margin(0.03));
         CHECK(std::log2(coarse.p / fine.p) == Approx(bounds.order).margin(0.03));
         CHECK(std::log2(coarse.F_N / fine.F_N) == Approx(bounds.order).margin(0.03));
         for (const BowlErrors& e : {coarse, fine}) {
-            CHECK(e.residual < 2e-15 * 2);  // 2 m: where the contact is
+            CHECK(e.residual < 2e-15 * 2);  // size of the contact coordinates: 2 m
             CHECK(e.N < 1e-12);
             CHECK(e.tangential < 1e-12);
             CHECK(e.G < 1e-12);
@@ -170,23 +172,23 @@ TEST_CASE("a ball that slides in a bowl for ten seconds is where it must be (lon
     }
 }
 
-TEST_CASE("a ball that rolls in a bowl is where it must be (long)", "[contact][evolving][order]")
+TEST_CASE("a ball rolls in a bowl for ten seconds with second order (long)", "[contact][evolving][order]")
 {
     const Vec3 spin =
         -5 * Vec3(0.13852712896188304, 0.36940567723168771, -0.91888502010348160);  // about the normal
     struct Case {
         const char* name;
         Vec3 start, omega;
-        const std::vector<Row>* truth;
+        const std::vector<Row>* reference;
     };
     for (const Case& c : {Case{"planar", planar_start, Vec3::Zero(), &planar_roll},
                           {"xy", xy_start, Vec3::Zero(), &xy_roll},
                           {"xy, spinning", xy_start, spin, &xy_roll_spin}}) {
         const auto errors = [&](double h) {
-            return bowl_errors("rA-half-1-momentum", h, c.start, Friction::rolling, *c.truth, c.omega);
+            return bowl_errors("rA-half-1-momentum", h, c.start, Friction::rolling, *c.reference, c.omega);
         };
         const BowlErrors coarse = errors(5e-3), fine = errors(2.5e-3);
-        INFO(c.name << ": " << in_words(coarse) << "; halved: " << in_words(fine));
+        INFO(c.name << ": " << summary(coarse) << "; halved: " << summary(fine));
         CHECK(std::log2(coarse.r / fine.r) == Approx(2).margin(0.03));
         CHECK(std::log2(coarse.p / fine.p) == Approx(2).margin(0.03));
         CHECK(std::log2(coarse.F_N / fine.F_N) == Approx(2).margin(0.03));
@@ -196,7 +198,7 @@ TEST_CASE("a ball that rolls in a bowl is where it must be (long)", "[contact][e
     }
 }
 
-TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with the square of the step (long)",
+TEST_CASE("the energy error of a ball in a bowl is bounded and of second order in the step (long)",
           "[contact][evolving]")
 {
     const auto drift = [](const char* scheme, double h, bool centred) {
@@ -205,7 +207,8 @@ TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with t
         double first = 0, largest = 0;
         run(scene, scheme, h, long_run, [&](lie::State x, long n) {
             if (n == 0) first = lie::energy(scene.model, x);
-            // of the text's scheme the velocities are those before the node; between two of them it is there
+            // the velocities of rA-half-1 belong to the middle of the step before the node; the mean of two
+            // is that of the node
             if (centred && n > 1) {
                 before.body[0].rdot = 0.5 * (before.body[0].rdot + x.body[0].rdot);
                 largest = std::max(largest, std::abs(lie::energy(scene.model, before) - first));
@@ -228,26 +231,27 @@ TEST_CASE("the energy of a ball in a bowl stays within a bound that falls with t
     }
 }
 
-TEST_CASE("a ball falls and rolls along the wall of an upright cylinder (long)", "[contact][evolving][order]")
+TEST_CASE("a ball slides and rolls along the wall of an upright cylinder (long)",
+          "[contact][evolving][order]")
 {
-    // The normal always lies in the plane of x and y. Without friction it falls freely; rolling it goes up and down:
-    // z = z_eq (1 - cos(Ω sqrt(2/7) t)), z_eq = -5g / 2Ω².
+    // The normal always lies in the xy-plane. Without friction the ball falls freely; with rolling it
+    // oscillates: z = z_eq (1 - cos(Ω sqrt(2/7) t)), z_eq = -5g / 2Ω².
     constexpr double rho = 2, Omega = 3, g = 9.81;
-    const auto scene = [&](Friction friction, NormalRows normal_rows, Scene& s) {
+    const auto scene = [&](Friction friction, NormalRows normal_rows, ContactModel& s) {
         Motion ball;
         ball.r = Vec3(rho - R, 0, 0);
         ball.rdot = Vec3(0, Omega * (rho - R), 0);
         if (friction == Friction::rolling) ball.omega_bar = Vec3(0, 0, -Omega * (rho - R) / R);
         s.add("ball", 1, 0.4 * R * R * Mat3::Identity(), ball);
-        s.contact_point("wall", 0, shape<Sphere>(R), dae::ground, shape<Cylinder>(rho, true), friction,
-                        normal_rows);
+        s.add_contact("wall", 0, shape<Sphere>(R), dae::ground, shape<Cylinder>(rho, true), friction,
+                      normal_rows);
         s.start();
     };
     struct Errors {
         double r = 0, z = 0, F_N = 0;
     };
     const auto errors = [&](Friction friction, double h, double t_end) {
-        Scene s;
+        ContactModel s;
         scene(friction, NormalRows::tangent, s);
         Errors worst;
         run(s, "rA-half-1-momentum", h, t_end, [&](const lie::State& x, long) {
@@ -276,27 +280,27 @@ TEST_CASE("a ball falls and rolls along the wall of an upright cylinder (long)",
         CHECK(std::log2(coarse.r / fine.r) == Approx(2).margin(0.03));
         CHECK(coarse.F_N < (rolls ? 2e-2 : 1e-3));
     }
-    // fixed directions x and y do not see that the normals turn in their plane
-    Scene s;
+    // rows along the fixed x and y do not constrain the rotation of the normals in their plane
+    ContactModel s;
     try {
         scene(Friction::none, NormalRows::fixed_xy, s);
-        FAIL("not refused");
+        FAIL("not rejected");
     } catch (const lie::NumericalFailure& e) {
         CHECK(e.status == "singular_matrix");
     }
 }
 
-TEST_CASE("a ball loops inside an ellipsoid through normals in the plane of x and y", "[contact][evolving]")
+TEST_CASE("a ball loops inside an ellipsoid through normals in the xy-plane", "[contact][evolving]")
 {
     const auto loop = [](NormalRows normal_rows,
-                         const std::function<void(const Scene&, const lie::State&, long)>& f) {
+                         const std::function<void(const ContactModel&, const lie::State&, long)>& f) {
         BallInBowl scene(Vec3(0, 0, -1.5), Friction::none, Vec3::Zero(), normal_rows);
         scene.x.body[0].rdot.y() = 14;
         scene.start();
         run(scene, "rA-half-1", 1e-3, 1.2, [&](const lie::State& x, long n) { f(scene, x, n); });
     };
     double highest = -2, residual = 0, worst_condition = 0;
-    loop(NormalRows::tangent, [&](const Scene& scene, const lie::State& x, long n) {
+    loop(NormalRows::tangent, [&](const ContactModel& scene, const lie::State& x, long n) {
         highest = std::max(highest, x.body[0].r.z());
         Eigen::VectorXd Phi(scene.model.rows());
         scene.model.phi(x, Phi);
@@ -310,10 +314,10 @@ TEST_CASE("a ball loops inside an ellipsoid through normals in the plane of x an
     CHECK(residual < 1e-12);
 
     double last = 0;
-    CHECK_THROWS_AS(
-        loop(NormalRows::fixed_xy, [&](const Scene&, const lie::State& x, long) { last = x.body[0].r.z(); }),
-        lie::NumericalFailure);
-    CHECK(last == Approx(0).margin(0.05));  // it ends where the normal is horizontal
+    CHECK_THROWS_AS(loop(NormalRows::fixed_xy,
+                         [&](const ContactModel&, const lie::State& x, long) { last = x.body[0].r.z(); }),
+                    lie::NumericalFailure);
+    CHECK(last == Approx(0).margin(0.05));  // the run ends where the normal is horizontal
 }
 
 namespace {
@@ -321,7 +325,7 @@ namespace {
 const Vec3 egg(0.3, 0.25, 0.15);
 
 /// An ellipsoid of 2 kg on the plane z = 0, with the orientation, velocity and angular velocity given
-struct EllipsoidOnPlane : Scene {
+struct EllipsoidOnPlane : ContactModel {
     EllipsoidOnPlane(const Mat3& A, const Vec3& rdot, const Vec3& omega_bar, Friction friction)
     {
         Motion body;
@@ -330,7 +334,7 @@ struct EllipsoidOnPlane : Scene {
         body.r.z() = -(A * lowest).z();
         body.rdot = rdot, body.omega_bar = omega_bar;
         add("egg", 2, inertia(2, egg), body);
-        contact_point("floor", 0, shape<Ellipsoid>(egg), dae::ground, shape<Plane>(), friction);
+        add_contact("floor", 0, shape<Ellipsoid>(egg), dae::ground, shape<Plane>(), friction);
         start(true);
     }
 };
@@ -342,7 +346,7 @@ Mat3 rotation(double e0, double e1, double e2, double e3)
 
 }  // namespace
 
-TEST_CASE("an ellipsoid rocks on a plane with its period", "[contact][evolving][order]")
+TEST_CASE("an ellipsoid rocks on a plane with the period of the closed form", "[contact][evolving][order]")
 {
     const double b = egg.y(), c = egg.z(), m = 2, g = 9.81, J = m * (b * b + c * c) / 5;
     for (const Friction friction : {Friction::none, Friction::rolling}) {
@@ -362,14 +366,14 @@ TEST_CASE("an ellipsoid rocks on a plane with its period", "[contact][evolving][
         CHECK(std::log2(coarse / fine) == Approx(2).margin(0.03));
 
         const double small = 2 * pi * std::sqrt((rolls ? J + m * c * c : J) / (m * g * (b * b / c - c)));
-        // extrapolated from two steps; the period grows with the square of the amplitude
+        // extrapolated from two step sizes; the period depends on the square of the amplitude
         const double at_h = angle_after_quarter(1e-4, small, 100),
                      at_half = angle_after_quarter(1e-4, small, 200);
         CHECK(std::abs((4 * at_half - at_h) / 3) < 1e-7 * 1e-4);
     }
 }
 
-TEST_CASE("an ellipsoid that slides or rolls on a plane in all directions is where it must be (long)",
+TEST_CASE("the spatial motion of an ellipsoid on a plane has second order (long)",
           "[contact][evolving][order]")
 {
     // an independent integration of the same motions in minimal coordinates
@@ -451,9 +455,9 @@ TEST_CASE("an ellipsoid that slides or rolls on a plane in all directions is whe
     }
 }
 
-TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][evolving][order]")
+TEST_CASE("a rattleback reverses its spin in one direction only (long)", "[contact][evolving][order]")
 {
-    // its axes of inertia are turned by 0.1 rad against those of its shape
+    // its principal axes of inertia are rotated by 0.1 rad against those of its shape
     const Vec3 axes(0.2, 0.05, 0.04);
     const Mat3 turn = lie::exp(Vec3(0, 0, 0.1));
     struct RattlebackRun {
@@ -461,7 +465,7 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
         double spin;
     };
     const auto rattle = [&](double spin, double h, double t_end) {
-        Scene scene;
+        ContactModel scene;
         Motion body;
         body.A = rotation(0.9999843750406902, 0.002499986979187012, 0.004999973958374024, 0);
         body.r = Vec3(0, 0, 0.04004825013736783);
@@ -469,15 +473,14 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
         const Vec3 contact(0.009987743917568315, -0.00031211699742400985, -0.03994931103241496);
         body.rdot = -body.A * body.omega_bar.cross(contact);
         scene.add("stone", 1, turn * inertia(1, axes) * turn.transpose(), body);
-        scene.contact_point("table", 0, shape<Ellipsoid>(axes), dae::ground, shape<Plane>(),
-                            Friction::rolling);
+        scene.add_contact("table", 0, shape<Ellipsoid>(axes), dae::ground, shape<Plane>(), Friction::rolling);
         scene.start(true);
         const lie::State x = run(scene, "rA-half-1-momentum", h, t_end);
         return RattlebackRun{x.body[0].r, x.body[0].omega_bar.z()};
     };
-    const RattlebackRun reverses = rattle(-3, 2e-3, 4), goes_on = rattle(3, 2e-3, 4);
+    const RattlebackRun reverses = rattle(-3, 2e-3, 4), keeps_spinning = rattle(3, 2e-3, 4);
     CHECK(reverses.spin > 2.5);
-    CHECK(goes_on.spin > 2.5);
+    CHECK(keeps_spinning.spin > 2.5);
     // an independent integration of the same motion in minimal coordinates
     const Vec3 at_2(-0.0023701663988757644, 0.002404538686150646, 0.04121026737393959);
     const double coarse = (rattle(-3, 1e-3, 2).r - at_2).norm(), fine = (rattle(-3, 5e-4, 2).r - at_2).norm();
@@ -486,26 +489,27 @@ TEST_CASE("a rattleback turns round in one direction only (long)", "[contact][ev
     CHECK(std::log2(coarse / fine) == Approx(2).margin(0.05));
 }
 
-TEST_CASE("two free ellipsoids in contact keep their momenta (long)", "[contact][evolving][order]")
+TEST_CASE("two free ellipsoids in contact conserve momentum and angular momentum (long)",
+          "[contact][evolving][order]")
 {
     struct Drift {
         double P = 0, L = 0, energy = 0;
     };
     const auto drift = [](const char* scheme, double h) {
-        Scene scene;
+        ContactModel scene;
         scene.model.gravity.setZero();
         const Vec3 axes_i(0.3, 0.25, 0.2), axes_j(0.4, 0.3, 0.25);
         Motion i, j;
         j.A = lie::exp(Vec3(0.3, -0.2, 0.5));
         const Ellipsoid surface_i(axes_i), surface_j(axes_j);
-        tests::contact_point(shape<Ellipsoid>(axes_i), *surface_i.support(Vec3(1, 2, 2).normalized()), i,
-                             shape<Ellipsoid>(axes_j), *surface_j.support(Vec3(1, -1, 1).normalized()), j,
-                             0.4);
+        tests::place_in_contact(shape<Ellipsoid>(axes_i), *surface_i.support(Vec3(1, 2, 2).normalized()), i,
+                                shape<Ellipsoid>(axes_j), *surface_j.support(Vec3(1, -1, 1).normalized()), j,
+                                0.4);
         i.omega_bar = Vec3(0.8, -0.5, 1.0), j.omega_bar = Vec3(-0.4, 0.9, 0.3);
         i.rdot = Vec3(0.2, 0.1, -0.1);
         scene.add("i", 1, inertia(1, axes_i), i);
         scene.add("j", 1.5, inertia(1.5, axes_j), j);
-        scene.contact_point("touch", 0, shape<Ellipsoid>(axes_i), 1, shape<Ellipsoid>(axes_j));
+        scene.add_contact("contact", 0, shape<Ellipsoid>(axes_i), 1, shape<Ellipsoid>(axes_j));
         scene.start(true);
         Drift worst;
         Vec3 P_0, L_0;
@@ -532,15 +536,15 @@ TEST_CASE("two free ellipsoids in contact keep their momenta (long)", "[contact]
     CHECK(coarse.L < 1e-14);
     CHECK(std::log2(coarse.energy / fine.energy) == Approx(2).margin(0.05));
     const double text = drift("rA-half-1", 2e-3).energy, text_half = drift("rA-half-1", 1e-3).energy;
-    INFO("energy with the text's scheme " << text << ", " << text_half);
+    INFO("energy with rA-half-1 " << text << ", " << text_half);
     CHECK(std::log2(text / text_half) == Approx(1).margin(0.1));
 }
 
-TEST_CASE("a ball in a V-groove presses on both walls alike", "[contact][evolving]")
+TEST_CASE("a ball in a V-groove has equal normal forces on both walls", "[contact][evolving]")
 {
     const double half_angle = 50 * pi / 180;
     for (const lie::LinearSolver solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed}) {
-        Scene scene;
+        ContactModel scene;
         Motion ball;
         ball.r = Vec3(0, 0, R);
         ball.rdot = Vec3(0.4, 0, 0);
@@ -550,7 +554,7 @@ TEST_CASE("a ball in a V-groove presses on both walls alike", "[contact][evolvin
             Shape wall = shape<Plane>();
             wall.orientation = lie::exp(Vec3(side * half_angle, 0, 0));
             wall.position = Vec3(0, 0, R) - R * (wall.orientation * Vec3::UnitZ());
-            scene.contact_point(side < 0 ? "left" : "right", 0, shape<Sphere>(R), dae::ground, wall);
+            scene.add_contact(side < 0 ? "left" : "right", 0, shape<Sphere>(R), dae::ground, wall);
         }
         scene.start();
         double worst = 0;
@@ -566,7 +570,7 @@ TEST_CASE("a ball in a V-groove presses on both walls alike", "[contact][evolvin
     }
 }
 
-TEST_CASE("a ball circles in a toroidal groove at the height of its speed", "[contact][evolving][order]")
+TEST_CASE("a ball circles in a toroidal groove on its steady orbit", "[contact][evolving][order]")
 {
     const double R_t = 2, q = 0.6 - 0.2, beta = 0.7, g = 9.81;
     const double Omega = std::sqrt(g * std::tan(beta) / (R_t + q * std::sin(beta))),
@@ -575,12 +579,12 @@ TEST_CASE("a ball circles in a toroidal groove at the height of its speed", "[co
         double r = 0, F_N = 0, L_z = 0;
     };
     const auto errors = [&](double h) {
-        Scene scene;
+        ContactModel scene;
         Motion ball;
         ball.r = Vec3(rho, 0, -q * std::cos(beta));
         ball.rdot = Vec3(0, Omega * rho, 0);
         scene.add("ball", 1, 0.016 * Mat3::Identity(), ball);
-        scene.contact_point("groove", 0, shape<Sphere>(0.2), dae::ground, shape<Torus>(R_t, 0.6, true));
+        scene.add_contact("groove", 0, shape<Sphere>(0.2), dae::ground, shape<Torus>(R_t, 0.6, true));
         scene.start();
         Errors worst;
         run(scene, "rA-half-1-momentum", h, 2, [&](const lie::State& x, long) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A ball slides in a bowl that is known by samples: its normal force, a constraint's multiplier, must converge with them.
+/// A ball slides in a bowl given by samples: the normal force must converge with the number of samples.
 
 #include "contact/evolving/contact.hpp"
 #include "contact/mesh/height_map.hpp"
 #include "contact/mesh/mesh_surface.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/icosphere.hpp"
 
@@ -20,7 +24,7 @@ using lie::Vec3;
 
 namespace {
 
-/// Positions and normal forces at all nodes, and the largest multipliers that should vanish, over F_N
+/// Positions and normal forces at all nodes; the largest |λ_N| and |λ_t| relative to F_N, which should vanish
 struct Slide {
     std::vector<Vec3> r;
     std::vector<double> F_N;
@@ -38,11 +42,11 @@ Slide slide(const std::shared_ptr<const contact::Surface>& bowl, double R, const
     x.body.resize(1);
     x.body[0].r = r;
     dae::start(model, x, {.fix_initial = true});
-    const auto& c = static_cast<const EvolvingContact&>(*model.evolving()[0]);
+    const auto& c = static_cast<const EvolvingContact&>(*model.general_constraints()[0]);
     const auto step = lie::scheme("rA-half-1-momentum").make(model, {.tolerance = 1e-13});
     Slide out;
     for (const lie::State& s : lie::march(x, *step, lie::TimeGrid::over(end, h)).row) {
-        const EvolvingContact::Multipliers m = c.multipliers(model.at(c, s), s.lambda);
+        const EvolvingContact::Multipliers m = c.multipliers(model.arguments(c, s), s.lambda);
         out.r.push_back(s.body[0].r);
         out.F_N.push_back(m.F_N);
         out.spurious = std::max({out.spurious, m.N.norm() / m.F_N, m.tangential.norm() / m.F_N});
@@ -69,7 +73,7 @@ Error error(const Slide& of, const Slide& exact)
 
 }  // namespace
 
-TEST_CASE("the normal force on a height map converges of second order with its spacing (long)",
+TEST_CASE("the normal force on a height map converges with second order in the spacing (long)",
           "[contact][evolving]")
 {
     const Vec3 axes(4, 3, 2), from(0, 1.3203946979732251, -1.2654225449401855);
@@ -95,7 +99,8 @@ TEST_CASE("the normal force on a height map converges of second order with its s
     CHECK(std::log2(of[0].rms / of[2].rms) / 2 > 1.8);
 }
 
-TEST_CASE("the normal force on a triangle mesh converges faster than its edges (long)", "[contact][evolving]")
+TEST_CASE("the normal force on a triangle mesh converges faster than the edge length (long)",
+          "[contact][evolving]")
 {
     const Vec3 axes(2.5, 2.7, 2.3), from(0.3, 1.2, -1.2);
     const Slide exact = slide(std::make_shared<contact::Ellipsoid>(axes, true), 0.5, from, 1, 2e-3);

@@ -5,7 +5,10 @@
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/superquadric.hpp"
+#include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 
 #include <catch2/catch.hpp>
@@ -26,7 +29,7 @@ constexpr double g = 9.81;
 const Shape plane{std::make_shared<contact::Plane>()};
 Shape ball(double R) { return {std::make_shared<contact::Sphere>(R)}; }
 
-/// A ball of mass m over the ground
+/// A ball of mass m with a contact to the ground
 struct Ball {
     dae::Model model;
     State x;
@@ -61,7 +64,7 @@ BounceRun run(const Ball& ball, const std::string& scheme, double end, double h)
 
 }  // namespace
 
-TEST_CASE("a ball bounces far from the origin as it does there", "[contact][unilateral]")
+TEST_CASE("a ball bounces far from the origin as it does at the origin", "[contact][unilateral]")
 {
     const double R = 0.1, height = 0.5;
     const BounceRun here = run({R, 2, plane, Vec3(0, 0, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
@@ -73,7 +76,7 @@ TEST_CASE("a ball bounces far from the origin as it does there", "[contact][unil
         CHECK(far.events[k].t == Approx(here.events[k].t).epsilon(1e-9));
 }
 
-TEST_CASE("a ball bounces at the instants of the closed form", "[contact][unilateral]")
+TEST_CASE("a ball bounces at the times of the closed form", "[contact][unilateral]")
 {
     const double R = 0.1, height = 0.5, e = 0.8;
     using Impact = Unilateral::Impact;
@@ -96,10 +99,11 @@ TEST_CASE("a ball bounces at the instants of the closed form", "[contact][unilat
         }
 }
 
-TEST_CASE("a ball leaves the top of a sphere at the angle of the closed form, of second order (long)",
+TEST_CASE("a ball leaves a sphere at the angle of the closed form with second order (long)",
           "[contact][unilateral]")
 {
-    // Sliding: m v²/(R + r) = m g cos θ and v² = v0² + 2 g (R + r)(1 - cos θ); rolling: 0.7 v² = ... instead of ½.
+    // Sliding: m v²/(R + r) = m g cos θ and v² = v0² + 2 g (R + r)(1 - cos θ). Rolling: 0.7 v² in place of ½
+    // v².
     const double R = 1, r = 0.3, v0 = 0.2, d = R + r;
     for (const bool rolling : {false, true}) {
         const double cosine = rolling ? (1 + 0.7 * v0 * v0 / (g * d)) / 1.7 : 2. / 3 + v0 * v0 / (3 * g * d);
@@ -119,7 +123,7 @@ TEST_CASE("a ball leaves the top of a sphere at the angle of the closed form, of
             const double z = x.body[0].r.z() + dt * x.body[0].rdot.z() + 0.5 * dt * dt * x.body[0].rddot.z();
             error.push_back(std::abs(z / d - cosine));
 
-            // ballistic from the exact lift-off, at the height where the ball passes the middle of the sphere
+            // ballistic flight from the exact lift-off, at the height of the centre of the sphere
             const double v = std::sqrt(g * d * cosine), sine = std::sqrt(1 - cosine * cosine);
             const double fall = (-v * sine + std::sqrt(v * v * sine * sine + 2 * g * d * cosine)) / g;
             const double x_exact = d * sine + v * cosine * fall;
@@ -142,7 +146,7 @@ TEST_CASE("a ball leaves the top of a sphere at the angle of the closed form, of
     }
 }
 
-TEST_CASE("an elastic ball keeps its energy from bounce to bounce in a bowl", "[contact][unilateral]")
+TEST_CASE("a ball with e = 1 in a bowl conserves energy over its impacts", "[contact][unilateral]")
 {
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     const Ball b(0.5, 1, bowl, Vec3(0.4, 0.9, 0.3), Vec3(0.2, -0.1, 0), {true, 1});
@@ -153,7 +157,7 @@ TEST_CASE("an elastic ball keeps its energy from bounce to bounce in a bowl", "[
     CHECK(lie::energy(b.model, r.node.back()) == Approx(before).margin(1e-10));
 }
 
-TEST_CASE("a ball that lands without restitution stays, and loses what it had along the normal",
+TEST_CASE("a ball whose rebounds have ended stays in contact and keeps its tangential velocity",
           "[contact][unilateral]")
 {
     const double R = 0.1;
@@ -167,8 +171,8 @@ TEST_CASE("a ball that lands without restitution stays, and loses what it had al
         CHECK(x.body[0].r.z() == Approx(R).epsilon(1e-14));
         CHECK(x.body[0].rdot.z() == Approx(0).margin(1e-12));
         CHECK(x.body[0].r.x() == Approx(0.6).epsilon(1e-13));
-        const auto& c = static_cast<const EvolvingContact&>(*b.model.evolving()[0]);
-        CHECK(c.multipliers(b.model.at(c, x), x.lambda).F_N == Approx(g).epsilon(1e-9));
+        const auto& c = static_cast<const EvolvingContact&>(*b.model.general_constraints()[0]);
+        CHECK(c.multipliers(b.model.arguments(c, x), x.lambda).F_N == Approx(g).epsilon(1e-9));
     }
 }
 
@@ -178,7 +182,7 @@ TEST_CASE("a ball falls into a groove and rests on both walls", "[contact][unila
     dae::Model model;
     model.add({"ball", 1, 0.4 * R * R * Mat3::Identity()});
     for (const double side : {-1., 1.}) {
-        // normals that lean by this from the vertical, towards the middle
+        // wall normals at this angle from the vertical, towards the middle
         const Mat3 A = lie::exp(Vec3(0, -side * lean, 0));
         model.constrain(side < 0 ? "left" : "right",
                         std::make_unique<EvolvingContact>(
@@ -196,13 +200,14 @@ TEST_CASE("a ball falls into a groove and rests on both walls", "[contact][unila
     CHECK(end.discrete_state == std::vector<int>{0, 0});
     CHECK(end.body[0].r.z() == Approx(R / std::cos(lean)).epsilon(1e-12));
     CHECK(end.body[0].r.x() == Approx(0).margin(1e-12));
-    for (const auto& constraint : model.evolving()) {
+    for (const auto& constraint : model.general_constraints()) {
         const auto& c = static_cast<const EvolvingContact&>(*constraint);
-        CHECK(c.multipliers(model.at(c, end), end.lambda).F_N == Approx(7.630825370750323).epsilon(1e-9));
+        CHECK(c.multipliers(model.arguments(c, end), end.lambda).F_N ==
+              Approx(7.630825370750323).epsilon(1e-9));
     }
 }
 
-TEST_CASE("what falls on a ball that lies on the ground is pushed back through it", "[contact][unilateral]")
+TEST_CASE("a ball that falls on a ball on the ground rebounds from both", "[contact][unilateral]")
 {
     dae::Model model;
     const double R = 0.1, e = 0.5, drop = 0.4;
@@ -224,7 +229,7 @@ TEST_CASE("what falls on a ball that lies on the ground is pushed back through i
     CHECK(x.discrete_state == std::vector<int>{0, 1});
     contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-13});
     std::vector<State> node = lie::march(x, step, lie::TimeGrid::over(0.5, 3e-3)).row;
-    // the lower ball cannot give way, so the upper one rebounds as from the ground
+    // the lower ball cannot move, so the upper one rebounds as from the ground
     REQUIRE(!step.events().empty());
     CHECK(step.events()[0].t == Approx(std::sqrt(2 * drop / g)).epsilon(1e-11));
     double highest = 0;
@@ -234,7 +239,7 @@ TEST_CASE("what falls on a ball that lies on the ground is pushed back through i
     CHECK(node.back().body[0].r.z() == Approx(R).epsilon(1e-13));
 }
 
-TEST_CASE("a free pair that collides keeps its momentum", "[contact][unilateral]")
+TEST_CASE("two free bodies conserve momentum in an impact", "[contact][unilateral]")
 {
     dae::Model model;
     model.gravity.setZero();
@@ -270,7 +275,7 @@ TEST_CASE("a free pair that collides keeps its momentum", "[contact][unilateral]
     CHECK(lie::energy(model, node.back()) < lie::energy(model, x));
 }
 
-TEST_CASE("a run through impacts goes on from any node as if it had not stopped", "[contact][unilateral]")
+TEST_CASE("a run through impacts resumes from any node bit for bit", "[contact][unilateral]")
 {
     for (const char* scheme : {"rA-half-1-momentum", "rA-half-1", "rA-rattle", "rA-genalpha"}) {
         INFO(scheme);
@@ -280,7 +285,7 @@ TEST_CASE("a run through impacts goes on from any node as if it had not stopped"
         State x = b.x, resumed;
         for (int n = 0; n < 150; ++n) {
             contact::UnilateralStep fresh(b.model, lie::scheme(scheme), settings);
-            fresh.go_on_from(whole.past());
+            fresh.restore(whole.history());
             resumed = x;
             const State before = x;
             whole.step(x, 5e-3);
@@ -293,14 +298,14 @@ TEST_CASE("a run through impacts goes on from any node as if it had not stopped"
             REQUIRE(whole.events() == fresh.events());
         }
         CHECK(whole.events().size() > 2);
-        CHECK_THROWS_WITH(whole.go_on_from({}), Catch::Contains("as many contacts that open, got 0"));
+        CHECK_THROWS_WITH(whole.restore({}), Catch::Contains("as many unilateral contacts, got 0"));
     }
 }
 
-TEST_CASE("contacts whose forces are not determined are named, or handed over to a compliant force",
+TEST_CASE("contacts with indeterminate forces are named, or switch to their fallback",
           "[contact][unilateral]")
 {
-    // four walls of a pyramid hold a ball that three of them hold already
+    // four walls of a pyramid hold a ball; three of them are sufficient
     const double R = 0.2, lean = 0.6;
     for (const bool fallback : {false, true}) {
         dae::Model model;
@@ -313,10 +318,10 @@ TEST_CASE("contacts whose forces are not determined are named, or handed over to
             if (fallback) {
                 auto force = std::make_unique<contact::ContactForce>(
                     name, model, 0, ball(R), dae::ground, c->shape_j,
-                    std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                    std::make_shared<contact::Hooke>(contact::Hooke::with_restitution(1e5, 0.2)),
                     contact::frictionless());
                 c->fallback = true;
-                force->stand_by(*c);
+                force->set_fallback_of(*c);
                 model.load(std::move(force));
             }
             model.constrain(name, std::move(c));
@@ -325,11 +330,12 @@ TEST_CASE("contacts whose forces are not determined are named, or handed over to
         x.body.resize(1);
         x.body[0].r = Vec3(0, 0, R / std::cos(lean));
         if (!fallback) {
-            CHECK_THROWS_WITH(dae::start(model, x), Catch::Contains("not determined: 'wall 3'"));
+            CHECK_THROWS_WITH(dae::start(model, x),
+                              Catch::Contains("already prevent the motion along the normal: 'wall 3'"));
             continue;
         }
         CHECK(dae::start(model, x).rank == 3);
-        CHECK(x.discrete_state[model.evolving()[3]->first_discrete_state] ==
+        CHECK(x.discrete_state[model.general_constraints()[3]->first_discrete_state] ==
               dae::Constraint::fallback_active);
         const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
         const State end = lie::march(x, *step, lie::TimeGrid::over(1, 1e-3)).row.back();
@@ -337,9 +343,9 @@ TEST_CASE("contacts whose forces are not determined are named, or handed over to
     }
 }
 
-TEST_CASE("a contact that becomes too flat for one point is handed over on the way", "[contact][unilateral]")
+TEST_CASE("a contact whose curvature vanishes during a run switches to its fallback", "[contact][unilateral]")
 {
-    // the fourth-power superquadric is flat on top of its axes: it rolls there from the side
+    // the superquadric of exponent 4 has zero curvature on its axes; it rolls there from the side
     const Shape block{std::make_shared<contact::Superquadric>(Vec3(0.3, 0.3, 0.2), 4)};
     for (const bool fallback : {false, true}) {
         dae::Model model;
@@ -348,10 +354,10 @@ TEST_CASE("a contact that becomes too flat for one point is handed over on the w
         if (fallback) {
             auto force = std::make_unique<contact::ContactForce>(
                 "floor", model, 0, block, dae::ground, plane,
-                std::make_shared<contact::Hooke>(contact::Hooke::rebounding(1e5, 0.2)),
+                std::make_shared<contact::Hooke>(contact::Hooke::with_restitution(1e5, 0.2)),
                 contact::frictionless());
             c->fallback = true;
-            force->stand_by(*c);
+            force->set_fallback_of(*c);
             model.load(std::move(force));
         }
         model.constrain("floor", std::move(c));
@@ -367,13 +373,13 @@ TEST_CASE("a contact that becomes too flat for one point is handed over on the w
             continue;
         }
         const State end = lie::march(x, *step, grid).row.back();
-        CHECK(end.discrete_state[model.evolving()[0]->first_discrete_state] ==
+        CHECK(end.discrete_state[model.general_constraints()[0]->first_discrete_state] ==
               dae::Constraint::fallback_active);
         CHECK(end.body[0].r.z() > 0.19);
     }
 }
 
-TEST_CASE("an impact that falls on a node is an impact like any other", "[contact][unilateral]")
+TEST_CASE("an impact at a node is resolved like any other impact", "[contact][unilateral]")
 {
     // 0.5 g t² = 0.2 m at t = 0.2 s, the 20th node
     const double R = 0.1, up = 9.8;
@@ -399,7 +405,7 @@ TEST_CASE("an impact that falls on a node is an impact like any other", "[contac
     }
 }
 
-TEST_CASE("a contact that may open has the forces, node by node, of one that may not",
+TEST_CASE("a unilateral contact has the forces of a bilateral one while it is active",
           "[contact][unilateral]")
 {
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
@@ -420,7 +426,7 @@ TEST_CASE("a contact that may open has the forces, node by node, of one that may
     }
 }
 
-TEST_CASE("what leaves or meets at the start is not held", "[contact][unilateral]")
+TEST_CASE("a contact that separates or approaches at the start starts inactive", "[contact][unilateral]")
 {
     const double R = 0.1;
     for (const double v : {2., -2.}) {
@@ -432,9 +438,9 @@ TEST_CASE("what leaves or meets at the start is not held", "[contact][unilateral
     }
 }
 
-TEST_CASE("a step that fails among contacts that open leaves the state as it was", "[contact][unilateral]")
+TEST_CASE("a step with unilateral contacts that fails does not change the state", "[contact][unilateral]")
 {
-    // a step so long that the ball turns out of the bowl's reach
+    // two iterations cannot reach the tolerance, so the step fails
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     dae::Model model;
     model.add({"ball", 1, 0.1 * Mat3::Identity()});

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The invariants that tracking and friction must have, whatever their parameters: they see relative motion alone, do not
-// care which body is called i, and make no momentum.
+// Invariants of tracking and friction for all parameters: objectivity, symmetry in the bodies i and j, and
+// conservation of momentum.
 #include "contact/compliant/contact.hpp"
 #include "contact/scenes/scene.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "dae/model.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -59,12 +60,12 @@ struct Steady {
 
 Inertia ball(double m, double R) { return {m, 0.4 * m * R * R * Mat3::Identity()}; }
 
-/// Everything on: the loads are within their bounds at first and slip later.
+/// Sliding, rolling and spinning friction. The contact sticks at first and slips later.
 const FrictionParameters all_kinds{.mu_s = 0.5, .mu_k = 0.3, .K_E = 1e4, .eta_r = 0.2, .eta_psi = 0.05};
 
 using Two = std::function<std::pair<Motion, Motion>(double)>;
 
-/// Loads on i and j, and n N, at each of the steps of a prescribed motion of two bodies
+/// The friction loads at each step of a prescribed motion of two bodies
 std::vector<Wrench> loads(const contact::CompliantContact& c, const Two& motion, double h, int steps)
 {
     contact::ContactHistory history;
@@ -78,7 +79,7 @@ std::vector<Wrench> loads(const contact::CompliantContact& c, const Two& motion,
     return all;
 }
 
-/// A ball on an ellipsoid that turns under it, both tumbling
+/// A ball that moves over a rotating ellipsoid and rotates about another axis
 std::pair<Motion, Motion> ball_on_ellipsoid(double t)
 {
     const Steady ellipsoid{.omega = Vec3(0.3, -0.5, 2.5)};
@@ -111,7 +112,7 @@ double largest(const std::vector<Wrench>& all)
 
 }  // namespace
 
-TEST_CASE("friction does not see a rotation of both bodies", "[contact][friction]")
+TEST_CASE("friction is unaffected by a common rotation of both bodies", "[contact][friction]")
 {
     const double speed = GENERATE(3., 300.);
     const double h = 1e-3;
@@ -147,7 +148,7 @@ TEST_CASE("friction does not see a rotation of both bodies", "[contact][friction
     CHECK(off < 1e-10 * size);
 }
 
-TEST_CASE("balanced friction does not care which body is called i", "[contact][friction]")
+TEST_CASE("balanced friction is symmetric in the bodies i and j", "[contact][friction]")
 {
     const double h = 1e-3;
     const auto exchange = [](double t) {
@@ -164,13 +165,14 @@ TEST_CASE("balanced friction does not care which body is called i", "[contact][f
         return most / largest(one);
     };
     CHECK(off(all_kinds) < 1e-12);
-    // What the choices of the dissertation cost
+    // the dissertation preset is not symmetric
     FrictionParameters p = all_kinds;
     p.tracking = {.beta = 1, .carrier = Carrier::i};
     CHECK(off(p) > 1e-5);
 }
 
-TEST_CASE("friction does not see which tangent vector its frame began with", "[contact][friction]")
+TEST_CASE("friction does not depend on the initial tangent vector of the contact frame",
+          "[contact][friction]")
 {
     const double angle = GENERATE(0.3, 2.0, -1.1);
     const double h = 1e-3;
@@ -188,7 +190,7 @@ TEST_CASE("friction does not see which tangent vector its frame began with", "[c
             c.advance(now, bi, bj, history);
             w[m] = c.load(now, contact::mean_rates(now.slip, h), history);
             if (m == 0 || k > 0) continue;
-            const Vec3 u = contact::turned(now.slip.u, now.slip.n, std::cos(angle), std::sin(angle));
+            const Vec3 u = contact::rotated(now.slip.u, now.slip.n, std::cos(angle), std::sin(angle));
             history.contact_frame = contact::contact_frame(now.contact_point, u, bi, bj);
         }
         off = std::max({off, (w[0].F - w[1].F).norm(), (w[0].T_i - w[1].T_i).norm() / 0.1});
@@ -197,7 +199,7 @@ TEST_CASE("friction does not see which tangent vector its frame began with", "[c
     CHECK(off < 1e-12 * size);
 }
 
-TEST_CASE("a ball that rolls and pivots slips by nothing to second order with half the counter-spin",
+TEST_CASE("the false slip of a rolling and spinning ball is of second order with half the counter-spin",
           "[contact][tracker]")
 {
     const double R = 0.2;
@@ -211,8 +213,8 @@ TEST_CASE("a ball that rolls and pivots slips by nothing to second order with ha
         c.advance(c.evaluate(rolling.at(0), ground, history), rolling.at(0), ground, history);
         const contact::ContactPoint contact_point = c.evaluate(rolling.at(h), ground, history).contact_point;
         const SlidingDisplacement s =
-            contact::follow(history.contact_frame, contact_point, c.i, c.j, rolling.at(h), ground,
-                            {.beta = beta, .carrier = carrier});
+            contact::track_contact_point(history.contact_frame, contact_point, c.i, c.j, rolling.at(h),
+                                         ground, {.beta = beta, .carrier = carrier});
         return s.ds.norm() / h;
     };
     const Carrier carrier = GENERATE(Carrier::mid, Carrier::i);
@@ -224,12 +226,13 @@ TEST_CASE("a ball that rolls and pivots slips by nothing to second order with ha
     CHECK(slip_rate(0.5, carrier, h) / slip_rate(0.5, carrier, h / 10) == Approx(100).margin(2));
 }
 
-TEST_CASE("displacements of the contact point tend to what the velocities say", "[contact][tracker]")
+TEST_CASE("the mean rates of the contact point converge to the rates from the velocities",
+          "[contact][tracker]")
 {
     struct Bodies {
         const char* name;
         Shape i, j;
-        Steady on, under;  // touching at t = 0
+        Steady on, under;  // in contact at t = 0
     };
     const Vec3 u = Vec3(0.1, 0.2, 1).normalized(), D(0.04, 0.09, 0.16);
     const Vec3 on_ellipsoid = D.cwiseProduct(u) / std::sqrt(u.dot(D.cwiseProduct(u)));
@@ -287,9 +290,9 @@ TEST_CASE("displacements of the contact point tend to what the velocities say", 
     }
 }
 
-TEST_CASE("the rolling spring gives back what is put into it on any way round", "[contact][friction]")
+TEST_CASE("the rolling spring of the balanced preset is conservative", "[contact][friction]")
 {
-    // Two curvatures: out along the one, round and back along the other
+    // Two principal curvatures; a closed path of Θ along both directions
     const auto model = friction({.mu_s = 1e6, .mu_k = 1e6, .K_E = 1e5, .zeta = 0, .eta_r = 0.2});
     contact::ContactState now;
     now.contact_point.n = now.slip.n = Vec3::UnitZ();
@@ -303,7 +306,7 @@ TEST_CASE("the rolling spring gives back what is put into it on any way round", 
     contact::Deflections h;
     double work = 0, put_in = 0;
     const int steps = 2000;
-    // Θ goes out to r along x, on a quarter circle to y, and home
+    // Θ: from 0 to r along x, on a quarter circle to y, and back to 0
     const double r = 1e-4;
     const auto Theta = [&](double s) -> Vec3 {
         if (s < 1) return r * s * Vec3::UnitX();
@@ -324,7 +327,7 @@ TEST_CASE("the rolling spring gives back what is put into it on any way round", 
     CHECK(std::abs(work) < 1e-6 * put_in);
 }
 
-TEST_CASE("a free pair keeps its momentum and its angular momentum", "[contact][friction]")
+TEST_CASE("friction conserves linear and angular momentum of a free pair", "[contact][friction]")
 {
     const auto drift = [](FrictionParameters p) {
         contact::Scene scene;
@@ -361,23 +364,24 @@ TEST_CASE("a free pair keeps its momentum and its angular momentum", "[contact][
     };
     FrictionParameters p{.mu_s = 0.4, .mu_k = 0.3, .K_E = 1e4, .eta_r = 0.3, .eta_psi = 0.1};
     CHECK(drift(p) < 1e-12);
-    p.relative_rolling = false;  // a torque for each body, as in the dissertation
+    p.relative_rolling = false;  // one rolling vector per body, as in the dissertation
     CHECK(drift(p) > 1e-3);
 }
 
 namespace {
 
-/// Radius over the exact one, and rate over 2/7 Omega, of a ball on a turntable after ten orbits
+/// Radius and angular rate of the orbit of a ball on a turntable after ten orbits, relative to the exact
+/// values
 struct Orbits {
     double radius, rate;
 };
 Orbits orbits(double K_E, double h, const contact::Tracking& tracking)
 {
-    // Rolling without slip: a circle about a fixed centre at 2/7 of the speed of the table
+    // Rolling without slip: a circle about a fixed centre at 2/7 of the angular velocity of the table
     const double m = 5, R = 0.2, Omega = 2 * pi, v = 0.5, rate = 2 * Omega / 7, radius = v / rate;
     contact::Scene scene;
-    const Vec3 z = Vec3::UnitZ(), at(radius, 0, R);  // the centre of the circle is the origin...
-    const Vec3 axis(0.4, 0.3, 0);                    // ... not the axis of the table
+    const Vec3 z = Vec3::UnitZ(), at(radius, 0, R);  // the centre of the circle is the origin,
+    const Vec3 axis(0.4, 0.3, 0);                    // which is not on the axis of the table
     const Vec3 under = Omega * z.cross(at - axis);
     // v - ω × R n = velocity of the table under the ball
     const Steady ball_start{.r = at, .v = Vec3(0, v, 0), .omega = z.cross(Vec3(0, v, 0) - under) / R};
@@ -401,12 +405,13 @@ Orbits orbits(double K_E, double h, const contact::Tracking& tracking)
 
 }  // namespace
 
-TEST_CASE("a ball on a turntable goes round at two sevenths of its speed (long)", "[contact][scene]")
+TEST_CASE("a ball on a turntable orbits at two sevenths of the angular velocity of the table (long)",
+          "[contact][scene]")
 {
     const Orbits half = orbits(1e5, 1e-3, {});
     INFO("radius " << half.radius << " rate " << half.rate);
     CHECK(half.radius == Approx(1).margin(2e-4));
     CHECK(half.rate == Approx(1).margin(1e-4));
-    // Turning back all of the spin makes the orbit grow; the study has other parts
+    // with the full counter-spin (β = 1) the orbit grows
     CHECK(orbits(1e5, 1e-3, {.beta = 1}).radius == Approx(1.153).margin(2e-3));
 }

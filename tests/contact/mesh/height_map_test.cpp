@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The height map: exact for cubics, converging for what is smooth, and smooth itself.
+/// Height maps: exactness for cubics, convergence for smooth functions, continuity of the derivatives.
 
 #include "contact/mesh/height_map.hpp"
 #include "lie/check.hpp"
@@ -20,7 +20,7 @@ namespace {
 struct Polynomial {
     Eigen::Matrix4d c;  // of x^i y^j
 
-    /// Its derivative, `m` times by x and `n` times by y
+    /// The derivative ∂^(m+n) / ∂x^m ∂y^n
     double at(double x, double y, int m = 0, int n = 0) const
     {
         double sum = 0;
@@ -54,7 +54,7 @@ struct Waves {
 
 HeightMap waves(int cells) { return HeightMap::sampled(Waves::f, {-2, -1}, {2, 3}, cells + 1, cells + 1); }
 
-/// The largest errors of f, ∇f and ∇²f, at the same places of every cell, up to the edge
+/// The largest errors of f, ∇f and ∇²f at the same points of all cells, up to the edge
 Vec3 errors(int cells)
 {
     const HeightMap map = waves(cells);
@@ -73,7 +73,7 @@ Vec3 errors(int cells)
 
 }  // namespace
 
-TEST_CASE("a height map of a cubic is that cubic", "[contact][height_map]")
+TEST_CASE("a height map is exact for a cubic", "[contact][height_map]")
 {
     Random random(GENERATE(range(0u, 5u)));
     const int n_x = GENERATE(4, 5, 6, 9), n_y = GENERATE(4, 7);
@@ -94,8 +94,7 @@ TEST_CASE("a height map of a cubic is that cubic", "[contact][height_map]")
     }
 }
 
-TEST_CASE("height and slope and bend of a height map converge with orders 4 and 3 and 2",
-          "[contact][height_map]")
+TEST_CASE("f, gradient and Hessian of a height map converge with orders 4, 3 and 2", "[contact][height_map]")
 {
     const Vec3 coarse = errors(16), fine = errors(32);
     const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
@@ -105,7 +104,7 @@ TEST_CASE("height and slope and bend of a height map converge with orders 4 and 
     CHECK(order[2] == Approx(2).margin(0.15));
 }
 
-TEST_CASE("the bend of a height map does not jump from cell to cell", "[contact][height_map]")
+TEST_CASE("the second derivatives of a height map are continuous across cells", "[contact][height_map]")
 {
     Random random(GENERATE(range(0u, 5u)));
     Eigen::MatrixXd heights(8, 9);
@@ -121,10 +120,10 @@ TEST_CASE("the bend of a height map does not jump from cell to cell", "[contact]
     };
     for (int i = 1; i < 7; ++i) jump({1. * i, random.number(0.1, 3.9), 0}, Vec3::UnitX());
     for (int j = 1; j < 8; ++j) jump({random.number(0.1, 6.9), 0.5 * j, 0}, Vec3::UnitY());
-    // and it passes through the samples, the outermost too
+    // it interpolates all samples, including those on the edge
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 9; ++j) CHECK(std::abs(map.value({1. * i, 0.5 * j, heights(i, j)})) < 1e-14);
-    // its derivatives are its own
+    // gradient and Hessian agree with finite differences
     const Vec3 a(random.number(2.1, 2.9), random.number(2.1, 2.4), 0);
     for (int k = 0; k < 3; ++k) {
         const auto moved = [&](double tau) { return Vec3(a + tau * Vec3::Unit(k)); };
@@ -136,7 +135,7 @@ TEST_CASE("the bend of a height map does not jump from cell to cell", "[contact]
     }
 }
 
-TEST_CASE("no point of a height map is nearer than the projection", "[contact][height_map]")
+TEST_CASE("the projection onto a height map is its closest point", "[contact][height_map]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const HeightMap map = HeightMap::sampled(Waves::f, {-9, -9}, {9, 9}, 60, 60);
@@ -151,21 +150,21 @@ TEST_CASE("no point of a height map is nearer than the projection", "[contact][h
     }
 }
 
-TEST_CASE("beyond its grid a height map says where it was asked", "[contact][height_map]")
+TEST_CASE("the evaluation of a height map outside its grid fails with the point", "[contact][height_map]")
 {
     const HeightMap map = waves(8);
     CHECK_NOTHROW(map.value({2, 3, 0}));
     CHECK_NOTHROW(map.value({-2, -1, 0}));
     CHECK_THROWS_AS(map.value({2.001, 0, 0}), lie::NumericalFailure);
     CHECK_THROWS_WITH(map.normal({0, -1.5, 7}),
-                      "a height map has no height beyond its grid, at (0, -1.5, 7)");
+                      "a height map is not defined outside its grid: point (0, -1.5, 7)");
     CHECK(std::isnan(map.value({std::nan(""), 0, 0})));
     CHECK_THROWS_AS(map.normal({0, 0, std::nan("")}), lie::NumericalFailure);
     CHECK_THROWS_WITH(map.project({5, 0, 1}),
-                      "the nearest point of a height map is on the edge of its grid, from (5, 0, 1)");
+                      "the closest point of a height map lies on the edge of its grid: point (5, 0, 1)");
 }
 
-TEST_CASE("evaluating a height map takes nothing from the heap", "[contact][height_map][allocation]")
+TEST_CASE("the evaluation of a height map does not allocate memory", "[contact][height_map][allocation]")
 {
     const HeightMap map = waves(8);
     Vec3 sum = Vec3::Zero();
@@ -176,15 +175,15 @@ TEST_CASE("evaluating a height map takes nothing from the heap", "[contact][heig
     CHECK(sum.allFinite());
 }
 
-TEST_CASE("a height map without a surface is refused", "[contact][height_map]")
+TEST_CASE("a height map with invalid samples is rejected", "[contact][height_map]")
 {
     const Eigen::MatrixXd flat = Eigen::MatrixXd::Zero(4, 5);
     CHECK_THROWS_WITH(HeightMap(Eigen::MatrixXd::Zero(4, 3), {0, 0}, {1, 1}),
-                      "contact::HeightMap: a height map needs 4 samples either way, got 3");
+                      "contact::HeightMap: a height map needs at least 4 samples in each direction, got 3");
     CHECK_THROWS_WITH(HeightMap(flat, {0, 0}, {1, -1}),
                       "contact::HeightMap: the spacing of a height map must be positive and finite, got -1");
     CHECK_THROWS_WITH(HeightMap(flat, {0, INFINITY}, {1, 1}),
                       "contact::HeightMap: the corner must be finite, got   0 inf");
     CHECK_THROWS_WITH(HeightMap(flat * std::nan(""), {0, 0}, {1, 1}),
-                      "contact::HeightMap: the heights must be finite, got one that is not");
+                      "contact::HeightMap: the heights must be finite, got a value that is not finite");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Meshes: what they are refused for, which triangle is nearest, and that the surface made of one converges with its
-/// normal and its curvature to the surface that was meshed.
+/// Triangle meshes: validation, closest points, OBJ files; convergence of the fitted surface, its normal and
+/// its curvature.
 
 #include "contact/mesh/mesh_surface.hpp"
 #include "contact/detection/detector.hpp"
@@ -31,8 +31,8 @@ TriangleMesh ellipsoid_mesh(const Vec3& D, int levels)
     return image(icosphere(levels), [&](const Vec3& v) { return Vec3(D.cwiseProduct(v)); });
 }
 
-/// How a mesh differs from the ellipsoid on which its vertices lie, each moved along it by up to `jitter` of an edge:
-/// the root mean squares of the errors of position, normal and shape operator
+/// The root mean square errors of position, normal and shape operator of a mesh whose vertices lie on an
+/// ellipsoid. The vertices are displaced along the ellipsoid by up to `jitter` edge lengths.
 Vec3 errors(const Vec3& D, int levels, double jitter)
 {
     Random random(1);
@@ -69,7 +69,8 @@ Triangles tetrahedron()
 
 }  // namespace
 
-TEST_CASE("a mesh surface converges in position and normal and curvature", "[contact][mesh]")
+TEST_CASE("position, normal and curvature of a mesh surface converge with orders 4, 3 and 2",
+          "[contact][mesh]")
 {
     const Vec3 coarse = errors({1, 0.9, 1.1}, 2, 0.1), fine = errors({1, 0.9, 1.1}, 3, 0.1);
     const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
@@ -82,7 +83,7 @@ TEST_CASE("a mesh surface converges in position and normal and curvature", "[con
     CHECK(fine[2] < 2e-2);
 }
 
-TEST_CASE("the derivatives of a mesh surface are those of its G", "[contact][mesh]")
+TEST_CASE("the derivatives of a mesh surface agree with finite differences", "[contact][mesh]")
 {
     static const MeshSurface s(ellipsoid_mesh({0.9, 0.7, 1.2}, 3));
     Random random(GENERATE(range(0u, 20u)));
@@ -90,7 +91,7 @@ TEST_CASE("the derivatives of a mesh surface are those of its G", "[contact][mes
     const auto [G, gradient, hessian] = s.derivatives(a);
     CHECK(G == s.value(a));
     CHECK(hessian == hessian.transpose());
-    // steps so short that third derivatives, which jump where a patch ends, do no harm
+    // the step is small because the third derivatives jump at the border of a patch
     constexpr double step = 2e-5;
     for (int k = 0; k < 3; ++k) {
         const auto moved = [&](double tau) { return Vec3(a + tau * Vec3::Unit(k)); };
@@ -101,7 +102,7 @@ TEST_CASE("the derivatives of a mesh surface are those of its G", "[contact][mes
     }
 }
 
-TEST_CASE("normal and curvature of a mesh surface do not jump from triangle to triangle", "[contact][mesh]")
+TEST_CASE("normal and curvature of a mesh surface are continuous across triangles", "[contact][mesh]")
 {
     const TriangleMesh mesh = ellipsoid_mesh({0.9, 0.7, 1.2}, 3);
     const MeshSurface s(mesh);
@@ -119,7 +120,8 @@ TEST_CASE("normal and curvature of a mesh surface do not jump from triangle to t
     CHECK(most < 100 * step);
 }
 
-TEST_CASE("the triangle found is the nearest of all and its side is the side of the mesh", "[contact][mesh]")
+TEST_CASE("the closest triangle is found and its pseudonormal distinguishes inside and outside",
+          "[contact][mesh]")
 {
     const Vec3 D(0.9, 0.7, 1.2);
     static const TriangleMesh mesh = ellipsoid_mesh(D, 3);
@@ -137,7 +139,7 @@ TEST_CASE("the triangle found is the nearest of all and its side is the side of 
         CHECK((a - near.point).dot(mesh.normal(near.triangle, near.feature)) * depth > 0);
 }
 
-TEST_CASE("far from a mesh the surface is as far as its triangles", "[contact][mesh]")
+TEST_CASE("far from a mesh G is the signed distance to the triangles", "[contact][mesh]")
 {
     static const MeshSurface s(ellipsoid_mesh({0.9, 0.7, 1.2}, 3));
     CHECK(s.size() == Approx(std::cbrt(0.9 * 0.7 * 1.2)).epsilon(0.02));
@@ -148,7 +150,7 @@ TEST_CASE("far from a mesh the surface is as far as its triangles", "[contact][m
         CHECK(G * (scale - 1) > 0);
         CHECK(std::abs(G) == Approx(s.mesh.nearest(a).distance).epsilon(1e-14));
         CHECK(gradient.norm() == Approx(1).epsilon(1e-14));
-        if (scale < 1) continue;  // within, the nearest triangle may change in the step
+        if (scale < 1) continue;  // inside, the closest triangle may change within the step
         for (int k = 0; k < 3; ++k)
             CHECK((hessian.col(k) -
                    derivative([&](double tau) { return s.gradient(a + tau * Vec3::Unit(k)); }, 1e-6))
@@ -159,7 +161,7 @@ TEST_CASE("far from a mesh the surface is as far as its triangles", "[contact][m
     }
 }
 
-TEST_CASE("a mesh surface turns and grows with its mesh", "[contact][mesh]")
+TEST_CASE("a mesh surface rotates, moves and scales with its mesh", "[contact][mesh]")
 {
     Random random(GENERATE(range(0u, 5u)));
     const Mat3 A = random.rotation();
@@ -177,7 +179,8 @@ TEST_CASE("a mesh surface turns and grows with its mesh", "[contact][mesh]")
     }
 }
 
-TEST_CASE("sheets that are nearer than an edge do not feel each other", "[contact][mesh]")
+TEST_CASE("parts of a mesh that are closer than an edge length do not influence each other",
+          "[contact][mesh]")
 {
     const Triangles one = icosphere(2);
     const Vec3 apart(2.05, 0, 0);
@@ -196,7 +199,7 @@ TEST_CASE("sheets that are nearer than an edge do not feel each other", "[contac
     }
 }
 
-TEST_CASE("a ball touches a mesh where it touches what was meshed", "[contact][mesh]")
+TEST_CASE("the contact point of a ball and a mesh is that of the meshed surface", "[contact][mesh]")
 {
     const Vec3 D(0.9, 0.7, 1.2);
     const double R = 0.2;
@@ -213,7 +216,7 @@ TEST_CASE("a ball touches a mesh where it touches what was meshed", "[contact][m
     CHECK((contact_point.K_j - exact.K_j).norm() < 0.2);
 }
 
-TEST_CASE("a hollow mesh looks inward", "[contact][mesh]")
+TEST_CASE("a concave mesh has the opposite normal and curvature", "[contact][mesh]")
 {
     const MeshSurface body(ellipsoid_mesh({1, 1, 1}, 2)), hollow(ellipsoid_mesh({1, 1, 1}, 2), true);
     const Vec3 a(0.6, 0, 0.8);
@@ -225,7 +228,7 @@ TEST_CASE("a hollow mesh looks inward", "[contact][mesh]")
     CHECK_THROWS_AS(body.normal({0, 0, INFINITY}), lie::NumericalFailure);
 }
 
-TEST_CASE("evaluating a mesh surface takes nothing from the heap", "[contact][mesh][allocation]")
+TEST_CASE("the evaluation of a mesh surface does not allocate memory", "[contact][mesh][allocation]")
 {
     const MeshSurface s(ellipsoid_mesh({1, 1, 1}, 2));
     Vec3 sum = Vec3::Zero();
@@ -236,30 +239,29 @@ TEST_CASE("evaluating a mesh surface takes nothing from the heap", "[contact][me
     CHECK(sum.allFinite());
 }
 
-TEST_CASE("what is no closed mesh is refused by name", "[contact][mesh]")
+TEST_CASE("a mesh that is not a closed oriented manifold is rejected with the reason", "[contact][mesh]")
 {
     const auto says = [](const Triangles& mesh, const std::string& what) {
         CHECK(refusal(mesh) == "contact::TriangleMesh: " + what);
     };
     Triangles open = tetrahedron();
     open.triangles.pop_back();
-    says(open, "the edge of the vertices 1 and 2 is open: it has triangle 0 only");
+    says(open, "the edge of the vertices 1 and 2 is open: it belongs to triangle 0 only");
     Triangles turned = tetrahedron();
     std::swap(turned.triangles[3][0], turned.triangles[3][1]);
-    says(
-        turned,
-        "the edge of the vertices 1 and 2 is run along in one direction by triangles 0 and 3: one of them is "
-        "inside out");
+    says(turned,
+         "the edge of the vertices 1 and 2 has the same direction in triangles 0 and 3: one of them has the "
+         "wrong orientation");
     Triangles inside_out = tetrahedron();
     for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
     says(inside_out,
-         "the triangles must be counterclockwise as seen from outside: they enclose -0.166667 m^3");
+         "the triangles must be counterclockwise as seen from outside: the enclosed volume is -0.166667 m^3");
     Triangles flat = tetrahedron();
     flat.vertices[3] = {0.5, 0, 0};
-    says(flat, "triangle 1 has no area");
+    says(flat, "triangle 1 has zero area");
     Triangles beyond = tetrahedron();
     beyond.triangles[2][1] = 4;
-    says(beyond, "triangle 2 has the vertex 4, of 4 numbered from 0");
+    says(beyond, "triangle 2 has vertex 4, allowed are 0 to 3");
     Triangles nowhere = tetrahedron();
     nowhere.vertices[2].y() = INFINITY;
     says(nowhere, "vertex 2 is not finite");
@@ -267,26 +269,27 @@ TEST_CASE("what is no closed mesh is refused by name", "[contact][mesh]")
 
     Triangles twice = tetrahedron();
     for (const Triangle& t : tetrahedron().triangles) twice.triangles.push_back(t);
-    says(twice, "the edge of the vertices 0 and 1 has 4 triangles; it must have two");
-    // two that touch with their tips
+    says(twice, "the edge of the vertices 0 and 1 belongs to 4 triangles; it must belong to two");
+    // two tetrahedra that share one vertex
     Triangles tips = tetrahedron();
     for (int v = 1; v < 4; ++v) tips.vertices.push_back(-tips.vertices[v]);
     for (const auto& [a, b, c] : tetrahedron().triangles) {
         const auto other = [](int v) { return v == 0 ? 0 : v + 3; };
         tips.triangles.push_back({other(a), other(c), other(b)});
     }
-    says(tips, "two sheets of the mesh meet in vertex 0 only");
+    says(tips, "the mesh is not a manifold: two parts of it share only vertex 0");
 }
 
-TEST_CASE("a mesh that is too coarse to be smooth is refused with the vertex", "[contact][mesh]")
+TEST_CASE("a mesh that is too coarse for a smooth surface is rejected with the vertex", "[contact][mesh]")
 {
     CHECK(refusal(tetrahedron()) ==
-          "contact::MeshSurface: the mesh is too coarse to be smooth: the 4 vertices near vertex 0 do not "
+          "contact::MeshSurface: the mesh is too coarse for a smooth surface: the 4 vertices near vertex 0 "
+          "do not "
           "determine a "
           "cubic");
     CHECK_THAT(refusal(icosphere(1)),
-               Catch::StartsWith("contact::MeshSurface: the mesh is too coarse to be smooth: "
-                                 "from vertex 12 to vertex 6, near to it, its normal turns by"));
+               Catch::StartsWith("contact::MeshSurface: the mesh is too coarse for a smooth surface: "
+                                 "the normals of the neighbouring vertices 12 and 6 differ by"));
     CHECK(refusal(icosphere(2)) == "accepted");
     Triangles with_more = icosphere(2);
     with_more.vertices.emplace_back(7, 7, 7);
@@ -294,7 +297,7 @@ TEST_CASE("a mesh that is too coarse to be smooth is refused with the vertex", "
     CHECK(MeshSurface(TriangleMesh(with_more.vertices, with_more.triangles)).size() < 1.01);
 }
 
-TEST_CASE("an OBJ text is read and its faults are told by line", "[contact][mesh]")
+TEST_CASE("an OBJ text is read and its errors are reported with the line", "[contact][mesh]")
 {
     const auto read = [](const std::string& text) {
         std::istringstream in(text);
@@ -311,13 +314,13 @@ TEST_CASE("an OBJ text is read and its faults are told by line", "[contact][mesh
     CHECK_THROWS_WITH(read("v 0 0 0\nv 1 x 0\n"),
                       "contact::read_obj: box.obj:2: a vertex must have three numbers, got v 1 x 0");
     CHECK_THROWS_WITH(read(corners + "f 1 2\n"),
-                      "contact::read_obj: box.obj:8: a face must have three corners or more, got f 1 2");
+                      "contact::read_obj: box.obj:8: a face must have at least three corners, got f 1 2");
     CHECK_THROWS_WITH(read(corners + "f 1 2 5\n"),
-                      "contact::read_obj: box.obj:8: there is no vertex 5 yet, of 4");
+                      "contact::read_obj: box.obj:8: vertex 5 is not defined; the number of vertices is 4");
     CHECK_THROWS_WITH(
         read(corners + "f 1 2 x\n"),
         "contact::read_obj: box.obj:8: a corner of a face must be the number of a vertex, got x");
-    CHECK_THROWS_WITH(
-        read(corners + "f 1 3 2\n"),
-        "contact::read_obj: box.obj: the edge of the vertices 0 and 1 is open: it has triangle 0 only");
+    CHECK_THROWS_WITH(read(corners + "f 1 3 2\n"),
+                      "contact::read_obj: box.obj: the edge of the vertices 0 and 1 is open: it belongs to "
+                      "triangle 0 only");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Every surface: its derivatives against differences, its curvature against closed forms, its projection
-/// against points that could be nearer.
+/// All surfaces: derivatives against finite differences, curvature against closed forms, projection against
+/// random points of the surface.
 
 #include "contact/implicit_surface.hpp"
 #include "contact/mesh/height_map.hpp"
@@ -43,7 +43,7 @@ struct Ellipse {
     }
 };
 
-/// A sphere with bumps, written with one of every kind of function
+/// A sphere with bumps that uses elementary functions
 struct Bumps {
     template <class T>
     T operator()(const T& x, const T& y, const T& z) const
@@ -54,7 +54,7 @@ struct Bumps {
     }
 };
 
-/// With these eigenvalues
+/// A symmetric matrix with these eigenvalues and general axes
 Mat3 askew(double a, double b, double c)
 {
     const Mat3 A = lie::exp(Vec3(0.4, -0.7, 0.5)), Q = A * Vec3(a, b, c).asDiagonal() * A.transpose();
@@ -68,7 +68,7 @@ double cubic(double x, double y)
 
 using Surfaces = std::vector<std::pair<std::string, std::unique_ptr<Surface>>>;
 
-/// Every kind of surface, convex and hollow; add the next one here.
+/// All types of surfaces, convex and concave. Add new surfaces here.
 Surfaces surfaces()
 {
     Surfaces all;
@@ -103,20 +103,20 @@ Surfaces surfaces()
     return all;
 }
 
-/// A point in some direction, but none whose nearest one is an apex
+/// A random point at a distance; for a cone only points whose closest point is not the apex
 Vec3 somewhere(const Surface& surface, double distance, Random& random)
 {
     const bool pointed = dynamic_cast<const Cone*>(&surface) != nullptr;
     return distance * (random.unit() + (pointed ? 1.5 : 0) * Vec3::UnitZ());
 }
 
-/// A point on the surface
+/// A random point on the surface
 Vec3 point_on(const Surface& surface, Random& random)
 {
     return surface.project(somewhere(surface, 1.5, random));
 }
 
-/// How f changes with each coordinate of a
+/// The derivatives of f with respect to the coordinates of a, as columns
 template <class F>
 Mat3 derivatives(const F& f, const Vec3& a)
 {
@@ -128,7 +128,7 @@ Mat3 derivatives(const F& f, const Vec3& a)
 
 }  // namespace
 
-TEST_CASE("the derivatives of a surface are those of its formula", "[contact][surface]")
+TEST_CASE("the derivatives of a surface agree with finite differences", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const auto& [name, s] : surfaces()) {
@@ -156,7 +156,8 @@ TEST_CASE("the derivatives of a surface are those of its formula", "[contact][su
     }
 }
 
-TEST_CASE("the shape operator is symmetric, and turns the normal along the surface", "[contact][surface]")
+TEST_CASE("the shape operator is symmetric and equals the derivative of the normal on tangent vectors",
+          "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const auto& [name, s] : surfaces()) {
@@ -174,7 +175,7 @@ TEST_CASE("the shape operator is symmetric, and turns the normal along the surfa
     }
 }
 
-TEST_CASE("the size of the gradient is about 1 on a surface", "[contact][surface]")
+TEST_CASE("the gradient of a surface has a norm of about 1", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const auto& [name, s] : surfaces()) {
@@ -185,7 +186,7 @@ TEST_CASE("the size of the gradient is about 1 on a surface", "[contact][surface
     }
 }
 
-TEST_CASE("curvatures of closed form", "[contact][surface]")
+TEST_CASE("Gaussian, mean and normal curvatures agree with closed forms", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     const auto gauss = [](const Mat3& K) { return 0.5 * (K.trace() * K.trace() - (K * K).trace()); };
@@ -237,14 +238,14 @@ TEST_CASE("curvatures of closed form", "[contact][surface]")
     CHECK(Disk(0.5).normal_curvature({0.3, 0.4, 0}, Vec3(-0.8, 0.6, 0)) == Approx(2));
 }
 
-TEST_CASE("a quadric is the ellipsoid and the paraboloid and the cylinder of its equation",
+TEST_CASE("a quadric agrees with the ellipsoid, the paraboloid and the cylinder of the same equation",
           "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 D(0.9, 0.7, 1.2), o = random.vector();
     const Mat3 A = random.rotation();
     const double factor = std::exp(random.number(-3, 3));
-    /// G of a surface that is moved to o and turned by A
+    /// The quadric with the coefficients of G after a displacement by o and a rotation by A
     const auto moved = [&](const Mat3& Q_0, const Vec3& b_0, double c_0) {
         Mat3 Q = A * Q_0 * A.transpose();
         Q = 0.5 * (Q + Q.transpose()).eval();
@@ -269,13 +270,13 @@ TEST_CASE("a quadric is the ellipsoid and the paraboloid and the cylinder of its
     same(moved(Vec3(1, 1, 0).asDiagonal(), Vec3::Zero(), -0.25), Cylinder(0.5), 0.5);
 }
 
-TEST_CASE("every point inside a paraboloid has a nearest one on it", "[contact][surface]")
+TEST_CASE("the projection of points inside a paraboloid is the closest point", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 inside(random.number(-0.5, 0.5), random.number(-0.5, 0.5), random.number(1, 3));
     for (const auto& [R_x, R_y] : {std::pair(0.9, 0.7), std::pair(0.6, 0.8), std::pair(0.5, 0.5)}) {
         const Paraboloid s(R_x, R_y);
-        // on the axis and the planes of symmetry, and so near to them that squares vanish
+        // on the axis and the planes of symmetry, and so close to them that squares underflow
         for (const Vec3& mask : {Vec3(1, 1, 1), Vec3(1, 0, 1), Vec3(0, 1, 1), Vec3(0, 0, 1), Vec3(1, 0, 0.1),
                                  Vec3(0, 0, 0), Vec3(1e-200, 1e-12, 1), Vec3(1e-9, 1e-200, 1)}) {
             const Vec3 a = inside.cwiseProduct(mask), x = s.project(a);
@@ -289,7 +290,8 @@ TEST_CASE("every point inside a paraboloid has a nearest one on it", "[contact][
     }
 }
 
-TEST_CASE("a superquadric is an ellipsoid for exponents of 2 and has flat points above", "[contact][surface]")
+TEST_CASE("a superquadric is an ellipsoid for exponents of 2 and has flat points for larger exponents",
+          "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 10u)));
     const Vec3 D(0.9, 0.7, 1.2), u = random.unit();
@@ -306,7 +308,7 @@ TEST_CASE("a superquadric is an ellipsoid for exponents of 2 and has flat points
     CHECK((K - Vec3(0, D.x() / (D.y() * D.y()), 0).asDiagonal().toDenseMatrix()).norm() < 1e-14);
 }
 
-TEST_CASE("the support point has the direction for its gradient", "[contact][surface]")
+TEST_CASE("the gradient at the support point has the given direction", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const auto& [name, s] : surfaces()) {
@@ -322,11 +324,11 @@ TEST_CASE("the support point has the direction for its gradient", "[contact][sur
     CHECK_THROWS_AS(Torus(1, 0.2).support(Vec3::UnitZ()), lie::NumericalFailure);
 }
 
-TEST_CASE("no point of a surface is nearer than the projection", "[contact][surface]")
+TEST_CASE("the projection onto a surface is its closest point", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
     for (const auto& [name, s] : surfaces()) {
-        if (name == "disk") continue;  // goes to the rim, which is not all of G = 0
+        if (name == "disk") continue;  // a disk projects onto its rim, not onto G = 0
         INFO(name);
         const Vec3 outside = somewhere(*s, 2.5, random), near = point_on(*s, random) + random.vector(0.1);
         for (const Vec3& a : {outside, near}) {
@@ -338,13 +340,13 @@ TEST_CASE("no point of a surface is nearer than the projection", "[contact][surf
     }
 }
 
-TEST_CASE("every point inside an ellipsoid has a nearest one on it", "[contact][surface]")
+TEST_CASE("the projection of points inside an ellipsoid is the closest point", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 10u)));
     for (const Vec3& D : {Vec3(0.9, 0.7, 1.2), Vec3(0.5, 0.5, 1.0), Vec3(1, 0.4, 1), Vec3(0.8, 0.8, 0.8)}) {
         const Ellipsoid s(D);
         const Vec3 inside = D.cwiseProduct(random.vector(0.5));
-        // on the planes and the axes of symmetry, and so near to them that squares vanish
+        // on the planes and the axes of symmetry, and so close to them that squares underflow
         for (const Vec3& mask :
              {Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(0, 1, 1), Vec3(1, 0, 1), Vec3(0, 0, 1), Vec3(0, 1, 0),
               Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(1e-200, 1e-12, 1), Vec3(1, 1e-9, 1e-200)}) {
@@ -363,7 +365,7 @@ TEST_CASE("a disk projects onto its rim", "[contact][surface]")
     CHECK_THROWS_AS(Disk(0.5).project({0, 0, 1}), lie::NumericalFailure);
 }
 
-TEST_CASE("lengths along circles", "[contact][surface]")
+TEST_CASE("arc is the length along the circle for spheres and disks", "[contact][surface]")
 {
     const double angle = GENERATE(1e-9, 0.3, 2.0, std::numbers::pi);
     const double chord = 2 * 0.8 * std::sin(angle / 2);
@@ -387,7 +389,7 @@ TEST_CASE("a tangent basis is orthonormal and right-handed for every normal", "[
     }
 }
 
-TEST_CASE("surfaces without a size are refused", "[contact][surface]")
+TEST_CASE("surfaces with invalid dimensions are rejected", "[contact][surface]")
 {
     const auto refusal = [](auto make) {
         try {
@@ -414,7 +416,7 @@ TEST_CASE("surfaces without a size are refused", "[contact][surface]")
     CHECK(refusal([] { Torus(0, 1); }) ==
           "contact::Torus: the radius of the ring of a torus must be positive and finite, got 0");
     CHECK(refusal([] { Torus(1, 1); }) ==
-          "contact::Torus: the tube of a torus must be thinner than its ring, got 1");
+          "contact::Torus: the radius of the tube of a torus must be less than that of its ring, got 1");
     CHECK(refusal([] {
               Superquadric({1, -1, 1}, 3);
           }) == "contact::Superquadric: a semi-axis of a superquadric must be positive and finite, got -1");
@@ -431,16 +433,16 @@ TEST_CASE("surfaces without a size are refused", "[contact][surface]")
           "contact::ImplicitSurface: the size of a surface must be positive and finite, got 0");
 }
 
-TEST_CASE("quadrics that are no surface are refused", "[contact][surface]")
+TEST_CASE("quadrics that are not a regular surface are rejected", "[contact][surface]")
 {
     const Mat3 I = Mat3::Identity(), twice = Vec3(1, 1, 0).asDiagonal(), once = Vec3(0, 0, 1).asDiagonal();
     const Vec3 none = Vec3::Zero();
-    const std::string point = "it must be a surface, not a point, a line or a plane that it touches";
-    const std::string crossed = "it must not meet itself, as a double cone or two planes do";
-    const std::string empty = "it must have points: G has one sign";
-    CHECK(Quadric::fault(Mat3::Zero(), {0, 0, 1}, 1) == "its Q must not be zero: that is a plane");
-    CHECK(Quadric::fault(lie::tilde({0, 0, 1}) + I, none, -1) == "its Q must be symmetric");
-    CHECK(Quadric::fault(I, {0, NAN, 1}, 1) == "its coefficients must be finite");
+    const std::string point = "G = 0 must be a surface; it is a point, a line or a double plane";
+    const std::string crossed = "G = 0 must not intersect itself; it is a double cone or two planes";
+    const std::string empty = "G = 0 must have points; G does not change its sign";
+    CHECK(Quadric::fault(Mat3::Zero(), {0, 0, 1}, 1) == "Q must not be zero; use a plane");
+    CHECK(Quadric::fault(lie::tilde({0, 0, 1}) + I, none, -1) == "Q must be symmetric");
+    CHECK(Quadric::fault(I, {0, NAN, 1}, 1) == "the coefficients must be finite");
     CHECK(Quadric::fault(I, {1, 2, 3}, 14) == point);
     CHECK(Quadric::fault(twice, none, 0) == point);
     CHECK(Quadric::fault(once, {0, 0, 1}, 1) == point);
@@ -453,19 +455,22 @@ TEST_CASE("quadrics that are no surface are refused", "[contact][surface]")
     CHECK(Quadric::fault(once, none, -1).empty());
     CHECK(Quadric::fault(Vec3(1, -1, 0).asDiagonal(), none, 1).empty());
     CHECK_THROWS_WITH(Quadric(I, none, 1),
-                      "contact::Quadric: of a quadric, it must have points: G has one sign, "
+                      "contact::Quadric: G = 0 must have points; G does not change its sign, "
                       "got Q = [1, 0, 0; 0, 1, 0; 0, 0, 1], b = 0 0 0, c = 1");
 }
 
-TEST_CASE("where the gradient vanishes there is no normal", "[contact][surface]")
+TEST_CASE("the normal is undefined where the gradient vanishes", "[contact][surface]")
 {
-    CHECK_THROWS_WITH(Ellipsoid({1, 2, 3}).normal({0, 0, 0}), "a surface has no normal at (0, 0, 0)");
+    CHECK_THROWS_WITH(Ellipsoid({1, 2, 3}).normal({0, 0, 0}),
+                      "a surface has no normal at (0, 0, 0): the gradient of G vanishes");
     CHECK_THROWS_AS(Torus(1, 0.2).normal({0, 0, 0.1}), lie::NumericalFailure);
-    CHECK_THROWS_WITH(Cone(0.5).normal({0, 0, 0}), "a surface has no normal at (0, 0, 0)");
-    CHECK_THROWS_WITH(Cone(0.5).shape_operator({0, 0, -1}), "a surface has no normal at (0, 0, -1)");
+    CHECK_THROWS_WITH(Cone(0.5).normal({0, 0, 0}),
+                      "a surface has no normal at (0, 0, 0): the gradient of G vanishes");
+    CHECK_THROWS_WITH(Cone(0.5).shape_operator({0, 0, -1}),
+                      "a surface has no normal at (0, 0, -1): the gradient of G vanishes");
     CHECK_THROWS_WITH(Cone(0.5).project({0.1, 0, -1}),
-                      "the apex of a cone is its nearest point to (0.1, 0, -1), "
-                      "and has no normal");
+                      "the closest point of a cone to (0.1, 0, -1) is its apex, "
+                      "where the normal is undefined");
     CHECK_THROWS_AS(Cone(0.5).project({0, 0, 1}), lie::NumericalFailure);
     CHECK_THROWS_AS(Cylinder(1).shape_operator({0, 0, 1}), lie::NumericalFailure);
     CHECK_THROWS_AS(Sphere(1).project({0, 0, 0}), lie::NumericalFailure);

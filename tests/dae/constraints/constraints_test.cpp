@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Every block: its variation, ν and γ against differences of Φ, its pattern, and the published matrix forms.
+/// All blocks: variations, ν and γ compared with differences of Φ and with the published matrix forms;
+/// patterns.
 
 #include "dae/constraints/cd.hpp"
 #include "dae/constraints/d.hpp"
@@ -30,7 +31,7 @@ Named named(const std::string& name, B block)
     return {name, std::make_unique<B>(std::move(block))};
 }
 
-/// Every kind of block, with random vectors and a moving driver; add the next one here.
+/// All types of blocks with random vectors and a driver that depends on time. Add new types here.
 std::vector<Named> blocks(int i, int j, Random& random)
 {
     const Driver f("1.3 + 0.4*sin(2*t) + 0.2*t^2"), g("0.7*t + 0.5*sin(3*t)");
@@ -45,7 +46,8 @@ std::vector<Named> blocks(int i, int j, Random& random)
     return all;
 }
 
-/// The same along coordinate axes and through centres of mass, where derivatives vanish that do not elsewhere
+/// The same with vectors along coordinate axes and points at centres of mass, for which more derivatives
+/// vanish
 std::vector<Named> blocks_on_axes(int i, int j)
 {
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
@@ -63,7 +65,7 @@ std::vector<Named> blocks_on_axes(int i, int j)
     return all;
 }
 
-/// The two bodies of a block: both moving, or one of them the ground
+/// The two bodies of a block. One of them may be the ground.
 struct Pair {
     int i, j;
     Motion bi, bj;
@@ -88,7 +90,7 @@ Vec12 row(const Variation& v)
 
 }  // namespace
 
-TEST_CASE("the variation of a block is the derivative of its phi", "[dae][constraints]")
+TEST_CASE("the first variation of a block is the derivative of phi", "[dae][constraints]")
 {
     Random random(GENERATE(range(1u, 11u)));
     const Pair pair(GENERATE(0, 1, 2), random);
@@ -107,7 +109,7 @@ TEST_CASE("the variation of a block is the derivative of its phi", "[dae][constr
     }
 }
 
-TEST_CASE("nu and gamma are what is missing in the time derivatives of phi", "[dae][constraints]")
+TEST_CASE("nu and gamma complete the first and second time derivatives of phi", "[dae][constraints]")
 {
     Random random(GENERATE(range(11u, 21u)));
     const Pair pair(GENERATE(0, 1, 2), random);
@@ -120,14 +122,15 @@ TEST_CASE("nu and gamma are what is missing in the time derivatives of phi", "[d
         const auto phi = [&](double tau) { return pair.phi_after(*n.block, t, tau); };
         const Vec12 v = row(n.block->variation(bi, bj, t));
         INFO(n.name);
-        // differences lose 1e-16/h², and h⁴/90 of a sixth derivative that reaches 1e3 at these speeds
+        // errors of the differences: 1e-16/h², and h⁴/90 times a sixth derivative of up to 1e3 at these
+        // speeds
         CHECK(v.dot(velocity) - n.block->nu(bi, bj, t) == Approx(tests::derivative(phi, 5e-4)).margin(1e-8));
         CHECK(v.dot(acceleration) - n.block->gamma(bi, bj, t) ==
               Approx(tests::second_derivative(phi, 1e-3)).epsilon(1e-8).margin(1e-7));
     }
 }
 
-TEST_CASE("the second variation of a block is the derivative of its variation", "[dae][constraints]")
+TEST_CASE("the second variation of a block is the derivative of its first variation", "[dae][constraints]")
 {
     Random random(GENERATE(range(51u, 61u)));
     const Pair pair(GENERATE(0, 1, 2), random);
@@ -151,7 +154,7 @@ TEST_CASE("the second variation of a block is the derivative of its variation", 
                                return n.block->nu(a, b, t);
                            })).margin(1e-9));
         }
-        // Off the diagonal it is symmetric; within a body it lacks symmetry by tilde(pi).
+        // The blocks of two bodies are symmetric. The rotational block H of one body has H - Hᵀ = tilde(pi).
         const Variation v = n.block->variation(pair.bi, pair.bj, t);
         Mat12 lack = exact - exact.transpose();
         lack.block<3, 3>(3, 3) -= tilde(v.pi_i);
@@ -167,7 +170,7 @@ TEST_CASE("the variation of gamma is its derivative", "[dae][constraints]")
     const Pair pair(GENERATE(0, 1, 2), random);
     const double t = random.number(0, 2);
     using Vec24 = Eigen::Matrix<double, 24, 1>;
-    const auto all = [](const GammaChange& g) {
+    const auto all = [](const GammaDerivatives& g) {
         Vec24 out;
         out << g.i.r, g.i.theta, g.i.rdot, g.i.omega, g.j.r, g.j.theta, g.j.rdot, g.j.omega;
         return out;
@@ -194,7 +197,8 @@ TEST_CASE("the variation of gamma is its derivative", "[dae][constraints]")
     }
 }
 
-TEST_CASE("the pattern of a block hides no derivative and holds no needless one", "[dae][constraints]")
+TEST_CASE("the pattern of a block contains exactly the derivatives that can differ from zero",
+          "[dae][constraints]")
 {
     Random random(GENERATE(range(21u, 26u)));
     std::vector<Named> all = blocks(0, 1, random);
@@ -212,9 +216,9 @@ TEST_CASE("the pattern of a block hides no derivative and holds no needless one"
     }
 }
 
-TEST_CASE("the blocks agree with their matrix forms", "[dae][constraints]")
+TEST_CASE("the blocks agree with their published matrix forms", "[dae][constraints]")
 {
-    // A second source: the table of first variations and right-hand sides, written with tilde matrices.
+    // Independent source: the table of first variations and right sides in matrix form.
     Random random(GENERATE(range(31u, 41u)));
     const Pair pair(GENERATE(0, 1, 2), random);
     const Motion &bi = pair.bi, &bj = pair.bj;
@@ -251,9 +255,9 @@ TEST_CASE("the blocks agree with their matrix forms", "[dae][constraints]")
     check("CD", CD(c, pair.i, s, pair.j, q, f), -ct, ct * Ai * tilde(s), ct, -ct * Aj * tilde(q), -c.dot(dq));
 }
 
-TEST_CASE("a driven hinge is a dot product with a vector that turns with the driver", "[dae][constraints]")
+TEST_CASE("a driven hinge is a dot product with a vector that rotates with the driver", "[dae][constraints]")
 {
-    // The road by a third body that turns in body i about the axis u × u' by g(t): DP1 between it and body j.
+    // Comparison with DP1 between body j and a third body that rotates in body i about u × u' by g(t).
     Random random(GENERATE(range(41u, 46u)));
     const Pair pair(0, random);
     const Mat3 frame = random.rotation();
@@ -273,28 +277,28 @@ TEST_CASE("a driven hinge is a dot product with a vector that turns with the dri
     CHECK((of_hinge.pi_i - R * of_dot.pi_i).norm() < 1e-15);
     CHECK((of_hinge.pi_j - of_dot.pi_j).norm() < 1e-15);
     CHECK(hinge.nu(pair.bi, pair.bj, t) == Approx(-g.fdot(t) * of_dot.pi_i.dot(axis)).margin(1e-14));
-    // ω̄̇ of the third body beyond R^T ω̄̇_i is g'' axis - g' axis × R^T ω̄_i
+    // ω̄̇ of the third body is R^T ω̄̇_i + g'' axis - g' axis × R^T ω̄_i.
     const Vec3 omegadot_bar = g.fddot(t) * axis - g.fdot(t) * axis.cross(R.transpose() * pair.bi.omega_bar);
     CHECK(hinge.gamma(pair.bi, pair.bj, t) ==
           Approx(dot.gamma(turning, pair.bj, t) - of_dot.pi_i.dot(omegadot_bar)).margin(2e-14));
 }
 
-TEST_CASE("a block objects to data it is singular for", "[dae][constraints]")
+TEST_CASE("a block rejects data for which it is singular", "[dae][constraints]")
 {
     const Motion m;
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), O = Vec3::Zero();
-    CHECK(DP1(0, X, 1, Y).objection(m, m, 0).empty());
-    CHECK(DP1(0, 2 * X, 1, Y, 1.9).objection(m, m, 0).empty());
-    CHECK_THAT(DP1(0, X, 1, Y, 1.1).objection(m, m, 0), Catch::Contains("got 1.1"));
-    CHECK_THAT(DP1(0, X, 1, Y, -1.0).objection(m, m, 0), Catch::Contains("parallel"));
-    CHECK_THAT(DP1(0, X, 1, Y, Driver("cos(t)")).objection(m, m, 0), Catch::Contains("parallel"));
-    CHECK(DP1(0, X, 1, Y, Driver("cos(t)")).objection(m, m, 1).empty());
-    CHECK(D(0, X, 1, Y, 2.0).objection(m, m, 0).empty());
-    CHECK_THAT(D(0, X, 1, Y, 0.0).objection(m, m, 0), Catch::Contains("got 0"));
-    CHECK_THAT(D(0, X, 1, Y, Driver("1-t")).objection(m, m, 3), Catch::Contains("got -2"));
-    // a vector of length zero makes a row of zeros
-    CHECK_THAT(DP1(0, O, 1, Y).objection(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(DP1(0, X, 1, O).objection(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(DP2(0, O, X, 1, Y).objection(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(CD(O, 0, X, 1, Y).objection(m, m, 0), Catch::Contains("length zero"));
+    CHECK(DP1(0, X, 1, Y).start_error(m, m, 0).empty());
+    CHECK(DP1(0, 2 * X, 1, Y, 1.9).start_error(m, m, 0).empty());
+    CHECK_THAT(DP1(0, X, 1, Y, 1.1).start_error(m, m, 0), Catch::Contains("got 1.1"));
+    CHECK_THAT(DP1(0, X, 1, Y, -1.0).start_error(m, m, 0), Catch::Contains("parallel"));
+    CHECK_THAT(DP1(0, X, 1, Y, Driver("cos(t)")).start_error(m, m, 0), Catch::Contains("parallel"));
+    CHECK(DP1(0, X, 1, Y, Driver("cos(t)")).start_error(m, m, 1).empty());
+    CHECK(D(0, X, 1, Y, 2.0).start_error(m, m, 0).empty());
+    CHECK_THAT(D(0, X, 1, Y, 0.0).start_error(m, m, 0), Catch::Contains("got 0"));
+    CHECK_THAT(D(0, X, 1, Y, Driver("1-t")).start_error(m, m, 3), Catch::Contains("got -2"));
+    // with a vector of length zero the row is zero
+    CHECK_THAT(DP1(0, O, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
+    CHECK_THAT(DP1(0, X, 1, O).start_error(m, m, 0), Catch::Contains("length zero"));
+    CHECK_THAT(DP2(0, O, X, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
+    CHECK_THAT(CD(O, 0, X, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Forces: minus the gradient of their potential, action and reaction, power of dampers, turns of torsion
-/// springs.
+/// Forces: negative gradient of the potential energy, action and reaction, power of dampers, revolutions of
+/// torsion springs.
 
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/model.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/random_motion.hpp"
@@ -42,7 +45,7 @@ Vec3 total_force(const lie::Loads& l)
     return sum;
 }
 
-/// About the origin, global frame
+/// Moment about the origin, global frame
 Vec3 total_moment(const lie::Loads& l, const State& x)
 {
     Vec3 sum = Vec3::Zero();
@@ -58,8 +61,8 @@ double power(const lie::Loads& l, const State& x)
     return sum;
 }
 
-/// Two bodies turned about a common axis, axis_i in the first and axis_j in the second, by `angle` against
-/// each other
+/// Two bodies with a common axis, axis_i in the first and axis_j in the second. twist() rotates the second
+/// about it.
 struct Twisted {
     State x;
     Vec3 axis_i, axis_j;
@@ -77,7 +80,7 @@ struct Twisted {
     void twist(double angle) { x.body[1].A = lie::exp(angle * (x.body[0].A * axis_i)) * A_j0; }
 };
 
-/// A user's own force: Newtonian attraction of a body to the origin, V = -k/r.
+/// A user-defined force: Newtonian attraction of a body to the origin, V = -k/r
 class Attraction final : public Force {
 public:
     Attraction(int body, double k) : body(body), k(k) {}
@@ -96,9 +99,9 @@ private:
 
 }  // namespace
 
-TEST_CASE("forces are minus the gradient of the potential energy", "[dae][forces]")
+TEST_CASE("forces are the negative gradient of the potential energy", "[dae][forces]")
 {
-    // all that have one, in one model, with its gravity
+    // all forces with a potential in one model, with gravity
     Random random(GENERATE(range(1u, 11u)));
     Twisted twisted(random);
     State& x = twisted.x;
@@ -129,7 +132,7 @@ TEST_CASE("forces are minus the gradient of the potential energy", "[dae][forces
         }
 }
 
-TEST_CASE("springs between two bodies obey Newton's third law", "[dae][forces]")
+TEST_CASE("springs between two bodies satisfy Newton's third law", "[dae][forces]")
 {
     Random random(GENERATE(range(11u, 21u)));
     const State x = random.state(2);
@@ -149,7 +152,7 @@ TEST_CASE("springs between two bodies obey Newton's third law", "[dae][forces]")
     CHECK(total_moment(of_torsion, twisted.x).norm() < 1e-13);
 }
 
-TEST_CASE("dampers take c ldot^2 and c thetadot^2 out of the motion", "[dae][forces]")
+TEST_CASE("dampers dissipate the power c ldot^2 and c thetadot^2", "[dae][forces]")
 {
     Random random(GENERATE(range(21u, 31u)));
     const State x = random.state(2);
@@ -171,7 +174,7 @@ TEST_CASE("dampers take c ldot^2 and c thetadot^2 out of the motion", "[dae][for
     CHECK(power(torsion, y) == Approx(-0.7 * thetadot * thetadot));
 }
 
-TEST_CASE("a spring pulls by k (l - l0) + c ldot + F(l, ldot, t)", "[dae][forces]")
+TEST_CASE("the force of a spring is k (l - l0) + c ldot + F(l, ldot, t)", "[dae][forces]")
 {
     // along x: l = 2, ldot = 0.5, so f = 10 (2 - 1.5) + 4 * 0.5 + (3*4 - 0.5 + 100*0.25) = 43.5
     State x;
@@ -191,11 +194,10 @@ TEST_CASE("a spring pulls by k (l - l0) + c ldot + F(l, ldot, t)", "[dae][forces
     CHECK_THROWS_AS(loads(spring, x), lie::NonFinite);
 }
 
-TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
+TEST_CASE("a torsion spring counts three revolutions forwards and backwards", "[dae][forces]")
 {
     Random random(GENERATE(range(31u, 34u)));
-    const double step =
-        GENERATE(0.1, 1.0, 2.3) * GENERATE(1, -1);  // just under three eighths of a turn is 2.356
+    const double step = GENERATE(0.1, 1.0, 2.3) * GENERATE(1, -1);  // 3/8 of a revolution is 2.356
     const bool first_is_ground = GENERATE(true, false);
     Twisted twisted(random);
     State& x = twisted.x;
@@ -217,11 +219,11 @@ TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
         const double angle = step * (k <= n ? k : 2 * n - k);
         twisted.twist(angle);
         CHECK(spring.angle(x) == Approx(angle).margin(1e-13));
-        CHECK(x.discrete_state == before.discrete_state);  // a step that is thrown away leaves no trace
+        CHECK(x.discrete_state == before.discrete_state);  // a rejected step does not change the state
         model.accepted(before, x);
         CHECK(spring.angle(x) == Approx(angle).margin(1e-13));
         CHECK(spring.potential_energy(x) == Approx(std::pow(angle - 0.5, 2)).margin(1e-12));
-        // n = k (theta - theta_0) along the axis on body i, the opposite on body j, which is drawn back
+        // n = k (theta - theta_0) acts along the axis on body i, and -n on body j
         const Vec3 axis = x.body[0].A * twisted.axis_i;
         const Vec3 n_j = x.body[1].A * loads(spring, x).n_bar[1];
         CHECK((n_j + 2 * (angle - 0.5) * axis).norm() < 1e-12);
@@ -229,7 +231,7 @@ TEST_CASE("a torsion spring counts three turns there and back", "[dae][forces]")
     CHECK(x.discrete_state[0] == 0);
 }
 
-TEST_CASE("a torsion spring refuses axes that are none or not parallel", "[dae][forces]")
+TEST_CASE("a torsion spring rejects axes that are zero or not parallel", "[dae][forces]")
 {
     State x;
     x.body.resize(2);
@@ -241,7 +243,7 @@ TEST_CASE("a torsion spring refuses axes that are none or not parallel", "[dae][
     CHECK_THROWS_AS(TorsionSpring(0, X, 1, -X, 1, 0, 0, x), lie::InvalidInput);
 }
 
-TEST_CASE("prescribed loads act in the frame they are given in", "[dae][forces]")
+TEST_CASE("prescribed loads act in their frame", "[dae][forces]")
 {
     Random random(GENERATE(range(41u, 46u)));
     const State x = random.state(2);
@@ -265,7 +267,7 @@ TEST_CASE("prescribed loads act in the frame they are given in", "[dae][forces]"
     CHECK(n_global.F[1].norm() + n_body.F[1].norm() == 0);
 }
 
-TEST_CASE("a load on the ground or on a body that is not there is refused", "[dae][forces]")
+TEST_CASE("a load on the ground or on a missing body is rejected", "[dae][forces]")
 {
     const std::array<Expression, 3> one{Expression("1"), Expression("1"), Expression("1")};
     const Vec3 O = Vec3::Zero();
@@ -279,9 +281,9 @@ TEST_CASE("a load on the ground or on a body that is not there is refused", "[da
     CHECK(model.forces().size() == 1);
 }
 
-TEST_CASE("a force written by a user carries a body round a circle", "[dae][forces]")
+TEST_CASE("a user-defined central force gives a circular orbit", "[dae][forces]")
 {
-    // r = 1, k/m = 4: omega = 2, once round in pi seconds
+    // r = 1, k/m = 4: omega = 2, one revolution in pi seconds
     Model model;
     model.gravity.setZero();
     model.add({.name = "moon", .m = 0.5, .J_bar = Mat3::Identity()});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One world on several engines: packs of the CPU, particles and pairs one by one as a GPU takes them, and a GPU where
-// there is one. All have the same bits.
+// The same world on several engines: packs of the CPU, scalar loops of the GPU executed on the CPU, and a GPU
+// if there is one. All results are bitwise equal.
 #include "granular/backend/engine_impl.hpp"
 #include "granular/core/loops.hpp"
 #include "granular/core/neighbours_impl.hpp"
@@ -20,13 +20,13 @@ namespace {
 
 constexpr double R = 1e-3;
 
-/// What a GPU does, on this CPU
-struct OneByOne : granular::par::Cpu {};
+/// A back end with the scalar loops of the GPU, on the CPU
+struct ScalarBackend : granular::par::Cpu {};
 
 Material steel() { return {"steel", 7800, 2e8, 0.3}; }
 
-/// Two materials with laws of every kind between them, in a box that is periodic along x, with a plate that falls on them
-/// and a drum that turns
+/// Two materials with laws of all types, in a box that is periodic along x, with a falling plate and a
+/// rotating drum
 std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
 {
     WorldOptions o;
@@ -67,8 +67,8 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     return world.to_bytes("");
 }
 
-/// n³ grains that fall into each other while neighbours are looked for often
-std::string crowd(std::unique_ptr<Engine> engine, int n)
+/// n³ particles in a dense packing with a small skin, so that the neighbour list is rebuilt often
+std::string dense_packing(std::unique_ptr<Engine> engine, int n)
 {
     WorldOptions o;
     const double width = 2.05 * R * n;
@@ -91,17 +91,17 @@ std::string crowd(std::unique_ptr<Engine> engine, int n)
 
 }  // namespace
 
-TEST_CASE("packs have the bits of particles that are taken one by one", "[granular][engine]")
+TEST_CASE("packs and scalar loops give bitwise equal results", "[granular][engine]")
 {
     const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung);
     const std::string packs = run(granular::make_engine({}), scheme);
-    CHECK(packs == run(std::make_unique<granular::EngineOn<OneByOne>>(), scheme));
+    CHECK(packs == run(std::make_unique<granular::EngineOn<ScalarBackend>>(), scheme));
     if (scheme == Scheme::symplectic_euler)
-        CHECK(crowd(granular::make_engine({}), 9) ==
-              crowd(std::make_unique<granular::EngineOn<OneByOne>>(), 9));
+        CHECK(dense_packing(granular::make_engine({}), 9) ==
+              dense_packing(std::make_unique<granular::EngineOn<ScalarBackend>>(), 9));
 }
 
-TEST_CASE("a GPU has the bits of the CPU where there is one, and says why not where there is none",
+TEST_CASE("a GPU and the CPU give bitwise equal results; without a GPU the reason is reported",
           "[granular][engine]")
 {
     std::string why;
@@ -114,8 +114,8 @@ TEST_CASE("a GPU has the bits of the CPU where there is one, and says why not wh
     for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung})
         CHECK(run(granular::make_engine({}), scheme) ==
               run(granular::make_engine({granular::Device::cuda, 0}), scheme));
-    CHECK(crowd(granular::make_engine({}), 70) ==
-          crowd(granular::make_engine({granular::Device::cuda, 0}), 70));
+    CHECK(dense_packing(granular::make_engine({}), 70) ==
+          dense_packing(granular::make_engine({granular::Device::cuda, 0}), 70));
     CHECK_THROWS_AS(granular::make_engine({granular::Device::cuda, static_cast<int>(names.size())}),
                     granular::DeviceError);
 }

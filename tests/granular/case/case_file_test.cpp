@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a case file says is what is run; what makes no sense is refused with its place.
+// Reading of case files: entries, defaults, changes of entries, and errors with their place.
 #include "granular/case/case_file.hpp"
 #include "granular/case/fill.hpp"
 #include "granular/files.hpp"
@@ -39,7 +39,7 @@ std::string with(const std::string& pointer, const ordered_json& value)
     return c.dump();
 }
 
-/// What read_case says of a case, without line and column
+/// Message of read_case without line and column; "nothing" if the case is accepted
 std::string refusal(const std::string& text, const granular::Environment& environment = {})
 {
     try {
@@ -53,7 +53,7 @@ std::string refusal(const std::string& text, const granular::Environment& enviro
 
 }  // namespace
 
-TEST_CASE("a case is what its file says", "[granular][case]")
+TEST_CASE("a case has the values of its file", "[granular][case]")
 {
     const granular::Case c = read_case(good().dump(), "file");
     CHECK(c.h == 1e-5);
@@ -63,7 +63,7 @@ TEST_CASE("a case is what its file says", "[granular][case]")
     CHECK(c.boundaries == std::vector<std::string>{"boundary 0"});
 }
 
-TEST_CASE("the example is a case", "[granular][case]")
+TEST_CASE("the example case is valid", "[granular][case]")
 {
     const std::string file = std::string(HILDA_SOURCE_DIR) + "/granular/cases/bed.json";
     const granular::Case c = read_case(granular::read_file(file, 10000), file);
@@ -71,7 +71,7 @@ TEST_CASE("the example is a case", "[granular][case]")
     CHECK(c.boundaries == std::vector<std::string>{"box-x", "box+x", "box-y", "box+y", "box-z"});
 }
 
-TEST_CASE("a box is planes around its inside, less those that are open", "[granular][case]")
+TEST_CASE("a box consists of planes, without its open sides", "[granular][case]")
 {
     ordered_json c = good();
     c["boundaries"][0] = {{"name", "bin"},           {"type", "box"},      {"low", {0.1, 0.2, 0.3}},
@@ -79,7 +79,7 @@ TEST_CASE("a box is planes around its inside, less those that are open", "[granu
                           {"open", {"+z", "-x"}},    {"material", "steel"}};
     granular::Case box = read_case(c.dump(), "file");
     CHECK(box.boundaries == std::vector<std::string>{"bin+x", "bin-y", "bin+y", "bin-z"});
-    const double away[] = {0.4, 0.3, 0.3, 0.15};  // of the middle
+    const double away[] = {0.4, 0.3, 0.3, 0.15};  // from the middle
     for (int k = 0; k < 4; ++k) {
         const granular::Boundary& b = box.world->boundary(k);
         CHECK(granular::nearest(b, {0.5, 0.5, 0.5}).distance == Approx(away[k]));
@@ -88,7 +88,7 @@ TEST_CASE("a box is planes around its inside, less those that are open", "[granu
     }
 }
 
-TEST_CASE("boundaries move as formulas say", "[granular][case]")
+TEST_CASE("boundaries move as their formulas prescribe", "[granular][case]")
 {
     const auto compile = [](const std::string& text) -> granular::Formula {
         if (text == "sin(9*t)") return [](double t) { return std::sin(9 * t); };
@@ -119,7 +119,7 @@ TEST_CASE("boundaries move as formulas say", "[granular][case]")
     CHECK(w.boundary(0).r.y == 0.5);
     CHECK(w.boundary(0).r.z == Approx(z).epsilon(1e-14));
     CHECK(w.boundary(1).r.z == Approx(z).epsilon(1e-5));  // h² 9²/24 = 3.4e-6
-    // the angle is sin(9 t) too
+    // the angle is sin(9 t) as well
     CHECK(std::atan2(w.boundary(2).axis.y, w.boundary(2).axis.x) == Approx(z - M_PI).epsilon(1e-5));
     CHECK(w.boundary(3).r.z == Approx(z - 3).epsilon(1e-14));
     CHECK(w.boundary(8).r.z == Approx(z + 3).epsilon(1e-14));
@@ -134,23 +134,25 @@ TEST_CASE("boundaries move as formulas say", "[granular][case]")
     refused("v", {0, "sin(9*t)"}, "v: must be three numbers or formulas, got [0,\"sin(9*t)\"]");
     refused("v", {0, "sin(9*t)", nullptr}, "v/2: must be a finite number or a formula, got null");
     c["boundaries"][0]["r"] = {0, 0, "sin(9*t)"};
-    refused("v", {0, 0, 1}, "v: must not stand where r is a formula, got [0,0,1]");
-    CHECK(refusal(c.dump()) ==
-          "file: /boundaries/0/r/2: must be a number where nobody reads formulas, got \"sin(9*t)\"");
+    refused("v", {0, 0, 1}, "v: must not be given if r is a formula, got [0,0,1]");
+    CHECK(
+        refusal(c.dump()) ==
+        "file: /boundaries/0/r/2: must be a number, because this program has no formulas, got \"sin(9*t)\"");
     refused("r", {0, 0, "1/t"}, "r: must be finite at t = 0, got [0,0,\"1/t\"]");
     c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "1/t"};
     CHECK_NOTHROW(
-        read_case(c.dump(), "file", {.compile = compile}));  // which is asked for in the middle of steps
+        read_case(c.dump(), "file", {.compile = compile}));  // v is evaluated at the middle of a step
     c["boundaries"][0]["mass"] = 1;
-    CHECK_THAT(refusal(c.dump(), {.compile = compile}),
-               Catch::StartsWith("file: /boundaries/0/v: must be finite at t = 0 where a tool is free"));
+    CHECK_THAT(
+        refusal(c.dump(), {.compile = compile}),
+        Catch::StartsWith("file: /boundaries/0/v: must be finite at t = 0 if the boundary has a mass"));
     c["boundaries"][0].erase("mass");
     c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "sqrt(min(0,0.05-t))"};
     auto bursting = read_case(c.dump(), "file", {.compile = compile});
     CHECK_THROWS_WITH(bursting.world->step(100), "boundary 'boundary 0': v is not finite at t = 0.0505 s");
 }
 
-TEST_CASE("a tool with a mass falls where it is free and is told where it is not", "[granular][case]")
+TEST_CASE("a tool falls along its free axes and follows its formulas along the others", "[granular][case]")
 {
     const auto compile = [](const std::string&) -> granular::Formula {
         return [](double t) { return 30 * t; };
@@ -170,13 +172,13 @@ TEST_CASE("a tool with a mass falls where it is free and is told where it is not
     const granular::Boundary& b = falling.world->boundary(0);
     CHECK(b.v.x == 0.25);
     CHECK(b.v.y == Approx(30 * 9.5e-3));
-    CHECK(b.v.z == Approx(-9.81 * 0.01 + 30. / 3 * 1e-6 * 45));  // F of the beginnings of ten steps
+    CHECK(b.v.z == Approx(-9.81 * 0.01 + 30. / 3 * 1e-6 * 45));  // F at the beginnings of ten steps
     c["boundaries"][0].erase("mass");
     CHECK_THAT(refusal(c.dump(), {.compile = compile}),
                Catch::StartsWith("file: /boundaries/0/free: unknown key"));
 }
 
-TEST_CASE("particles have replicas, and forces from outside", "[granular][case]")
+TEST_CASE("particles can have a replica and an applied force", "[granular][case]")
 {
     ordered_json c = good();
     c["gravity"] = {0, 0, 0};
@@ -189,7 +191,7 @@ TEST_CASE("particles have replicas, and forces from outside", "[granular][case]"
                   {"material", "glass"},
                   {"replica", 1}}};
     auto all = read_case(c.dump(), "file");
-    all.world->step(100);  // though two of them are in one place
+    all.world->step(100);  // two particles are at the same position
     const auto p = all.world->particles();
     REQUIRE(p.size() == 3);
     CHECK(p[1].replica == 2);
@@ -200,7 +202,7 @@ TEST_CASE("particles have replicas, and forces from outside", "[granular][case]"
     CHECK(refusal(c.dump()) == "file: /particles/1/replica: must be below 65536, got 65536");
 }
 
-TEST_CASE("what is wrong in a case is named with its place and value", "[granular][case]")
+TEST_CASE("errors in a case are reported with their place and value", "[granular][case]")
 {
     const std::tuple<std::string, ordered_json, std::string> wrong[] = {
         {"/hilda_case", 2, "/hilda_case: must be 1"},
@@ -210,17 +212,18 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
         {"/domain/high", {1, 1}, "/domain/high: must be three numbers, got [1,1]"},
         {"/domain/high/2", -1, "/domain/high/2: must be above the low end, got -1.0"},
         {"/domain/periodic", {true, 1, false}, "/domain/periodic/1: must be true or false, got 1"},
+        {"/interval", -1, "/interval: must be positive, got -1"},
         {"/every", -1, "/every: must be positive, got -1"},
-        {"/laws/0/mu_s", 0.2, "/laws/0/mu_s: must not be below mu, got 0.2"},
+        {"/laws/0/mu_s", 0.2, "/laws/0/mu_s: must not be less than mu, got 0.2"},
         {"/laws/1/rolling",
          {{"law", "epsd"}, {"mu_r", 0.1}, {"eta_r", 0}},
-         "/laws/1/tangential: must not be none where a spring resists rolling or spin"},
-        {"/boundaries/0/name", "a,b", "/boundaries/0/name: must be without commas, quotes and line ends"},
+         "/laws/1/tangential: must not be none with this rolling or spin law"},
+        {"/boundaries/0/name", "a,b", "/boundaries/0/name: must not contain commas, quotes or line ends"},
         {"/integrator", "euler", "/integrator: must be one of symplectic-euler, velocity-verlet"},
         {"/materials/0/E", -7e7, "/materials/0/E: must be positive, got -70000000"},
         {"/materials/0/nu", 0.5, "/materials/0/nu: must be between -1 and 0.5, got 0.5"},
         {"/materials/1/density", 0, "/materials/1/density: must be positive, got 0"},
-        {"/laws/0/restitution", 1.2, "/laws/0/restitution: must be in (0, 1], got 1.2"},
+        {"/laws/0/restitution", 1.2, "/laws/0/restitution: must be in [0, 1], got 1.2"},
         {"/laws/0/between/1", "brass", "/laws/0/between/1: no material has this name, got \"brass\""},
         {"/laws/0/tangential/law", "sticky", "/laws/0/tangential/law: must be one of none, coulomb, mindlin"},
         {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key"},
@@ -236,20 +239,49 @@ TEST_CASE("what is wrong in a case is named with its place and value", "[granula
         INFO(pointer);
         CHECK_THAT(refusal(with(pointer, value)), Catch::StartsWith("file: " + message));
     }
-    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": }", "file"), "file:2:6: is no JSON");
-    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": ", "file"), "file:2:6: is no JSON");
+    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": }", "file"), "file:2:6: is not valid JSON");
+    CHECK_THROWS_WITH(read_case("{\"a\": 1,\n\"b\": ", "file"), "file:2:6: is not valid JSON");
     CHECK_THROWS_WITH(read_case(R"({"hilda_case": 1, "step": 1, "step": 2})", "file"),
-                      "file:1:30: the key \"step\" stands twice in one object");
+                      "file:1:30: the key \"step\" occurs twice in one object");
     CHECK_THROWS_WITH(
         read_case("{\"a\": {\"b\": [{\"c\": 1},\n  {\"c\": 1, \"d\": 2,\n   \"c\": 3}]}}", "file"),
-        "file:3:4: the key \"c\" stands twice in one object");
+        "file:3:4: the key \"c\" occurs twice in one object");
     CHECK_THROWS_WITH(read_case("{\"a\\\\\\\"b\": 1, \"a\\\\\\\"b\": 2}", "file"),
                       Catch::StartsWith("file:1:15: the key"));
     CHECK_THROWS_AS(read_case(std::string(100000, '['), "file"), granular::InvalidCase);
     CHECK_THROWS_AS(read_case(R"({"hilda_case": 1e400})", "file"), granular::InvalidCase);
 }
 
-TEST_CASE("a value of a text is found by its pointer", "[granular][case]")
+TEST_CASE("old names of keys are read with a notice, and written with the new name", "[granular][case]")
+{
+    ordered_json c = good();
+    c["every"] = 2e-3, c["frames_every"] = 5e-3, c["checkpoint_every"] = 1e-2;
+    const granular::Case old = read_case(c.dump(), "file");
+    CHECK(old.interval == 2e-3);
+    CHECK(old.frame_interval == 5e-3);
+    CHECK(old.checkpoint_interval == 1e-2);
+    REQUIRE(old.notices.size() == 3);
+    CHECK(old.source.with_location(old.notices[0]) ==
+          "file:" + granular::text_place(c.dump(), std::string("/every")) +
+              " (/every): every was renamed to interval; the old name is still read");
+    const ordered_json written = ordered_json::parse(old.source.text());
+    CHECK(written["interval"] == 2e-3);
+    CHECK_FALSE(written.contains("every"));
+    CHECK(read_case(old.source.text(), "again").notices.empty());
+
+    const granular::Environment set{.settings = {{"/every", "0.01", "--set /every=0.01"}}};
+    const granular::Case by_old_name = read_case(good().dump(), "file", set);
+    CHECK(by_old_name.interval == 0.01);
+    CHECK(by_old_name.notices.size() == 1);
+    const granular::Environment by_new{.settings = {{"/interval", "0.02", "--interval 0.02"}}};
+    CHECK(read_case(c.dump(), "file", by_new).interval == 0.02);
+
+    c["interval"] = 1e-3;
+    CHECK(refusal(c.dump()) ==
+          "file: /every: is the old name of interval, which is given as well; remove one of them");
+}
+
+TEST_CASE("the place of a value in the text is found by its pointer", "[granular][case]")
 {
     const std::string text =
         "{\"a\": {\"b]\\\"}\": [1, {\"x\": []}],\n   \"c\" : [[], \"]\", -1e5 ,[2,\n 33]]}, \"d\":{ }}\n";
@@ -276,7 +308,7 @@ TEST_CASE("a value of a text is found by its pointer", "[granular][case]")
                       "file:2:12 (/domain/low): is missing");
 }
 
-TEST_CASE("whatever happens to the bytes of a case, it is read or refused", "[granular][case]")
+TEST_CASE("a randomly changed case is read or rejected", "[granular][case]")
 {
     ordered_json c = good();
     c["fill"] = {{{"type", "poisson"},
@@ -318,14 +350,14 @@ TEST_CASE("whatever happens to the bytes of a case, it is read or refused", "[gr
     CHECK(refused > 500);
 }
 
-TEST_CASE("materials that may meet have a law, and grains do not begin in each other", "[granular][case]")
+TEST_CASE("materials in contact need a law, and initial overlaps are limited", "[granular][case]")
 {
-    const auto begin = [](const std::string& text) { granular::settle(read_case(text, "file")); };
+    const auto begin = [](const std::string& text) { granular::insert_particles(read_case(text, "file")); };
     CHECK_NOTHROW(begin(good().dump()));
     const std::string other = with("/particles/0/material", "steel");
     CHECK_THROWS_WITH(begin(other), "file:" + granular::text_place(other, std::string("/laws")) +
-                                        " (/laws): laws: there is none between two materials that may meet, "
-                                        "got 'steel' and 'steel'");
+                                        " (/laws): laws: no law is set between two materials that can be in "
+                                        "contact, got 'steel' and 'steel'");
     ordered_json two = good();
     two["particles"].push_back({{"r", {0.5, 0.5, 0.685}}, {"radius", 0.1}, {"material", "glass"}});
     CHECK_THROWS_WITH(begin(two.dump()),
@@ -347,7 +379,7 @@ TEST_CASE("materials that may meet have a law, and grains do not begin in each o
                                              Catch::Contains("is outside the domain along z"));
 }
 
-TEST_CASE("entries of a case are set, and what is wrong with them says so", "[granular][case]")
+TEST_CASE("entries of a case can be changed, and errors state the option", "[granular][case]")
 {
     ordered_json c = good();
     const ordered_json filling = {{"type", "lattice"}, {"low", {0, 0, 0.7}}, {"high", {1, 1, 1}},
@@ -357,7 +389,7 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
         return granular::Environment{.settings = {{pointer, value, "--set " + pointer}}};
     };
     const granular::Case plain = read_case(c.dump(), "file");
-    CHECK(plain.source.text() == c.dump());  // as it stands there
+    CHECK(plain.source.text() == c.dump());  // the text is unchanged
     CHECK(read_case(c.dump(), "file", set("/end", "0.25")).end == 0.25);
     CHECK(read_case(c.dump(), "file", set("/name", "a heap")).name == "a heap");
     CHECK(read_case(c.dump(), "file", set("/gravity", "[0, 0, 1]")).source.json()["gravity"][2] == 1);
@@ -375,13 +407,13 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
              " (/boundaries/0/material): no material has this name, got \"\" (from --set "
              "/boundaries/0)"},
         {"/materials/2/E", "1",
-         place("/materials") + " (/materials): --set /materials/2/E: there is no \"2\""},
+         place("/materials") + " (/materials): --set /materials/2/E: entry \"2\" does not exist"},
         {"/materials/-1/E", "1",
-         place("/materials") + " (/materials): --set /materials/-1/E: there is no \"-1\""},
-        {"/step/h", "1", place("/step") + " (/step): --set /step/h: there is no \"h\""},
+         place("/materials") + " (/materials): --set /materials/-1/E: entry \"-1\" does not exist"},
+        {"/step/h", "1", place("/step") + " (/step): --set /step/h: entry \"h\" does not exist"},
         {"/a~b", "1", "file:1:1 (/): --set /a~b: '~' is written ~0 in a pointer, and '/' in a key is ~1"},
         {"/end", "{\"a\": 1, \"a\": 2}",
-         place("/end") + " (/end): --set /end: the key \"a\" stands twice in one object"},
+         place("/end") + " (/end): --set /end: the key \"a\" occurs twice in one object"},
         {"/name", "\xff", place("/name") + " (/): --set /name: the value is not UTF-8"},
         {"step", "1", "file:1:1 (/): --set step: must be /json/pointer=VALUE"},
     };
@@ -395,7 +427,7 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
     }
     CHECK_THROWS_WITH(read_case(c.dump(), "file", set("/end", "1e400")), Catch::Contains("--set /end: "));
 
-    // of fills that are alike each is another
+    // equal fills get different seeds
     granular::Environment seeded{.seed = 7};
     const granular::Case sown = read_case(c.dump(), "file", seeded);
     CHECK(sown.source.json()["fill"][0]["seed"] == 7);
@@ -403,30 +435,31 @@ TEST_CASE("entries of a case are set, and what is wrong with them says so", "[gr
     const auto p = sown.world->particles();
     CHECK_FALSE(p[1].r == p[1 + (p.size() - 1) / 2].r);
     CHECK_FALSE(p[1].r == plain.world->particles()[1].r);
-    CHECK(read_case(good().dump(), "file", seeded).notices.size() == 1);  // there is nothing to sow
+    CHECK(read_case(good().dump(), "file", seeded).notices.size() == 1);  // the case has no fill
 }
 
-TEST_CASE("a step is measured by the Rayleigh time and by a collision", "[granular][case]")
+TEST_CASE("step limits are the Rayleigh time and the duration of a collision", "[granular][case]")
 {
     const granular::Case c = read_case(good().dump(), "file");
     const double G = 7e7 / (2 * 1.24);
     CHECK(c.world->step_limits().rayleigh ==
           Approx(M_PI * 0.1 * std::sqrt(2500 / G) / (0.1631 * 0.24 + 0.8766)));
-    // of glass on glass at 0.1 m/s, which is shorter than on the spring of steel (Johnson 1985, Sec. 11.4)
+    // glass on glass at 0.1 m/s, shorter than with the linear law of steel (Johnson 1985, Sec. 11.4)
     const double m_eff = 2500 * 4. / 3 * M_PI * 1e-3 / 2, R_eff = 0.05, E_eff = 7e7 / (2 * (1 - 0.24 * 0.24));
     const double collision = 2.87 * std::pow(m_eff * m_eff / (R_eff * E_eff * E_eff * 0.1), 0.2);
     CHECK(c.world->step_limits().collision == Approx(collision).epsilon(1e-6));
     CHECK(collision < M_PI * std::sqrt(m_eff / 1e4));
 }
 
-TEST_CASE("a restitution of zero is floored with a notice", "[granular][case]")
+TEST_CASE("a restitution of zero is raised to 1e-7 with a notice", "[granular][case]")
 {
     const granular::Case c = read_case(with("/laws/0/restitution", 0), "file");
     REQUIRE(c.notices.size() == 1);
-    CHECK(c.notices[0] == "/laws/0/restitution: 0 is taken as 1e-7, whose damping is finite");
+    CHECK(c.notices[0] == "/laws/0/restitution: 0 is replaced by 1e-7, because the damping of 0 is infinite");
 }
 
-TEST_CASE("a case that needs more memory than there is is refused before it takes any", "[granular][case]")
+TEST_CASE("a case that exceeds the available memory is rejected before memory is allocated",
+          "[granular][case]")
 {
     ordered_json c = good();
     c["fill"] = {{{"type", "lattice"},
@@ -437,14 +470,14 @@ TEST_CASE("a case that needs more memory than there is is refused before it take
                   {"spacing", 1}}};
     CHECK_THAT(refusal(c.dump(), {.memory = 64'000'000'000}),
                Catch::StartsWith("file: /fill: 1e+15 particles need about ") &&
-                   Catch::EndsWith(" GB of memory, and there are 64 GB"));
+                   Catch::EndsWith(" GB of memory; 64 GB are available"));
     CHECK_THAT(refusal(c.dump(), {.device_memory = 64'000'000'000}),
-               Catch::EndsWith(" GB of memory of the GPU, and there are 64 GB"));
+               Catch::EndsWith(" GB of memory of the GPU; 64 GB are available"));
     c["fill"][0]["count"] = 100;
     CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
     CHECK_THAT(refusal(c.dump(), {.memory = 100'000}),
                Catch::StartsWith("file: /fill: 101 particles need about ") &&
-                   Catch::EndsWith(" GB of memory, and there are 0.0001 GB"));
+                   Catch::EndsWith(" GB of memory; 0.0001 GB are available"));
     c["domain"]["high"] = {1, 1, 1e4};
     c["fill"][0]["low"] = {0, 0, 0.7};
     c["particles"] = ordered_json::array();
@@ -452,7 +485,7 @@ TEST_CASE("a case that needs more memory than there is is refused before it take
                Catch::StartsWith("file: /domain: ") && Catch::Contains("cells need about"));
 }
 
-TEST_CASE("a run goes on from the table that another left", "[granular][fill]")
+TEST_CASE("a run can start from the particle table of another run", "[granular][fill]")
 {
     ordered_json c = good();
     c["orientation"] = true;
@@ -492,24 +525,25 @@ TEST_CASE("a run goes on from the table that another left", "[granular][fill]")
         CHECK((begun[k].v - there[k].v).norm() <= 1e-9 * there[k].v.norm());
     }
     granular::write_file(file, table + "1,2\n");
-    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ':') &&
-                                      Catch::Contains("must have as many cells as there are names"));
+    CHECK_THAT(refusal(c.dump()),
+               Catch::StartsWith("file: /fill/0/file: " + file + ':') &&
+                   Catch::Contains("the number of cells must be that of the column names"));
     std::remove(file.c_str());
-    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ": is not there"));
+    CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ": does not exist"));
 }
 
-TEST_CASE("a table that does not tell of particles is refused with its line", "[granular][fill]")
+TEST_CASE("an invalid particle table is rejected with its line", "[granular][fill]")
 {
     const std::tuple<const char*, const char*> wrong[] = {
-        {"", "t: has no particles"},
-        {"x,y,z,radius\n", "t: has no particles"},
-        {"x,y,radius\n1,2,3\n", "t:2: there is no column z"},
+        {"", "t: contains no particles"},
+        {"x,y,z,radius\n", "t: contains no particles"},
+        {"x,y,radius\n1,2,3\n", "t:2: missing column z"},
         {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
         {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
         {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1.000000"},
-        {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: there is no column vy"},
-        {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be a number of a material, got '0.5'"},
-        {"x,y,z,radius\n1,2,3\n", "t:2: must have as many cells as there are names, 4, got 3"}};
+        {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: missing column vy"},
+        {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be the number of a material, got '0.5'"},
+        {"x,y,z,radius\n1,2,3\n", "t:2: the number of cells must be that of the column names, 4, got 3"}};
     for (const auto& [table, message] : wrong)
         CHECK_THROWS_WITH(granular::particles_of_csv(table, "t"), message);
     const auto all = granular::particles_of_csv("\r\n radius , z,y,x,colour\r\n1, 4,3 ,2,red\r\n", "t");
@@ -517,14 +551,14 @@ TEST_CASE("a table that does not tell of particles is refused with its line", "[
     CHECK(all[0].r == granular::Vec3{2, 3, 4});
 }
 
-TEST_CASE("no two particles of a filling overlap, and all are in their box", "[granular][fill]")
+TEST_CASE("particles of a fill do not overlap and are within its box", "[granular][fill]")
 {
-    const auto kind = GENERATE(granular::Filling::Kind::lattice, granular::Filling::Kind::hcp,
-                               granular::Filling::Kind::poisson);
-    granular::Filling f;
-    f.kind = kind;
+    const auto kind = GENERATE(granular::FillSpec::Type::lattice, granular::FillSpec::Type::hcp,
+                               granular::FillSpec::Type::poisson);
+    granular::FillSpec f;
+    f.type = kind;
     f.low = {0, 0, 0}, f.high = {0.02, 0.02, 0.02};
-    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (kind == granular::Filling::Kind::hcp ? 1 : 1.05),
+    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (kind == granular::FillSpec::Type::hcp ? 1 : 1.05),
     f.jitter = 1;
     const auto all = granular::fill(f);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -533,13 +567,13 @@ TEST_CASE("no two particles of a filling overlap, and all are in their box", "[g
             REQUIRE((all[i].r - all[j].r).norm() > 2e-3 * (1 - 1e-12));
     }
     const double packing = static_cast<double>(all.size()) * 4 / 3 * M_PI * 1e-9 / 8e-6;
-    CHECK(packing > (kind == granular::Filling::Kind::hcp       ? 0.55
-                     : kind == granular::Filling::Kind::lattice ? 0.37
-                                                                : 0.2));
+    CHECK(packing > (kind == granular::FillSpec::Type::hcp       ? 0.55
+                     : kind == granular::FillSpec::Type::lattice ? 0.37
+                                                                 : 0.2));
     CHECK(granular::fill(f)[5].r == all[5].r);
-    // every other row and layer of a crystal may be one shorter
-    CHECK(granular::estimate(f) == Approx(double(all.size())).epsilon(0.12));
-    f.most = 7;
+    // alternate rows and layers of a crystal may have one particle less
+    CHECK(granular::estimated_count(f) == Approx(double(all.size())).epsilon(0.12));
+    f.max_count = 7;
     const auto some = granular::fill(f);
     REQUIRE(some.size() == 7);
     CHECK(some[6].r.z == all[6].r.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boundaries: how far a point is from one, where to, and how fast it goes there.
+// Boundaries: signed distance, normal and velocity.
 #include "granular/core/boundary.hpp"
 
 #include <catch2/catch.hpp>
@@ -29,7 +29,7 @@ struct Random {
 
 Vec3 unit(const Vec3& a) { return (1 / a.norm()) * a; }
 
-/// Two axes across one
+/// Two unit vectors normal to the axis and to each other
 std::pair<Vec3, Vec3> across(const Vec3& axis)
 {
     const Vec3 u = unit(axis.cross(std::abs(axis.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, Boundary>> all()
             {"in a sphere", made(Shape::sphere, true)}};
 }
 
-/// Its surface, over s and t in [-1, 1]
+/// Parametrisation of the surface, s and t in [-1, 1]
 Vec3 surface(const Boundary& b, double s, double t)
 {
     const auto [u, w] = across(b.axis);
@@ -70,7 +70,7 @@ Vec3 surface(const Boundary& b, double s, double t)
             return b.r + 4 * s * u + 4 * t * w;
         case Boundary::Shape::cylinder:
             return b.r + b.radius * radial + 4 * t * b.axis;
-        case Boundary::Shape::cone:  // along its slant, from the tip on
+        case Boundary::Shape::cone:  // along a generator, from the apex on
             return b.r + 2 * (1 + t) * (b.sine * radial + b.cosine * b.axis);
         case Boundary::Shape::sphere:
             break;
@@ -78,7 +78,7 @@ Vec3 surface(const Boundary& b, double s, double t)
     return b.r + b.radius * (std::cos(pi / 2 * t) * radial + std::sin(pi / 2 * t) * b.axis);
 }
 
-/// The least f in [-1, 1], which may go round: on a grid, and on finer ones about the best
+/// Minimum of f on [-1, 1] by successive grid refinement; `round`: f is periodic
 template <class F>
 double least(const F& f, bool round)
 {
@@ -93,7 +93,8 @@ double least(const F& f, bool round)
     return lowest;
 }
 
-/// To all points of the surface: about the axis the least of the least along it, so that poles and tips are no traps
+/// Minimum distance to the surface: minimum over the meridians of the minimum along a meridian. Apices and
+/// poles, where the parametrisation is singular, are found as well.
 double least_distance(const Boundary& b, const Vec3& at)
 {
     const auto on_meridian = [&](double s) {
@@ -102,7 +103,7 @@ double least_distance(const Boundary& b, const Vec3& at)
     return least(on_meridian, b.shape != Boundary::Shape::plane);
 }
 
-/// Whether particles are on this side
+/// Whether a point is on the side of the particles
 bool on_the_side_of_particles(const Boundary& b, const Vec3& at)
 {
     const Vec3 d = at - b.r;
@@ -120,7 +121,7 @@ bool on_the_side_of_particles(const Boundary& b, const Vec3& at)
     return (d.norm() < b.radius) == (b.inside != 0);
 }
 
-/// Whether the point of the cone that is nearest to it is its tip
+/// Whether the apex is the point of the cone that is closest to a point
 bool at_tip(const Boundary& b, const Vec3& at)
 {
     const Vec3 d = at - b.r;
@@ -128,7 +129,7 @@ bool at_tip(const Boundary& b, const Vec3& at)
     return b.shape == Boundary::Shape::cone && along * b.cosine + far * b.sine < 0;
 }
 
-/// Points near each, on its axis, and for a cone behind its tip
+/// Random points around a boundary, and points near its axis behind r
 std::vector<Vec3> points(const Boundary& b)
 {
     Random random{std::mt19937(17)};
@@ -138,7 +139,7 @@ std::vector<Vec3> points(const Boundary& b)
     return at;
 }
 
-/// As it is after it has moved for dt: the midpoint's turning
+/// The boundary after a motion over dt, to first order in dt
 Boundary moved(Boundary b, double dt)
 {
     b.r += dt * b.v;
@@ -148,19 +149,19 @@ Boundary moved(Boundary b, double dt)
 
 }  // namespace
 
-TEST_CASE("the distance of a boundary is the least to any of its points", "[granular][shapes]")
+TEST_CASE("the distance of a boundary is the minimum distance to its points", "[granular][shapes]")
 {
     for (const auto& [name, b] : all()) {
         int of_tip = 0, beyond = 0;
         for (const Vec3& at : points(b)) {
             INFO(name << ", at " << at.x << " " << at.y << " " << at.z);
-            // behind its tip nothing is in a cone, and no distance is promised there but that it is beyond
+            // inside a cone, for points behind its apex, only the sign of the distance is specified
             if (b.inside != 0 && at_tip(b, at)) {
                 CHECK(nearest(b, at).distance < 0);
                 continue;
             }
             const double sign = on_the_side_of_particles(b, at) ? 1 : -1;
-            // the last grids are of 1e-6 m, and a minimum is flat; the tip is a point of all
+            // the grids end at 1e-6 m, with a quadratic error at a minimum; the apex lies on every meridian
             CHECK(nearest(b, at).distance == Approx(sign * least_distance(b, at)).margin(1e-7));
             of_tip += at_tip(b, at), beyond += sign < 0;
         }
@@ -170,7 +171,7 @@ TEST_CASE("the distance of a boundary is the least to any of its points", "[gran
     }
 }
 
-TEST_CASE("the normal of a boundary is the gradient of the distance and leads to its surface",
+TEST_CASE("the normal of a boundary is the gradient of the distance and points to the closest point",
           "[granular][shapes]")
 {
     for (const auto& [name, b] : all())
@@ -179,8 +180,9 @@ TEST_CASE("the normal of a boundary is the gradient of the distance and leads to
             const Nearest near = nearest(b, at);
             CHECK(near.n.norm() == Approx(1).epsilon(1e-14));
             constexpr double e = 1e-6;
-            const auto slope = [&](const Vec3& way) {
-                return (nearest(b, at + e * way).distance - nearest(b, at - e * way).distance) / (2 * e);
+            const auto slope = [&](const Vec3& direction) {
+                return (nearest(b, at + e * direction).distance - nearest(b, at - e * direction).distance) /
+                       (2 * e);
             };
             const Vec3 gradient = {slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
             CHECK((gradient - near.n).norm() < 1e-8);
@@ -189,7 +191,7 @@ TEST_CASE("the normal of a boundary is the gradient of the distance and leads to
         }
 }
 
-TEST_CASE("on the axis of a shape its distance is still right", "[granular][shapes]")
+TEST_CASE("the distance of a boundary is exact on its axis", "[granular][shapes]")
 {
     for (const auto& [name, b] : all()) {
         if (b.shape == Boundary::Shape::plane) continue;
@@ -199,7 +201,7 @@ TEST_CASE("on the axis of a shape its distance is still right", "[granular][shap
         const double far = b.shape == Boundary::Shape::cone ? 0.5 * b.sine : b.radius;
         const Nearest near = nearest(b, at);
         CHECK(near.distance == Approx(b.inside != 0 ? far : -far).epsilon(1e-14));
-        CHECK(near.n.norm() <= 1);  // the mean of those around, not a unit vector: and never NaN
+        CHECK(near.n.norm() <= 1);  // the mean of the normals around the axis, not a unit vector and not NaN
     }
     Boundary cone = made(Boundary::Shape::cone, false, 0.3);
     CHECK(nearest(cone, cone.r - 0.5 * cone.axis).distance == Approx(0.5).epsilon(1e-14));
@@ -207,22 +209,23 @@ TEST_CASE("on the axis of a shape its distance is still right", "[granular][shap
     CHECK(nearest(cone, cone.r).distance == Approx(0).margin(1e-15));
 }
 
-TEST_CASE("the velocity of a boundary is that of its points", "[granular][shapes]")
+TEST_CASE("the velocity of a boundary is the velocity of its material points", "[granular][shapes]")
 {
     for (const auto& [name, b] : all()) {
         constexpr double dt = 1e-5;
         for (const Vec3& at : points(b)) {
             INFO(name << ", at " << at.x << " " << at.y << " " << at.z);
-            // a point of it, carried with r and turned about the axis of omega
+            // a material point of the boundary, translated with r and rotated about omega
             const Vec3 axis = unit(b.omega), d = at - b.r;
-            const auto carried = [&, &b = b](double t) {
+            const auto material_point = [&, &b = b](double t) {
                 const double angle = b.omega.norm() * t;
                 return b.r + t * b.v + d.dot(axis) * axis + std::cos(angle) * (d - d.dot(axis) * axis) +
                        std::sin(angle) * axis.cross(d);
             };
-            CHECK((velocity(b, at) - (1 / (2 * dt)) * (carried(dt) - carried(-dt))).norm() < 1e-8);
+            CHECK((velocity(b, at) - (1 / (2 * dt)) * (material_point(dt) - material_point(-dt))).norm() <
+                  1e-8);
 
-            // a point at rest sees its distance change by the velocity of what it is nearest to
+            // the rate of the distance of a fixed point is the normal velocity of the closest point
             if (b.inside != 0 && at_tip(b, at)) continue;
             const Nearest near = nearest(b, at);
             const double rate =

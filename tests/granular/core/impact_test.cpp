@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sphere on a wall.
+// Contact of a sphere with a plane: load on the boundary, history when particles are added.
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -22,7 +22,7 @@ WorldOptions weightless(double h)
 
 }  // namespace
 
-TEST_CASE("a boundary feels the force and the torque of what lies on it", "[granular][impact]")
+TEST_CASE("the wrench of a boundary is the weight of a particle that lies on it", "[granular][impact]")
 {
     constexpr double g = 9.81;
     WorldOptions o = weightless(1e-4);
@@ -43,14 +43,14 @@ TEST_CASE("a boundary feels the force and the torque of what lies on it", "[gran
     const auto c = world.contacts();
     REQUIRE(c.size() == 1);
     CHECK(c[0].C.z == Approx(0).margin(1e-9));
-    CHECK(c[0].delta == Approx(R - world.particles()[0].r.z).margin(2.1e-9));  // a unit of positions
+    CHECK(c[0].delta == Approx(R - world.particles()[0].r.z).margin(2.1e-9));  // length unit of positions
 }
 
-TEST_CASE("a contact goes on when particles are added", "[granular][impact]")
+TEST_CASE("the history of a contact is preserved when particles are added", "[granular][impact]")
 {
     const auto run = [&](bool another) {
         WorldOptions o = weightless(1e-4);
-        o.gravity = {0.5, 0, -9.81};  // down a slope that it sticks on
+        o.gravity = {0.5, 0, -9.81};  // tilted gravity; the particle sticks by static friction
         World world(o, {soft()});
         world.set_law(0, 0, hertz_mindlin(soft(), 0.1, 0.3));
         world.set_omega_locked(true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How grains lie: turns in closed form, small ones that single precision would lose, and what a ball has rolled.
+// Orientations: rotations in closed form, rotations below single precision, rolling of a ball.
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -24,22 +24,22 @@ Four product(const Four& p, const Four& q)
     return {p[0] * q[0] - a.dot(b), v.x, v.y, v.z};
 }
 
-/// Of a turn by a rotation vector
-Four of_turn(const Vec3& angle)
+/// Euler parameters of a rotation vector
+Four of_rotation(const Vec3& angle)
 {
     const double chi = angle.norm();
     const Vec3 e = (chi > 0 ? std::sin(chi / 2) / chi : 0.5) * angle;
     return {std::cos(chi / 2), e.x, e.y, e.z};
 }
 
-/// The angle from one to the other, of either sign of both [rad]
+/// Angle of the relative rotation, independent of the signs of p and q [rad]
 double between(const Four& p, const Four& q)
 {
     const Four d = product({p[0], -p[1], -p[2], -p[3]}, q);
     return 2 * std::atan2(std::sqrt(d[1] * d[1] + d[2] * d[2] + d[3] * d[3]), std::abs(d[0]));
 }
 
-WorldOptions lying(double h)
+WorldOptions with_orientation(double h)
 {
     WorldOptions o;
     o.low = {-1, -1, -1}, o.high = {1, 1, 1};
@@ -56,41 +56,44 @@ World empty(const WorldOptions& o)
 
 }  // namespace
 
-TEST_CASE("a particle that turns steadily lies where the closed form says", "[granular][orientation]")
+TEST_CASE("a particle with constant angular velocity has the orientation of the closed form",
+          "[granular][orientation]")
 {
-    const Four begins = of_turn({0.3, -1.1, 0.7});
+    const Four initial = of_rotation({0.3, -1.1, 0.7});
     const Vec3 axes[] = {{0.6, 0, 0.8}, {0, 0, -1}};
-    // from a tenth of a radian in a step to turns of which single precision would keep nothing, or a third too much
+    // From 0.1 rad per step to rotations that single precision without compensation would lose, or
+    // overestimate by a third
     for (const auto& [h, omega] : {std::tuple{1e-3, 100.}, {1e-4, 10.}, {1e-5, 4e-3}, {1e-5, 5e-4}}) {
         INFO("h " << h << ", omega " << omega);
         constexpr long steps = 30000;
-        World world = empty(lying(h));
+        World world = empty(with_orientation(h));
         for (const Vec3& axis : axes)
-            world.add(Particle{.r = 0.1 * axis, .radius = 0.05, .omega = omega * axis, .e = begins});
+            world.add(Particle{.r = 0.1 * axis, .radius = 0.05, .omega = omega * axis, .e = initial});
         world.step(steps);
         for (const int k : {0, 1}) {
             const Four e = world.particles()[k].e;
             const double turned = omega * h * static_cast<double>(steps);
-            // what a step turns has single precision
-            CHECK(between(e, product(of_turn(turned * axes[k]), begins)) < 3e-7 * turned + 1e-9);
+            // the rotation of one step has single precision
+            CHECK(between(e, product(of_rotation(turned * axes[k]), initial)) < 3e-7 * turned + 1e-9);
         }
     }
 }
 
-TEST_CASE("Euler parameters are turned by any angle and stay of length one", "[granular][orientation]")
+TEST_CASE("Euler parameters are rotated by any angle and keep unit length", "[granular][orientation]")
 {
     for (const double chi : {1e-6, 0.02, 1., 3., 3.2, 7., 40.})
         for (const Vec3& axis : {Vec3{0.6, 0, 0.8}, Vec3{-0.28, 0.96, 0}}) {
             INFO("chi " << chi);
-            const Four p = of_turn({0.3, -1.1, 0.7}), turned = product(of_turn(chi * axis), p);
-            const auto d = granular::turn_by<double>(chi * axis, {p[0], {p[1], p[2], p[3]}});
-            const double cut = std::pow(std::min(chi, 3.2) / 2, 14) / 87178291200;
-            CHECK(between({p[0] + d.e0, p[1] + d.e.x, p[2] + d.e.y, p[3] + d.e.z}, turned) < 4 * cut + 1e-14);
+            const Four p = of_rotation({0.3, -1.1, 0.7}), turned = product(of_rotation(chi * axis), p);
+            const auto d = granular::rotation_increment<double>(chi * axis, {p[0], {p[1], p[2], p[3]}});
+            const double truncation = std::pow(std::min(chi, 3.2) / 2, 14) / 87178291200;
+            CHECK(between({p[0] + d.e0, p[1] + d.e.x, p[2] + d.e.y, p[3] + d.e.z}, turned) <
+                  4 * truncation + 1e-14);
 
-            // in single precision, again and again, from a length that is off
+            // repeatedly in single precision, from Euler parameters that are not normalised
             granular::EulerParameters<float> q{0.9f, {0, 0.1f, 0}};
             for (int k = 0; k < 10000; ++k) {
-                const auto step = granular::turn_by<float>(
+                const auto step = granular::rotation_increment<float>(
                     {float(chi * axis.x), float(chi * axis.y), float(chi * axis.z)}, q);
                 q.e0 += step.e0, q.e += step.e;
             }
@@ -99,23 +102,25 @@ TEST_CASE("Euler parameters are turned by any angle and stay of length one", "[g
         }
 }
 
-TEST_CASE("orientations go with the schemes, and in double precision the same way", "[granular][orientation]")
+TEST_CASE(
+    "orientations of a rolling ball agree with the closed form and with double precision in all schemes",
+    "[granular][orientation]")
 {
-    // a ball that slides, then rolls on a floor, about an axis that is not one of the frame
+    // a ball that slides and then rolls on a floor, about an axis that is not a coordinate axis
     constexpr double R = 0.05, v = 1;
-    const Vec3 way{0.8, 0.6, 0}, about{-0.6, 0.8, 0};
+    const Vec3 direction{0.8, 0.6, 0}, axis{-0.6, 0.8, 0};
     PairLaw law;
     law.normal = granular::Hooke{.k_n = 2e4, .gamma_n = 200};
     law.tangential = granular::Mindlin{.spring = {.k_t = 1e4f, .c = 0, .gamma_t = 100}, .cap = {0.3f, 0.3f}};
     const double m = 0.5, g = 9.81, mu = 0.3, slides = 2 * v / (7 * mu * g), T = 0.3;
-    // α = 5 μ g / (2 R) while it slides, then v/R with 5/7 of the speed
+    // α = 5 μ g/(2 R) while it slides; then it rolls with ω = (5/7) v/R
     const double angle = 2.5 * mu * g / R * slides * slides / 2 + 5. / 7 * v / R * (T - slides);
     for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::forward_euler,
                                 Scheme::extended_taylor, Scheme::chung}) {
         INFO("scheme " << static_cast<int>(scheme));
-        WorldOptions o = lying(2e-5);
+        WorldOptions o = with_orientation(2e-5);
         o.gravity = {0, 0, -g}, o.scheme = scheme;
-        const Particle ball{.r = {0, 0, R - m * g / 2e4}, .radius = R, .v = v * way, .mass = m};
+        const Particle ball{.r = {0, 0, R - m * g / 2e4}, .radius = R, .v = v * direction, .mass = m};
         World world(o, {soft()});
         world.set_law(0, 0, law);
         world.add(Boundary{}), world.add(ball);
@@ -124,19 +129,20 @@ TEST_CASE("orientations go with the schemes, and in double precision the same wa
         const long steps = std::lround(T / o.h);
         world.step(steps), in_double.step(steps);
         const Particle p = world.particles()[0];
-        CHECK(between(p.e, of_turn(angle * about)) < 2e-3 * angle);  // a spring takes up the beginning
+        CHECK(between(p.e, of_rotation(angle * axis)) <
+              2e-3 * angle);  // the tangential spring delays the onset of sliding
         CHECK(between(p.e, in_double.particle[0].e) < 1e-4 * angle);
-        // from there on it turns by what it rolls
+        // from then on the rotation is the rolled distance over R
         world.step(steps);
         const Particle q = world.particles()[0];
-        CHECK(between(q.e, product(of_turn(((q.r - p.r).norm() / R) * about), p.e)) < 1e-4 * angle);
+        CHECK(between(q.e, product(of_rotation(((q.r - p.r).norm() / R) * axis), p.e)) < 1e-4 * angle);
     }
 }
 
-TEST_CASE("an orientation stays with its particle through sorts, files and newcomers",
+TEST_CASE("an orientation stays with its particle when particles are sorted, saved, loaded and added",
           "[granular][orientation]")
 {
-    WorldOptions o = lying(2e-5);
+    WorldOptions o = with_orientation(2e-5);
     o.low = {0, 0, 0}, o.high = {0.03, 0.03, 0.03};
     o.periodic = {true, true, true};
     const auto make = [&] {
@@ -147,11 +153,11 @@ TEST_CASE("an orientation stays with its particle through sorts, files and newco
                                .radius = 1e-3,
                                .v = {std::sin(a), std::cos(2 * a), std::sin(3 * a)},
                                .omega = 50 * Vec3{std::cos(a), std::sin(5 * a), std::cos(7 * a)},
-                               .e = of_turn({a, -a, 0.1 * a})});
+                               .e = of_rotation({a, -a, 0.1 * a})});
         }
         return world;
     };
-    const auto lies = [](const World& world) {
+    const auto orientations = [](const World& world) {
         std::vector<Four> all;
         for (const Particle& p : world.particles()) all.push_back(p.e);
         return all;
@@ -162,8 +168,8 @@ TEST_CASE("an orientation stays with its particle through sorts, files and newco
         double most = 0;
         const auto all = world.particles();
         for (std::size_t k = 0; k < from.size(); ++k)
-            if ((all[k].omega - from[k].omega).norm() == 0)  // those that nothing touched
-                most = std::max(most, between(all[k].e, product(of_turn(t * from[k].omega), from[k].e)));
+            if ((all[k].omega - from[k].omega).norm() == 0)  // particles without a contact
+                most = std::max(most, between(all[k].e, product(of_rotation(t * from[k].omega), from[k].e)));
         return most;
     };
     world.step(150);
@@ -172,12 +178,12 @@ TEST_CASE("an orientation stays with its particle through sorts, files and newco
     const std::string bytes = world.to_bytes("run");
     World loaded = make();
     loaded.from_bytes(bytes, "run", "file");
-    CHECK(lies(loaded) == lies(world));
+    CHECK(orientations(loaded) == orientations(world));
     world.step(100), loaded.step(100);
-    CHECK(lies(loaded) == lies(world));
+    CHECK(orientations(loaded) == orientations(world));
 
     const auto before = world.particles();
-    const Four new_one = of_turn({0, 2, 0});
+    const Four new_one = of_rotation({0, 2, 0});
     const auto id = world.add(Particle{.r = {0.015, 0.015, 0.0285}, .radius = 4e-4, .e = new_one});
     world.step(0);
     CHECK(between(world.particles()[id].e, new_one) < 1e-15);
@@ -185,18 +191,18 @@ TEST_CASE("an orientation stays with its particle through sorts, files and newco
         CHECK(between(world.particles()[k].e, before[k].e) < 1e-14);
 }
 
-TEST_CASE("an orientation that is none, or that nobody keeps, is refused", "[granular][orientation]")
+TEST_CASE("an orientation is rejected if it is not a unit vector or if the world stores none",
+          "[granular][orientation]")
 {
-    WorldOptions o = lying(1e-5);
+    WorldOptions o = with_orientation(1e-5);
     World world = empty(o);
     const Particle p{.r = {0, 0, 0}, .radius = 0.05, .e = {1, 0.1, 0, 0}};
-    CHECK_THROWS_WITH(
-        world.add(p),
-        Catch::Contains("Euler parameters must have the length 1, to a thousandth, got 1.00498"));
+    CHECK_THROWS_WITH(world.add(p),
+                      Catch::Contains("Euler parameters must have the length 1 within 1e-3, got 1.00498"));
     o.orientation = false;
     World without = empty(o);
     CHECK_THROWS_WITH(without.add(Particle{.r = {0, 0, 0}, .radius = 0.05, .e = {0, 1, 0, 0}}),
-                      Catch::Contains("this world keeps none"));
+                      Catch::Contains("requires a world that integrates orientations"));
     without.add(Particle{.r = {0, 0, 0}, .radius = 0.05, .omega = {1, 0, 0}});
     without.step(100);
     CHECK(without.particles()[0].e == Particle().e);

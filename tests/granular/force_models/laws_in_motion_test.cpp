@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What single laws of force do to a sphere on a floor, or to two spheres, in World and in closed form.
+// Motion of a sphere on a floor, or of two spheres, under single force laws: World against closed forms.
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ using namespace hilda::granular;
 
 namespace {
 
-// it sinks in by a thousandth of a metre, with half of the critical damping
+// static overlap of 1 mm, half of the critical damping
 constexpr double R = 0.125, m = 1, g = 10, I = 0.4 * m * R * R, k_n = 1e4, k_t = 8000, sunk = m * g / k_n;
 
 PairLaw on_springs(float gamma_t = 0)
@@ -32,7 +32,7 @@ WorldOptions on_floor(double h)
     return o;
 }
 
-/// In balance with a floor, but for these velocities
+/// A particle in static equilibrium with the floor, with the given velocities
 Particle resting(const Vec3& v, const Vec3& omega)
 {
     return {.r = {0, 0, R - sunk}, .radius = R, .v = v, .omega = omega, .mass = m};
@@ -50,19 +50,20 @@ World ball(const PairLaw& law, const Particle& p, double h = 1e-4)
 Particle now(const World& world) { return world.particles()[0]; }
 Particle now(const DoubleWorld& world) { return world.particle[0]; }
 
-/// What it gains of v along `way` in 0.5 s, from 0.25 s on, in steps of 1e-4 s
+/// Change of the velocity along `direction` from t = 0.25 s to 0.75 s, in steps of 1e-4 s
 template <class W>
-double gain(W& world, const Vec3& way)
+double gain(W& world, const Vec3& direction)
 {
     world.step(2500);
-    const double before = now(world).v.dot(way);
+    const double before = now(world).v.dot(direction);
     world.step(5000);
-    return now(world).v.dot(way) - before;
+    return now(world).v.dot(direction) - before;
 }
 
 }  // namespace
 
-TEST_CASE("a rolling ball is held back by 5/7 of the coefficient of rolling", "[granular][laws]")
+TEST_CASE("a rolling ball decelerates by 5/7 of the coefficient of rolling friction times g",
+          "[granular][laws]")
 {
     // the torque μ_r R N against the inertia about the contact, 7/5 m R²
     const float mu_r = 0.0625f;
@@ -76,12 +77,12 @@ TEST_CASE("a rolling ball is held back by 5/7 of the coefficient of rolling", "[
         PairLaw law = on_springs(50);
         law.rolling = rolling;
         const Particle rolling_on = resting({0.8, 0.6, 0}, {-0.6 / R, 0.8 / R, 0});
-        const Vec3 way = {0.8, 0.6, 0};
+        const Vec3 direction = {0.8, 0.6, 0};
         DoubleWorld in_double(on_floor(1e-4), law);
         in_double.particle = {rolling_on}, in_double.boundary = {Boundary{}};
-        CHECK(gain(in_double, way) == Approx(-5. / 7 * mu_r * g * 0.5).epsilon(1e-6));
+        CHECK(gain(in_double, direction) == Approx(-5. / 7 * mu_r * g * 0.5).epsilon(1e-6));
         World world = ball(law, rolling_on);
-        CHECK(gain(world, way) == Approx(-5. / 7 * mu_r * g * 0.5).epsilon(1e-5));
+        CHECK(gain(world, direction) == Approx(-5. / 7 * mu_r * g * 0.5).epsilon(1e-5));
         const Particle p = now(world);
         CHECK(p.omega.y * R == Approx(p.v.x).epsilon(1e-4));
         CHECK(-p.omega.x * R == Approx(p.v.y).epsilon(1e-4));
@@ -89,10 +90,9 @@ TEST_CASE("a rolling ball is held back by 5/7 of the coefficient of rolling", "[
     }
 }
 
-TEST_CASE("turning loses nothing to single precision, however little a step takes of it (long)",
-          "[granular][laws]")
+TEST_CASE("a deceleration of rolling below single precision per step is not lost (long)", "[granular][laws]")
 {
-    // in a step ω loses less than a digit of its last place
+    // the change of ω per step is below one unit in its last place
     constexpr double mu_r = 0.01, h = 1e-6, v = 10;
     PairLaw law = on_springs(50);
     law.rolling = ConstantTorque{.mu_r = float(mu_r), .slow = 1e-4f};
@@ -109,9 +109,10 @@ TEST_CASE("turning loses nothing to single precision, however little a step take
     CHECK(R * (now(world).omega.y - turned) == Approx(-5. / 7 * mu_r * g * 0.3).epsilon(5e-5));
 }
 
-TEST_CASE("a ball that a spring keeps from rolling swings", "[granular][laws]")
+TEST_CASE("a ball on a rolling spring oscillates with the frequency of the closed form", "[granular][laws]")
 {
-    // m x'' = -k_t (x - y), 2/5 m y'' = k_t (x - y) - k_t y with y = R θ: two modes, of which this is the slow one
+    // m x'' = -k_t (x - y), 2/5 m y'' = k_t (x - y) - k_t y with y = R θ; the initial velocities excite the
+    // slow mode
     const double Lambda = 3 - std::sqrt(6.5), omega = std::sqrt(Lambda * k_t / m), v = 0.01;
     for (const RollingLaws& rolling :
          {RollingLaws(Epsd{.mu_r = 0.5f}), RollingLaws(PseudoForce{.mu_r = 0.5f, .k_r = 1})}) {
@@ -134,14 +135,15 @@ TEST_CASE("a ball that a spring keeps from rolling swings", "[granular][laws]")
         const double time = crossings.back() - crossings.front();
         CHECK(2 * std::numbers::pi * periods / time == Approx(omega).epsilon(1e-4));
         CHECK(most == Approx(v).epsilon(1e-3));
-        CHECK(std::abs(mean * 2e-5 / time) < 0.01 * v / omega);  // about where it began
+        CHECK(std::abs(mean * 2e-5 / time) < 0.01 * v / omega);  // oscillates about the initial position
     }
 }
 
-TEST_CASE("a ball that spins on the spot stops, and swings back by the spring", "[granular][laws]")
+TEST_CASE("a spinning ball stops and rebounds by the torsional spring", "[granular][laws]")
 {
     const double a = std::sqrt(R * sunk), mu = 0.25, cap = 2. / 3 * mu * m * g * a, omega_0 = 1.5;
-    const double p = std::sqrt(k_t * a * a / 2 / I), psi = cap / (p * p * I);  // of the spring; at its bound
+    const double p = std::sqrt(k_t * a * a / 2 / I),
+                 psi = cap / (p * p * I);  // spring frequency; angle at the bound
     const double reaches = std::asin(p * psi / omega_0) / p,
                  omega_1 = std::sqrt(omega_0 * omega_0 - p * p * psi * psi),
                  stops = reaches + omega_1 * I / cap;
@@ -162,23 +164,23 @@ TEST_CASE("a ball that spins on the spot stops, and swings back by the spring", 
     }
 }
 
-TEST_CASE("a ball that may not turn slides to rest by friction without a history", "[granular][laws]")
+TEST_CASE("a ball with locked rotation slides to rest under friction without history", "[granular][laws]")
 {
     PairLaw law = on_springs();
     law.tangential = Coulomb{.spring = {.k_t = 0, .c = 0, .gamma_t = 50}, .mu_k = 0.25};
     World world = ball(law, resting({2.5, 0, 0}, {0, 0, 0}));
     world.set_omega_locked(true);
     CHECK(gain(world, {1, 0, 0}) == Approx(-0.25 * g * 0.5).epsilon(1e-4));
-    // from v = μ g/γ on it is slowed down by γ v, over another v/γ
+    // below v = μ g/γ the deceleration is γ v; the remaining distance is v/γ
     world.step(5000);
     CHECK(std::abs(now(world).v.x) < 1e-6);
     const double slow = 0.25 * g / 50;
     CHECK(now(world).r.x == Approx((2.5 * 2.5 - slow * slow) / (2 * 0.25 * g) + slow / 50).epsilon(1e-3));
 }
 
-TEST_CASE("a linear contact without tension throws back faster", "[granular][laws]")
+TEST_CASE("a clamped linear contact has a higher rebound velocity", "[granular][laws]")
 {
-    // it ends where the force is zero and not where the overlap is
+    // the contact ends when the force is zero instead of the overlap
     const double beta = 50 / m, omega_0 = std::sqrt(k_n / m),
                  omega = std::sqrt(omega_0 * omega_0 - beta * beta), half = std::numbers::pi,
                  early = half - std::atan2(2 * beta * omega, omega * omega - beta * beta);
@@ -199,7 +201,7 @@ TEST_CASE("a linear contact without tension throws back faster", "[granular][law
     }
 }
 
-TEST_CASE("spheres that stick part above the pull of their cohesion and not below", "[granular][laws]")
+TEST_CASE("cohesive spheres separate above their pull-off force and not below it", "[granular][laws]")
 {
     constexpr double E = 1e5, k = 12000, pi = std::numbers::pi;
     PairLaw constant = on_springs(), area;
@@ -209,21 +211,21 @@ TEST_CASE("spheres that stick part above the pull of their cohesion and not belo
     struct Pair {
         const char* name;
         PairLaw law;
-        double rests, pull;  // overlap without a load [m], what parts them [N]
+        double overlap, pull;  // equilibrium overlap without load [m], pull-off force [N]
     };
     const Pair all[] = {{"constant", constant, 8 / k_n, 8},
                         {"sjkr", area, std::pow(1.5 * pi * k / (2 * E), 2) * R / 2,
                          std::pow(pi * k, 3) * R * R / 4 / (12 * E * E)}};
     for (const Pair& of : all)
         for (const double share : {0.98, 1.02}) {
-            INFO(of.name << ", " << share << " of the pull");
+            INFO(of.name << ", " << share << " of the pull-off force");
             WorldOptions o;
             o.low = {-2, -1, -1}, o.high = {2, 1, 1};
             o.gravity = {0, 0, 0}, o.h = 1e-4;
             World world(o, {soft()});
             world.set_law(0, 0, of.law);
             for (const double side : {-1., 1.})
-                world.add(Particle{.r = {side * (R - of.rests / 2), 0, 0}, .radius = R, .mass = m});
+                world.add(Particle{.r = {side * (R - of.overlap / 2), 0, 0}, .radius = R, .mass = m});
             world.step(1000);
             CHECK(world.particles()[1].v.norm() < 1e-4);
             world.before_each_step([&](World& w) {

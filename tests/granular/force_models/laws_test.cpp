@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws of force one by one, in double precision, at touches made by hand. What they do to what moves: laws_in_motion_test.cpp.
+// Force laws in double precision, at contacts with given kinematics. laws_in_motion_test.cpp tests the motion
+// under them.
 #include "granular/core/pair_law.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,26 +14,28 @@ namespace {
 using Vec3 = Vec<double>;
 
 constexpr double R = 0.125, m = 2, h = 0.0078125;
-constexpr double exact = 1e-12;  // sums of some hundred roundings; parameters are floats that are exact
-const Vec3 n = {2. / 3, -1. / 3, 2. / 3}, across = {1 / std::sqrt(5.), 2 / std::sqrt(5.), 0};
+constexpr double exact =
+    1e-12;  // a few hundred rounding errors; all parameters are exact in single precision
+const Vec3 n = {2. / 3, -1. / 3, 2. / 3}, tangent = {1 / std::sqrt(5.), 2 / std::sqrt(5.), 0};
 
-/// A sphere that rests on a wall, pressed in by delta
+/// Contact of a sphere at rest with a plane, with the overlap delta
 ContactPoint<double> resting(double delta)
 {
-    ContactPoint<double> t{};
-    t.delta = delta, t.R_i = t.R_eff = R, t.R_j = 0, t.m_eff = m, t.n = n, t.h = h;
-    t.v_n = 0, t.v_t = t.omega = {0, 0, 0};
-    return t;
+    ContactPoint<double> contact{};
+    contact.delta = delta, contact.R_i = contact.R_eff = R, contact.R_j = 0, contact.m_eff = m, contact.n = n,
+    contact.h = h;
+    contact.v_n = 0, contact.v_t = contact.omega = {0, 0, 0};
+    return contact;
 }
 
 ContactPoint<double> of_two(double delta, double R_j)
 {
-    ContactPoint<double> t = resting(delta);
-    t.R_j = R_j, t.R_eff = R * R_j / (R + R_j), t.m_eff = m / 2;
-    return t;
+    ContactPoint<double> contact = resting(delta);
+    contact.R_j = R_j, contact.R_eff = R * R_j / (R + R_j), contact.m_eff = m / 2;
+    return contact;
 }
 
-/// A spring of 1024 N/m with friction on 512 N/m: at an overlap of 1/128 m it presses with 8 N.
+/// k_n = 1024 N/m, k_t = 512 N/m; the normal force is 8 N at an overlap of 1/128 m.
 PairLaw springs(float gamma_t = 0)
 {
     PairLaw law;
@@ -42,10 +45,10 @@ PairLaw springs(float gamma_t = 0)
 }
 constexpr double delta = 1. / 128, N = 8, k_t = 512;
 
-double pressing(const PairLaw& law, const ContactPoint<double>& t)
+double normal_force(const PairLaw& law, const ContactPoint<double>& contact)
 {
     History<double> none{};
-    const Vec3 F = evaluate(law, t, none, false).F;
+    const Vec3 F = evaluate(law, contact, none, false).F;
     CHECK((F - F.dot(n) * n).norm() <= exact * F.norm());
     return F.dot(n);
 }
@@ -54,24 +57,24 @@ bool same(const Vec3& a, const Vec3& b) { return (a - b).norm() <= exact * b.nor
 
 }  // namespace
 
-TEST_CASE("normal laws press with the force of their formulas", "[granular][laws]")
+TEST_CASE("normal laws give the force of their formulas", "[granular][laws]")
 {
     constexpr double d = 1e-3;
     PairLaw law;
     law.normal = Hertz{.E_eff = 1e6f, .c = 0.5f};
     const auto hertz = [&](double of) { return 4. / 3 * 1e6 * std::sqrt(of) * std::pow(d, 1.5); };
-    CHECK(pressing(law, resting(d)) == Approx(hertz(R)).epsilon(exact));
-    CHECK(pressing(law, of_two(d, R)) == Approx(hertz(R / 2)).epsilon(exact));
-    CHECK(pressing(law, of_two(d, 3 * R)) == Approx(hertz(0.75 * R)).epsilon(exact));
+    CHECK(normal_force(law, resting(d)) == Approx(hertz(R)).epsilon(exact));
+    CHECK(normal_force(law, of_two(d, R)) == Approx(hertz(R / 2)).epsilon(exact));
+    CHECK(normal_force(law, of_two(d, 3 * R)) == Approx(hertz(0.75 * R)).epsilon(exact));
 
     law.normal = Hooke{.k_n = 1000, .gamma_n = 20};
-    CHECK(pressing(law, resting(d)) == Approx(1).epsilon(exact));
+    CHECK(normal_force(law, resting(d)) == Approx(1).epsilon(exact));
     law.normal = ScaledHooke{.k_n = 1000, .gamma_n = 20};
-    CHECK(pressing(law, resting(d)) == Approx(std::sqrt(d / R)).epsilon(exact));
-    CHECK(pressing(law, of_two(d, R)) == Approx(std::sqrt(d / R)).epsilon(exact));
+    CHECK(normal_force(law, resting(d)) == Approx(std::sqrt(d / R)).epsilon(exact));
+    CHECK(normal_force(law, of_two(d, R)) == Approx(std::sqrt(d / R)).epsilon(exact));
 }
 
-TEST_CASE("damping resists approach and pulls in retreat, but for a clamped law", "[granular][laws]")
+TEST_CASE("normal damping opposes the rate of the overlap; a clamped law has no tension", "[granular][laws]")
 {
     constexpr double d = 1e-3, v = 0.25;
     const double S = 2 * 1e6 * std::sqrt(R * d);
@@ -90,87 +93,88 @@ TEST_CASE("damping resists approach and pulls in retreat, but for a clamped law"
         PairLaw law, clamped;
         law.normal = of.law, clamped.normal = of.clamped;
         for (const double rate : {-v, 0., v}) {
-            ContactPoint<double> t = resting(d);
-            t.v_n = rate;
+            ContactPoint<double> contact = resting(d);
+            contact.v_n = rate;
             const double F = of.at_rest + of.gain * rate / v;
-            CHECK(pressing(law, t) == Approx(F).epsilon(exact));
-            CHECK(pressing(clamped, t) == Approx(std::max(F, 0.)).epsilon(exact));
+            CHECK(normal_force(law, contact) == Approx(F).epsilon(exact));
+            CHECK(normal_force(clamped, contact) == Approx(std::max(F, 0.)).epsilon(exact));
         }
     }
 }
 
-TEST_CASE("cohesion pulls: a constant force, or one that goes by the area", "[granular][laws]")
+TEST_CASE("cohesion is a constant attraction or proportional to the contact area", "[granular][laws]")
 {
     PairLaw law;
     law.normal = Hooke{.k_n = 1000};
     law.cohesion = ConstantCohesion{.F_c = 3};
     for (const double d : {1e-6, 1e-3, 5e-3})
-        CHECK(pressing(law, resting(d)) == Approx(1000 * d - 3).epsilon(exact));
+        CHECK(normal_force(law, resting(d)) == Approx(1000 * d - 3).epsilon(exact));
 
-    // with Hertz the pull is largest at sqrt(δ) = π k sqrt(R*)/(2 E*), and is then π³ k³ R*²/(12 E*²)
+    // with Hertz the net attraction is largest at sqrt(δ) = π k sqrt(R*)/(2 E*), and is then π³ k³ R*²/(12
+    // E*²)
     constexpr double E = 1e5, k = 16000, pi = std::numbers::pi;
     law.normal = Hertz{.E_eff = float(E)};
     law.cohesion = Sjkr{.k = float(k)};
     const double R_eff = R / 2, at = std::pow(pi * k / (2 * E), 2) * R_eff,
                  most = std::pow(pi * k, 3) * R_eff * R_eff / (12 * E * E);
-    CHECK(pressing(law, of_two(at, R)) == Approx(-most).epsilon(exact));
+    CHECK(normal_force(law, of_two(at, R)) == Approx(-most).epsilon(exact));
     for (const double off : {0.5, 0.9, 1.1, 2.})
-        CHECK(pressing(law, of_two(off * at, R)) > -most * (1 - 1e-6));
-    CHECK(pressing(law, of_two(2.25 * at, R)) == Approx(0).margin(exact * most));
+        CHECK(normal_force(law, of_two(off * at, R)) > -most * (1 - 1e-6));
+    CHECK(normal_force(law, of_two(2.25 * at, R)) == Approx(0).margin(exact * most));
 }
 
-TEST_CASE("friction without a history is viscous and bounded", "[granular][laws]")
+TEST_CASE("friction without history is viscous and bounded", "[granular][laws]")
 {
     PairLaw law = springs();
     law.tangential = Coulomb{.spring = {.k_t = 0, .c = 0, .gamma_t = 16}, .mu_k = 0.25};
     History<double> history{};
-    ContactPoint<double> t = resting(delta);
+    ContactPoint<double> contact = resting(delta);
     for (const double v : {0., 0.01, 0.06}) {  // up to μ N/(γ m) = 1/16 m/s
-        t.v_t = v * across;
-        CHECK(same(evaluate(law, t, history, false).F_t, (-16 * m * v) * across));
+        contact.v_t = v * tangent;
+        CHECK(same(evaluate(law, contact, history, false).F_t, (-16 * m * v) * tangent));
     }
     for (const double v : {0.065, 3.}) {
-        t.v_t = v * across;
-        CHECK(same(evaluate(law, t, history, false).F_t, (-0.25 * N) * across));
+        contact.v_t = v * tangent;
+        CHECK(same(evaluate(law, contact, history, false).F_t, (-0.25 * N) * tangent));
     }
     CHECK(history.u == Vec3{0, 0, 0});
 }
 
-TEST_CASE("the constant torque is against the turning, however fast", "[granular][laws]")
+TEST_CASE("the constant torque opposes the rotation and does not depend on its magnitude", "[granular][laws]")
 {
     PairLaw law = springs();
     ContactPoint<double> wall = resting(delta), two = of_two(delta, 3 * R);
-    const auto torque = [&](ContactPoint<double> t, const Vec3& omega, double age, double step = 1e-6) {
+    const auto torque = [&](ContactPoint<double> contact, const Vec3& omega, double age, double step = 1e-6) {
         History<double> history{};
-        history.age = age, t.omega = omega, t.h = step;
-        return evaluate(law, t, history, true).T;
+        history.age = age, contact.omega = omega, contact.h = step;
+        return evaluate(law, contact, history, true).T;
     };
     law.rolling = ConstantTorque{.mu_r = 0.5, .slow = 0.25};
     for (const double omega : {0.25, 7.}) {
-        CHECK(same(torque(wall, omega * across, 0), (-0.5 * R * N) * across));
-        CHECK(same(torque(two, omega * across, 0), (-0.5 * 0.75 * R * N) * across));
+        CHECK(same(torque(wall, omega * tangent, 0), (-0.5 * R * N) * tangent));
+        CHECK(same(torque(two, omega * tangent, 0), (-0.5 * 0.75 * R * N) * tangent));
     }
-    CHECK(same(torque(wall, 0.125 * across, 0), (-0.25 * R * N) * across));  // half as fast as `slow`
+    CHECK(same(torque(wall, 0.125 * tangent, 0), (-0.25 * R * N) * tangent));  // half of `slow`
     CHECK(torque(wall, {0, 0, 0}, 0) == Vec3{0, 0, 0});
-    // in one step it takes no more than a twentieth of the turning, 2/5 m R² ω
+    // one step reduces the angular momentum 2/5 m R² ω by a twentieth at most
     for (const double omega : {0.5, 6.25})
-        CHECK(same(torque(wall, omega * across, 0, h), (-0.02 * m * R * R * omega / h) * across));
-    CHECK(same(torque(wall, 6.5 * across, 0, h), (-0.5 * R * N) * across));
+        CHECK(same(torque(wall, omega * tangent, 0, h), (-0.02 * m * R * R * omega / h) * tangent));
+    CHECK(same(torque(wall, 6.5 * tangent, 0, h), (-0.5 * R * N) * tangent));
 
     law.rolling = ConstantTorque{.mu_r = 0.5, .slow = 0.25, .after = 0.5, .half_radius = 1};
-    CHECK(same(torque(wall, across, 0.5), (-0.5 * R / 2 * N) * across));
-    CHECK(same(torque(of_two(delta, R), across, 1), (-0.5 * R / 2 * N) * across));
-    CHECK(torque(wall, across, 0.49).norm() == 0);
+    CHECK(same(torque(wall, tangent, 0.5), (-0.5 * R / 2 * N) * tangent));
+    CHECK(same(torque(of_two(delta, R), tangent, 1), (-0.5 * R / 2 * N) * tangent));
+    CHECK(torque(wall, tangent, 0.49).norm() == 0);
 }
 
-TEST_CASE("rolling is resisted by a spring up to a bound and turns back from there", "[granular][laws]")
+TEST_CASE("rolling springs resist up to their bound and unload elastically from it", "[granular][laws]")
 {
-    // both with the stiffness k_t R*² and the bound μ_r R* N; the dashpots are another
+    // both laws have the stiffness k_t R*² and the bound μ_r R* N; their dashpots differ
     struct Spring {
         const char* name;
         RollingLaws law;
         double damping;     // [N m s]
-        bool damped_bound;  // whether the bound is on spring and dashpot together
+        bool damped_bound;  // whether the bound holds for the sum of spring and dashpot
     };
     const double k_r = k_t * R * R, I_r = 1.4 * m * R * R, bound = 0.125 * R * N;
     const Spring all[] = {{"epsd", Epsd{.mu_r = 0.125, .eta_r = 0.25}, 0.5 * std::sqrt(I_r * k_r), false},
@@ -183,62 +187,62 @@ TEST_CASE("rolling is resisted by a spring up to a bound and turns back from the
         PairLaw law = springs();
         law.rolling = s.law;
         History<double> history{};
-        ContactPoint<double> t = resting(delta);
+        ContactPoint<double> contact = resting(delta);
         const double omega = 0.0625;
-        t.omega = omega * across + 3. * n;  // what is along n is not rolling
+        contact.omega = omega * tangent + 3. * n;  // the component along n is not rolling
         double psi = 0;
-        const auto turn = [&](double way) {
-            t.omega = way * across + 3. * n, psi += h * way;
-            return evaluate(law, t, history, true).T;
+        const auto turn = [&](double rate) {
+            contact.omega = rate * tangent + 3. * n, psi += h * rate;
+            return evaluate(law, contact, history, true).T;
         };
         for (int k = 0; k < 20; ++k) {
             const Vec3 T = turn(omega);
-            REQUIRE(same(T, (-k_r * psi - s.damping * omega) * across));
+            REQUIRE(same(T, (-k_r * psi - s.damping * omega) * tangent));
         }
         REQUIRE(k_r * psi < bound);
         for (int k = 0; k < 100; ++k)
             REQUIRE(turn(4 * omega).norm() <=
                     (1 + exact) * (bound + (s.damped_bound ? 0 : s.damping * 4 * omega)));
-        CHECK(same(turn(4 * omega), -bound * across));
-        // at rest the dashpot is silent, and what is left is the spring as it was kept
-        const double kept = s.damped_bound ? bound - s.damping * 4 * omega : bound;
-        CHECK(same(turn(0), -kept * across));
-        CHECK(same(turn(-omega), (-(kept - k_r * h * omega) + s.damping * omega) * across));
+        CHECK(same(turn(4 * omega), -bound * tangent));
+        // at ω = 0 the torque is that of the spring alone
+        const double elastic = s.damped_bound ? bound - s.damping * 4 * omega : bound;
+        CHECK(same(turn(0), -elastic * tangent));
+        CHECK(same(turn(-omega), (-(elastic - k_r * h * omega) + s.damping * omega) * tangent));
     }
 }
 
-TEST_CASE("the torques of rolling follow the normal", "[granular][laws]")
+TEST_CASE("the rolling torque rotates with the contact normal", "[granular][laws]")
 {
-    // a spring that is wound up about an axis in the plane across n; then n turns about that plane's other axis
-    const Vec3 other = n.cross(across);
+    // the spring is loaded about one tangent; then n rotates about the other tangent
+    const Vec3 other = n.cross(tangent);
     for (const RollingLaws& of :
          {RollingLaws(Epsd{.mu_r = 1}), RollingLaws(PseudoForce{.mu_r = 1, .k_r = 1})}) {
         PairLaw law = springs();
         law.rolling = of;
         History<double> history{};
-        ContactPoint<double> t = resting(delta);
-        t.omega = 0.5 * across;
-        const double wound = evaluate(law, t, history, true).T.norm();
-        t.omega = {0, 0, 0}, t.n = std::cos(0.3) * n + std::sin(0.3) * across;
-        const Vec3 T = evaluate(law, t, history, true).T;
-        CHECK(std::abs(T.dot(t.n)) < exact * wound);
+        ContactPoint<double> contact = resting(delta);
+        contact.omega = 0.5 * tangent;
+        const double wound = evaluate(law, contact, history, true).T.norm();
+        contact.omega = {0, 0, 0}, contact.n = std::cos(0.3) * n + std::sin(0.3) * tangent;
+        const Vec3 T = evaluate(law, contact, history, true).T;
+        CHECK(std::abs(T.dot(contact.n)) < exact * wound);
         CHECK(T.norm() == Approx(wound).epsilon(exact));
         CHECK(std::abs(T.dot(other)) < exact * wound);
     }
 }
 
-TEST_CASE("spin about the normal is resisted by a spring up to a bound", "[granular][laws]")
+TEST_CASE("the torsional spring resists spin about the normal up to its bound", "[granular][laws]")
 {
     PairLaw law = springs(16);
     law.spin = TorsionalSpring{.mu = 0.375};
     const double a = std::sqrt(R * delta), K = k_t * a * a / 2, D = 16 * m * a * a / 2,
                  bound = 2. / 3 * 0.375 * N * a;
     History<double> history{};
-    ContactPoint<double> t = resting(delta);
+    ContactPoint<double> contact = resting(delta);
     double angle = 0;
-    const auto spin = [&](double way) {
-        t.omega = way * n + 3. * across, angle += h * way;  // what is across n is no spin
-        return evaluate(law, t, history, true).T;
+    const auto spin = [&](double rate) {
+        contact.omega = rate * n + 3. * tangent, angle += h * rate;  // the component normal to n is not spin
+        return evaluate(law, contact, history, true).T;
     };
     const double omega = 0.5;
     for (int k = 0; k < 8; ++k) {
@@ -248,12 +252,12 @@ TEST_CASE("spin about the normal is resisted by a spring up to a bound", "[granu
     REQUIRE(K * angle + D * omega < bound);
     for (int k = 0; k < 200; ++k) REQUIRE(spin(2 * omega).norm() < (1 + exact) * bound);
     CHECK(same(spin(2 * omega), -bound * n));
-    const double kept = bound - D * 2 * omega;
-    CHECK(same(spin(0), -kept * n));
-    CHECK(same(spin(-omega), (-(kept - K * h * omega) + D * omega) * n));
+    const double elastic = bound - D * 2 * omega;
+    CHECK(same(spin(0), -elastic * n));
+    CHECK(same(spin(-omega), (-(elastic - K * h * omega) + D * omega) * n));
 }
 
-TEST_CASE("what resists turning takes energy over every cycle", "[granular][laws]")
+TEST_CASE("laws of rolling and spin dissipate energy in every cycle", "[granular][laws]")
 {
     struct Named {
         const char* name;
@@ -265,20 +269,20 @@ TEST_CASE("what resists turning takes energy over every cycle", "[granular][laws
                          {"pseudo-force", PseudoForce{.mu_r = 0.125, .k_r = 0.5, .eta_r = 0.1f}, {}},
                          {"torsional spring", {}, TorsionalSpring{.mu = 0.25}}};
     for (const Named& of : all)
-        for (const double amplitude : {1e-3, 0.1}) {  // [rad]: within the bound and far beyond it
+        for (const double amplitude : {1e-3, 0.1}) {  // [rad]: below the bound and far above it
             INFO(of.name << ", " << amplitude << " rad");
             PairLaw law = springs(16);
             law.rolling = of.rolling, law.spin = of.spin;
             History<double> history{};
-            ContactPoint<double> t = resting(delta);
-            t.h = 1e-3;
+            ContactPoint<double> contact = resting(delta);
+            contact.h = 1e-3;
             double work = 0;
             for (int k = 0; k < 2000; ++k) {  // two cycles of 1 s
-                t.omega = amplitude * 2 * std::numbers::pi *
-                          std::cos(2 * std::numbers::pi * 1e-3 * (k + 0.5)) * (across + n);
-                work += t.h * evaluate(law, t, history, true).T.dot(t.omega);
+                contact.omega = amplitude * 2 * std::numbers::pi *
+                                std::cos(2 * std::numbers::pi * 1e-3 * (k + 0.5)) * (tangent + n);
+                work += contact.h * evaluate(law, contact, history, true).T.dot(contact.omega);
             }
             CHECK(work < 0);
-            CHECK(work > -10 * amplitude * 0.25 * R * N * 2);  // no more than the bounds over the way
+            CHECK(work > -10 * amplitude * 0.25 * R * N * 2);  // at most the bounds times the path
         }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lattice of spheres that is pressed upon: what its floor feels.                           Fang (2022), Sec. 7.2.1
+// Floor forces of a lattice of spheres under a point load.                           Fang (2022), Sec. 7.2.1
 #include "granular/validations/lattice.hpp"
 
 #include <catch2/catch.hpp>
@@ -9,13 +9,14 @@
 
 using namespace hilda::granular;
 
-TEST_CASE("a lattice hands on what it weighs and what presses it, with friction straight down (long)",
+TEST_CASE("floor and walls carry the weight and the load of a lattice, with friction below the load (long)",
           "[granular][lattice]")
 {
-    const std::vector<Press> of = {{Stiffness::linear, 0.2, 5}, {Stiffness::linear, 0, 20}};
-    const std::vector<Pressed> pressed = press(of, {.h = 5e-5, .settle = 0.8, .ramp = 0.2, .hold = 0.2});
+    const std::vector<LoadCase> of = {{Stiffness::linear, 0.2, 5}, {Stiffness::linear, 0, 20}};
+    const std::vector<LatticeResponse> pressed =
+        run_lattices(of, {.h = 5e-5, .settle = 0.8, .ramp = 0.2, .hold = 0.2});
     for (std::size_t n = 0; n < of.size(); ++n) {
-        const Pressed::At& now = pressed[n].after;
+        const LatticeResponse::BoundaryForces& now = pressed[n].after;
         const auto share = pressed[n].share(of[n].F);
         const double floor = std::accumulate(now.floor.begin(), now.floor.end(), 0.);
         CHECK(floor + now.sides == Approx(lattice::spheres + of[n].F).epsilon(2e-3));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Three spheres, one on two: what they hold.                                                Fang (2022), Sec. 7.1.4
+// Stacks of three spheres: critical mass of the upper sphere.                        Fang (2022), Sec. 7.1.4
 #include "granular/validations/three_spheres.hpp"
 #include "tests/support/grains.hpp"
 
@@ -7,7 +7,7 @@
 
 using namespace hilda;
 using namespace hilda::tests;
-using granular::come_down;
+using granular::collapse_height;
 using granular::Stack;
 using granular::StackRun;
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double R = 0.15;
 
-/// Height of the upper sphere at the end, over R, all in double precision
+/// Final height of the upper sphere over R, in double precision
 double height(const Stack& s, double mass)
 {
     WorldOptions o;
@@ -41,21 +41,20 @@ double height(const Stack& s, double mass)
 
 }  // namespace
 
-TEST_CASE("the least mass that brings a stack down is that of double precision (long)",
-          "[granular][stacking]")
+TEST_CASE("the critical mass of a stack is that in double precision (long)", "[granular][stacking]")
 {
     const std::vector<Stack> stacks = {{0.3, 0.158, 0.10}, {0.3, 0.158, 0.40}};
     const std::vector<double> mass = critical_masses(stacks, StackRun{});
     for (std::size_t k = 0; k < stacks.size(); ++k) {
         INFO("mu_r = " << stacks[k].mu_r << ": " << mass[k] << " kg");
-        CHECK(height(stacks[k], mass[k] + 0.01) < come_down);
-        CHECK(height(stacks[k], mass[k] - 0.02) > come_down);
-        // set down at once, it takes less than where it is set down slowly
+        CHECK(height(stacks[k], mass[k] + 0.01) < collapse_height);
+        CHECK(height(stacks[k], mass[k] - 0.02) > collapse_height);
+        // the upper sphere is released suddenly, so the critical mass is below the static limit
         CHECK(mass[k] == Approx(static_limit(stacks[k], 0.5, 0.5)).epsilon(0.07));
     }
 }
 
-TEST_CASE("a stack among others falls as it does alone", "[granular][stacking][replica]")
+TEST_CASE("a stack computed with others falls as a single stack does", "[granular][stacking][replica]")
 {
     const std::vector<Stack> stacks = {{0.2, 0.16, 0.07}, {0.3, 0.16, 0.13}, {0.4, 0.2, 0.3}};
     const std::vector<double> mass = {1, 0.5, 2};
@@ -65,13 +64,12 @@ TEST_CASE("a stack among others falls as it does alone", "[granular][stacking][r
         CHECK(heights({stacks[k]}, {mass[k]}, run)[0] == together[k]);
 }
 
-TEST_CASE("without resistance to rolling a stack holds nothing or all where friction locks it",
-          "[granular][stacking]")
+TEST_CASE("without rolling friction a stack collapses unless friction locks it", "[granular][stacking]")
 {
     // the lower spheres roll away where tan(θ/2) > μ, with sin θ = (1 + gap/2)/2: 0.30
     const std::vector<double> z =
         heights({{0.2, 0.158, 0}, {0.2, 0.5, 0}}, {0.2, 0.2}, StackRun{.h = 5e-5, .settle = 0.1, .watch = 2});
-    CHECK(z[0] < come_down);
-    CHECK(z[1] > come_down);
+    CHECK(z[0] < collapse_height);
+    CHECK(z[1] > collapse_height);
     CHECK(granular::static_limit({0.2, 0.158, 0}, 0.5, 0.5) == 0);
 }

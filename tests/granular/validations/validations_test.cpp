@@ -11,7 +11,7 @@ using namespace hilda::granular;
 
 namespace {
 
-void comes_out(const std::string& name)
+void check_validation(const std::string& name)
 {
     for (const Validation& v : validations()) {
         if (v.name != name) continue;
@@ -30,8 +30,8 @@ void comes_out(const std::string& name)
         }
         REQUIRE_FALSE(result.checks.empty());
         for (const ValidationCheck& c : result.checks) {
-            INFO(c.what << ": " << c.measured << " of [" << c.least << ", " << c.most << "]");
-            CHECK(c.met());
+            INFO(c.what << ": " << c.measured << " of [" << c.lower << ", " << c.upper << "]");
+            CHECK(c.passed());
         }
         CHECK(forward);
         return;
@@ -41,35 +41,35 @@ void comes_out(const std::string& name)
 
 }  // namespace
 
-TEST_CASE("validation: head-on (long)", "[granular][validation]") { comes_out("head-on"); }
-TEST_CASE("validation: brick (long)", "[granular][validation]") { comes_out("brick"); }
-TEST_CASE("validation: oblique", "[granular][validation]") { comes_out("oblique"); }
+TEST_CASE("validation: head-on (long)", "[granular][validation]") { check_validation("head-on"); }
+TEST_CASE("validation: brick (long)", "[granular][validation]") { check_validation("brick"); }
+TEST_CASE("validation: oblique", "[granular][validation]") { check_validation("oblique"); }
 
-TEST_CASE("validations are listed by name, each with what it answers", "[granular][validation]")
+TEST_CASE("validations are listed by name, each with a description of one line", "[granular][validation]")
 {
-    // what stacking and waves are made of has tests of its own; they take half a minute and more, and are left to the
-    // studies
+    // The functions of stacking and waves have separate tests. The validations take half a minute and more
+    // and are run as studies.
     std::set<std::string> tested = {"brick", "head-on", "oblique", "stacking", "waves"};
     std::string last;
     for (const Validation& v : validations()) {
         CHECK(last < v.name);
         last = v.name;
-        CHECK_FALSE(v.answers.empty());
-        CHECK(v.answers.find('\n') == std::string::npos);
+        CHECK_FALSE(v.description.empty());
+        CHECK(v.description.find('\n') == std::string::npos);
         INFO("a test case must run " << v.name);
         CHECK(tested.erase(v.name) == 1);
     }
     CHECK(tested.empty());
 }
 
-TEST_CASE("a check that measures nothing is not met", "[granular][validation]")
+TEST_CASE("a check fails if its value is NaN or out of bounds", "[granular][validation]")
 {
     const double none = std::nan(""), inf = std::numeric_limits<double>::infinity();
-    CHECK_FALSE(ValidationCheck{"", none, -inf, inf}.met());
-    CHECK(ValidationCheck{"", 1, 1, 1}.met());
-    CHECK_FALSE(ValidationCheck{"", 1.1, 0, 1}.met());
+    CHECK_FALSE(ValidationCheck{"", none, -inf, inf}.passed());
+    CHECK(ValidationCheck{"", 1, 1, 1}.passed());
+    CHECK_FALSE(ValidationCheck{"", 1.1, 0, 1}.passed());
     for (const auto& [a, b] : {std::pair(none, 1.), std::pair(1., none), std::pair(none, none)})
-        CHECK(std::isnan(worse(a, b)));
-    CHECK(worse(1, 2) == 2);
-    CHECK(worse(2, 1) == 2);
+        CHECK(std::isnan(max_or_nan(a, b)));
+    CHECK(max_or_nan(1, 2) == 2);
+    CHECK(max_or_nan(2, 1) == 2);
 }

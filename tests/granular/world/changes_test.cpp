@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A world that is changed while it runs: what joins it, laws that come later, what is refused and leaves no trace; and
-// what bodies that turn do to each other.
+// Changes of a world during a run: added particles, added laws, rejected input; and contacts of rotating
+// bodies.
 #include "granular/files.hpp"
 #include "tests/support/grains.hpp"
 
@@ -33,8 +33,7 @@ World with_floor(const PairLaw& law, const WorldOptions& o = room())
 
 }  // namespace
 
-TEST_CASE("a grain that turns with the table it lies on feels no resistance to rolling",
-          "[granular][boundary]")
+TEST_CASE("a particle that rotates with a turntable has no rolling or spin torque", "[granular][boundary]")
 {
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.5);
     law.rolling = granular::ConstantTorque{.mu_r = 0.2f, .slow = 1e-4f};
@@ -48,7 +47,7 @@ TEST_CASE("a grain that turns with the table it lies on feels no resistance to r
     CHECK(world.contacts()[0].T.norm() < 1e-15);
 }
 
-TEST_CASE("static friction holds up to mu_s and what slides is braked by mu_k", "[granular][friction]")
+TEST_CASE("static friction acts up to mu_s and sliding friction is that of mu_k", "[granular][friction]")
 {
     PairLaw law = hertz_mindlin(glass(), 0.3, 0.3);
     granular::Mindlin friction;
@@ -64,7 +63,7 @@ TEST_CASE("static friction holds up to mu_s and what slides is braked by mu_k", 
     const double weight = world.particles()[held].mass * 9.81;
     world.step(2000);
     const double v = world.particles()[slides].v.x;
-    for (int k = 1; k <= 40; ++k) {  // slowly: what is put on at once swings to twice as much
+    for (int k = 1; k <= 40; ++k) {  // slowly: a suddenly applied load would oscillate up to twice its value
         world.set_force(held, {0.01 * k * weight, 0, 0});
         world.step(100);
     }
@@ -75,7 +74,7 @@ TEST_CASE("static friction holds up to mu_s and what slides is braked by mu_k", 
     CHECK(world.particles()[held].v.x == Approx((0.55 - 0.3) * 9.81 * 0.02).epsilon(0.02));
 }
 
-TEST_CASE("with a constant stiffness the spring by increments is that of the whole displacement",
+TEST_CASE("with constant stiffness the incremental tangential law equals the law of the total displacement",
           "[granular][friction]")
 {
     const auto leaving = [](const auto& tangential) {
@@ -98,7 +97,7 @@ TEST_CASE("with a constant stiffness the spring by increments is that of the who
     CHECK(parts.omega.y == Approx(whole.omega.y).epsilon(1e-4));
 }
 
-TEST_CASE("particles join a periodic gas while others cross its faces", "[granular]")
+TEST_CASE("particles can be added to a periodic gas while others cross its faces", "[granular]")
 {
     WorldOptions o = room();
     o.periodic = {true, true, true}, o.gravity = {0, 0, 0};
@@ -123,7 +122,7 @@ TEST_CASE("particles join a periodic gas while others cross its faces", "[granul
     CHECK(world.count() == 27u + static_cast<unsigned>(joined));
 }
 
-TEST_CASE("what is refused leaves a running world as it was", "[granular][errors]")
+TEST_CASE("rejected input leaves a running world unchanged", "[granular][errors]")
 {
     World world = with_floor(hertz_mindlin(glass(), 0.5, 0.3));
     world.add(Particle{.r = {0, 0, 0.9999 * R}, .radius = R});
@@ -157,7 +156,7 @@ TEST_CASE("what is refused leaves a running world as it was", "[granular][errors
     CHECK_THROWS_AS(world.set_velocity(9, {0, 0, 0}, {0, 0, 0}), InvalidCase);
 }
 
-TEST_CASE("a law that resists turning may come when contacts are there", "[granular]")
+TEST_CASE("a rolling law can be set while contacts exist", "[granular]")
 {
     PairLaw law = hertz_mindlin(glass(), 0.3, 0.5);
     World world = with_floor(law);
@@ -168,11 +167,11 @@ TEST_CASE("a law that resists turning may come when contacts are there", "[granu
     law.rolling = granular::Epsd{.mu_r = 0.05f, .eta_r = 0.1f};
     world.set_law(0, 0, law);
     world.step(2000);
-    // both the ball's own inertia and that of its turning are braked
+    // the rolling torque decelerates translation and rotation together, with the inertia 7/5 m
     CHECK(rolls - world.particles()[0].v.x == Approx(0.05 * 9.81 / 1.4 * 0.01).epsilon(0.02));
 }
 
-TEST_CASE("contacts of a world just loaded are those of the world that was saved", "[granular][checkpoint]")
+TEST_CASE("contacts of a restored world are those of the saved world", "[granular][checkpoint]")
 {
     const auto make = [] {
         World world = with_floor(hertz_mindlin(glass(), 0.5, 0.3));
@@ -194,10 +193,11 @@ TEST_CASE("contacts of a world just loaded are those of the world that was saved
     CHECK(one.to_bytes("run") == other.to_bytes("run"));
 }
 
-TEST_CASE("a world just loaded looks for neighbours when the one that was saved does",
+TEST_CASE("a restored world rebuilds its neighbour list at the same steps as the saved world",
           "[granular][checkpoint]")
 {
-    // braked by a tenth of its speed in a step: the bound of its way has the speed of before
+    // The particle loses a tenth of its speed in one step, so the displacement bound must use the previous
+    // speed.
     const auto make = [] {
         WorldOptions o = room();
         o.gravity = {0, 0, -1e4}, o.skin = 0.01;
@@ -217,7 +217,7 @@ TEST_CASE("a world just loaded looks for neighbours when the one that was saved 
     }
 }
 
-TEST_CASE("a ball and a tool that turns keep their angular momentum", "[granular][boundary]")
+TEST_CASE("a particle and a rotating tool conserve angular momentum", "[granular][boundary]")
 {
     WorldOptions o = room();
     o.gravity = {0, 0, 0}, o.h = 1e-6;

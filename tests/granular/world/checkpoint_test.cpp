@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A world that goes on from a checkpoint has the bits of one that was never stopped; what is damaged is refused.
+// A world restored from a checkpoint continues with bitwise identical results; damaged checkpoints are
+// rejected.
 #include "tests/support/grains.hpp"
 
 #include "granular/case/case_file.hpp"
@@ -35,7 +36,8 @@ bool same(const granular::World& a, const granular::World& b)
 
 }  // namespace
 
-TEST_CASE("a world loaded from a checkpoint goes on with the same bits (long)", "[granular][checkpoint]")
+TEST_CASE("a world restored from a checkpoint continues with bitwise identical results (long)",
+          "[granular][checkpoint]")
 {
     const auto integrator =
         GENERATE(as<std::string>(), "", R"("integrator": "velocity-verlet",)", R"("integrator": "chung",)");
@@ -57,7 +59,7 @@ TEST_CASE("a world loaded from a checkpoint goes on with the same bits (long)", 
                       "checkpoint: the checkpoint belongs to another run");
 }
 
-TEST_CASE("a damaged checkpoint is refused, wherever it is damaged", "[granular][checkpoint]")
+TEST_CASE("a checkpoint with a wrong bit or a wrong length is rejected", "[granular][checkpoint]")
 {
     auto c = granular::read_case(bed, "bed");
     c.world->step(200);

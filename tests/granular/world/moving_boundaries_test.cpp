@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What moves grains from outside: weight, forces, boundaries that move as told, tools that move by what they carry; and
-// replicas, which see none of each other.
+// External actions on particles: gravity, applied forces, boundaries with prescribed motion, tools; and
+// replicas.
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -31,7 +31,7 @@ World glass_world(const WorldOptions& o)
     return world;
 }
 
-/// A heap of n³ grains that are about to fall together
+/// n³ particles on a slightly perturbed lattice, which collapse into a heap
 void add_heap(World& world, int n, std::uint16_t replica, unsigned seed)
 {
     std::mt19937 engine(seed);
@@ -47,7 +47,7 @@ void add_heap(World& world, int n, std::uint16_t replica, unsigned seed)
 
 }  // namespace
 
-TEST_CASE("a particle in free fall is where its scheme puts it", "[granular][integrator]")
+TEST_CASE("the position in free fall is the closed form of each scheme", "[granular][integrator]")
 {
     const double h = 1e-3, g = 9.81;
     const long n = 40;
@@ -71,9 +71,9 @@ TEST_CASE("a particle in free fall is where its scheme puts it", "[granular][int
     }
 }
 
-TEST_CASE("a particle goes its way however short it is in a step", "[granular][integrator]")
+TEST_CASE("displacements below the resolution of a step accumulate without loss", "[granular][integrator]")
 {
-    // ways of a step are counted in 2^-29 of a cell, and remainders in 1024ths of that
+    // positions have a resolution of 2^-29 of a cell, remainders of 1/1024 of that
     const double h = 1e-7, R = 0.05, grain = 1.1 * 2 * R / (1 << 29) / 1024;
     const long steps = 50000;
     for (const Scheme scheme : {Scheme::symplectic_euler, Scheme::velocity_verlet}) {
@@ -95,7 +95,7 @@ TEST_CASE("a particle goes its way however short it is in a step", "[granular][i
             const Vec3 went = p.r - begin[k];
             INFO("scheme " << static_cast<int>(scheme) << ", " << p.v.x * h / grain << " grains in a step");
             const double way = p.v.x * h * static_cast<double>(steps);
-            // to single precision, some grains, and what two places in double precision are told with
+            // single precision of the velocity, a few resolution units, rounding of two positions
             const double margin = 1e-6 * std::abs(way) + 8 * grain + 1e-15;
             CHECK(std::abs(went.x - way) < margin);
             CHECK(std::abs(went.y + way) < margin);
@@ -104,7 +104,7 @@ TEST_CASE("a particle goes its way however short it is in a step", "[granular][i
     }
 }
 
-TEST_CASE("a velocity is kept to what double precision says of it, however it was set", "[granular]")
+TEST_CASE("velocities are stored with a relative error below 1e-9, however they are set", "[granular]")
 {
     World world = glass_world(room(1e-6));
     const Vec3 v = {1e-6, 0.1, -1. / 3}, omega = {100. / 7, -1e-4 / 3, 1. / 7};
@@ -122,13 +122,13 @@ TEST_CASE("a velocity is kept to what double precision says of it, however it wa
     for (std::size_t k = 0; k < before.size(); ++k) {
         const Particle p = world.particles()[k];
         CHECK(std::max(far(p.v, v), far(p.omega, omega)) < 1e-9);
-        CHECK((p.r - before[k].r).norm() < 1e-14);  // a grain is 4e-15 m
+        CHECK((p.r - before[k].r).norm() < 1e-14);  // the resolution is 4e-15 m
     }
 }
 
-TEST_CASE("all schemes come to the same heap as the step is refined", "[granular][integrator]")
+TEST_CASE("all schemes converge to the same heap as the step is refined", "[granular][integrator]")
 {
-    // where each particle is after 12 ms, with neighbours looked for many times on the way
+    // positions after 12 ms, with many rebuilds of the neighbour list
     const auto end = [](Scheme scheme, double h) {
         WorldOptions o = room(h);
         o.scheme = scheme;
@@ -145,16 +145,16 @@ TEST_CASE("all schemes come to the same heap as the step is refined", "[granular
         for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, (a[k].r - b[k].r).norm());
         return most;
     };
-    const auto truth = end(Scheme::velocity_verlet, 2e-7);
+    const auto reference = end(Scheme::velocity_verlet, 2e-7);
     for (const Scheme s : {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung}) {
-        const double coarse = apart(end(s, 4e-6), truth), fine = apart(end(s, 1e-6), truth);
+        const double coarse = apart(end(s, 4e-6), reference), fine = apart(end(s, 1e-6), reference);
         INFO("scheme " << static_cast<int>(s) << ": " << coarse << " and " << fine << " m");
         CHECK(fine < 0.4 * coarse);
         CHECK(coarse < 3e-6);
     }
 }
 
-TEST_CASE("a force from outside accelerates the particle it is on until it is set anew", "[granular]")
+TEST_CASE("an applied force accelerates its particle until it is changed", "[granular]")
 {
     WorldOptions o = room(1e-4);
     o.gravity = {0, 0, 0};
@@ -173,7 +173,7 @@ TEST_CASE("a force from outside accelerates the particle it is on until it is se
     CHECK_THROWS_WITH(world.set_force(7, {0, 0, 0}), "force: no particle has this id, got 7");
 }
 
-TEST_CASE("a boundary that turns takes what lies on it along", "[granular][boundary]")
+TEST_CASE("a rotating boundary moves the particle on it", "[granular][boundary]")
 {
     // a floor that tips about y by 0.1 rad: a smooth ball on it then slides down
     World world(room(5e-6), {glass()});
@@ -188,10 +188,10 @@ TEST_CASE("a boundary that turns takes what lies on it along", "[granular][bound
     world.step(10000);
     const Vec3 gained = world.particles()[0].v - before, n = world.boundary(0).axis;
     CHECK(gained.dot({n.z, 0, -n.x}) == Approx(9.81 * std::sin(0.1) * 0.05).epsilon(1e-3));
-    CHECK(std::abs(gained.dot(n)) < 3e-3);  // it still hops a little
+    CHECK(std::abs(gained.dot(n)) < 3e-3);  // it still bounces slightly
 }
 
-TEST_CASE("a free plate comes to rest on grains that bear it", "[granular][boundary]")
+TEST_CASE("a free plate comes to rest on particles that support it", "[granular][boundary]")
 {
     World world = glass_world(room(5e-6));
     world.add(Boundary{});
@@ -206,14 +206,14 @@ TEST_CASE("a free plate comes to rest on grains that bear it", "[granular][bound
     const double load = 0.002 * 9.81 + 0.28, weight = 6 * world.particles()[0].mass * 9.81;
     CHECK(world.wrench(top).F.z == Approx(load).epsilon(1e-3));
     CHECK(world.wrench(0).F.z == Approx(-load - weight).epsilon(1e-3));
-    // Hertz: a grain between two plates, F = 4/3 E* sqrt(R) delta^1.5 above and below
+    // Hertz: a particle between two plates, F = 4/3 E* sqrt(R) delta^1.5 above and below
     const double E = granular::effective_modulus(glass(), glass());
     const auto pressed = [&](double F) { return std::pow(0.75 * F / (E * std::sqrt(R)), 2. / 3); };
     CHECK(2 * R - world.boundary(top).r.z ==
           Approx(pressed(load / 6) + pressed((load + weight) / 6)).epsilon(2e-3));
 }
 
-TEST_CASE("a replica moves as it would alone", "[granular][replicas]")
+TEST_CASE("a replica moves as a system of its own does", "[granular][replicas]")
 {
     const auto options = room(5e-6);
     World all = glass_world(options);
@@ -231,7 +231,7 @@ TEST_CASE("a replica moves as it would alone", "[granular][replicas]")
         double most = 0;
         for (std::size_t k = 0; k < p.size(); ++k)
             most = std::max(most, (p[k].r - together[27 * replica + k].r).norm());
-        CHECK(most < 1e-9);  // neighbours are looked for at other times, which rounds otherwise
+        CHECK(most < 1e-9);  // the lists are rebuilt at different times, which changes rounding
         CHECK(all.wrench(0, replica).F.z == Approx(alone.wrench(0).F.z).epsilon(1e-3));
         weight += all.wrench(0, replica).F.z;
         CHECK(together[27 * replica].replica == replica);
@@ -239,10 +239,11 @@ TEST_CASE("a replica moves as it would alone", "[granular][replicas]")
     CHECK(all.wrench(0).F.z == Approx(weight).epsilon(1e-12));
 }
 
-TEST_CASE("neighbours are looked for when a particle has gone half the skin and not before",
+TEST_CASE("the neighbour list is rebuilt when a particle has moved by half the skin and not before",
           "[granular][neighbours]")
 {
-    // one ball to and fro between two walls that are nearer than half the skin: the sum of its ways says nothing
+    // A ball bounces between two walls whose distance is below half the skin. The sum of its displacements
+    // grows, its displacement from the position at the build does not.
     WorldOptions o = room(1e-6);
     o.gravity = {0, 0, 0};
     World world(o, {glass()});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress of grains that bear a load.
+// Love-Weber stress of loaded particles.
 #include "granular/world/output.hpp"
 #include "tests/support/grains.hpp"
 
@@ -38,7 +38,7 @@ void only_upright(const std::array<double, 9>& sigma, double within)
 
 }  // namespace
 
-TEST_CASE("a column that a plate presses has the stress of its load over its area", "[granular][stress]")
+TEST_CASE("the stress of a compressed column is the load over the area", "[granular][stress]")
 {
     constexpr double F = 0.5;
     World world = column(0, hertz_mindlin(rubber(), 0.1));
@@ -55,13 +55,13 @@ TEST_CASE("a column that a plate presses has the stress of its load over its are
     only_upright(sigma, 1e-4 * F / A);
 }
 
-TEST_CASE("a column that bears itself has the stress of its weight at half its height", "[granular][stress]")
+TEST_CASE("the mean stress of a column under gravity is half the weight over the area", "[granular][stress]")
 {
     World world = column(9.81, hertz_mindlin(rubber(), 0.1));
     world.step(80000);
     const double weight = high * 9.81 * world.particles()[0].mass;
     CHECK(world.wrench(0).F.z == Approx(-weight).epsilon(1e-4));
-    // contacts hand on what is above: R (N + 2 (N - 1) + ... + 2) w = R N² w, less what they are pressed together
+    // each contact carries the weight above: R (N + 2 (N - 1) + ... + 2) w = R N² w, less the overlaps
     const auto sigma = stress(world, world.contacts(), A * 2 * high * R);
     double overlaps = 0;
     for (const ContactRecord& c : world.contacts()) overlaps += c.delta * c.F.norm();
@@ -70,7 +70,7 @@ TEST_CASE("a column that bears itself has the stress of its weight at half its h
     only_upright(sigma, 1e-4 * weight / A);
 }
 
-TEST_CASE("the stress of smooth grains is symmetric, and that of rough ones at rest", "[granular][stress]")
+TEST_CASE("the stress is symmetric without friction, and at rest with friction", "[granular][stress]")
 {
     const double mu = GENERATE(0., 0.4);
     std::mt19937 engine(3);
@@ -88,7 +88,7 @@ TEST_CASE("the stress of smooth grains is symmetric, and that of rough ones at r
     world.step(50000);
     const auto sigma = stress(world, world.contacts(), width * width * 6 * R);
     const double p = sigma[8];
-    // half of the weight over the area, and less for what the grains sink into each other's gaps
+    // half of the weight over the area, less the effect of particles that sink between others
     const double weight = 27 * 9.81 * world.particles()[0].mass;
     CHECK(p > 0.3 * weight / (width * width));
     CHECK(p < 0.55 * weight / (width * width));

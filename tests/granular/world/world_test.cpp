@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many grains: who touches whom, what is conserved, what does not depend on the order of things.
+// Many particles: contacts, conservation laws, independence of threads and of order.
 #include "granular/world/output.hpp"
 #include "tests/support/grains.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double R = 1e-3;
 
-struct Random {
+struct RandomNumbers {
     std::mt19937 engine;
     double number(double low, double high)
     {
@@ -43,8 +43,8 @@ void add_walls(World& world, double width)
     for (const Boundary& b : granular::open_box({0, 0, 0}, {width, width, 0})) world.add(b);
 }
 
-/// A loose heap of n³ grains, of radii up to `spread` smaller
-std::vector<Particle> heap(int n, double spread, Random& random)
+/// A loose heap of n³ particles with radii between (1 - spread) R and R
+std::vector<Particle> heap(int n, double spread, RandomNumbers& random)
 {
     std::vector<Particle> all;
     for (int k = 0; k < n * n * n; ++k) {
@@ -61,11 +61,11 @@ double width_of(int n) { return 2.1 * R * (n + 0.2); }
 
 }  // namespace
 
-TEST_CASE("the contacts of the neighbour list are those of all pairs (long)", "[granular][neighbours]")
+TEST_CASE("the neighbour list finds the contacts of all pairs (long)", "[granular][neighbours]")
 {
     const bool periodic = GENERATE(false, true);
     const double spread = GENERATE(0., 0.6);
-    Random random{std::mt19937(7)};
+    RandomNumbers random{std::mt19937(7)};
     constexpr int n = 7;
     const double width = width_of(n);
     WorldOptions o = box(width, width + 4 * R);
@@ -95,16 +95,16 @@ TEST_CASE("the contacts of the neighbour list are those of all pairs (long)", "[
             if (!c.boundary) found.insert({c.i, c.j});
         for (const auto& pair : all) CHECK(found.count(pair) == 1);
         seen += static_cast<int>(all.size());
-        CHECK(found.size() <= all.size() + 2);  // those that overlap by less than 1e-10 m
+        CHECK(found.size() <= all.size() + 2);  // overlaps below 1e-10 m
     }
     CHECK(seen > 200);
     CHECK(world.rebuilds() > 5);
     CHECK(world.rebuilds() < 2000);
 }
 
-TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][neighbours]")
+TEST_CASE("particles at rest are hit by moving and rotating boundaries", "[granular][neighbours]")
 {
-    // nothing but the boundaries says when neighbours are to be looked for
+    // only the motion of the boundaries triggers rebuilds of the neighbour list
     const bool turns = GENERATE(false, true);
     WorldOptions o;
     o.low = {-50 * R, -50 * R, -50 * R}, o.high = {50 * R, 60 * R, 50 * R};
@@ -120,7 +120,7 @@ TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][n
     world.add(plate);
     for (int k = 0; k < 20; ++k)
         world.add(Particle{.r = {(1.3 + 0.3 * k) * R, (1 + 2.2 * (k / 2)) * R, k % 2 * 3 * R}, .radius = R});
-    std::set<unsigned> met;
+    std::set<unsigned> touched;
     for (int k = 0; k < 3000; ++k) {
         world.step(3);
         const auto grains = world.particles();
@@ -128,19 +128,19 @@ TEST_CASE("grains at rest meet what moves and turns towards them", "[granular][n
         for (const ContactRecord& c : world.contacts())
             if (c.boundary) found.insert(c.i);
         for (unsigned i = 0; i < grains.size(); ++i) {
-            if (R - nearest(world.boundary(0), grains[i].r).distance > 1e-10) met.insert(i);
-            if (met.count(i) == 0) REQUIRE(grains[i].v.norm() == 0);
+            if (R - nearest(world.boundary(0), grains[i].r).distance > 1e-10) touched.insert(i);
+            if (touched.count(i) == 0) REQUIRE(grains[i].v.norm() == 0);
         }
-        for (const unsigned i : met)
-            if (grains[i].v.norm() == 0) CHECK(found.count(i) == 1);  // it meets it now, for the first time
+        for (const unsigned i : touched)
+            if (grains[i].v.norm() == 0) CHECK(found.count(i) == 1);  // first contact
     }
-    CHECK(met.size() > 3);
+    CHECK(touched.size() > 3);
 }
 
-TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deterministic]")
+TEST_CASE("totals are the sums over the contacts, for any number of threads", "[granular][deterministic]")
 {
     const int threads = omp_get_max_threads();
-    Random random{std::mt19937(5)};
+    RandomNumbers random{std::mt19937(5)};
     constexpr int n = 12;
     WorldOptions o = box(width_of(n), width_of(n) + 4 * R);
     o.gravity = {1, 2, -9.81};
@@ -149,7 +149,7 @@ TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deter
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     world.set_law(0, 0, law);
     add_walls(world, width_of(n));
-    // each overlaps its neighbours by a hundredth of a diameter
+    // each particle overlaps its neighbours by a hundredth of a diameter
     const auto loose = heap(n, 0, random);
     for (int k = 0; k < n * n * n; ++k) {
         Particle p = loose[static_cast<std::size_t>(k)];
@@ -180,13 +180,13 @@ TEST_CASE("what a world sums up is the sum over its contacts", "[granular][deter
     }
 }
 
-TEST_CASE("a run has the same bits for any number of threads", "[granular][deterministic]")
+TEST_CASE("results are bitwise identical for any number of threads", "[granular][deterministic]")
 {
     const int threads = omp_get_max_threads();
     std::vector<Particle> first;
     for (const int t : {1, 2, 3, 4, 8}) {
         omp_set_num_threads(t);
-        Random random{std::mt19937(3)};
+        RandomNumbers random{std::mt19937(3)};
         constexpr int n = 16;
         World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
         world.set_law(0, 0, hertz_mindlin(glass(), 0.7, 0.4));
@@ -204,9 +204,9 @@ TEST_CASE("a run has the same bits for any number of threads", "[granular][deter
     omp_set_num_threads(threads);
 }
 
-TEST_CASE("grains that nothing holds keep their momentum", "[granular][invariant]")
+TEST_CASE("free particles conserve momentum", "[granular][invariant]")
 {
-    Random random{std::mt19937(5)};
+    RandomNumbers random{std::mt19937(5)};
     constexpr int n = 6;
     WorldOptions o = box(width_of(n), width_of(n));
     const double far = 0.1;
@@ -232,9 +232,9 @@ TEST_CASE("grains that nothing holds keep their momentum", "[granular][invariant
     CHECK(contacts > 1000);
 }
 
-TEST_CASE("friction is never beyond its bound", "[granular][invariant]")
+TEST_CASE("friction never exceeds its bound", "[granular][invariant]")
 {
-    Random random{std::mt19937(9)};
+    RandomNumbers random{std::mt19937(9)};
     constexpr int n = 6;
     World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
     const double mu = 0.35;
@@ -247,16 +247,16 @@ TEST_CASE("friction is never beyond its bound", "[granular][invariant]")
         world.step();
         for (const ContactRecord& c : world.contacts()) {
             const double F_n = c.F.dot(c.n), F_t = (c.F - F_n * c.n).norm();
-            REQUIRE(F_t <= mu * std::abs(F_n) + 1e-5 * c.F.norm());  // spring and dashpot may cancel
+            REQUIRE(F_t <= mu * std::abs(F_n) + 1e-5 * c.F.norm());  // spring and damper may cancel
             slid += F_t > 0.99 * mu * std::abs(F_n);
         }
     }
     CHECK(slid > 1000);
 }
 
-TEST_CASE("a bed at rest bears on floor and walls with its weight (long)", "[granular][invariant]")
+TEST_CASE("floor and walls carry the weight of a bed at rest (long)", "[granular][invariant]")
 {
-    Random random{std::mt19937(11)};
+    RandomNumbers random{std::mt19937(11)};
     constexpr int n = 9;
     World world(box(width_of(n), width_of(n) + 4 * R), {glass()});
     world.set_law(0, 0, hertz_mindlin(glass(), 0.1, 0.4));
@@ -268,22 +268,22 @@ TEST_CASE("a bed at rest bears on floor and walls with its weight (long)", "[gra
         weight += 9.81 * 2500 * 4 / 3 * std::numbers::pi * p.radius * p.radius * p.radius;
     }
     world.step(60000);
-    double up = 0;  // the mean over 20 ms: what still swings is momentum to and fro
+    double up = 0;  // mean over 20 ms, because residual oscillations remain
     constexpr int looks = 100;
     for (int k = 0; k < looks; ++k) {
         world.step(40);
         for (int b = 0; b < 5; ++b) up -= world.wrench(b).F.z / looks;
     }
     CHECK(up == Approx(weight).epsilon(2e-3));
-    // a grain may go on turning about its contacts: nothing resists that
+    // a particle may continue to rotate, since no law resists rolling
     double moving = 0;
     for (const Particle& p : world.particles()) moving += 0.5 * p.mass * p.v.dot(p.v);
     CHECK(moving < 1e-6 * weight * width_of(n));
 }
 
-TEST_CASE("an elastic gas keeps its energy", "[granular][invariant]")
+TEST_CASE("an elastic gas conserves energy", "[granular][invariant]")
 {
-    Random random{std::mt19937(13)};
+    RandomNumbers random{std::mt19937(13)};
     constexpr int n = 5;
     const double width = width_of(n);
     WorldOptions o;
@@ -308,21 +308,21 @@ TEST_CASE("an elastic gas keeps its energy", "[granular][invariant]")
     };
     world.step();
     const double before = energy();
-    std::size_t met = 0;
+    std::size_t contacts = 0;
     for (int k = 0; k < 200; ++k) {
         world.step(200);
-        met += world.contacts().size();
+        contacts += world.contacts().size();
         CHECK(energy() == Approx(before).epsilon(2e-3));
     }
-    CHECK(met > 200);
+    CHECK(contacts > 200);
 }
 
-TEST_CASE("a world in a mirror, or told in another order, moves alike", "[granular][invariant]")
+TEST_CASE("a mirrored or reordered world has the same motion", "[granular][invariant]")
 {
     constexpr int n = 6;
     const double width = width_of(n);
     const auto run = [&](bool mirrored, bool backwards) {
-        Random random{std::mt19937(17)};
+        RandomNumbers random{std::mt19937(17)};
         WorldOptions o = box(width, width + 4 * R);
         World world(o, {glass()});
         world.set_law(0, 0, hertz_mindlin(glass(), 0.8, 0.3));
@@ -347,7 +347,7 @@ TEST_CASE("a world in a mirror, or told in another order, moves alike", "[granul
             most = std::max(most, (plain[k].r - other[k].r).norm());
         return most / R;
     };
-    // Collisions make rounding larger, about ten times each.
+    // Each collision amplifies rounding errors about ten times.
     CHECK(far(run(true, false)) < 1e-5);
     CHECK(far(run(false, true)) < 1e-5);
     CHECK(far(run(true, true)) < 1e-5);

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What every scheme in the list must show, whoever wrote it.
+/// Tests of all registered schemes.
 
+#include "lie/schemes.hpp"
+#include "lie/check.hpp"
+#include "lie/integrator.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/linear_solver.hpp"
+#include "lie/system.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/spinning_top.hpp"
@@ -19,7 +25,7 @@ lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const li
     return lie::march(start, *integrator, lie::TimeGrid::over(t_end, h, t_end)).row.back();
 }
 
-/// Everything of order `order`: r, A, ṙ, ω̄
+/// The variables to which Scheme::order applies: r, A, ṙ, ω̄
 Eigen::VectorXd motion(const lie::State& x)
 {
     Eigen::VectorXd q(18);
@@ -28,7 +34,7 @@ Eigen::VectorXd motion(const lie::State& x)
     return q;
 }
 
-/// Fine enough that the leading term of the error rules, coarse enough to stand above rounding
+/// A step for which the leading term of the error dominates higher terms and rounding
 double step_for(const lie::Scheme& s) { return s.order > 2 ? 5e-3 : 5e-5; }
 
 double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const Eigen::VectorXd& fine)
@@ -38,7 +44,7 @@ double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const
 
 }  // namespace
 
-TEST_CASE("declared order is the measured order (long)", "[lie][order]")
+TEST_CASE("the declared order is the measured order (long)", "[lie][order]")
 {
     const tests::SpinningTop top;
     const lie::State start = top.start();
@@ -51,12 +57,12 @@ TEST_CASE("declared order is the measured order (long)", "[lie][order]")
         INFO(s.name << " declares " << s.order << " and " << s.order_lambda << " for lambda, shows "
                     << of_motion << " and " << of_lambda);
         CHECK(of_motion == Approx(s.order).margin(0.15));
-        // wider: an alternating error of O(h) stands beside a smooth one of O(h²)
+        // wider margin: rA-half-2 has an alternating error of O(h) besides a smooth one of O(h²)
         CHECK(of_lambda == Approx(s.order_lambda).margin(0.25));
     }
 }
 
-TEST_CASE("a torque-free body keeps the declared order in its rotation (long)", "[lie][order]")
+TEST_CASE("the declared order holds for a torque-free body (long)", "[lie][order]")
 {
     const tests::SpinningTop top(true);
     const lie::State start = top.start();
@@ -70,17 +76,17 @@ TEST_CASE("a torque-free body keeps the declared order in its rotation (long)", 
     }
 }
 
-TEST_CASE("a step takes nothing from the heap", "[lie][allocation]")
+TEST_CASE("a step does not allocate memory", "[lie][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("skipped: a sanitizer replaces the allocator");
         return;
     }
     const tests::SpinningTop top;
     for (const lie::Scheme& s : lie::schemes()) {
         const auto integrator = s.make(top, {});
         lie::State x = top.start();
-        for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);  // pivots, and buffers that keep their size
+        for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);  // chooses pivots and allocates buffers
         const long taken = tests::allocations_during([&] {
             for (int n = 0; n < 100; ++n) integrator->step(x, 1e-3);
         });
@@ -89,10 +95,10 @@ TEST_CASE("a step takes nothing from the heap", "[lie][allocation]")
     }
 }
 
-TEST_CASE("the heap counter counts", "[lie][allocation]")
+TEST_CASE("the allocation counter counts", "[lie][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("skipped: a sanitizer replaces the allocator");
         return;
     }
     CHECK(tests::allocations_during([] { delete new int(1); }) >= 0);
@@ -101,14 +107,14 @@ TEST_CASE("the heap counter counts", "[lie][allocation]")
     delete v;
 }
 
-TEST_CASE("a step that fails leaves the state as it was", "[lie][newton]")
+TEST_CASE("a step that fails does not change the state", "[lie][newton]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme& s : lie::schemes()) {
         const auto integrator = s.make(top, {.tolerance = 1e-300, .max_iterations = 2});
         for (const bool moving : {false, true}) {
             lie::State x = top.start();
-            if (moving) s.make(top, {})->step(x, 1e-2);  // with a history, where the scheme keeps one
+            if (moving) s.make(top, {})->step(x, 1e-2);  // with a history, if the scheme has one
             const lie::State before = x;
             INFO(s.name << (moving ? ", second step" : ", first step"));
             CHECK_THROWS_AS(integrator->step(x, 1e-2), lie::NoConvergence);
@@ -125,7 +131,7 @@ TEST_CASE("a step that fails leaves the state as it was", "[lie][newton]")
     }
 }
 
-TEST_CASE("constraints hold and A stays a rotation", "[lie][invariants]")
+TEST_CASE("constraints are satisfied and A remains a rotation", "[lie][invariants]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme& s : lie::schemes()) {
@@ -150,7 +156,7 @@ TEST_CASE("constraints hold and A stays a rotation", "[lie][invariants]")
     }
 }
 
-TEST_CASE("a step gives the same whatever solves its linear systems", "[lie][condensed]")
+TEST_CASE("a step has the same result with every linear solver", "[lie][condensed]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme& s : lie::schemes()) {
@@ -166,9 +172,9 @@ TEST_CASE("a step gives the same whatever solves its linear systems", "[lie][con
     }
 }
 
-TEST_CASE("a variational scheme keeps the energy of a top", "[lie][invariants]")
+TEST_CASE("the energy error of a variational scheme is bounded for a top", "[lie][invariants]")
 {
-    // |E - E_0| of a symplectic scheme is bounded by its local error, of others it grows with time.
+    // |E - E_0| is bounded for a symplectic scheme and grows with time for others.
     const tests::SpinningTop top;
     const auto drift = [&](const char* scheme, double t_end) {
         const auto integrator = lie::scheme(scheme).make(top, {.tolerance = 1e-12});
@@ -184,9 +190,11 @@ TEST_CASE("a variational scheme keeps the energy of a top", "[lie][invariants]")
     CHECK(drift("rA-half-1", 16) > 100 * after_16);
 }
 
-TEST_CASE("a step ends at its tolerance whatever else is in the model, and wherever it is", "[lie][newton]")
+TEST_CASE("the stopping criterion does not depend on other bodies or on the distance from the origin",
+          "[lie][newton]")
 {
-    // Two tops without a word to each other, the second heavy or both far away: the first takes its usual iterations.
+    // Two independent tops. A heavy second top, or a large distance from the origin, must not end the
+    // iteration early.
     class Two final : public lie::System {
     public:
         Two(double mass, double away) : away(away)
@@ -255,7 +263,7 @@ TEST_CASE("a step ends at its tolerance whatever else is in the model, and where
             INFO(name << ", other mass " << mass);
             CHECK(integrator->statistics().iterations_per_step() >=
                   Approx(of_one->statistics().iterations_per_step()).margin(0.1));
-            CHECK((motion(x) - motion(y)).norm() < 5e-8);  // velocities: the tolerance over h
+            CHECK((motion(x) - motion(y)).norm() < 5e-8);  // velocities: tolerance/h
         }
         const Two far(2, 1e6);
         const auto integrator = lie::scheme(name).make(far, {});
@@ -267,7 +275,7 @@ TEST_CASE("a step ends at its tolerance whatever else is in the model, and where
     }
 }
 
-TEST_CASE("a root that is off by whole turns is not taken", "[lie][newton]")
+TEST_CASE("implicit schemes reject a solution with half a turn or more in a step", "[lie][newton]")
 {
     const tests::SpinningTop top(true);
     for (const char* name : {"rA-full-1", "rA-full-1-exact", "rA-genalpha"}) {
@@ -280,7 +288,7 @@ TEST_CASE("a root that is off by whole turns is not taken", "[lie][newton]")
     }
 }
 
-TEST_CASE("rho at infinity sets the damping of generalised alpha (long)", "[lie]")
+TEST_CASE("generalised-alpha is of second order for every spectral radius below 1 (long)", "[lie]")
 {
     const tests::SpinningTop top;
     CHECK_THROWS_AS(lie::scheme("rA-genalpha").make(top, {.rho_infinity = 1.2}), lie::InvalidInput);
@@ -297,7 +305,7 @@ TEST_CASE("rho at infinity sets the damping of generalised alpha (long)", "[lie]
     }
 }
 
-TEST_CASE("A stays orthogonal over a million steps", "[lie][invariants]")
+TEST_CASE("A remains orthogonal over a million steps", "[lie][invariants]")
 {
     const tests::SpinningTop top(true);
     const auto integrator = lie::scheme("rA-half-1").make(top, {});
@@ -315,7 +323,7 @@ TEST_CASE("A stays orthogonal over a million steps", "[lie][invariants]")
     CHECK(worst < 1e-14);
 }
 
-TEST_CASE("rows lie on multiples of the output interval, and time does not drift", "[lie][march]")
+TEST_CASE("output rows are at multiples of the output interval without drift of time", "[lie][march]")
 {
     const tests::SpinningTop top(true);
     const auto integrator = lie::scheme("rA-half-1").make(top, {});

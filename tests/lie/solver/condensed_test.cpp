@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The condensed saddle system against the whole one, on graphs of every shape.
+/// The condensed saddle system is compared with KLU on graphs of different topology.
 
+#include "lie/solver/condensed.hpp"
+#include "lie/check.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/system.hpp"
 #include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
@@ -14,7 +17,7 @@ using lie::Vec3;
 
 namespace {
 
-/// Bodies joined by random rows: a joint is two bodies (-1: the ground) and a number of rows
+/// Bodies with random rows between them. A joint has two bodies (-1: the ground) and a number of rows.
 class Graph final : public lie::System {
 public:
     struct Joint {
@@ -82,13 +85,13 @@ std::vector<Shape> shapes()
          {{0, 1, 2}, {1, 2, 2}, {2, 0, 2}, {2, 3, 2}, {3, 4, 2}, {4, 5, 2}, {5, 3, 2}},
          true},
         {"two joints between the same bodies", 2, {{-1, 0, 3}, {0, 1, 3}, {-1, 0, 1}, {0, 1, 1}}, false},
-        {"order of bodies turned", 2, {{0, 1, 3}, {1, 0, 2}}, false},
+        {"two joints with the bodies in opposite order", 2, {{0, 1, 3}, {1, 0, 2}}, false},
     };
 }
 
 }  // namespace
 
-TEST_CASE("condensed or whole, the saddle system has one solution", "[lie][saddle][condensed]")
+TEST_CASE("the condensed saddle system has the same solution as the full one", "[lie][saddle][condensed]")
 {
     const unsigned seed = GENERATE(1u, 2u);
     for (const Shape& shape : shapes()) {
@@ -110,7 +113,7 @@ TEST_CASE("condensed or whole, the saddle system has one solution", "[lie][saddl
     }
 }
 
-TEST_CASE("a chain or a tree does not fill in", "[lie][condensed]")
+TEST_CASE("a chain or a tree has no fill-in", "[lie][condensed]")
 {
     for (const Shape& shape : shapes()) {
         const Graph graph(shape.bodies, shape.joints, 1);
@@ -124,7 +127,7 @@ TEST_CASE("a chain or a tree does not fill in", "[lie][condensed]")
     CHECK(ratio == Approx(2).epsilon(0.02));
 }
 
-TEST_CASE("where rows are nearly dependent the whole matrix takes over", "[lie][condensed]")
+TEST_CASE("KLU replaces the condensed system while rows are nearly dependent", "[lie][condensed]")
 {
     Graph graph(2, {{-1, 0, 3}, {0, 1, 3}}, 4);
     auto& entry = graph.rows_pattern.entry;
@@ -133,7 +136,7 @@ TEST_CASE("where rows are nearly dependent the whole matrix takes over", "[lie][
     CHECK(K.factorizations() == 0);
     const lie::Rows healthy = graph.rows_pattern;
 
-    // row 1 becomes row 0 but for one part in 10⁶: S, which holds its square, keeps four digits there
+    // Row 1 equals row 0 up to 1e-6. S contains the square of the difference; the pivot loses twelve digits.
     entry[1].r = entry[0].r + 1e-6 * entry[1].r;
     entry[1].pi = entry[0].pi;
     K.assemble({});
@@ -148,7 +151,7 @@ TEST_CASE("where rows are nearly dependent the whole matrix takes over", "[lie][
     whole.solve(c);
     CHECK(b == c);
 
-    entry[1].r = entry[0].r;  // and now quite
+    entry[1].r = entry[0].r;  // equal rows
     CHECK_THROWS_AS(K.assemble({}), lie::SingularMatrix);
     entry[1].r.x() = std::nan("");
     CHECK_THROWS_AS(K.assemble({}), lie::NonFinite);
@@ -160,11 +163,11 @@ TEST_CASE("where rows are nearly dependent the whole matrix takes over", "[lie][
     CHECK((b - z).norm() < 1e-11 * z.norm());
 }
 
-TEST_CASE("what is chosen automatically is what takes fewer operations", "[lie][condensed]")
+TEST_CASE("the automatic choice of the solver takes the one with fewer operations", "[lie][condensed]")
 {
     const Graph long_chain(50, chain(50), 1);
     CHECK(lie::Saddle(long_chain, lie::Metric::mass, lie::LinearSolver::automatic).is_condensed());
-    // A hub: every row meets every other in one body, and S is dense where K is not.
+    // All rows share body 0: S is dense, K is sparse.
     Joints spokes;
     for (int b = 1; b < 40; ++b) spokes.push_back({0, b, 3});
     const Graph hub(40, spokes, 1);

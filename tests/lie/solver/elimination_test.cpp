@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Unknowns without mass: their elimination against the whole saddle system, and a bead on a wire, whose parameter is
-/// one, against its closed form.
+/// Algebraic variables: their elimination is compared with the full saddle system, and the motion of a bead
+/// on a wire, with the parameter of the wire as its algebraic variable, with the closed form.
 
 #include "lie/solver/elimination.hpp"
+#include "lie/check.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/solver/linear_solver.hpp"
+#include "lie/system.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/random_motion.hpp"
@@ -19,15 +25,15 @@ using lie::Vec3;
 
 namespace {
 
-/// Random rows between bodies (-1: the ground), some with massless unknowns
-class Patchwork final : public lie::System {
+/// Random rows between bodies (-1: the ground), some with algebraic variables
+class RandomGroups final : public lie::System {
 public:
-    /// `last_free`: of a group, rows at its end that move with no body, as those of a surface do
+    /// last_free: number of rows at the end of a group without a body, such as surface equations
     struct Patch {
         int i, j, rows, unknowns, last_free;
     };
 
-    Patchwork(int bodies, const std::vector<Patch>& patches, unsigned seed) : random(seed)
+    RandomGroups(int bodies, const std::vector<Patch>& patches, unsigned seed) : random(seed)
     {
         for (int b = 0; b < bodies; ++b) {
             inertia.m.push_back(std::pow(10.0, random.number()));
@@ -68,28 +74,30 @@ private:
     lie::Mass inertia;
 };
 
-using Patches = std::vector<Patchwork::Patch>;
+using Patches = std::vector<RandomGroups::Patch>;
 
-struct Case {
+struct Example {
     std::string name;
     int bodies;
     Patches patches;
 };
 
-std::vector<Case> cases()
+std::vector<Example> examples()
 {
     return {
         {"a contact with the ground", 1, {{0, -1, 7, 6, 2}}},
         {"a contact of two bodies", 2, {{0, 1, 7, 6, 2}}},
         {"two groups on the same bodies", 2, {{0, 1, 7, 6, 2}, {1, 0, 7, 6, 2}}},
         {"a group between ordinary rows", 3, {{-1, 0, 3, 0, 0}, {0, 1, 7, 6, 2}, {1, 2, 3, 0, 0}}},
-        {"groups of other sizes", 3, {{0, 1, 3, 1, 0}, {1, 2, 5, 2, 0}, {2, -1, 8, 7, 1}, {0, -1, 1, 0, 0}}},
+        {"groups of different sizes",
+         3,
+         {{0, 1, 3, 1, 0}, {1, 2, 5, 2, 0}, {2, -1, 8, 7, 1}, {0, -1, 1, 0, 0}}},
         {"a chain of contacts", 6, {{-1, 0, 7, 6, 2}, {0, 1, 7, 6, 2}, {1, 2, 7, 6, 2}, {2, 3, 7, 6, 2}}},
     };
 }
 
-/// The saddle matrix as it is written, column by column
-Eigen::MatrixXd written_out(const lie::Saddle& K)
+/// The dense saddle matrix, computed column by column
+Eigen::MatrixXd dense_matrix(const lie::Saddle& K)
 {
     Eigen::MatrixXd all(K.size(), K.size());
     Eigen::VectorXd column(K.size());
@@ -102,11 +110,12 @@ Eigen::MatrixXd written_out(const lie::Saddle& K)
 
 }  // namespace
 
-TEST_CASE("massless unknowns eliminated or not give one solution", "[lie][saddle][massless]")
+TEST_CASE("the saddle system has the same solution with and without elimination of algebraic variables",
+          "[lie][saddle][massless]")
 {
     const unsigned seed = GENERATE(1u, 2u, 3u);
-    for (const Case& c : cases()) {
-        const Patchwork system(c.bodies, c.patches, seed);
+    for (const Example& c : examples()) {
+        const RandomGroups system(c.bodies, c.patches, seed);
         lie::Saddle whole(system, lie::Metric::mass, lie::LinearSolver::klu),
             condensed(system, lie::Metric::mass, lie::LinearSolver::condensed),
             automatic(system, lie::Metric::mass, lie::LinearSolver::automatic);
@@ -117,34 +126,34 @@ TEST_CASE("massless unknowns eliminated or not give one solution", "[lie][saddle
                             : K == &condensed ? "condensed"
                                               : "automatic"));
             K->assemble({});
-            const Eigen::MatrixXd written = written_out(*K);
-            CHECK((written - written.transpose()).norm() < 1e-15 * written.norm());
-            const double loss = 1e-15 / written.fullPivLu().rcond();
+            const Eigen::MatrixXd dense = dense_matrix(*K);
+            CHECK((dense - dense.transpose()).norm() < 1e-15 * dense.norm());
+            const double rounding = 1e-15 / dense.fullPivLu().rcond();
             Eigen::VectorXd b(K->size());
-            K->multiply(z, b);  // f, g and p are all there
-            CHECK((b - written * z).norm() < 1e-14 * written.norm() * z.norm());
+            K->multiply(z, b);  // f, g and p are not zero
+            CHECK((b - dense * z).norm() < 1e-14 * dense.norm() * z.norm());
             Eigen::VectorXd solution = b;
             K->solve(solution);
-            CHECK((solution - z).norm() < 100 * loss * z.norm());
+            CHECK((solution - z).norm() < 100 * rounding * z.norm());
 
             Eigen::VectorXd only_g = Eigen::VectorXd::Zero(K->size());
             K->constraint_part(only_g) = K->constraint_part(b);
-            const Eigen::VectorXd expected = written.partialPivLu().solve(only_g);
-            solution = b;  // whose f and p are not read
+            const Eigen::VectorXd expected = dense.partialPivLu().solve(only_g);
+            solution = b;  // f and p are not read
             K->solve_constraints(solution);
-            CHECK((solution - expected).norm() < 100 * loss * expected.norm());
+            CHECK((solution - expected).norm() < 100 * rounding * expected.norm());
         }
     }
 }
 
-TEST_CASE("the rows that are left are those in which massless unknowns cannot help", "[lie][massless]")
+TEST_CASE("the reduced rows are the projection of the rows onto the null space of D^T", "[lie][massless]")
 {
     const unsigned seed = GENERATE(4u, 5u);
-    for (const Case& c : cases()) {
-        const Patchwork system(c.bodies, c.patches, seed);
+    for (const Example& c : examples()) {
+        const RandomGroups system(c.bodies, c.patches, seed);
         lie::Elimination elimination(system.pattern(), std::vector<char>(system.rows(), 0));
         elimination.factor(system.values);
-        const lie::Rows& left = elimination.reduced();
+        const lie::Rows& reduced_rows = elimination.reduced();
         const auto dense = [&](const lie::Rows& rows) {
             Eigen::MatrixXd B = Eigen::MatrixXd::Zero(rows.rows(), 6 * c.bodies);
             for (int k = 0; k < rows.rows(); ++k)
@@ -153,23 +162,24 @@ TEST_CASE("the rows that are left are those in which massless unknowns cannot he
                         rows.entry[e].pi.transpose();
             return B;
         };
-        const Eigen::MatrixXd B = dense(system.values), reduced = dense(left);
-        Eigen::MatrixXd D = Eigen::MatrixXd::Zero(system.rows(), system.pattern().unknowns());
+        const Eigen::MatrixXd B = dense(system.values), reduced = dense(reduced_rows);
+        Eigen::MatrixXd D = Eigen::MatrixXd::Zero(system.rows(), system.pattern().algebraic_variables());
         for (const lie::Rows::AlgebraicGroup& g : system.values.algebraic)
             D.block(g.first, g.first_alpha, g.rows, g.count) = g.D;
-        // P projects on the null space of Dᵀ: with Zᵀ Z = 1 both roads give P B
+        // P projects onto the null space of Dᵀ. With Zᵀ Z = I the reduced rows Zᵀ B satisfy (Zᵀ B)ᵀ (Zᵀ B) =
+        // Bᵀ P B.
         const Eigen::MatrixXd P = Eigen::MatrixXd::Identity(system.rows(), system.rows()) -
                                   D * (D.transpose() * D).ldlt().solve(D.transpose());
         INFO(c.name);
-        REQUIRE(left.rows() == system.rows() - system.pattern().unknowns());
+        REQUIRE(reduced_rows.rows() == system.rows() - system.pattern().algebraic_variables());
         CHECK((reduced.transpose() * reduced - B.transpose() * P * B).norm() < 1e-10 * B.squaredNorm());
     }
 }
 
-TEST_CASE("unknowns that their rows do not determine are refused", "[lie][massless]")
+TEST_CASE("algebraic variables that their rows do not determine throw an exception", "[lie][massless]")
 {
     for (const int dependent : {0, 3, 5}) {
-        Patchwork system(1, {{0, -1, 7, 6, 2}}, 6);
+        RandomGroups system(1, {{0, -1, 7, 6, 2}}, 6);
         lie::Elimination elimination(system.pattern(), std::vector<char>(system.rows(), 0));
         CHECK_NOTHROW(elimination.factor(system.values));
         auto& D = system.values.algebraic[0].D;
@@ -187,8 +197,9 @@ TEST_CASE("unknowns that their rows do not determine are refused", "[lie][massle
 
 namespace {
 
-/// A bead on a wire bent to a cycloid, r = c(α) = a (α + sin α, 1 - cos α) in a vertical plane: three rows r - c(α) =
-/// 0 and one massless unknown. Along the wire it is a harmonic oscillator at every amplitude (Huygens):
+/// A bead on a wire of the form of a cycloid, r = c(α) = a (α + sin α, 1 - cos α) in a vertical plane: three
+/// rows r - c(α) = 0 and one algebraic variable. The motion along the wire is harmonic at every amplitude
+/// (Huygens):
 ///
 ///     s = 4a sin(α/2),    s̈ = -(g / 4a) s,    λ = F - m r̈
 class Cycloid final : public lie::System {
@@ -241,7 +252,7 @@ public:
         }
     }
 
-    /// The exact motion that turns round at t = -0.3 s
+    /// The exact motion whose velocity is zero at t = -0.3 s
     lie::State exact(double t) const
     {
         const double omega = std::sqrt(g / (4 * a)), phase = omega * (t + 0.3), s_0 = 0.8 * 4 * a;
@@ -275,7 +286,7 @@ struct Errors final : lie::Observer {
         const lie::State y = bead.exact(x.t);
         motion = std::max({motion, (x.body[0].r - y.body[0].r).norm(), std::abs(x.alpha[0] - y.alpha[0]),
                            (x.body[0].rdot - y.body[0].rdot).norm()});
-        // the first multipliers of implicit schemes are off, whatever the step
+        // The multipliers of the first nodes of implicit schemes have a larger error.
         if (x.t > 0.6) lambda = std::max(lambda, (x.lambda - y.lambda).norm());
         Eigen::VectorXd Phi(3);
         bead.phi(x, Phi);
@@ -297,7 +308,7 @@ Errors errors(const lie::Scheme& scheme, const Cycloid& bead, double h)
 
 }  // namespace
 
-TEST_CASE("a bead on a cycloid moves as Huygens found with the declared order (long)",
+TEST_CASE("a bead on a cycloid converges to the closed form with the declared order (long)",
           "[lie][order][massless]")
 {
     const Cycloid bead;
@@ -315,12 +326,13 @@ TEST_CASE("a bead on a cycloid moves as Huygens found with the declared order (l
         CHECK(of_motion == Approx(s.order).margin(0.1));
         CHECK(of_lambda == Approx(s.order_lambda).margin(0.2));
         CHECK(fine.residual < 1e-13);
-        CHECK(fine.bound < 1e-11 * 7);  // no force along a massless unknown, of about 7 N
+        CHECK(fine.bound < 1e-11 * 7);  // Φ_αᵀ λ = 0; λ is about 7 N
     }
     CHECK(schemes >= 9);
 }
 
-TEST_CASE("a step with massless unknowns is the same by both linear solvers", "[lie][condensed][massless]")
+TEST_CASE("a step with algebraic variables has the same result with both linear solvers",
+          "[lie][condensed][massless]")
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
@@ -336,10 +348,10 @@ TEST_CASE("a step with massless unknowns is the same by both linear solvers", "[
     }
 }
 
-TEST_CASE("a step with massless unknowns takes nothing from the heap", "[lie][allocation][massless]")
+TEST_CASE("a step with algebraic variables does not allocate memory", "[lie][allocation][massless]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("skipped: a sanitizer replaces the allocator");
         return;
     }
     const Cycloid bead;
@@ -357,7 +369,8 @@ TEST_CASE("a step with massless unknowns takes nothing from the heap", "[lie][al
         }
 }
 
-TEST_CASE("a scheme that does not take massless unknowns says which do", "[lie][massless]")
+TEST_CASE("a scheme without support for algebraic variables names the schemes that support them",
+          "[lie][massless]")
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
@@ -368,13 +381,13 @@ TEST_CASE("a scheme that does not take massless unknowns says which do", "[lie][
         INFO(s.name);
         CHECK_THROWS_AS(s.make(bead, {}), lie::InvalidInput);
         CHECK_THROWS_WITH(s.make(bead, {}), Catch::StartsWith("integrator " + s.name) &&
-                                                Catch::Contains("takes no contacts that evolve") &&
+                                                Catch::Contains("does not support evolving contacts") &&
                                                 Catch::Contains("rA-half-1-momentum"));
     }
     CHECK_FALSE(lie::scheme("rA-full-1-exact").algebraic);
 }
 
-TEST_CASE("a free body keeps its angular momentum to rounding with rA-half-1-momentum", "[lie][invariants]")
+TEST_CASE("rA-half-1-momentum conserves the angular momentum of a free body to rounding", "[lie][invariants]")
 {
     const tests::SpinningTop top(true);
     struct Momentum final : lie::Observer {
@@ -396,7 +409,7 @@ TEST_CASE("a free body keeps its angular momentum to rounding with rA-half-1-mom
         lie::march(top.start(), *integrator, lie::TimeGrid::over(2e-3 * double(steps), 2e-3, 1e3), observers);
         return momentum.drift;
     };
-    // a random walk of rounding, three parts in 1e16 a step
+    // rounding errors accumulate as a random walk of about 3e-16 per step
     CHECK(drift("rA-half-1-momentum", 1000) < 1e-14);
     CHECK(drift("rA-half-1-momentum", 10000) < 5e-14);
     CHECK(drift("rA-half-1", 100) > 1e-6);

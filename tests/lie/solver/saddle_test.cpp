@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/solver/saddle.hpp"
+#include "lie/check.hpp"
+#include "lie/system.hpp"
 #include "tests/support/spinning_top.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,7 +14,7 @@ using lie::Vec3;
 
 namespace {
 
-/// A chain of random rows between neighbours, to have a pattern worth analysing
+/// A chain of bodies with random rows between neighbours
 class RandomChain final : public lie::System {
 public:
     explicit RandomChain(int n)
@@ -68,7 +70,7 @@ Eigen::MatrixXd dense(const lie::System& system, const lie::Rows& C)
 
 }  // namespace
 
-TEST_CASE("the saddle matrix multiplies and solves as the dense one", "[lie][saddle]")
+TEST_CASE("products and solutions of the saddle matrix agree with those of the dense matrix", "[lie][saddle]")
 {
     const RandomChain chain(7);
     lie::Saddle K(chain);
@@ -88,13 +90,13 @@ TEST_CASE("the saddle matrix multiplies and solves as the dense one", "[lie][sad
     CHECK(K.refactorizations() == 2);
 }
 
-TEST_CASE("pivots are chosen anew when the old ones wear out", "[lie][saddle]")
+TEST_CASE("new pivots are chosen when the old ones have become inaccurate", "[lie][saddle]")
 {
     RandomChain chain(5);
     lie::Saddle K(chain);
     lie::State x;
     K.assemble(x);
-    chain.factor = 1e5;  // body 0 moves in its own rows alone, whose scale now is far off
+    chain.factor = 1e5;  // changes the scale of the rows
     K.assemble(x);
     chain.factor = 1e-5;
     K.assemble(x);
@@ -105,10 +107,10 @@ TEST_CASE("pivots are chosen anew when the old ones wear out", "[lie][saddle]")
     CHECK(K.factorizations() > 1);
 }
 
-TEST_CASE("a singular saddle matrix is an error, and so is one that is not finite", "[lie][saddle]")
+TEST_CASE("a singular or non-finite saddle matrix throws an exception", "[lie][saddle]")
 {
-    struct Twice final : lie::System {  // the same row twice
-        Twice()
+    struct DuplicateRow final : lie::System {  // two rows, equal for t = 0
+        DuplicateRow()
         {
             inertia.m = {1};
             inertia.J_bar = {Mat3::Identity()};
@@ -129,7 +131,7 @@ TEST_CASE("a singular saddle matrix is an error, and so is one that is not finit
         lie::Mass inertia;
         lie::Rows rows_pattern;
     };
-    const Twice system;
+    const DuplicateRow system;
     lie::Saddle K(system);
     lie::State x;
     CHECK_THROWS_AS(K.assemble(x), lie::SingularMatrix);
@@ -141,7 +143,7 @@ TEST_CASE("a singular saddle matrix is an error, and so is one that is not finit
     CHECK_THROWS_AS(K.assemble(x), lie::SingularMatrix);
 }
 
-TEST_CASE("the condition does not depend on the units of mass and length", "[lie][saddle]")
+TEST_CASE("the reciprocal condition does not depend on the units of mass and length", "[lie][saddle]")
 {
     struct Scaled final : lie::System {
         Scaled(double mass, double length) : length(length)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Schemes on Euler angles where the angles are singular.
+/// Schemes on Euler angles near the singular set of the angles.
 
 #include "reference/formulations/reps.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "reference/solvers/index1.hpp"
 #include "tests/reference/classical_models.hpp"
 
@@ -11,7 +13,7 @@ using lie::Vec3;
 
 namespace {
 
-/// A body on a ball joint that is thrown over the top: its third axis passes near the global z
+/// Body on a ball joint that tumbles such that its third axis passes near the global z axis
 void tumbling(dae::Model& model, lie::State& x)
 {
     const Vec3 eps(0.3, 0.7, -0.4);
@@ -25,7 +27,7 @@ void tumbling(dae::Model& model, lie::State& x)
 
 }  // namespace
 
-TEST_CASE("Euler angles near their singular set stop the run and name the body", "[reference][reps]")
+TEST_CASE("a step near the singular set of the Euler angles fails and names the body", "[reference][reps]")
 {
     dae::Model model;
     lie::State x;
@@ -54,7 +56,7 @@ TEST_CASE("Euler angles near their singular set stop the run and name the body",
     }
 }
 
-TEST_CASE("Euler angles that are singular at the start stop there, or are taken in another frame",
+TEST_CASE("singular Euler angles at the start are rejected or expressed in another frame",
           "[reference][reps]")
 {
     dae::Model model;
@@ -70,35 +72,34 @@ TEST_CASE("Euler angles that are singular at the start stop there, or are taken 
     CHECK(x.t > 0);
 }
 
-TEST_CASE("in another frame Euler angles go through their singular set and keep the order",
-          "[reference][reps]")
+TEST_CASE("with a change of frame Euler angles pass the singular set and keep the order", "[reference][reps]")
 {
     dae::Model model;
     lie::State x;
     tumbling(model, x);
     const std::vector<double> instants = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
-    const lie::Trajectory truth = reference::index1(model, x, instants);
+    const lie::Trajectory exact = reference::index1(model, x, instants);
     for (const char* name : {"reps-half-1", "reps-half-1-kick"}) {
         tests::Deviation d[2];
         for (int k = 0; k < 2; ++k)
             d[k] = tests::deviation(tests::run(name, model, x, k == 0 ? 1e-3 : 5e-4, 0.8, 0.1,
                                                {.tolerance = 1e-12, .reparametrise = true}),
-                                    truth.row);
+                                    exact.row);
         INFO(name << " at h = 5e-4: " << d[1]);
         tests::check_order(tests::order(d[0], d[1]), lie::scheme(name).order, 0.15);
 
         const auto integrator = lie::scheme(name).make(model, {.reparametrise = true});
         lie::State y = x;
-        int turns = 0;
+        int frame_changes = 0;
         double frame = 0, nearest = 1;
         for (int n = 0; n < 800; ++n) {
             integrator->step(y, 1e-3);
-            const double now = y.history[12];  // which frame the angles are in
-            turns += now != frame;
+            const double now = y.history[12];  // index of the frame of the angles
+            frame_changes += now != frame;
             frame = now;
             nearest = std::min(nearest, lie::distance_to_singular_set(lie::euler_angles(y.body[0].A)));
         }
-        CHECK(turns >= 1);
+        CHECK(frame_changes >= 1);
         CHECK(nearest < 0.1);
     }
 }

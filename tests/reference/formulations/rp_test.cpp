@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Schemes on Euler parameters: their coordinates, their Newton matrix, their orders on mechanisms, and the rA
-/// schemes beside them.
+/// Schemes on Euler parameters: coordinates, Newton matrix, orders on mechanisms, comparison with the rA
+/// schemes.
 
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "reference/formulations/reps.hpp"
 #include "reference/formulations/rp_step_equations.hpp"
 #include "reference/solvers/index1.hpp"
@@ -16,7 +18,7 @@ using namespace hilda::reference;
 
 namespace {
 
-/// N as RpStepEquations assembles it, and by differences of the residual
+/// Compares the matrix N of RpStepEquations with finite differences of the residual
 void check_newton_matrix(const lie::System& model, lie::State x, tests::Random& random)
 {
     RpStepEquations equations(model);
@@ -25,7 +27,7 @@ void check_newton_matrix(const lie::System& model, lie::State x, tests::Random& 
         .q = Eigen::VectorXd(7 * bodies), .qdot = Eigen::VectorXd(7 * bodies), .g_q = 0.02, .g_v = 0.1};
     Eigen::VectorXd z(equations.size());
     for (double& number : z) number = random.number(-2, 2);
-    for (int i = 0; i < bodies; ++i) {  // off the unit sphere, as an iterate is
+    for (int i = 0; i < bodies; ++i) {  // |p| ≠ 1, as in a Newton iterate
         formula.q.segment<7>(7 * i) << random.vector(), 1.05 * lie::euler_parameters(random.rotation());
         for (int c = 0; c < 7; ++c) formula.qdot[7 * i + c] = random.number();
     }
@@ -55,7 +57,7 @@ void check_newton_matrix(const lie::System& model, lie::State x, tests::Random& 
     }
 }
 
-/// q̇ and q̈ against a motion of q, A and ω̄ found from it by differences
+/// Compares T, Ṫq̇, q̇ and q̈ with finite differences of A and ω̄ along a motion of q
 template <class Coordinates, class Vector>
 void check_coordinates(Coordinates at, const Vector& qdot, const Vector& qddot)
 {
@@ -77,7 +79,8 @@ void check_coordinates(Coordinates at, const Vector& qdot, const Vector& qddot)
 
 }  // namespace
 
-TEST_CASE("coordinates of a rotation agree with its velocity and acceleration", "[reference][rp][reps]")
+TEST_CASE("rotation coordinates are consistent with angular velocity and acceleration",
+          "[reference][rp][reps]")
 {
     tests::Random random(GENERATE(range(1u, 6u)));
     EulerParameters p(random.rotation());
@@ -100,9 +103,9 @@ TEST_CASE("coordinates of a rotation agree with its velocity and acceleration", 
         CHECK((best.A() - eps.A()).norm() < 1e-14);
         CHECK(best.distance_to_singular_set() > 0.95);
         EulerAngles before = best;
-        const Vec3 way = 0.1 * random.vector();
-        before.q -= way;
-        CHECK((best.since(EulerAngles(before.A(), frame)) - way).norm() < 1e-13);
+        const Vec3 delta = 0.1 * random.vector();
+        before.q -= delta;
+        CHECK((best.since(EulerAngles(before.A(), frame)) - delta).norm() < 1e-13);
     }
 }
 
@@ -139,7 +142,8 @@ TEST_CASE("the Newton matrix of the rp equations is the derivative of their resi
     }
 }
 
-TEST_CASE("schemes on Euler parameters and angles show their orders on mechanisms", "[reference][order]")
+TEST_CASE("schemes on Euler parameters and angles have their declared orders on mechanisms",
+          "[reference][order]")
 {
     const auto [build, file] =
         GENERATE(std::pair(&tests::moving_double_pendulum, "x_double_pendulum_moving.csv"),
@@ -148,7 +152,7 @@ TEST_CASE("schemes on Euler parameters and angles show their orders on mechanism
     lie::State x;
     build(model, x);
     auto reference = tests::references(file);
-    reference.erase(reference.begin() + 6, reference.end());  // to 0.5 s
+    reference.erase(reference.begin() + 6, reference.end());  // up to 0.5 s
     reference.erase(reference.begin());
     for (const lie::Scheme& s : lie::schemes()) {
         if (s.adaptive || (s.formulation != "rp" && s.formulation != "reps")) continue;
@@ -168,16 +172,16 @@ TEST_CASE("schemes on Euler parameters and angles show their orders on mechanism
     }
 }
 
-TEST_CASE("Euler parameters and rotation matrices lead to one motion", "[reference][rp]")
+TEST_CASE("schemes on Euler parameters and rotation matrices converge to the same motion", "[reference][rp]")
 {
     dae::Model model;
     lie::State x;
     tests::two_spinning_bars(model, x);
     struct Pair {
         const char *one, *other;
-        double order;  // of their difference
+        double order;  // order of their difference
     };
-    // Half-implicit, on p it is the same scheme up to a retraction of second order.
+    // A half-implicit step in p differs from the step in A only by a retraction of second order.
     for (const Pair& pair : {Pair{"rp-half-1", "rA-half-1", 2}, Pair{"rp-half-1-kick", "rA-half-1-kick", 2},
                              Pair{"rp-full-1", "rA-full-1", 1}, Pair{"reps-half-1", "rA-half-1", 1}}) {
         double difference[2] = {};
@@ -192,7 +196,7 @@ TEST_CASE("Euler parameters and rotation matrices lead to one motion", "[referen
     }
 }
 
-TEST_CASE("the full Newton matrix converges quadratically, stiff springs included", "[reference][rp]")
+TEST_CASE("the exact Newton matrix converges quadratically, also with stiff springs", "[reference][rp]")
 {
     dae::Model model;
     lie::State x;
@@ -216,7 +220,8 @@ TEST_CASE("the full Newton matrix converges quadratically, stiff springs include
     }
 }
 
-TEST_CASE("rp-bdf2 starts with multipliers of second order, also where the step changes", "[reference][rp]")
+TEST_CASE("the first multiplier of rp-bdf2 is of second order, as are those long after a change of step",
+          "[reference][rp]")
 {
     dae::Model model;
     lie::State x;
@@ -238,7 +243,8 @@ TEST_CASE("rp-bdf2 starts with multipliers of second order, also where the step 
     CHECK(std::log2(changed[0] / changed[1]) == Approx(2).margin(0.15));
 }
 
-TEST_CASE("a body that turns round and round keeps its Euler parameters continuous", "[reference][rp]")
+TEST_CASE("the Euler parameters of a rotating body remain continuous over several revolutions",
+          "[reference][rp]")
 {
     dae::Model model;
     lie::State x;
@@ -249,9 +255,9 @@ TEST_CASE("a body that turns round and round keeps its Euler parameters continuo
     for (const char* name : {"rp-full-1", "rp-bdf2", "rp-half-1", "rp-half-1-kick"}) {
         const auto integrator = lie::scheme(name).make(model, {});
         lie::State y = x;
-        for (int n = 0; n < 2000; ++n) integrator->step(y, 1e-3);  // 3.2 turns
+        for (int n = 0; n < 2000; ++n) integrator->step(y, 1e-3);  // 3.2 revolutions
         INFO(name);
-        if (std::string(name) == "rp-full-1") {  // which damps, by ω' = -h ω³/4
+        if (std::string(name) == "rp-full-1") {  // numerical damping, ω̇ = -h ω³/4
             CHECK((y.body[0].omega_bar - Vec3(0, 0, 10 / std::sqrt(1 + 0.5 * 1e-3 * 100 * 2))).norm() < 2e-3);
             continue;
         }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What every scheme in the list must show, here with those on Euler parameters and Euler angles.
+/// Tests of all registered schemes on Euler parameters and Euler angles.
 
+#include "lie/schemes.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/start.hpp"
+#include "lie/integrator.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/no_allocation.hpp"
@@ -29,7 +32,7 @@ lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const li
     return lie::march(start, *integrator, lie::TimeGrid::over(0.4, h, 0.4)).row.back();
 }
 
-/// Everything of order `order`: r, A, ṙ, ω̄
+/// Quantities with the declared order `order`: r, A, ṙ, ω̄
 Eigen::VectorXd motion(const lie::State& x)
 {
     Eigen::VectorXd q(18);
@@ -38,7 +41,7 @@ Eigen::VectorXd motion(const lie::State& x)
     return q;
 }
 
-/// What complete() hands over
+/// Accelerations that fill_node() computes; they have the order of λ
 Eigen::VectorXd accelerations(const lie::State& x)
 {
     Eigen::VectorXd q(6);
@@ -53,14 +56,15 @@ double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const
 
 }  // namespace
 
-TEST_CASE("the schemes on Euler parameters and Euler angles are in the list", "[reference][rp][reps]")
+TEST_CASE("the schemes on Euler parameters and Euler angles are registered", "[reference][rp][reps]")
 {
     for (const char* name :
          {"rp-full-1", "rp-bdf2", "rp-half-1", "rp-half-1-kick", "reps-half-1", "reps-half-1-kick"})
         CHECK(lie::scheme(name).name == name);
 }
 
-TEST_CASE("on classical coordinates too the declared order is the measured order", "[reference][order]")
+TEST_CASE("the declared order of schemes on classical coordinates is the measured order",
+          "[reference][order]")
 {
     const bool free = GENERATE(false, true);
     const tests::SpinningTop top(free);
@@ -82,10 +86,10 @@ TEST_CASE("on classical coordinates too the declared order is the measured order
     }
 }
 
-TEST_CASE("a step on classical coordinates takes nothing from the heap", "[reference][allocation]")
+TEST_CASE("a step on classical coordinates does not allocate memory", "[reference][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted under a sanitizer");
         return;
     }
     const tests::SpinningTop top;
@@ -99,8 +103,7 @@ TEST_CASE("a step on classical coordinates takes nothing from the heap", "[refer
              {static_cast<const lie::System*>(&top), static_cast<const lie::System*>(&mechanism)}) {
             const auto integrator = s->make(*system, {.reparametrise = true});
             lie::State x = system == &top ? top.start() : start;
-            for (int n = 0; n < 3; ++n)
-                integrator->step(x, 1e-3);  // pivots, and buffers that keep their size
+            for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);  // choose pivots and size the buffers
             const long taken = tests::allocations_during([&] {
                 for (int n = 0; n < 100; ++n) integrator->step(x, 1e-3);
             });
@@ -109,14 +112,14 @@ TEST_CASE("a step on classical coordinates takes nothing from the heap", "[refer
         }
 }
 
-TEST_CASE("a step on classical coordinates that fails leaves the state as it was", "[reference][newton]")
+TEST_CASE("a failed step on classical coordinates leaves the state unchanged", "[reference][newton]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme* s : classical()) {
         const auto good = s->make(top, {});
         const auto hopeless = s->make(top, {.tolerance = 1e-300, .max_iterations = 2});
         lie::State x = top.start();
-        for (int n = 0; n < 2; ++n) {  // at the start, and with a history
+        for (int n = 0; n < 2; ++n) {  // at the start and with a history
             const lie::State before = x;
             CHECK_THROWS_AS(hopeless->step(x, 1e-2), lie::NoConvergence);
             CHECK(x.t == before.t);
@@ -131,7 +134,7 @@ TEST_CASE("a step on classical coordinates that fails leaves the state as it was
     }
 }
 
-TEST_CASE("what a classical scheme remembers lies in the state", "[reference][schemes]")
+TEST_CASE("the history of a classical scheme is stored in the state", "[reference][schemes]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme* s : classical()) {
@@ -147,7 +150,8 @@ TEST_CASE("what a classical scheme remembers lies in the state", "[reference][sc
     }
 }
 
-TEST_CASE("constraints hold and A stays a rotation on classical coordinates", "[reference][invariants]")
+TEST_CASE("schemes on classical coordinates satisfy the constraints and keep A orthogonal",
+          "[reference][invariants]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme* s : classical()) {
@@ -161,7 +165,7 @@ TEST_CASE("constraints hold and A stays a rotation on classical coordinates", "[
             phi = std::max(phi, Phi.norm());
             orthogonality = std::max(orthogonality, lie::orthogonality_error(x.body[0].A));
             if (s->formulation != "rp") continue;
-            const int at = s->name.find("half") != std::string::npos ? 9 : 0;  // where p stands
+            const int at = s->name.find("half") != std::string::npos ? 9 : 0;  // position of p in the history
             p = std::max(p, std::abs(x.history.segment<4>(at).norm() - 1));
         }
         INFO(s->name << " residual " << phi << ", orthogonality " << orthogonality << ", |p| - 1 " << p);

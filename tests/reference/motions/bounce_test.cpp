@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Impacts: closed forms against each other, against momentum and energy, and at their limits.
+/// Impacts in closed form: mutual consistency, momentum, energy and limit cases.
 
 #include "reference/motions/bounce.hpp"
 
@@ -13,19 +13,20 @@
 using namespace hilda;
 using namespace hilda::reference;
 
-TEST_CASE("a dropped ball bounces at the times of the geometric series and then lies", "[reference][bounce]")
+TEST_CASE("a dropped ball bounces at the times of a geometric series and then remains at rest",
+          "[reference][bounce]")
 {
     const double e = GENERATE(0.0, 0.5, 0.9);
     const BouncingBall ball{.R = 0.5, .e = e, .r = Vec3(1, 2, 1.5), .m = 2};
     const double t_1 = std::sqrt(2 / 9.81), w = std::sqrt(2 * 9.81);  // a fall of 1 m
-    CHECK(ball.impact(1) == Approx(t_1).epsilon(1e-15));
-    CHECK(ball.impact(2) == Approx(t_1 * (1 + 2 * e)).epsilon(1e-14));
-    CHECK(ball.impact(3) == Approx(t_1 * (1 + 2 * e + 2 * e * e)).epsilon(1e-14));
-    CHECK(ball.comes_to_rest() == Approx(t_1 * (1 + e) / (1 - e)).epsilon(1e-14));
+    CHECK(ball.impact_time(1) == Approx(t_1).epsilon(1e-15));
+    CHECK(ball.impact_time(2) == Approx(t_1 * (1 + 2 * e)).epsilon(1e-14));
+    CHECK(ball.impact_time(3) == Approx(t_1 * (1 + 2 * e + 2 * e * e)).epsilon(1e-14));
+    CHECK(ball.rest_time() == Approx(t_1 * (1 + e) / (1 - e)).epsilon(1e-14));
     CHECK(ball.impulse(1) == Approx(2 * (1 + e) * w).epsilon(1e-15));
     if (e > 0) {
         for (int k = 1; k <= 5; ++k) {
-            const double t = ball.impact(k), peak = t + std::pow(e, k) * w / 9.81;
+            const double t = ball.impact_time(k), peak = t + std::pow(e, k) * w / 9.81;
             CHECK(ball.at(t * (1 + 1e-14)).r.z() == Approx(0.5).epsilon(1e-12));
             CHECK(ball.at(peak).r.z() == Approx(0.5 + std::pow(e, 2 * k)).epsilon(1e-13));
             const double gravity = 9.81 * 2e-9,
@@ -33,51 +34,53 @@ TEST_CASE("a dropped ball bounces at the times of the geometric series and then 
             CHECK(2 * jump == Approx(ball.impulse(k)).epsilon(1e-13));
         }
     }
-    const Motion rest = ball.at(ball.comes_to_rest() + 1);
+    const Motion rest = ball.at(ball.rest_time() + 1);
     CHECK((rest.r - Vec3(1, 2, 0.5)).norm() < 1e-15);
     CHECK(rest.rdot.norm() == 0);
     CHECK(rest.rddot.norm() < 1e-15);
     CHECK(ball.resting_force() == Approx(2 * 9.81).epsilon(1e-15));
 }
 
-TEST_CASE("a ball thrown at a slope bounces normally to it and slides along it", "[reference][bounce]")
+TEST_CASE("a ball on a slope bounces along the normal and accelerates along the slope", "[reference][bounce]")
 {
     tests::Random random(GENERATE(1u, 2u));
     const double alpha = 0.4;
     const Vec3 n(0, std::sin(alpha), std::cos(alpha)), down(0, std::cos(alpha), -std::sin(alpha));
     const Vec3 v = random.vector(2);
     const BouncingBall ball{.n = n, .R = 0.2, .e = 0.6, .r = Vec3(0, 0, 2), .rdot = v};
-    for (const double t : {0.1, 0.8, 1.5, 2.4, ball.comes_to_rest() + 0.3}) {
+    for (const double t : {0.1, 0.8, 1.5, 2.4, ball.rest_time() + 0.3}) {
         const Motion x = ball.at(t);
         CHECK(x.rdot.dot(down) == Approx(v.dot(down) + 9.81 * std::sin(alpha) * t).epsilon(1e-13));
         CHECK(x.rdot.x() == Approx(v.x()).epsilon(1e-13));
         CHECK(n.dot(x.r) > 0.2 - 1e-14);
-        // v is the rate of r, away from an impact
+        // between impacts ṙ is the derivative of r
         CHECK(((ball.at(t + 1e-5).r - ball.at(t - 1e-5).r) / 2e-5 - x.rdot).norm() < 1e-8);
     }
-    // until the first impact it is free flight
+    // free flight up to the first impact
     const Flight flight{.r = ball.r, .rdot = v};
-    CHECK(flight.lands(n, 0.2).value() == Approx(ball.impact(1)).epsilon(1e-14));
-    CHECK((flight.at(0.5 * ball.impact(1)) - ball.at(0.5 * ball.impact(1)).r).norm() < 1e-14);
-    // e = 1 loses nothing
-    const BouncingBall for_ever{.n = n, .R = 0.2, .e = 1, .r = ball.r, .rdot = v};
+    CHECK(flight.landing_time(n, 0.2).value() == Approx(ball.impact_time(1)).epsilon(1e-14));
+    CHECK((flight.at(0.5 * ball.impact_time(1)) - ball.at(0.5 * ball.impact_time(1)).r).norm() < 1e-14);
+    // e = 1 conserves energy
+    const BouncingBall elastic{.n = n, .R = 0.2, .e = 1, .r = ball.r, .rdot = v};
     const auto energy = [](const Motion& x) { return 0.5 * x.rdot.squaredNorm() + 9.81 * x.r.z(); };
-    CHECK(std::isinf(for_ever.comes_to_rest()));
-    CHECK(energy(for_ever.at(20)) == Approx(energy(for_ever.at(0))).epsilon(1e-12));
+    CHECK(std::isinf(elastic.rest_time()));
+    CHECK(energy(elastic.at(20)) == Approx(energy(elastic.at(0))).epsilon(1e-12));
 }
 
-TEST_CASE("a flight lands once and only when it falls", "[reference][bounce]")
+TEST_CASE("a flight reaches a plane only with a velocity towards it", "[reference][bounce]")
 {
     const Flight flight{.r = Vec3(0, 0, 1), .rdot = Vec3(3, 0, 2)};
-    const double t = flight.lands(Vec3::UnitZ(), 0.2).value();
+    const double t = flight.landing_time(Vec3::UnitZ(), 0.2).value();
     CHECK(flight.at(t).z() == Approx(0.2).epsilon(1e-14));
     CHECK(flight.velocity(t).z() == Approx(-std::sqrt(4 + 2 * 9.81 * 0.8)).epsilon(1e-14));
-    CHECK_FALSE(flight.lands(Vec3::UnitZ(), 2).has_value());  // higher than it comes
-    CHECK(Flight{.rdot = Vec3(0, 0, -2), .gravity = Vec3::Zero()}.lands(Vec3::UnitZ(), -1).value() == 0.5);
-    CHECK_FALSE(Flight{.rdot = Vec3(0, 0, 2), .gravity = Vec3::Zero()}.lands(Vec3::UnitZ(), -1).has_value());
+    CHECK_FALSE(flight.landing_time(Vec3::UnitZ(), 2).has_value());  // above the top of the trajectory
+    CHECK(Flight{.rdot = Vec3(0, 0, -2), .gravity = Vec3::Zero()}.landing_time(Vec3::UnitZ(), -1).value() ==
+          0.5);
+    CHECK_FALSE(
+        Flight{.rdot = Vec3(0, 0, 2), .gravity = Vec3::Zero()}.landing_time(Vec3::UnitZ(), -1).has_value());
 }
 
-TEST_CASE("two balls that meet keep momentum and the part of the energy that restitution leaves",
+TEST_CASE("the collision of two balls conserves momentum and loses the energy given by the restitution",
           "[reference][bounce]")
 {
     const double e = GENERATE(0.0, 0.7, 1.0);
@@ -85,8 +88,8 @@ TEST_CASE("two balls that meet keep momentum and the part of the energy that res
                          .two = {0.3, 1, Vec3(3, 0.4, 0.1), Vec3(-2, 0, 2)},
                          .e = e,
                          .gravity = Vec3(0, 0, -9.81)};
-    REQUIRE(balls.meet().has_value());
-    const double t = *balls.meet(), after = t + 0.2;
+    REQUIRE(balls.collision_time().has_value());
+    const double t = *balls.collision_time(), after = t + 0.2;
     const auto [a, b] = balls.at(t);
     const Vec3 n = balls.normal();
     CHECK((b.r - a.r).norm() == Approx(0.8).epsilon(1e-14));
@@ -103,30 +106,31 @@ TEST_CASE("two balls that meet keep momentum and the part of the energy that res
     CHECK(balls.impulse() == Approx(-mu * (1 + e) * n.dot(before)).epsilon(1e-14));
 }
 
-TEST_CASE("equal balls that meet in a line change their velocities", "[reference][bounce]")
+TEST_CASE("equal balls exchange their velocities in a central elastic collision", "[reference][bounce]")
 {
     const TwoBalls balls{.one = {0.5, 1, Vec3::Zero(), Vec3(2, 0, 0)},
                          .two = {0.5, 1, Vec3(3, 0, 0), Vec3(-1, 0, 0)}};
-    CHECK(balls.meet().value() == Approx(2.0 / 3).epsilon(1e-15));
+    CHECK(balls.collision_time().value() == Approx(2.0 / 3).epsilon(1e-15));
     const auto [a, b] = balls.at(1);
     CHECK((a.rdot - Vec3(-1, 0, 0)).norm() < 1e-15);
     CHECK((b.rdot - Vec3(2, 0, 0)).norm() < 1e-15);
 
     TwoBalls miss = balls;
     miss.two.r.y() = 1.1;
-    CHECK_FALSE(miss.meet().has_value());
+    CHECK_FALSE(miss.collision_time().has_value());
     CHECK(miss.impulse() == 0);
     CHECK((miss.at(1).first.rdot - Vec3(2, 0, 0)).norm() == 0);
     CHECK_THROWS_AS(miss.normal(), lie::NumericalFailure);
 }
 
-TEST_CASE("impacts that cannot be are refused with the value", "[reference][bounce]")
+TEST_CASE("invalid impacts are rejected with the value", "[reference][bounce]")
 {
     using Catch::Contains;
     CHECK_THROWS_WITH((BouncingBall{.e = 1.5}.at(1)), Contains("between 0 and 1") && Contains("got 1.5"));
     CHECK_THROWS_WITH((BouncingBall{.n = Vec3(0, 0, 2)}.at(1)), Contains("unit vector"));
     CHECK_THROWS_WITH((BouncingBall{.r = Vec3(0, 0, 0.4)}.at(1)), Contains("gap must be positive"));
     CHECK_THROWS_WITH((BouncingBall{.gravity = Vec3(0, 0, 1)}.at(1)), Contains("towards the plane"));
-    CHECK_THROWS_WITH(BouncingBall().impact(0), Contains("counted from 1"));
-    CHECK_THROWS_WITH((TwoBalls{.one = {}, .two = {}}.meet()), Contains("start apart"));
+    CHECK_THROWS_WITH(BouncingBall().impact_time(0), Contains("counted from 1"));
+    CHECK_THROWS_WITH((TwoBalls{.one = {}, .two = {}}.collision_time()),
+                      Contains("must not be in contact at the start"));
 }

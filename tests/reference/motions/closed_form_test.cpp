@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Planar chains and tops: against reference trajectories, closed forms, invariants and their own
-/// derivatives.
+/// Planar chains and tops: reference trajectories, closed forms, invariants and derivatives.
 
 #include "reference/motions/closed_form.hpp"
 
@@ -20,7 +19,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The constraint loads that make the motion of x happen under gravity alone
+/// Resultant constraint loads of the motion x under gravity, by the Newton-Euler equations
 std::vector<dae::Reaction> newton_euler(const tests::DoublePendulum& p, const Vec3& gravity,
                                         const lie::State& x)
 {
@@ -35,11 +34,11 @@ std::vector<dae::Reaction> newton_euler(const tests::DoublePendulum& p, const Ve
     return all;
 }
 
-/// ṙ, r̈, ω̄, ω̄̇ must be the derivatives of r, ṙ, A, ω̄: for a motion that changes at `rate` [1/s], h times the
-/// rate 4e-3 leaves 1e-11 of truncation (h⁴ f⁽⁵⁾/30) and less of rounding.
+/// Checks that ṙ, r̈, ω̄, ω̄̇ are the derivatives of r, ṙ, A, ω̄. `rate` [1/s] is the rate of change of the
+/// motion. With h · rate = 4e-3 the truncation error is 1e-11 (h⁴ f⁽⁵⁾/30) and the rounding error is smaller.
 struct FiveMotions {
     double h;
-    std::array<Motion, 5> motion;  ///< at t - 2h … t + 2h
+    std::array<Motion, 5> motion;  ///< at t - 2h, t - h, t, t + h, t + 2h
 
     template <class Member>
     auto derivative(Member member) const
@@ -69,15 +68,16 @@ void check_derivatives(const At& at, double t)
 
 }  // namespace
 
-TEST_CASE("the two-angle equations follow the reference trajectories", "[reference][closed_form][acceptance]")
+TEST_CASE("the equations in two angles reproduce the reference trajectories",
+          "[reference][closed_form][acceptance]")
 {
-    struct Case {
+    struct Example {
         const char* file;
         tests::DoublePendulum pendulum;
     };
-    for (const Case& c :
-         {Case{"double_pendulum.csv", {}}, Case{"double_pendulum_w005.csv", {.w = 0.05}},
-          Case{"x_double_pendulum_moving.csv", {.w = 0.1, .thetadot_1 = 1, .thetadot_2 = -2}}}) {
+    for (const Example& c :
+         {Example{"double_pendulum.csv", {}}, Example{"double_pendulum_w005.csv", {.w = 0.05}},
+          Example{"x_double_pendulum_moving.csv", {.w = 0.1, .thetadot_1 = 1, .thetadot_2 = -2}}}) {
         const PlanarChain chain = c.pendulum.angles();
         const auto reference = tests::references(c.file);
         REQUIRE(reference.size() == 31);
@@ -97,7 +97,7 @@ TEST_CASE("the two-angle equations follow the reference trajectories", "[referen
     }
 }
 
-TEST_CASE("a single bar swings with the period of the elliptic integral", "[reference][closed_form]")
+TEST_CASE("the period of a single bar is the elliptic integral", "[reference][closed_form]")
 {
     const double m = 3, J = 0.7, a = 0.45, theta = 2.5;
     const PlanarChain chain{.bar = {{.length = 2 * a, .m = m, .J = J, .theta = theta, .thetadot = 0}}};
@@ -111,7 +111,7 @@ TEST_CASE("a single bar swings with the period of the elliptic integral", "[refe
     CHECK(run.row[2].body[0].omega_bar.norm() < 1e-11);
 }
 
-TEST_CASE("a chain of four bars in a slanting plane keeps its energy and its derivatives",
+TEST_CASE("a chain of four bars in an inclined plane conserves energy and has consistent derivatives",
           "[reference][closed_form]")
 {
     const Vec3 e = Vec3(1, 2, -2) / 3, axis = Vec3(2, 1, 2) / 3;
@@ -151,7 +151,7 @@ TEST_CASE("the rates of a regular precession are the derivatives of its attitude
     CHECK((precession.attitude(A_0, 0).A - A_0).norm() < 1e-15);
 }
 
-TEST_CASE("a free symmetric top obeys Euler's equations and keeps momentum and energy",
+TEST_CASE("a free symmetric top satisfies Euler's equations and conserves momentum and energy",
           "[reference][closed_form]")
 {
     tests::Random random(7);
@@ -180,7 +180,7 @@ TEST_CASE("a free symmetric top obeys Euler's equations and keeps momentum and e
                       Catch::Contains("two principal moments"));
 }
 
-TEST_CASE("the weight turns the angular momentum of a heavy top in steady precession",
+TEST_CASE("the moment of the weight is the rate of the angular momentum of a heavy top",
           "[reference][closed_form]")
 {
     for (const double theta : {0.0, 0.6, pi / 2, 2.5}) {
@@ -197,7 +197,7 @@ TEST_CASE("the weight turns the angular momentum of a heavy top in steady preces
             CHECK((tests::derivative([&](double s) { return momentum(t + s); }) - moment).norm() < 1e-9);
             CHECK(std::acos(top.at(t).A(2, 2)) == Approx(theta).margin(1e-7));
         }
-        // Rz(Ωt) Rx(θ) Rz(ψ̇t), written out
+        // Rz(Ωt) Rx(θ) Rz(ψ̇t)
         const double psi = (top.omega_bar_3() - top.Omega * std::cos(theta)) * 0.9;
         const Mat3 A = (Eigen::AngleAxisd(top.Omega * 0.9, Vec3::UnitZ()) *
                         Eigen::AngleAxisd(theta, Vec3::UnitX()) * Eigen::AngleAxisd(psi, Vec3::UnitZ()))
@@ -206,7 +206,8 @@ TEST_CASE("the weight turns the angular momentum of a heavy top in steady preces
     }
 }
 
-TEST_CASE("Jacobi's functions solve Euler's equations of an asymmetric top", "[reference][closed_form]")
+TEST_CASE("Jacobi's elliptic functions satisfy Euler's equations of an asymmetric top",
+          "[reference][closed_form]")
 {
     const Vec3 J_bar(0.02, 0.03, 0.04);
     for (const double w_1 : {0.5, 4.0, 6.9}) {

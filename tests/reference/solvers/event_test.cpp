@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Events and periods: against the pendulum, the oscillator and the elliptic integral.
+/// Event location and oscillation periods, compared with the harmonic oscillator and the elliptic integral.
 
 #include "reference/solvers/event.hpp"
 #include "reference/motions/swing_period.hpp"
@@ -26,14 +26,14 @@ void oscillator(double, const ConstVectorRef& y, VectorRef ydot)
 
 }  // namespace
 
-TEST_CASE("an event is found to the last digits and only where it falls", "[reference][event]")
+TEST_CASE("an event is located to rounding error and only at a decreasing zero", "[reference][event]")
 {
     Ode ode(2, oscillator);
     Eigen::VectorXd y(2);
     y << 0, 1;  // y = sin t
     double t = 0;
     const Event position = [](double, const ConstVectorRef& now) { return now[0]; };
-    // zero at the start and at π, where it falls; it rises at 2π
+    // zero at the start; decreasing zeros at π and 3π, increasing at 2π
     REQUIRE(advance_to_event(ode, t, y, 100, 0.3, position));
     CHECK(t == Approx(pi).epsilon(1e-14));
     CHECK(std::abs(y[0]) < 1e-14);
@@ -46,16 +46,16 @@ TEST_CASE("an event is found to the last digits and only where it falls", "[refe
     CHECK(y[0] == Approx(std::sin(12)).margin(1e-12));
 }
 
-TEST_CASE("an event that barely happens is found", "[reference][event]")
+TEST_CASE("an event with a small negative part of the event function is found", "[reference][event]")
 {
-    // cos t + 1 - 1e-6 only just falls below zero, at π - 1.4142e-3
+    // cos t + 1 - 1e-6 becomes negative at π - 1.4142e-3 and has the minimum -1e-6
     Ode ode(2, oscillator);
     Eigen::VectorXd y(2);
     y << 1, 0;  // y = cos t
     double t = 0;
     REQUIRE(advance_to_event(ode, t, y, 10, 5e-4,
                              [](double, const ConstVectorRef& now) { return now[0] + 1 - 1e-6; }));
-    CHECK(t == Approx(std::acos(1e-6 - 1)).epsilon(1e-10));  // ε over its slope of 1.4e-3
+    CHECK(t == Approx(std::acos(1e-6 - 1)).epsilon(1e-10));  // rounding error divided by the slope 1.4e-3
     CHECK_THROWS_AS(advance_to_event(ode, t, y, 10, 0, [](double, const ConstVectorRef&) { return 1.0; }),
                     lie::InvalidInput);
 }
@@ -64,19 +64,21 @@ TEST_CASE("the period of a pendulum is the elliptic integral at every amplitude"
 {
     for (const double theta_0 : {1e-6, 0.1, 1.0, 2.5, 3.1}) {
         const double T = swing_period(
-            theta_0, [](double) { return 1.0; }, [&](double theta, double to_go) {  // cos θ - cos θ_0
-                return 2 * std::sin(to_go / 2) * std::sin((theta + theta_0) / 2);
+            theta_0, [](double) { return 1.0; }, [&](double theta, double remaining) {  // cos θ - cos θ_0
+                return 2 * std::sin(remaining / 2) * std::sin((theta + theta_0) / 2);
             });
         CHECK(T == Approx(4 * gsl_sf_ellint_Kcomp(std::sin(theta_0 / 2), GSL_PREC_DOUBLE)).epsilon(1e-13));
     }
 }
 
-TEST_CASE("a swing that is none is refused", "[reference][swing]")
+TEST_CASE("a period is rejected without an oscillation", "[reference][swing]")
 {
     const auto M = [](double) { return 1.0; };
-    CHECK_THROWS_AS(swing_period(0, M, [](double, double to_go) { return to_go; }), lie::InvalidInput);
-    CHECK_THROWS_AS(swing_period(1, M, [](double, double to_go) { return -to_go; }), lie::InvalidInput);
-    // from the top of a hill it takes for ever
-    CHECK_THROWS_AS(swing_period(1, M, [](double, double to_go) { return to_go * to_go; }),
+    CHECK_THROWS_AS(swing_period(0, M, [](double, double remaining) { return remaining; }),
+                    lie::InvalidInput);
+    CHECK_THROWS_AS(swing_period(1, M, [](double, double remaining) { return -remaining; }),
+                    lie::InvalidInput);
+    // an amplitude at an unstable equilibrium has an infinite period
+    CHECK_THROWS_AS(swing_period(1, M, [](double, double remaining) { return remaining * remaining; }),
                     lie::NumericalFailure);
 }

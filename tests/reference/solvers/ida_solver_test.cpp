@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// IDA on the rp equations against reference trajectories, from rest, moving, and driven.
+/// IDA on the equations of motion in Euler parameters, compared with reference trajectories.
 
 #include "reference/solvers/ida_solver.hpp"
 
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/torsion_spring.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "reference/solvers/index1.hpp"
 #include "tests/reference/chains.hpp"
 #include "tests/reference/reference_csv.hpp"
@@ -16,13 +18,13 @@ using lie::Vec3;
 
 namespace {
 
-struct Case {
+struct ReferenceModel {
     const char* name;
     const char* file;
     void (*build)(dae::Model&, lie::State&);
 };
 
-const Case cases[] = {
+const ReferenceModel reference_models[] = {
     {"double pendulum", "double_pendulum.csv",
      [](dae::Model& model, lie::State& x) { tests::DoublePendulum{}.build(model, x); }},
     {"double pendulum, moving", "x_double_pendulum_moving.csv",
@@ -54,7 +56,8 @@ struct Result {
     lie::Statistics cost;
 };
 
-Result measure(const Case& c, double rtol, RpForm form = RpForm::ggl, double to = 3, double atol = 0)
+Result measure(const ReferenceModel& c, double rtol, RpForm form = RpForm::ggl, double to = 3,
+               double atol = 0)
 {
     dae::Model model;
     lie::State x;
@@ -91,7 +94,7 @@ constexpr double t_end = 3;
 constexpr double t_end = 0.3;
 #endif
 
-/// A pendulum on a crank that turns round once a second
+/// Pendulum on a crank that rotates at 1 Hz, driven by a dot-product driver
 void crank_and_bob(dae::Model& model, lie::State& x)
 {
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
@@ -105,7 +108,7 @@ void crank_and_bob(dae::Model& model, lie::State& x)
     dae::start(model, x);
 }
 
-/// A wheel on an axle with a torsion spring that is wound up
+/// Wheel on an axle with a torsion spring
 void wheel(dae::Model& model, lie::State& x)
 {
     const Vec3 X = Vec3::UnitX(), O = Vec3::Zero();
@@ -115,7 +118,7 @@ void wheel(dae::Model& model, lie::State& x)
     dae::start(model, x);
 }
 
-/// A body that is pushed by what an expression of the time says
+/// Body with a prescribed force along x, an expression of the time
 void pushed(const char* force, dae::Model& model, lie::State& x)
 {
     tests::add_body(model, x, "block", 1, {1, 1, 1}, Vec3::Zero(), lie::Mat3::Identity());
@@ -135,27 +138,28 @@ void check_unchanged(const lie::State& x, const lie::State& y)
 
 }  // namespace
 
-TEST_CASE("IDA follows the reference trajectories", "[reference][ida][acceptance]")
+TEST_CASE("IDA reproduces the reference trajectories", "[reference][ida][acceptance]")
 {
-    for (const Case& c : cases) {
+    for (const ReferenceModel& c : reference_models) {
         const Result r = measure(c, 1e-12, RpForm::ggl, t_end);
         INFO(c.name << ": " << r);
         CHECK(r.d.r < 1e-9);
         CHECK(r.d.A < 1e-9);
         CHECK(r.d.rdot < 1e-9);
-        CHECK(r.d.omega_bar < 2e-9);  // of the bar that spins about its thin axis
+        CHECK(r.d.omega_bar < 2e-9);  // dominated by the bar that spins about its longitudinal axis
         CHECK(r.position < 1e-11);
         CHECK(r.velocity < 1e-11);
         CHECK(r.Q < 1e-7);
     }
 }
 
-TEST_CASE("the error of IDA goes with its tolerance, in every form", "[reference][ida]")
+TEST_CASE("the error of IDA is proportional to its tolerance in every form of the constraints",
+          "[reference][ida]")
 {
     for (const RpForm form : {RpForm::ggl, RpForm::baumgarte, RpForm::index1}) {
         std::vector<double> error;
         for (const double rtol : {1e-6, 1e-8, 1e-10}) {
-            const Result r = measure(cases[1], rtol, form, 1);
+            const Result r = measure(reference_models[1], rtol, form, 1);
             INFO("form " << static_cast<int>(form) << ", rtol " << rtol << ": " << r);
             CHECK(r.d.r < 300 * rtol);
             if (form == RpForm::ggl) CHECK(r.position < 10 * rtol);
@@ -165,42 +169,42 @@ TEST_CASE("the error of IDA goes with its tolerance, in every form", "[reference
     }
 }
 
-TEST_CASE("IDA passes the singular points of a driver, whatever the nodes", "[reference][ida]")
+TEST_CASE("IDA passes the singular positions of a driver for any choice of nodes", "[reference][ida]")
 {
     dae::Model model;
     lie::State x;
     crank_and_bob(model, x);
     const std::vector<double> instants = {0.25, 0.5,
-                                          1};  // a branch of the driver is singular at the first two
-    const lie::Trajectory truth = index1(model, x, instants);
+                                          1};  // one branch of the driver is singular at the first two
+    const lie::Trajectory exact = index1(model, x, instants);
     const lie::Trajectory run = ida(model, x, instants, 1e-10);
-    const tests::Deviation d = tests::deviation(run.row, truth.row);
+    const tests::Deviation d = tests::deviation(run.row, exact.row);
     INFO(d);
     CHECK(d.largest() < 1e-6);
     CHECK(run.row[0].discrete_state != run.row[2].discrete_state);
 
-    // at a loose tolerance too, where the drift is larger than what a swap accepts
-    const tests::Deviation loose = tests::deviation(ida(model, x, instants, 1e-4).row, truth.row);
+    // also at a loose tolerance, with a drift larger than the tolerance of a change of branch
+    const tests::Deviation loose = tests::deviation(ida(model, x, instants, 1e-4).row, exact.row);
     INFO(loose);
     CHECK(loose.r < 1e-2);
 
-    // a march swaps drivers by itself, at its nodes
+    // lie::march changes branches of drivers at its own nodes as well
     const auto integrator = lie::scheme("ida-rp").make(model, {.rtol = 1e-10});
     const lie::Trajectory marched = lie::march(x, *integrator, lie::TimeGrid::over(1, 0.05, 0.25));
-    CHECK((marched.row.back().body[1].r - truth.row.back().body[1].r).norm() < 1e-6);
+    CHECK((marched.row.back().body[1].r - exact.row.back().body[1].r).norm() < 1e-6);
     for (size_t b = 0; b < 2; ++b)
-        CHECK((dae::reactions(model, marched.row[1])[b].F - dae::reactions(model, truth.row[0])[b].F).norm() <
+        CHECK((dae::reactions(model, marched.row[1])[b].F - dae::reactions(model, exact.row[0])[b].F).norm() <
               1e-5);
 }
 
-TEST_CASE("turns are counted within the steps of IDA, which go on", "[reference][ida]")
+TEST_CASE("turns are counted within the steps of IDA without a restart", "[reference][ida]")
 {
     dae::Model model;
     lie::State x;
     wheel(model, x);
     IdaSolver solver(model, {.rtol = 1e-10});
     lie::State y = x;
-    solver.advance(y, 1);  // 2 s to and fro, over 9.5 turns
+    solver.advance(y, 1);  // closed form: angle 15 sin(2t) rad, at most 9.5 quarter turns
     const double angle = 30 / 2.0 * std::sin(2.0), rate = 30 * std::cos(2.0);
     CHECK((y.body[0].A - lie::exp(Vec3(angle, 0, 0))).norm() < 1e-7);
     CHECK(y.body[0].omega_bar.x() == Approx(rate).epsilon(1e-8));
@@ -209,7 +213,7 @@ TEST_CASE("turns are counted within the steps of IDA, which go on", "[reference]
     CHECK(solver.statistics().steps < 5000);
 }
 
-TEST_CASE("IDA takes any system and any state", "[reference][ida]")
+TEST_CASE("IDA accepts any system and restarts from any state", "[reference][ida]")
 {
     for (const bool free : {false, true}) {
         const tests::SpinningTop top(free);
@@ -219,7 +223,7 @@ TEST_CASE("IDA takes any system and any state", "[reference][ida]")
         for (int n = 1; n <= 10; ++n) solver.step(x, 0.03);
         CHECK(lie::energy(top, x) == Approx(energy).epsilon(1e-9));
 
-        // the same again, from a state that is not the one it left
+        // again from a state that is not the one of the last call
         lie::State y = top.start();
         for (int n = 1; n <= 10; ++n) solver.step(y, 0.03);
         CHECK(x.t == y.t);
@@ -228,7 +232,7 @@ TEST_CASE("IDA takes any system and any state", "[reference][ida]")
     }
 }
 
-TEST_CASE("IDA refuses tolerances and instants that make no sense", "[reference][ida]")
+TEST_CASE("IDA rejects invalid tolerances and instants", "[reference][ida]")
 {
     const tests::SpinningTop top;
     lie::State x = top.start();
@@ -242,9 +246,9 @@ TEST_CASE("IDA refuses tolerances and instants that make no sense", "[reference]
     CHECK(ida(top, x, {0, 0.01}).row[0].body[0].A == x.body[0].A);
 }
 
-TEST_CASE("what goes wrong inside IDA comes out, and the state stays", "[reference][ida]")
+TEST_CASE("exceptions propagate through IDA and leave the state unchanged", "[reference][ida]")
 {
-    SECTION("a load that is not finite is named, with its time")
+    SECTION("a load that is not finite is reported with its equation and time")
     {
         dae::Model model;
         lie::State x;
@@ -254,10 +258,10 @@ TEST_CASE("what goes wrong inside IDA comes out, and the state stays", "[referen
         CHECK_THROWS_WITH(solver.step(x, 0.1), Catch::Contains("translation of body 'block'") &&
                                                    Catch::Contains("not finite at t = 0.05"));
         check_unchanged(x, before);
-        solver.step(x, 0.04);  // and it goes on from there
+        solver.step(x, 0.04);  // the solver can be used again
         CHECK(x.t == Approx(0.04));
     }
-    SECTION("IDA's own words, when it gives up")
+    SECTION("a failure of IDA is reported with its message")
     {
         dae::Model model;
         lie::State x;
@@ -274,7 +278,7 @@ TEST_CASE("what goes wrong inside IDA comes out, and the state stays", "[referen
         }
         check_unchanged(x, before);
     }
-    SECTION("what a system throws")
+    SECTION("an exception of the system is rethrown")
     {
         struct Refuses final : lie::System {
             tests::SpinningTop top;

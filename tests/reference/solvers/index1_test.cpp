@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The index-1 equations against reference trajectories and closed forms, and the choice between the roads.
+/// Index-1 equations compared with reference trajectories and closed forms; choice of the reference solution.
 
 #include "reference/solvers/index1.hpp"
 
@@ -42,7 +42,8 @@ void check_on_constraints(const dae::Model& model, const lie::Trajectory& run)
 
 }  // namespace
 
-TEST_CASE("index 1 follows two spinning bars in space", "[reference][index1][acceptance]")
+TEST_CASE("index 1 reproduces the reference trajectory of two spinning bars in space",
+          "[reference][index1][acceptance]")
 {
     dae::Model model;
     lie::State x;
@@ -52,7 +53,7 @@ TEST_CASE("index 1 follows two spinning bars in space", "[reference][index1][acc
     });
     auto reference = tests::references("x_n_pendulum_2_spin.csv");
     reference.erase(reference.begin() + 11,
-                    reference.end());  // to 1 s: all of it takes seconds in a debug build
+                    reference.end());  // up to 1 s, to limit the time of a debug build
     const lie::Trajectory run = index1(model, x, tests::instants(reference));
     const tests::Deviation d = tests::deviation(run.row, reference);
     const double Q = tests::reaction_deviation(loads(model, run), reference);
@@ -69,7 +70,8 @@ TEST_CASE("index 1 follows two spinning bars in space", "[reference][index1][acc
         CHECK(lie::energy(model, y) == Approx(lie::energy(model, x)).epsilon(1e-12).margin(1e-9));
 }
 
-TEST_CASE("index 1 and the two angles are two roads to one motion", "[reference][index1]")
+TEST_CASE("index 1 and the equations in two angles give the same motion of the double pendulum",
+          "[reference][index1]")
 {
     const tests::DoublePendulum pendulum{.w = 0.1, .thetadot_1 = 1, .thetadot_2 = -2};
     dae::Model model;
@@ -81,7 +83,7 @@ TEST_CASE("index 1 and the two angles are two roads to one motion", "[reference]
     check_on_constraints(model, run);
 }
 
-TEST_CASE("bars that hang straight swing in a plane, and index 1 knows it", "[reference][index1]")
+TEST_CASE("index 1 keeps the motion of bars that hang straight in a plane", "[reference][index1]")
 {
     dae::Model model;
     lie::State x;
@@ -91,7 +93,8 @@ TEST_CASE("bars that hang straight swing in a plane, and index 1 knows it", "[re
     const PlanarChain chain{.bar = {bar, bar, bar}, .e = e, .axis = axis, .gravity = tests::slanting};
     const std::vector<double> instants = {0.3};
     lie::Trajectory run = index1(model, x, instants), exact = chain.at(instants);
-    for (lie::State& y : exact.row)  // the chain's body frames are turned about the bars
+    for (lie::State& y :
+         exact.row)  // rotate the body frames of the chain about the bars to those of the model
         for (size_t b = 0; b < 3; ++b) {
             lie::Motion& m = y.body[b];
             const Mat3 turn = chain.at({0}).row[0].body[b].A.transpose() * x.body[b].A;
@@ -102,7 +105,7 @@ TEST_CASE("bars that hang straight swing in a plane, and index 1 knows it", "[re
     check(tests::deviation(run.row, exact.row), 1e-10);
 }
 
-TEST_CASE("index 1 spins tops as the closed forms do", "[reference][index1]")
+TEST_CASE("index 1 reproduces the closed forms of tops", "[reference][index1]")
 {
     const std::vector<double> instants = {0, 0.3};
     SECTION("free and symmetric")
@@ -140,7 +143,7 @@ TEST_CASE("index 1 spins tops as the closed forms do", "[reference][index1]")
         }
         check(d, 1e-9);
     }
-    SECTION("free and asymmetric, with its momentum kept")
+    SECTION("free and asymmetric, with constant angular momentum")
     {
         dae::Model model;
         lie::State x;
@@ -155,10 +158,10 @@ TEST_CASE("index 1 spins tops as the closed forms do", "[reference][index1]")
     }
 }
 
-TEST_CASE("index 1 goes through the singular points of a driver", "[reference][index1]")
+TEST_CASE("index 1 passes the singular positions of a driver", "[reference][index1]")
 {
-    // A pendulum on a crank that turns round, driven by a dot product (singular twice a turn) or by a hinge
-    // driver (never).
+    // A pendulum on a rotating crank, driven by a dot-product driver (singular twice per revolution) or by a
+    // hinge driver (never singular).
     const auto build = [](bool by_hinge, dae::Model& model, lie::State& x) {
         const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
         add_body(model, x, "crank", 1, {0.1, 0.1, 0.1}, O, Mat3::Identity(), O, {2 * pi, 0, 0});
@@ -171,7 +174,8 @@ TEST_CASE("index 1 goes through the singular points of a driver", "[reference][i
             model.constrain("motor", dae::DP1(dae::ground, Z, 0, Y, dae::Driver("sin(2*pi*t)")));
         dae::start(model, x);
     };
-    const std::vector<double> instants = {0.25, 0.5};  // where one branch of the driver is singular
+    const std::vector<double> instants = {0.25,
+                                          0.5};  // one branch of the dot-product driver is singular there
     lie::Trajectory run[2];
     std::vector<std::vector<dae::Reaction>> load[2];
     for (const bool by_hinge : {false, true}) {
@@ -191,7 +195,8 @@ TEST_CASE("index 1 goes through the singular points of a driver", "[reference][i
         }
 }
 
-TEST_CASE("index 1 refuses what has no equations of motion, and instants out of order", "[reference][index1]")
+TEST_CASE("index 1 rejects fully driven models, continuous internal states and unordered instants",
+          "[reference][index1]")
 {
     dae::Model driven;
     lie::State x;
@@ -206,22 +211,23 @@ TEST_CASE("index 1 refuses what has no equations of motion, and instants out of 
 
     model.load(tests::Bristle(0, 1, 1, 0.1));
     dae::start(model, y);
-    CHECK_THROWS_WITH(index1(model, y, {0.01}), Catch::Contains("remembers real numbers"));
-    CHECK_THROWS_WITH(IdaSolver(model, {}).advance(y, 0.01), Catch::Contains("scheme of fixed steps"));
+    CHECK_THROWS_WITH(index1(model, y, {0.01}), Catch::Contains("continuous internal states"));
+    CHECK_THROWS_WITH(IdaSolver(model, {}).advance(y, 0.01), Catch::Contains("integrator with a fixed step"));
 }
 
-TEST_CASE("the trusted motion of a driven mechanism is its kinematics", "[reference][trusted]")
+TEST_CASE("the reference solution of a driven mechanism is kinematic analysis",
+          "[reference][reference_solution]")
 {
     dae::Model model;
     lie::State x;
     tests::slider_crank(model, x);
     dae::start(model, x);
-    const lie::Trajectory run = trusted(model, x, {0, 0.04});
+    const lie::Trajectory run = reference_solution(model, x, {0, 0.04});
     const lie::Trajectory kinematics = dae::Kinematics(model).run(x, 0.04, 1);
     check(tests::deviation(run.row, kinematics.row), 1e-9);
 }
 
-TEST_CASE("a closed form is trusted only where it is a motion of the model", "[reference][trusted]")
+TEST_CASE("a closed form is used only if it is a solution of the model", "[reference][reference_solution]")
 {
     const tests::DoublePendulum pendulum{.w = 0.1, .thetadot_1 = 1, .thetadot_2 = -2};
     dae::Model model;
@@ -229,37 +235,37 @@ TEST_CASE("a closed form is trusted only where it is a motion of the model", "[r
     pendulum.build(model, x);
     const std::vector<double> instants = {0.01, 0.02};
     const lie::Trajectory exact = index1(model, x, instants);
-    const auto took_index_1 = [&](const lie::Trajectory& run) {  // to the last bit
+    const auto is_index1_result = [&](const lie::Trajectory& run) {  // bitwise
         return run.row[1].body[1].r == exact.row[1].body[1].r && run.row[1].lambda == exact.row[1].lambda;
     };
 
     const PlanarChain chain = pendulum.angles();
     const lie::Trajectory right =
-        trusted(model, x, instants, [&](const std::vector<double>& at) { return chain.at(at); });
-    CHECK_FALSE(took_index_1(right));
+        reference_solution(model, x, instants, [&](const std::vector<double>& at) { return chain.at(at); });
+    CHECK_FALSE(is_index1_result(right));
     check(tests::deviation(right.row, exact.row), 1e-11);
     for (size_t k = 0; k < instants.size(); ++k)
         CHECK((right.row[k].lambda - exact.row[k].lambda).norm() < 1e-11 * exact.row[k].lambda.norm());
 
-    const std::pair<const char*, void (*)(PlanarChain&)> wrong[] = {
+    const std::pair<const char*, void (*)(PlanarChain&)> variants[] = {
         {"another mass", [](PlanarChain& c) { c.bar[1].m *= 1 + 1e-6; }},
         {"another length", [](PlanarChain& c) { c.bar[1].length *= 1 + 1e-6; }},
         {"another inertia", [](PlanarChain& c) { c.bar[0].J *= 1 + 1e-6; }},
         {"another start", [](PlanarChain& c) { c.bar[0].theta += 1e-6; }},
         {"another gravity", [](PlanarChain& c) { c.gravity.y() = 1e-5; }},
-        {"a bar too few", [](PlanarChain& c) { c.bar.pop_back(); }},
-        {"one it refuses", [](PlanarChain& c) { c.bar[0].m = -1; }},
-        {"one that is no number", [](PlanarChain& c) { c.bar[0].thetadot = std::nan(""); }},
+        {"a missing bar", [](PlanarChain& c) { c.bar.pop_back(); }},
+        {"an invalid mass", [](PlanarChain& c) { c.bar[0].m = -1; }},
+        {"a NaN", [](PlanarChain& c) { c.bar[0].thetadot = std::nan(""); }},
     };
-    for (const auto& [what, change] : wrong) {
+    for (const auto& [what, change] : variants) {
         INFO(what);
         PlanarChain changed = chain;
         change(changed);
-        bool asked = false;
-        CHECK(took_index_1(trusted(model, x, instants, [&](const std::vector<double>& at) {
-            asked = true;
+        bool called = false;
+        CHECK(is_index1_result(reference_solution(model, x, instants, [&](const std::vector<double>& at) {
+            called = true;
             return changed.at(at);
         })));
-        CHECK(asked);
+        CHECK(called);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The C++ face of GSL's rk8pd.
+/// Ode, the interface to GSL's rk8pd.
 
 #include "reference/solvers/ode.hpp"
 
@@ -18,7 +18,7 @@ void oscillator(double, const ConstVectorRef& y, VectorRef ydot) { ydot << y[1],
 
 }  // namespace
 
-TEST_CASE("rk8pd follows an oscillator to the last digits and stops where it is told", "[reference][ode]")
+TEST_CASE("rk8pd integrates an oscillator to rounding error and stops exactly at the end", "[reference][ode]")
 {
     Ode ode(2, oscillator);
     Eigen::Vector2d y(1, 0);
@@ -31,13 +31,13 @@ TEST_CASE("rk8pd follows an oscillator to the last digits and stops where it is 
             last = at;
         });
         CHECK(t == end);
-        CHECK(last == end);  // told of the last step too, and of none where there is nothing to do
+        CHECK(last == end);  // also called for the last step; not called for an empty interval
         CHECK((y - Eigen::Vector2d(std::cos(t), -std::sin(t))).norm() < 1e-12);
     }
     CHECK(ode.evaluations() > 100);
 }
 
-TEST_CASE("a state changed between two calls is where the next one starts", "[reference][ode]")
+TEST_CASE("the next call of advance starts at a state that was changed between the calls", "[reference][ode]")
 {
     Ode ode(2, oscillator);
     Eigen::Vector2d y(1, 0);
@@ -48,7 +48,7 @@ TEST_CASE("a state changed between two calls is where the next one starts", "[re
     CHECK((y - 3 * Eigen::Vector2d(std::sin(1.0), std::cos(1.0))).norm() < 1e-13);
 }
 
-TEST_CASE("what the right-hand side throws comes out on our side of GSL", "[reference][ode]")
+TEST_CASE("an exception of the right-hand side propagates through GSL", "[reference][ode]")
 {
     struct Unusual {
         double t;
@@ -62,13 +62,14 @@ TEST_CASE("what the right-hand side throws comes out on our side of GSL", "[refe
     CHECK_THROWS_AS(ode.advance(t, y, 1.0), Unusual);
     CHECK(t <= 0.3);
     CHECK(y[0] == Approx(t));
-    // and it serves again
+    // the object can be used again
     t = 0, y[0] = 0;
     ode.advance(t, y, 0.25);
     CHECK(y[0] == Approx(0.25));
 }
 
-TEST_CASE("a right-hand side that is not finite, and a solution that ends, are failures", "[reference][ode]")
+TEST_CASE("a right-hand side that is not finite and a solution with a pole are numerical failures",
+          "[reference][ode]")
 {
     Eigen::VectorXd y = Eigen::VectorXd::Ones(1);
     double t = 0;
@@ -84,10 +85,10 @@ TEST_CASE("a right-hand side that is not finite, and a solution that ends, are f
     CHECK(t == Approx(1));
 }
 
-TEST_CASE("the ODE solver refuses what makes no sense", "[reference][ode]")
+TEST_CASE("the ODE solver rejects invalid arguments", "[reference][ode]")
 {
     CHECK_THROWS_WITH(Ode(0, oscillator),
-                      Catch::Contains("at least one unknown") && Catch::Contains("got 0"));
+                      Catch::Contains("number of unknowns must be at least one") && Catch::Contains("got 0"));
     CHECK_THROWS_WITH(Ode(2, oscillator, {.relative = -1e-3}),
                       Catch::Contains("tolerances must be positive"));
     Ode ode(2, oscillator);

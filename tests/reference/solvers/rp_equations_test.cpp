@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rp equations: their Jacobian against differences, and what they say of a consistent state.
+/// Equations of motion in Euler parameters: Jacobian compared with finite differences, residual of consistent
+/// states.
 
 #include "reference/solvers/rp_equations.hpp"
 
@@ -17,12 +18,12 @@ using lie::Vec3;
 
 namespace {
 
-struct Case {
+struct TestModel {
     const char* name;
     void (*build)(dae::Model&, lie::State&);
 };
 
-const Case cases[] = {
+const TestModel test_models[] = {
     {"slider-crank",
      [](dae::Model& model, lie::State& x) {
          tests::slider_crank(model, x);
@@ -63,10 +64,10 @@ const Case cases[] = {
 
 }  // namespace
 
-TEST_CASE("the Jacobian of the rp equations is their derivative", "[reference][rp]")
+TEST_CASE("the Jacobian of the rp equations is the derivative of their residual", "[reference][rp]")
 {
     tests::Random random(GENERATE(1u, 2u));
-    for (const Case& c : cases)
+    for (const TestModel& c : test_models)
         for (const RpForm form : {RpForm::ggl, RpForm::baumgarte, RpForm::index1}) {
             dae::Model model;
             lie::State x;
@@ -76,9 +77,10 @@ TEST_CASE("the Jacobian of the rp equations is their derivative", "[reference][r
             Eigen::VectorXd y(n), ydot(n);
             equations.write(x, y, ydot);
             for (int k = 0; k < n; ++k) {
-                if (equations.kind(k) == RpEquations::Kind::mu) continue;
-                y[k] += equations.kind(k) == RpEquations::Kind::lambda ? random.number(-3, 3)
-                                                                       : random.number(-0.1, 0.1);
+                if (equations.unknown_type(k) == RpEquations::UnknownType::mu) continue;
+                y[k] += equations.unknown_type(k) == RpEquations::UnknownType::lambda
+                            ? random.number(-3, 3)
+                            : random.number(-0.1, 0.1);
                 ydot[k] += random.number(-1, 1);
             }
             const double t = x.t + 0.03, c_j = 7;
@@ -110,7 +112,7 @@ TEST_CASE("the Jacobian of the rp equations is their derivative", "[reference][r
 
 TEST_CASE("a consistent state satisfies the rp equations", "[reference][rp]")
 {
-    for (const Case& c : cases)
+    for (const TestModel& c : test_models)
         for (const RpForm form : {RpForm::ggl, RpForm::baumgarte, RpForm::index1}) {
             dae::Model model;
             lie::State x;
@@ -133,7 +135,7 @@ TEST_CASE("a consistent state satisfies the rp equations", "[reference][rp]")
         }
 }
 
-TEST_CASE("the equations of a residual have names", "[reference][rp]")
+TEST_CASE("each equation of the residual has a name", "[reference][rp]")
 {
     dae::Model model;
     lie::State x;
@@ -145,6 +147,6 @@ TEST_CASE("the equations of a residual have names", "[reference][rp]")
     CHECK(equations.name(28 + 10) ==
           "unit length of the Euler parameters of body 'bar_1', derivative in time");
     CHECK(equations.name(equations.size() - 1) == "unit length of the Euler parameters of body 'bar_2'");
-    CHECK(equations.kind(27) == RpEquations::Kind::velocity);
-    CHECK(equations.kind(28) == RpEquations::Kind::lambda);
+    CHECK(equations.unknown_type(27) == RpEquations::UnknownType::velocity);
+    CHECK(equations.unknown_type(28) == RpEquations::UnknownType::lambda);
 }

@@ -12,7 +12,7 @@ using namespace hilda;
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
-TEST_CASE("a table that others wrote is read with its comments, gaps and line ends", "[studies][csv]")
+TEST_CASE("a table is read with comments, empty fields and different line ends", "[studies][csv]")
 {
     const Scratch in;
     write(in / "a.csv", "# from elsewhere\r\nt, x,y\r\n0,1e-3,\r\n\r\n# a gap\r\n-0.5, nan ,7\r\n");
@@ -27,7 +27,7 @@ TEST_CASE("a table that others wrote is read with its comments, gaps and line en
     CHECK_THROWS_WITH(table.column("z"), Contains("a.csv: there is no column 'z'"));
 }
 
-TEST_CASE("a table that is none is refused with the line", "[studies][csv]")
+TEST_CASE("an invalid table is rejected with the number of the line", "[studies][csv]")
 {
     const Scratch in;
     const auto refused = [&](const std::string& text, const std::string& words) {

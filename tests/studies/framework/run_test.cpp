@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Runs that fail, and options that a study does not take
+/// Failed runs of studies, and options that a study does not use
 #include "lie/integrator.hpp"
 #include "tests/studies/csv.hpp"
 
@@ -11,12 +11,12 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// A step of 0.25 s is too long for the Newton iteration of rA-full-1, and for no other here.
+// With a step of 0.25 s the Newton iteration of rA-full-1 diverges and that of rA-half-1 converges.
 const std::vector<std::string> mixed = {"--problem",    "double_pendulum",     "--steps", "0.25,5e-3",
                                         "--integrator", "rA-full-1,rA-half-1", "--end",   "0.5",
                                         "--no-plot"};
-const std::vector<std::string> hopeless = {"--problem",    "double_pendulum",     "--steps",  "0.1",
-                                           "--integrator", "rA-half-1,rA-full-1", "--no-plot"};
+const std::vector<std::string> all_failing = {"--problem",    "double_pendulum",     "--steps",  "0.1",
+                                              "--integrator", "rA-half-1,rA-full-1", "--no-plot"};
 
 Ended study(const Scratch& in, const std::string& kind, std::vector<std::string> arguments,
             const std::vector<std::string>& more = {})
@@ -28,7 +28,7 @@ Ended study(const Scratch& in, const std::string& kind, std::vector<std::string>
 
 }  // namespace
 
-TEST_CASE("a member that fails keeps its row and the others go on", "[studies][member]")
+TEST_CASE("a failed run has a row in the table and the other runs continue", "[studies][member]")
 {
     const std::string kind = GENERATE("energy", "iterations", "timing");
     const Scratch in;
@@ -45,12 +45,12 @@ TEST_CASE("a member that fails keeps its row and the others go on", "[studies][m
     }
 }
 
-TEST_CASE("a study fails with 4 only when all of its members fail", "[studies][member]")
+TEST_CASE("a study exits with 4 if all of its runs fail", "[studies][member]")
 {
     const std::string kind =
         GENERATE("convergence", "compare", "energy", "iterations", "timing", "work-precision");
     const Scratch in;
-    const Ended ended = study(in, kind, hopeless);
+    const Ended ended = study(in, kind, all_failing);
     CAPTURE(kind, ended.err);
     CHECK(ended.code == 4);
     CHECK_THAT(ended.err, StartsWith("hilda: error[newton_diverged]: study " + kind + ": all 2 runs failed"));
@@ -59,7 +59,7 @@ TEST_CASE("a study fails with 4 only when all of its members fail", "[studies][m
     for (const CsvRow& row : rows) CHECK(row.at("status") == "newton_diverged");
 }
 
-TEST_CASE("convergence and work-precision keep the rows of members that fail", "[studies][member]")
+TEST_CASE("convergence and work-precision write the rows of failed runs", "[studies][member]")
 {
     const std::string kind = GENERATE("convergence", "work-precision");
     const Scratch in;
@@ -77,14 +77,14 @@ TEST_CASE("convergence and work-precision keep the rows of members that fail", "
     CHECK(number(rows[1], "r") > 0);
 }
 
-TEST_CASE("an option that a study would not look at is refused", "[studies][member]")
+TEST_CASE("an option that a study does not use is rejected", "[studies][member]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
         const Ended ended = call(in, arguments);
         CAPTURE(arguments, ended.err);
         CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(says));
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(expected));
         CHECK(ended.err.find('\n') == ended.err.size() - 1);
     };
     refused({"study", "energy", "--bars", "4"}, "study energy: --bars is for scaling");

@@ -35,7 +35,7 @@ TEST_CASE("a study writes its table, and exits with 6 when an expectation fails"
     CHECK_THAT(failed.err, StartsWith("hilda: error: expected order=7, got "));
 }
 
-TEST_CASE("a study as JSON prints one object and writes files only where it is told to", "[studies][study]")
+TEST_CASE("a study with --json prints one object and writes files only with --output", "[studies][study]")
 {
     const Scratch in;
     const Ended ended = study(in, {"--json"});
@@ -44,7 +44,7 @@ TEST_CASE("a study as JSON prints one object and writes files only where it is t
     CHECK_FALSE(fs::exists(in / "out"));
 }
 
-TEST_CASE("a study that cannot begin leaves no directory", "[studies][study]")
+TEST_CASE("a study that cannot start leaves no directory", "[studies][study]")
 {
     const Scratch in;
     CHECK(call(in, {"study", "convergence", "--problem", "none", "--output", "a"}).code == 3);

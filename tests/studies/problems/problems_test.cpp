@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The built-in problems: their models, their starts and their truths.
+/// The built-in problems: models, initial states and reference solutions.
 
 #include "studies/framework/problem.hpp"
 
 #include "dae/kinematics.hpp"
+#include "dae/model_file.hpp"
 #include "reference/solvers/index1.hpp"
 
 #include <catch2/catch.hpp>
@@ -39,25 +40,25 @@ double distance(const lie::State& x, const lie::State& y)
     return std::sqrt(sum);
 }
 
-/// What the equations of motion of a body lack: m r̈ - F and J̄ ω̄̇ + ω̄ × J̄ ω̄ - n̄ less the constraint loads,
-/// relative to the sum of what enters
+/// Residual of the Newton-Euler equations, m r̈ - F - F^c and J̄ ω̄̇ + ω̄ × J̄ ω̄ - n̄ - n̄^c with the
+/// constraint loads F^c, n̄^c, relative to the sum of the norms of the terms
 double newton_euler_residual(const dae::Model& model, const lie::State& x)
 {
     lie::Loads loads(model.bodies());
     model.loads(x, loads);
     const std::vector<dae::Reaction> reaction = dae::reactions(model, x);
-    double lack = 0, size = 0;
+    double residual = 0, size = 0;
     for (size_t b = 0; b < x.body.size(); ++b) {
         const lie::Motion& body = x.body[b];
         const lie::Mat3& J_bar = model.mass().J_bar[b];
         const lie::Vec3 force = model.mass().m[b] * body.rddot;
         const lie::Vec3 torque = J_bar * body.omegadot_bar + body.omega_bar.cross(J_bar * body.omega_bar);
-        lack +=
+        residual +=
             (force - loads.F[b] - reaction[b].F).norm() + (torque - loads.n_bar[b] - reaction[b].T).norm();
         size +=
             force.norm() + torque.norm() + loads.F[b].norm() + reaction[b].F.norm() + reaction[b].T.norm();
     }
-    return lack / size;
+    return residual / size;
 }
 
 double observable(const Problem& p, const dae::Description& d)
@@ -73,7 +74,7 @@ double observable(const Problem& p, const dae::Description& d)
 
 }  // namespace
 
-TEST_CASE("every built-in problem starts on its constraints", "[studies][problems]")
+TEST_CASE("the initial state of each built-in problem satisfies its constraints", "[studies][problems]")
 {
     for (const std::string& name : all_names()) {
         INFO(name);
@@ -88,11 +89,11 @@ TEST_CASE("every built-in problem starts on its constraints", "[studies][problem
         const dae::StartReport report = dae::start(*d.model, d.x);
         CHECK(report.position_residual < 1e-9);
         CHECK(report.velocity_residual < 1e-9);
-        CHECK(std::isfinite(observable(p, d)));  // body and component are there
+        CHECK(std::isfinite(observable(p, d)));  // body and component exist
     }
 }
 
-TEST_CASE("the benchmark mechanisms have their degrees of freedom", "[studies][problems]")
+TEST_CASE("each built-in problem has the expected number of degrees of freedom", "[studies][problems]")
 {
     const std::pair<const char*, int> freedoms[] = {{"single_pendulum", 0},
                                                     {"slider_crank", 0},
@@ -122,8 +123,10 @@ TEST_CASE("the benchmark mechanisms have their degrees of freedom", "[studies][p
     }
 }
 
-TEST_CASE("the truth of every built-in problem obeys its constraints and Newton's equations",
-          "[studies][problems]")
+TEST_CASE(
+    "the reference solution of each built-in problem satisfies its constraints and the Newton-Euler "
+    "equations",
+    "[studies][problems]")
 {
     for (const std::string& name : all_names()) {
         const Problem p = studies::problem(name);
@@ -146,9 +149,10 @@ TEST_CASE("the truth of every built-in problem obeys its constraints and Newton'
     }
 }
 
-TEST_CASE("a truth is where the integrated equations lead, also of a changed model", "[studies][problems]")
+TEST_CASE("reference solutions agree with the index-1 equations, for changed models as well",
+          "[studies][problems]")
 {
-    const std::pair<const char*, std::vector<std::string>> benchmarks[] = {
+    const std::pair<const char*, std::vector<std::string>> models[] = {
         {"double_pendulum", {}},
         {"double_pendulum", {"/bodies/0/mass=200", "/gravity=[1, 2, -5]"}},
         {"double_pendulum", {"/bodies/0/inertia=[300, 400, 500]", "/constraints/9/s_bar_q_j=[-1, 0, 0]"}},
@@ -157,22 +161,22 @@ TEST_CASE("a truth is where the integrated equations lead, also of a changed mod
         {"heavy_top", {}},
         {"heavy_top", {"/bodies/0/omega=[0, 1.2, 20]"}},
     };
-    for (const auto& [name, set] : benchmarks) {
+    for (const auto& [name, set] : models) {
         INFO(name << (set.empty() ? "" : ", " + set[0]));
         const Problem p = studies::problem(name);
         dae::Description d = started(p, set);
         const std::vector<double> instants = {0.1};
         const lie::Trajectory reference_solution = p.reference_solution(d, instants),
-                              road = reference::index1(*d.model, d.x, instants);
+                              by_index1 = reference::index1(*d.model, d.x, instants);
         for (size_t k = 0; k < instants.size(); ++k) {
-            CHECK(distance(reference_solution.row[k], road.row[k]) < 1e-9);
-            CHECK((reference_solution.row[k].lambda - road.row[k].lambda).norm() <=
-                  1e-9 * road.row[k].lambda.norm());
+            CHECK(distance(reference_solution.row[k], by_index1.row[k]) < 1e-9);
+            CHECK((reference_solution.row[k].lambda - by_index1.row[k].lambda).norm() <=
+                  1e-9 * by_index1.row[k].lambda.norm());
         }
     }
 }
 
-TEST_CASE("the driven problems move as kinematic analysis says", "[studies][problems]")
+TEST_CASE("the reference solutions of driven problems agree with kinematic analysis", "[studies][problems]")
 {
     for (const char* name : {"single_pendulum", "slider_crank", "four_link"}) {
         const Problem p = studies::problem(name);
@@ -183,7 +187,7 @@ TEST_CASE("the driven problems move as kinematic analysis says", "[studies][prob
     }
 }
 
-TEST_CASE("problems are found by name, and a slip is answered with the name that was meant",
+TEST_CASE("problems are found by name, and the message of an unknown name contains the nearest one",
           "[studies][problems]")
 {
     CHECK(std::is_sorted(studies::problems().begin(), studies::problems().end(),
@@ -201,10 +205,10 @@ TEST_CASE("problems are found by name, and a slip is answered with the name that
     CHECK_THROWS_AS(studies::register_problem(studies::problem("n_pendulum")), std::logic_error);
 }
 
-TEST_CASE("Andrews' squeezer ends where Hairer and Wanner have it", "[studies][problems]")
+TEST_CASE("Andrews' squeezer agrees with the reference solution of Hairer and Wanner", "[studies][problems]")
 {
-    // The reference solution of the problem at 0.03 s: Solving ODEs II, Sec. VII.7. Body k's angle is the turn
-    // of its frame.
+    // Reference solution at 0.03 s: Solving ODEs II, Sec. VII.7. The angle of a body is the rotation of its
+    // frame.
     dae::Description d = started(studies::problem("andrews_squeezer"));
     CHECK(d.model->dropped_rows().size() == 9);  // three loops of revolute joints in space
     const lie::State x = studies::problem("andrews_squeezer").reference_solution(d, {0.0, 0.03}).row.back();

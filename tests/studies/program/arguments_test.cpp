@@ -8,10 +8,10 @@
 
 using namespace hilda::studies;
 
-TEST_CASE("numbers are read whole or not at all", "[studies][arguments]")
+TEST_CASE("an option value must be a number as a whole", "[studies][arguments]")
 {
     CHECK(positive_number("--step", "1e-3") == 1e-3);
-    CHECK(nonnegative_number("--every", "0") == 0);
+    CHECK(nonnegative_number("--interval", "0") == 0);
     CHECK(number("--x", "-2.5") == -2.5);
     for (const char* text : {"", " 1", "1 ", "1,5", "0x10", "nan", "inf", "1e999", "one"}) {
         CAPTURE(text);
@@ -25,7 +25,7 @@ TEST_CASE("numbers are read whole or not at all", "[studies][arguments]")
         CHECK_THROWS_AS(list("--problem", text), UsageError);
 }
 
-TEST_CASE("a word that is not one of those allowed is refused with them", "[studies][arguments]")
+TEST_CASE("a word that is not allowed is rejected with the list of allowed words", "[studies][arguments]")
 {
     CHECK(preset("--preset", "balanced") == "balanced");
     CHECK_THROWS_AS(preset("--preset", "Balanced"), UsageError);
@@ -50,7 +50,8 @@ TEST_CASE("an expectation has a key, a value and a tolerance", "[studies][argume
     }
 }
 
-TEST_CASE("a step is written as people write it", "[studies][arguments]")
+TEST_CASE("a step is written with the least digits, in scientific notation below 0.01",
+          "[studies][arguments]")
 {
     CHECK(step_text(1e-3) == "1e-3");
     CHECK(step_text(2.5e-5) == "2.5e-5");
@@ -59,7 +60,7 @@ TEST_CASE("a step is written as people write it", "[studies][arguments]")
     CHECK(step_text(1) == "1");
 }
 
-TEST_CASE("a name with a comma or a quote is one field", "[studies][arguments]")
+TEST_CASE("a name with a comma or a quote is quoted as one CSV field", "[studies][arguments]")
 {
     CHECK(csv_field("crank.rx") == "crank.rx");
     CHECK(csv_field("a,b") == "\"a,b\"");

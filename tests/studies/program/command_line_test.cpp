@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/studies/program.hpp"
 
@@ -10,13 +11,13 @@ using namespace hilda::tests;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-TEST_CASE("what is wrong on the command line is said in one line and exits with 2", "[studies][command line]")
+TEST_CASE("an invalid command line is reported in one line with exit code 2", "[studies][command line]")
 {
-    struct Wrong {
+    struct InvalidCall {
         std::vector<std::string> arguments;
-        std::string says;
+        std::string expected;
     };
-    const std::vector<Wrong> all = {
+    const std::vector<InvalidCall> all = {
         {{}, "no command given"},
         {{"runn", "double_pendulum"}, "unknown command 'runn'; did you mean 'run'?"},
         {{"help", "chek"}, "unknown command 'chek'; did you mean 'check'?"},
@@ -29,9 +30,11 @@ TEST_CASE("what is wrong on the command line is said in one line and exits with 
         {{"run", "double_pendulum", "--step", "inf"}, "got 'inf'"},
         {{"run", "double_pendulum", "--step", "1e-3s"}, "got '1e-3s'"},
         {{"run", "double_pendulum", "--step", "1e-3", "--step", "1e-4"}, "--step"},
-        {{"run", "double_pendulum", "--step", "1e-30"}, "1e15 steps"},
+        {{"run", "double_pendulum", "--step", "1e-30"}, "the number of steps must be at most 1e15"},
         {{"run", "double_pendulum", "--end", "-1"}, "--end"},
-        {{"run", "double_pendulum", "--every", "-1"}, "--every"},
+        {{"run", "double_pendulum", "--interval", "-1"}, "--interval"},
+        {{"run", "double_pendulum", "--every", "1", "--interval", "1"},
+         "--every is the old name of --interval"},
         {{"run", "double_pendulum", "--tolerance", "0"}, "--tolerance"},
         {{"run", "double_pendulum", "--threads", "0"}, "--threads"},
         {{"run", "double_pendulum", "--set", "gravity"}, "--set: must be /json/pointer=VALUE"},
@@ -48,18 +51,32 @@ TEST_CASE("what is wrong on the command line is said in one line and exits with 
         {{"study", "convergence", "--jobs", "many"}, "--jobs"},
     };
     const Scratch in;
-    for (const Wrong& wrong : all) {
-        const Ended ended = call(in, wrong.arguments);
-        CAPTURE(wrong.arguments, ended.err);
+    for (const InvalidCall& invalid : all) {
+        const Ended ended = call(in, invalid.arguments);
+        CAPTURE(invalid.arguments, ended.err);
         CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(wrong.says));
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(invalid.expected));
         CHECK(ended.err.find('\n') == ended.err.size() - 1);
         CHECK(ended.out.empty());
     }
     CHECK_FALSE(fs::exists(in / "out"));
 }
 
-TEST_CASE("the program tells what it has", "[studies][command line]")
+TEST_CASE("the old option name --every is read with a notice", "[studies][command line]")
+{
+    const Scratch in;
+    const auto run = [&](const char* option, const char* output) {
+        return call(in, {"run", "double_pendulum", "--end", "0.1", option, "0.05", "--output", output});
+    };
+    const Ended by_interval = run("--interval", "a"), by_every = run("--every", "b");
+    CHECK(by_interval.code == 0);
+    CHECK(by_interval.err.empty());
+    CHECK(by_every.code == 0);
+    CHECK(by_every.err == "hilda: warning: --every was renamed to --interval; the old name is still read\n");
+    CHECK(read(in / "a/trajectory.csv") == read(in / "b/trajectory.csv"));
+}
+
+TEST_CASE("the program lists models, integrators, studies and versions", "[studies][command line]")
 {
     const Scratch in;
     const auto lists = [&](const std::vector<std::string>& arguments, const std::string& expected) {
@@ -86,7 +103,7 @@ TEST_CASE("the program tells what it has", "[studies][command line]")
     lists({"info", "--json"}, "\"version\"");
 }
 
-TEST_CASE("a built-in model written to a file is the model again", "[studies][command line]")
+TEST_CASE("a built-in model written to a file gives the same run", "[studies][command line]")
 {
     const Scratch in;
     const Ended shown = call(in, {"models", "double_pendulum"});
@@ -99,14 +116,14 @@ TEST_CASE("a built-in model written to a file is the model again", "[studies][co
     CHECK(read(in / "a/trajectory.csv") == read(in / "b/trajectory.csv"));
 }
 
-TEST_CASE("what is not there exits with 3, 5 or 7", "[studies][command line]")
+TEST_CASE("missing models, files and devices exit with 3, 5 or 7", "[studies][command line]")
 {
     const Scratch in;
     CHECK(call(in, {"run", "none.json"}).code == 3);
     CHECK(call(in, {"models", "none"}).code == 3);
     CHECK(call(in, {"plot", "none"}).code == 3);
     CHECK(call(in, {"granular", "heap"}).code == 3);
-    CHECK_THAT(call(in, {"granular", "heap"}).err, Contains("heap: is not there"));
+    CHECK_THAT(call(in, {"granular", "heap"}).err, Contains("heap: does not exist"));
     CHECK(call(in, {"granular", "heap", "--device", "cuda:99"}).code == 7);
     CHECK_THAT(call(in, {"granular", "--help"}).out, Contains("--checkpoint"));
     CHECK_THAT(call(in, {"run", "double_pendulun"}).err, Contains("double_pendulum"));
@@ -114,7 +131,7 @@ TEST_CASE("what is not there exits with 3, 5 or 7", "[studies][command line]")
     CHECK(call(in, {"integrators"}, {.stdout_to = "/dev/full"}).code == 5);
 }
 
-TEST_CASE("figures need Python, and their lack is said in one line", "[studies][command line]")
+TEST_CASE("missing Python is reported in one line and leaves the run successful", "[studies][command line]")
 {
     const Scratch in;
     const Ended ended = call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--plot"},

@@ -10,7 +10,7 @@ using namespace hilda;
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
-TEST_CASE("a scheme that chooses its own steps runs from row to row", "[studies][run]")
+TEST_CASE("an adaptive scheme integrates from output row to output row", "[studies][run]")
 {
     const Scratch in;
     studies::RunOptions options;
@@ -20,9 +20,9 @@ TEST_CASE("a scheme that chooses its own steps runs from row to row", "[studies]
     options.quiet = true;
     options.settings.rtol = 1e-6;
     studies::SingleRun run(options, inner_steps, in / "out");
-    const studies::Result result = run.go();
+    const studies::RunResult result = run.execute();
     CHECK(result.status == "ok");
-    CHECK(result.statistics.steps == 5 * 20);  // its own
+    CHECK(result.statistics.steps == 5 * 20);  // inner steps
     const auto rows = csv(in / "out/trajectory.csv");
     REQUIRE(rows.size() == 6);
     CHECK(number(rows[3], "t") == Approx(0.06));
@@ -37,25 +37,25 @@ TEST_CASE("a scheme that chooses its own steps runs from row to row", "[studies]
     CHECK_THAT(text.str(), Contains("inner-steps, rtol 1e-6, atol 1e-6, end 0.1 s"));
 }
 
-TEST_CASE("an adaptive integrator takes no step and no checkpoint", "[studies][run]")
+TEST_CASE("an adaptive integrator rejects --step, --checkpoint and --resume", "[studies][run]")
 {
     const Scratch in;
     for (const std::string& name : adaptive_schemes()) {
-        const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
+        const auto refused = [&](const std::vector<std::string>& more, const std::string& expected) {
             std::vector<std::string> arguments = {"run", "double_pendulum", "--end",
                                                   "0.1", "--integrator",    name};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const Ended ended = call(in, arguments);
             CAPTURE(more, ended.err);
             CHECK(ended.code == 2);
-            CHECK_THAT(ended.err, Contains("run: " + name + ' ' + says));
+            CHECK_THAT(ended.err, Contains("run: " + name + ' ' + expected));
             CHECK(ended.err.find('\n') == ended.err.size() - 1);
         };
         refused({"--step", "1e-3"},
                 "chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
-        refused({"--checkpoint", "1"}, "remembers past steps");
-        refused({"--resume"}, "remembers past steps");
-        refused({"--every", "0"}, "chooses its own steps; --every");
+        refused({"--checkpoint", "1"}, "stores past steps outside the state");
+        refused({"--resume"}, "stores past steps outside the state");
+        refused({"--interval", "0"}, "chooses its own steps; --interval");
         CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--integrator", name, "--output", name})
                   .code == 0);
         CHECK_THAT(call(in, {"integrators"}).out, Contains("adaptive"));

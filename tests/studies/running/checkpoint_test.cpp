@@ -36,7 +36,7 @@ Checkpoint some_checkpoint()
 
 }  // namespace
 
-TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
+TEST_CASE("a checkpoint is read as it was written", "[studies][checkpoint]")
 {
     const Checkpoint c = some_checkpoint(), back = from_bytes(to_bytes(c), "file");
     CHECK(to_bytes(back) == to_bytes(c));
@@ -58,7 +58,7 @@ TEST_CASE("a checkpoint comes back as it was written", "[studies][checkpoint]")
     CHECK(back.wall_seconds == c.wall_seconds);
 }
 
-TEST_CASE("every flipped bit and every truncation of a checkpoint is found", "[studies][checkpoint]")
+TEST_CASE("each flipped bit and each truncation of a checkpoint is detected", "[studies][checkpoint]")
 {
     const std::string good = to_bytes(some_checkpoint());
     for (size_t k = 0; k < 8 * good.size(); ++k) {
@@ -78,7 +78,7 @@ TEST_CASE("every flipped bit and every truncation of a checkpoint is found", "[s
     }
 }
 
-TEST_CASE("the last two checkpoints are kept", "[studies][checkpoint]")
+TEST_CASE("the last two checkpoints are stored", "[studies][checkpoint]")
 {
     const tests::Scratch in;
     const std::string directory = in.path.string();
@@ -91,7 +91,7 @@ TEST_CASE("the last two checkpoints are kept", "[studies][checkpoint]")
     }
     CHECK(from_bytes(tests::read(in / "checkpoint.1"), "file").number == 2);
 
-    tests::fs::remove(in / "checkpoint");  // killed between the two renamings
+    tests::fs::remove(in / "checkpoint");  // as after a kill between the two renamings
     CHECK(load(directory)->number == 2);
     remove_checkpoints(directory);
     CHECK(tests::fs::is_empty(in.path));

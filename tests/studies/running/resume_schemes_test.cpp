@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a checkpoint keeps is all that any scheme needs to go on with the same digits.
+/// A checkpoint contains all data that a scheme needs to continue with the same digits.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/recorder.hpp"
@@ -29,9 +33,9 @@ bool same(const lie::State& a, const lie::State& b)
 
 }  // namespace
 
-// The driver of the slider-crank passes two singular points in half a turn, so pivots are chosen anew on the
-// way.
-TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studies][resume]")
+// The driver of the slider-crank passes two singular points in half a revolution, so that the integrator
+// chooses new pivots during the run.
+TEST_CASE("each scheme continues from a checkpoint with the same digits", "[studies][resume]")
 {
     const std::string name =
         GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill", "ball_in_bowl_xy", "rattleback");
@@ -42,7 +46,7 @@ TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studi
     dae::start(d);
     for (const lie::Scheme& scheme : lie::schemes()) {
         if (scheme.adaptive) continue;
-        if (!d.model->evolving().empty() && !(scheme.algebraic && scheme.nonholonomic)) continue;
+        if (!d.model->general_constraints().empty() && !(scheme.algebraic && scheme.nonholonomic)) continue;
         const lie::Settings settings{.reparametrise = true};
         constexpr double h = 2e-3;
         constexpr long half = 150;
@@ -58,14 +62,14 @@ TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studi
         written.pivots = pivots.node;
         using Type = contact::ContactEvent::Type;
         written.contacts.events = {{Type::impact, 0.25, 0, 1.5}, {Type::fallback_active, 0.5, 2, 0}};
-        written.contacts.closed = {{0.125, 3}, {0.25, -1}};
+        written.contacts.node_forces = {{0.125, 3}, {0.25, -1}};
         while (whole.number() < 2 * half) whole.advance(observers);
 
         const studies::Checkpoint read = studies::from_bytes(studies::to_bytes(written), "checkpoint");
         CHECK(read.contacts.events == written.contacts.events);
-        REQUIRE(read.contacts.closed.size() == 2);
-        CHECK(read.contacts.closed[1].t == 0.25);
-        CHECK(read.contacts.closed[1].F_N == -1);
+        REQUIRE(read.contacts.node_forces.size() == 2);
+        CHECK(read.contacts.node_forces[1].t == 0.25);
+        CHECK(read.contacts.node_forces[1].F_N == -1);
         const auto fresh = scheme.make(*d.model, settings);
         studies::PivotNode restored(*fresh);
         restored.restore(read.pivots, h);
@@ -75,10 +79,10 @@ TEST_CASE("every scheme goes on from a checkpoint with the same digits", "[studi
         CHECK(same(resumed.node(), whole.node()));
         if (last > 0) CHECK(read.node.internal_state != d.x.internal_state);
 
-        // and needs the numbers that the forces remember
-        lie::State forgetful = read.node;
-        forgetful.internal_state[d.model->forces()[0]->first_internal_state + 1] += 1e-3;
-        lie::March other(forgetful, *fresh, h, read.number, read.iterations);
+        // a changed internal state variable of a force changes the result
+        lie::State changed = read.node;
+        changed.internal_state[d.model->forces()[0]->first_internal_state + 1] += 1e-3;
+        lie::March other(changed, *fresh, h, read.number, read.iterations);
         while (other.number() < 2 * half) other.advance({});
         CHECK(!same(other.node().lambda, whole.node().lambda));
     }

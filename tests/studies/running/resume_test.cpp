@@ -11,18 +11,18 @@ using nlohmann::ordered_json;
 
 namespace {
 
-// Long enough to be interrupted in the middle: a debug build takes a hundred times as long for a step.
+// The run must be long enough to be interrupted. A step takes a hundred times longer in a debug build.
 #ifdef NDEBUG
 constexpr const char* fine_step = "1e-5";
 #else
 constexpr const char* fine_step = "1e-3";
 #endif
 
-/// About 100 000 steps: half a second
+/// About 100 000 steps, half a second
 std::vector<std::string> long_run(const std::string& integrator, const std::string& directory)
 {
-    return {"run",     "slider_crank", "--integrator", integrator,    "--step",  fine_step,  "--end",  "1",
-            "--every", "1e-3",         "--reactions",  "--log-steps", "--quiet", "--output", directory};
+    return {"run",        "slider_crank", "--integrator", integrator,    "--step",  fine_step,  "--end",  "1",
+            "--interval", "1e-3",         "--reactions",  "--log-steps", "--quiet", "--output", directory};
 }
 
 std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
@@ -31,7 +31,7 @@ std::vector<std::string> with(std::vector<std::string> arguments, const std::vec
     return arguments;
 }
 
-/// steps.csv without its last column, the time that a step took
+/// steps.csv without its last column, the wall time of a step
 std::string without_times(const fs::path& file)
 {
     std::istringstream in(read(file));
@@ -48,9 +48,10 @@ ordered_json counters_and_invariants(const fs::path& directory)
 
 }  // namespace
 
-// The driver of the slider-crank passes four singular points a turn, so that pivots are chosen anew on the
-// way: all that an integrator remembers outside the state.
-TEST_CASE("an interrupted and killed run ends as one that was left alone", "[studies][resume]")
+// The driver of the slider-crank passes four singular points per revolution, so that the integrator chooses
+// new pivots. The pivots are its only data outside the state.
+TEST_CASE("an interrupted and killed run, resumed, gives the result of an uninterrupted run",
+          "[studies][resume]")
 {
     const std::string integrator = GENERATE("rA-half-1", "rA-half-2", "rA-full-1");
     CAPTURE(integrator);
@@ -67,7 +68,7 @@ TEST_CASE("an interrupted and killed run ends as one that was left alone", "[stu
     CHECK(ordered_json::parse(read(in / "parts/summary.json"))["exit_code"] == 130);
 
     int code = 137;
-    for (int k = 0; k < 2 && code == 137; ++k) {  // a fast machine is done before it is killed
+    for (int k = 0; k < 2 && code == 137; ++k) {  // on a fast machine the run may end before the kill
         const Program killed(in, with(parts, {"--resume"}));
         std::this_thread::sleep_for(std::chrono::milliseconds(60));
         killed.send(SIGKILL);
@@ -81,7 +82,7 @@ TEST_CASE("an interrupted and killed run ends as one that was left alone", "[stu
     CHECK_FALSE(fs::exists(in / "parts/checkpoint"));
 }
 
-TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "[studies][resume]")
+TEST_CASE("an interruption writes a checkpoint without --checkpoint as well", "[studies][resume]")
 {
     const Scratch in;
     const Program program(in, long_run("rA-half-1", "a"));
@@ -91,12 +92,12 @@ TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "
     CHECK(program.wait().code == 143);
     REQUIRE(fs::exists(in / "a/checkpoint"));
 
-    // of another run
+    // a checkpoint of another run
     const Ended other = call(in, with(long_run("rA-half-1", "a"), {"--resume", "--tolerance", "1e-9"}));
     CHECK(other.code == 2);
     CHECK_THAT(other.err, Contains("belongs to another run"));
 
-    // damaged, with none before it
+    // a damaged checkpoint without a previous one
     std::string bytes = read(in / "a/checkpoint");
     bytes[bytes.size() / 2] ^= 1;
     write(in / "a/checkpoint", bytes);
@@ -104,7 +105,7 @@ TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "
     CHECK(damaged.code == 5);
     CHECK_THAT(damaged.err, StartsWith("hilda: error: a/checkpoint: the checkpoint is damaged"));
 
-    // damaged, with a whole one before it
+    // a damaged checkpoint with a valid previous one
     bytes[bytes.size() / 2] ^= 1;
     write(in / "a/checkpoint.1", bytes);
     const Ended fallen_back = call(in, with(long_run("rA-half-1", "a"), {"--resume"}));
@@ -112,10 +113,10 @@ TEST_CASE("an interruption leaves a checkpoint also where none was asked for", "
     CHECK_THAT(fallen_back.err, StartsWith("hilda: warning: a/checkpoint: the checkpoint is damaged"));
 }
 
-TEST_CASE("a resumed run starts at the beginning where nothing has been done", "[studies][resume]")
+TEST_CASE("a run with --resume but without a checkpoint starts from the initial state", "[studies][resume]")
 {
     const Scratch in;
     const Ended ended = call(in, {"run", "double_pendulum", "--end", "0.1", "--resume", "--output", "a"});
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.err, Contains("starting at the beginning"));
+    CHECK_THAT(ended.err, Contains("starting from the initial state"));
 }

@@ -26,12 +26,12 @@ std::vector<std::string> lines(const fs::path& file)
 
 }  // namespace
 
-TEST_CASE("a run writes the files and columns that are promised", "[studies][run]")
+TEST_CASE("a run writes the documented files and columns", "[studies][run]")
 {
     const Scratch in;
     write(in / "bar.json", pendulum());
     const Ended ended =
-        call(in, {"run", "bar.json", "--end", "0.1", "--every", "0.01", "--reactions", "--log-steps"});
+        call(in, {"run", "bar.json", "--end", "0.1", "--interval", "0.01", "--reactions", "--log-steps"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     CHECK(ended.err.empty());
@@ -70,7 +70,7 @@ TEST_CASE("a run writes the files and columns that are promised", "[studies][run
     CHECK_FALSE(fs::exists(in / "out/bar/checkpoint"));
 }
 
-TEST_CASE("two identical runs write identical files but for timing and provenance", "[studies][run]")
+TEST_CASE("two identical runs write identical files, except for timing and provenance", "[studies][run]")
 {
     const Scratch in;
     for (const char* directory : {"a", "b"})
@@ -84,7 +84,7 @@ TEST_CASE("two identical runs write identical files but for timing and provenanc
     CHECK(a == b);
 }
 
-TEST_CASE("several integrators run one after the other", "[studies][run]")
+TEST_CASE("several integrators run in sequence, each in a subdirectory", "[studies][run]")
 {
     const Scratch in;
     const Ended ended =
@@ -96,7 +96,7 @@ TEST_CASE("several integrators run one after the other", "[studies][run]")
     CHECK(fs::exists(in / "out/double_pendulum/rA-half-1/trajectory.csv"));
 }
 
-TEST_CASE("a directory that is not empty is refused without --force", "[studies][run]")
+TEST_CASE("a directory that is not empty is rejected without --force", "[studies][run]")
 {
     const Scratch in;
     fs::create_directory(in / "a");
@@ -123,7 +123,7 @@ TEST_CASE("an invalid model exits with 3 and writes nothing", "[studies][run]")
     CHECK_FALSE(fs::exists(in / "out"));
 }
 
-TEST_CASE("a change by --set is made and recorded", "[studies][run]")
+TEST_CASE("a change by --set is applied and recorded", "[studies][run]")
 {
     const Scratch in;
     write(in / "bar.json", pendulum());
@@ -135,12 +135,14 @@ TEST_CASE("a change by --set is made and recorded", "[studies][run]")
     CHECK(call(in, {"run", "bar.json", "--set", "/bodies/0/mas=5"}).code == 3);
 }
 
-TEST_CASE("a load that stops being a number ends the run with 4 and keeps its rows", "[studies][run]")
+TEST_CASE("a load that becomes NaN ends the run with exit code 4 and the rows before it are written",
+          "[studies][run]")
 {
     const Scratch in;
     write(in / "bar.json", pendulum("", R"json({"type": "force", "body": "bar", "point_bar": [0, 0, 0],
         "frame": "global", "name": "push", "components": ["sqrt(0.5 - t)", 0, 0]})json"));
-    const Ended ended = call(in, {"run", "bar.json", "--step", "1e-2", "--every", "1e-2", "--output", "a"});
+    const Ended ended =
+        call(in, {"run", "bar.json", "--step", "1e-2", "--interval", "1e-2", "--output", "a"});
     CAPTURE(ended.err);
     CHECK(ended.code == 4);
     CHECK_THAT(ended.err, StartsWith("hilda: error[nonfinite]: t=0.5") && Contains("(rA-half-1, h=0.01)") &&
@@ -153,7 +155,8 @@ TEST_CASE("a load that stops being a number ends the run with 4 and keeps its ro
     CHECK(summary_in(in / "a")["exit_code"] == 4);
 }
 
-TEST_CASE("Newton's method that does not converge is named, with where", "[studies][run]")
+TEST_CASE("a Newton iteration that does not converge is reported with its step and constraint",
+          "[studies][run]")
 {
     const Scratch in;
     const Ended ended = call(in, {"run", "double_pendulum", "--step", "0.5", "--output", "a", "--json"});
@@ -167,13 +170,13 @@ TEST_CASE("Newton's method that does not converge is named, with where", "[studi
     CHECK(lines(in / "a/trajectory.csv").size() == 2);
 }
 
-TEST_CASE("a dropped row that stops being redundant ends the run", "[studies][run]")
+TEST_CASE("a violated dropped row ends the run", "[studies][run]")
 {
     const Scratch in;
-    // t^4 agrees with 0 in position, velocity and acceleration at the start, and not after that
+    // t^4 agrees with 0 in position, velocity and acceleration at the start, and differs later
     write(in / "bar.json", pendulum(R"(, {"name": "again", "type": "CD", "body_i": "bar", "body_j": "ground",
         "c": [1, 0, 0], "s_bar_p_i": [0, -1, 0], "s_bar_q_j": [0, 0, 0], "f": "t^4"})"));
-    const Ended ended = call(in, {"run", "bar.json", "--every", "0", "--output", "a"});
+    const Ended ended = call(in, {"run", "bar.json", "--interval", "0", "--output", "a"});
     CAPTURE(ended.err);
     CHECK(ended.code == 4);
     CHECK_THAT(ended.err, StartsWith("hilda: warning: constraint 'again' row 1") &&
@@ -181,18 +184,18 @@ TEST_CASE("a dropped row that stops being redundant ends the run", "[studies][ru
     const ordered_json summary = summary_in(in / "a");
     CHECK(summary["status"] == "constraint_drift");
     CHECK(summary["model"]["dropped_rows"].size() == 1);
-    // nor does a study take the motion of the other rows for the truth, and rows far apart hide nothing
+    // A study detects the violation in its reference solution, and a run detects it between output rows.
     CHECK(call(in, {"study", "convergence", "--problem", "bar.json", "--steps", "1e-2", "--no-plot"}).code ==
           4);
-    CHECK(call(in, {"run", "bar.json", "--every", "1", "--output", "b"}).code == 4);
+    CHECK(call(in, {"run", "bar.json", "--interval", "1", "--output", "b"}).code == 4);
 }
 
-TEST_CASE("what a run reports as largest is so over every node, for any output interval", "[studies][run]")
+TEST_CASE("extreme values of the summary are taken over all nodes, for any output interval", "[studies][run]")
 {
     const Scratch in;
-    const auto largest = [&](const std::string& every) {
-        const Ended ended = call(
-            in, {"run", "slider_crank", "--end", "0.5", "--every", every, "--output", "e" + every, "--json"});
+    const auto largest = [&](const std::string& interval) {
+        const Ended ended = call(in, {"run", "slider_crank", "--end", "0.5", "--interval", interval,
+                                      "--output", "e" + interval, "--json"});
         return ordered_json::parse(ended.out)["invariants"];
     };
     const ordered_json dense = largest("0.001"), sparse = largest("0.5");
@@ -203,7 +206,7 @@ TEST_CASE("what a run reports as largest is so over every node, for any output i
     }
 }
 
-TEST_CASE("a model written over a link or into a device goes where it points", "[studies][models]")
+TEST_CASE("a model is written through a symbolic link and to a device", "[studies][models]")
 {
     const Scratch in;
     write(in / "real.json", "old");
@@ -215,8 +218,7 @@ TEST_CASE("a model written over a link or into a device goes where it points", "
     CHECK(fs::is_character_file("/dev/null"));
 }
 
-TEST_CASE("a study refuses steps, keys and names that do not fit before it computes",
-          "[studies][convergence]")
+TEST_CASE("a study rejects invalid steps, keys and names before it computes", "[studies][convergence]")
 {
     const Scratch in;
     CHECK(call(in, {"study", "convergence", "--problem", "double_pendulum", "--steps", "7e-3"}).code == 2);
@@ -225,22 +227,22 @@ TEST_CASE("a study refuses steps, keys and names that do not fit before it compu
     CHECK(call(in, {"study", "convergence", "--problem", "nowhere.json"}).code == 3);
 }
 
-TEST_CASE("a full disk exits with 5 and names the file", "[studies][run]")
+TEST_CASE("a full disk exits with 5 and the message names the file", "[studies][run]")
 {
     const Scratch in;
-    const std::vector<std::string> arguments = {"run", "double_pendulum", "--every", "0", "--output",
+    const std::vector<std::string> arguments = {"run", "double_pendulum", "--interval", "0", "--output",
                                                 "a",   "--quiet"};
     const Ended ended = call(in, arguments, {.file_bytes = 100000});
     CHECK(ended.code == 5);
     CHECK_THAT(ended.err, StartsWith("hilda: error: a/trajectory.csv: cannot be written"));
     CHECK_FALSE(fs::exists(in / "a/summary.json"));
 
-    // no place for the model either: no temporary file stays behind
+    // the model file does not fit either, and its temporary file is removed
     CHECK(call(in, {"run", "double_pendulum", "--output", "b", "--quiet"}, {.file_bytes = 10}).code == 5);
     CHECK(fs::is_empty(in / "b"));
 }
 
-TEST_CASE("check says what the model is and writes nothing", "[studies][check]")
+TEST_CASE("check prints the properties of a model and writes no file", "[studies][check]")
 {
     const Scratch in;
     const Ended ended = call(in, {"check", "slider_crank"});
@@ -253,7 +255,7 @@ TEST_CASE("check says what the model is and writes nothing", "[studies][check]")
     CHECK_FALSE(fs::exists(in / "out"));
 }
 
-TEST_CASE("a start off its constraints is refused, or moved by --fix-initial", "[studies][check]")
+TEST_CASE("an inconsistent initial state is rejected, or projected by --fix-initial", "[studies][check]")
 {
     const Scratch in;
     write(in / "bar.json", pendulum());

@@ -32,7 +32,7 @@ using tests::Scratch;
 
 namespace {
 
-/// An XML file: elements that are closed in order, attributes that are quoted
+/// A parser of XML files with nested elements and quoted attributes; throws if the file is not well-formed
 struct Xml {
     struct Element {
         std::string name;
@@ -81,7 +81,7 @@ private:
     const Element& find(const std::string& name, const std::function<bool(const Element&)>& is) const
     {
         const auto at = std::find_if(element.begin(), element.end(), is);
-        if (at == element.end()) throw std::runtime_error("nothing is called " + name);
+        if (at == element.end()) throw std::runtime_error("there is no element " + name);
         return *at;
     }
     void read(const std::string& tag)
@@ -108,7 +108,7 @@ std::vector<double> numbers(const std::string& text)
     return all;
 }
 
-/// A frame, with what is said of its numbers found to be so
+/// A frame; the constructor checks the sizes of its arrays
 struct Frame {
     std::vector<Vec3> point, velocity, N, F;
     std::vector<double> slipping, rolling, body, contact;
@@ -195,19 +195,19 @@ size_t files(const tests::fs::path& directory)
 
 }  // namespace
 
-TEST_CASE("the polygons of a surface lie on it and look out of the body", "[studies][vtk]")
+TEST_CASE("the polygons of a surface lie on it and their normals point out of the body", "[studies][vtk]")
 {
     using namespace contact;
     const auto egg = [](auto x, auto y, auto z) { return x * x + y * y + z * z * (1.0 + 0.3 * z) - 1.0; };
     const auto waves = [](auto x, auto, auto z) { return z - 0.1 * x * x; };
     const auto waves_of = [](double x, double y) { return 0.1 * std::sin(x) * std::cos(y); };
     const auto as_it_is = [](const Vec3& a) { return a; };
-    struct Benchmark {
+    struct SurfaceExample {
         std::string name;
         std::shared_ptr<const Surface> surface;
         bool closed;
     };
-    const std::vector<Benchmark> benchmarks = {
+    const std::vector<SurfaceExample> examples = {
         {"sphere", std::make_shared<Sphere>(0.2), true},
         {"bowl", std::make_shared<Sphere>(0.2, true), true},
         {"ellipsoid", std::make_shared<Ellipsoid>(Vec3(0.2, 0.3, 0.5)), true},
@@ -222,10 +222,10 @@ TEST_CASE("the polygons of a surface lie on it and look out of the body", "[stud
         {"plane", std::make_shared<Plane>(), false},
         {"foot", std::make_shared<Foot>(), false},
         {"disk", std::make_shared<Disk>(0.1), false}};
-    const studies::Reach reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .motion = 4};
-    for (const Benchmark& c : benchmarks) {
+    const studies::DrawingExtent reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .scene_size = 4};
+    for (const SurfaceExample& c : examples) {
         CAPTURE(c.name);
-        const Mesh mesh = studies::tessellated(*c.surface, reach);
+        const Mesh mesh = studies::tessellate(*c.surface, reach);
         CHECK(mesh.point.size() > 10);
         CHECK(mesh.point.size() <= 500);
         if (c.name != "disk" && c.name != "mesh")
@@ -249,19 +249,19 @@ TEST_CASE("the polygons of a surface lie on it and look out of the body", "[stud
         CHECK(once);
         CHECK(paired == c.closed);
     }
-    CHECK(studies::endless(Plane()));
-    CHECK_FALSE(studies::endless(Sphere(1)));
+    CHECK(studies::is_unbounded(Plane()));
+    CHECK_FALSE(studies::is_unbounded(Sphere(1)));
 }
 
-TEST_CASE("a plane is drawn as far as something comes", "[studies][vtk]")
+TEST_CASE("a plane is drawn over the region of the other bodies", "[studies][vtk]")
 {
     const Scratch in;
     Snapshots snapshots;
-    snapshots.show(0, shape<contact::Sphere>(0.2));
+    snapshots.add_surface(0, shape<contact::Sphere>(0.2));
     const contact::Shape floor = shape<contact::Plane>();
-    snapshots.show(-1, floor);
-    snapshots.show(-1, floor);
-    snapshots.show(-1, shape<contact::Plane>());  // another object, the same to look at
+    snapshots.add_surface(-1, floor);
+    snapshots.add_surface(-1, floor);
+    snapshots.add_surface(-1, shape<contact::Plane>());  // another object with the same shape
     lie::Motion later = at({3, 1, 0.2}, {1, 2, 3});
     later.omega_bar = {0, 0, 5};
     snapshots.add(0, {at({0, 1, 0.2})}, {});
@@ -277,7 +277,7 @@ TEST_CASE("a plane is drawn as far as something comes", "[studies][vtk]")
     CHECK(start.vertex.empty());
     REQUIRE(end.vertex.size() == 1);
     CHECK(end.polygon == [&] {
-        auto shifted = start.polygon;  // by the contact, which is the first point
+        auto shifted = start.polygon;  // by one: the contact is the first point
         for (auto& polygon : shifted)
             for (size_t& k : polygon) ++k;
         return shifted;
@@ -308,14 +308,14 @@ TEST_CASE("a plane is drawn as far as something comes", "[studies][vtk]")
     CHECK(patch.contains(Vec3(3.2, 1.2, 0)));
     CHECK(patch.sizes().x() < 1.2 * 3.4);
     CHECK(patch.sizes().y() == Approx(patch.sizes().x()));
-    CHECK(end.point.size() == 1 + 266 + 81);  // the floor once
+    CHECK(end.point.size() == 1 + 266 + 81);  // contact, ball, floor once
 
     Snapshots::remove(in.path.string(), "a<b>&\"c\"");
     CHECK(files(in.path) == 1);
     CHECK(files(in / "vtk") == 0);
 }
 
-TEST_CASE("frames of the experiments on friction", "[studies][vtk][friction]")
+TEST_CASE("the friction study writes frames with the contact forces", "[studies][vtk][friction]")
 {
     const Scratch in;
     const Ended ended =
@@ -337,21 +337,21 @@ TEST_CASE("frames of the experiments on friction", "[studies][vtk][friction]")
             CHECK(std::abs(frame.point[0].z()) < 1e-6);
         }
     }
-    // again, with fewer frames: none of the old ones stays
+    // a second run with fewer frames removes the old ones
     CHECK(
         call(in, {"study", "friction", "--problem", "incline", "--vtk", "1", "--force", "--no-plot"}).code ==
         0);
     CHECK(files(in / "out/friction/vtk") == 2);
 }
 
-TEST_CASE("snapshots are refused where nothing would come of them", "[studies][vtk]")
+TEST_CASE("a study rejects --vtk if it would write no frames", "[studies][vtk]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
         const Ended ended = call(in, arguments);
         CAPTURE(arguments, ended.err);
         CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(says));
+        CHECK_THAT(ended.err, Contains(expected));
         CHECK_FALSE(tests::fs::exists(in / "out"));
     };
     for (const std::string text : {"0", "-1", "1.5", "1000001", "many"})
@@ -359,13 +359,14 @@ TEST_CASE("snapshots are refused where nothing would come of them", "[studies][v
                 "--vtk: must be a whole number from 1 to 1000000, got '" + text + "'");
     refused({"study", "energy", "--vtk", "3"},
             "study energy: --vtk is for evolving-contact, evolving-friction, friction");
-    refused({"study", "friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
-            "study friction: --vtk is for disk, ellipsoid, incline, spin, spin-ellipsoid, turntable");
+    refused(
+        {"study", "friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
+        "study friction: --vtk is available for disk, ellipsoid, incline, spin, spin-ellipsoid, turntable");
     CHECK_FALSE(tests::fs::exists(in / "new"));
     refused({"study", "friction", "--json", "--vtk", "3"}, "--vtk writes files");
 }
 
-TEST_CASE("frames of a model with contacts", "[studies][vtk]")
+TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
 {
     const Scratch in;
     const Ended ended = call(in, {"run", "rolling_ball", "--end", "0.1", "--vtk", "0.02", "--output", "out"});
@@ -377,7 +378,7 @@ TEST_CASE("frames of a model with contacts", "[studies][vtk]")
     for (size_t k = 0; k < listed.size(); ++k) {
         CHECK(std::stod(listed[k].time) == Approx(0.02 * static_cast<double>(k)));
         const Frame frame(in / ("out/" + listed[k].file));
-        REQUIRE(frame.vertex.size() == 1);  // the ball lies on the floor
+        REQUIRE(frame.vertex.size() == 1);  // the ball is in contact with the floor
         CHECK(frame.body[0] == 0);
         CHECK(frame.body.back() == -1);
         CHECK(frame.N[0].z() == Approx(5 * 9.81).epsilon(1e-3));
@@ -385,13 +386,13 @@ TEST_CASE("frames of a model with contacts", "[studies][vtk]")
         if (k > 0) CHECK(frame.F[0].x() == Approx(-0.2 * frame.N[0].z()).epsilon(1e-2));
     }
     CHECK_THAT(tests::read(in / "out/summary.json"), Contains("run.pvd"));
-    // again without: no snapshots of another run stay
+    // a second run without --vtk removes the frames
     CHECK(call(in, {"run", "rolling_ball", "--end", "0.1", "--output", "out", "--force"}).code == 0);
     CHECK_FALSE(tests::fs::exists(in / "out/run.pvd"));
     CHECK(files(in / "out/vtk") == 0);
 }
 
-TEST_CASE("frames of a contact that is a constraint", "[studies][vtk][evolving]")
+TEST_CASE("a run writes frames of a contact constraint", "[studies][vtk][evolving]")
 {
     const Scratch in;
     const Ended ended =
@@ -409,14 +410,14 @@ TEST_CASE("frames of a contact that is a constraint", "[studies][vtk][evolving]"
     CHECK(frame.rolling[0] == 1);
 }
 
-TEST_CASE("frames of a run are refused where nothing would come of them", "[studies][vtk][run]")
+TEST_CASE("a run rejects --vtk if it would write no frames", "[studies][vtk][run]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& says) {
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
         const Ended ended = call(in, arguments);
         CAPTURE(arguments, ended.err);
         CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(says));
+        CHECK_THAT(ended.err, Contains(expected));
         CHECK_FALSE(tests::fs::exists(in / "out"));
     };
     for (const std::string text : {"0", "-1", "nan", "often"})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A brick on an incline (Fang 2022, Sec. 4.4.2): Fig. 4.6 with and without dashpot on a slope on which it stays, Fig. 4.7 on
-/// slopes of arctan mu_k, arctan mu_s and 0.25 rad. It slides without turning; along the slope is x.
+/// Brick on an incline (Fang 2022, Sec. 4.4.2). Fig. 4.6: a slope on which the brick sticks, with and without
+/// dashpot. Fig. 4.7: slopes of arctan mu_k, arctan mu_s and 0.25 rad. The brick does not rotate; x points
+/// down the slope.
 
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
@@ -35,8 +36,8 @@ Series slide(double alpha, double zeta, double end, Frames* frames)
 
 std::vector<ExperimentRun> dashpot()
 {
-    return {{.name = "damped", .go = [](Frames* frames) { return slide(0.18, 1, 0.1, frames); }},
-            {.name = "undamped", .go = [](Frames* frames) { return slide(0.18, 0, 0.1, frames); }}};
+    return {{.name = "damped", .compute = [](Frames* frames) { return slide(0.18, 1, 0.1, frames); }},
+            {.name = "undamped", .compute = [](Frames* frames) { return slide(0.18, 0, 0.1, frames); }}};
 }
 
 void check_dashpot(const Results& runs, std::vector<Check>& out)
@@ -46,8 +47,8 @@ void check_dashpot(const Results& runs, std::vector<Check>& out)
     const double rest = m * g * std::sin(0.18) / K_E;
     out.push_back({"x at rest, damped [m]", s->last("x"), rest, 1e-9 * rest, "m g sin(alpha) / K_E"});
     const auto slips = s->all("slips");
-    out.push_back({"steps in slip, damped", static_cast<double>(std::count(slips.begin(), slips.end(), 1.)),
-                   0, 0, "sticks"});
+    out.push_back({"number of steps with slip, damped",
+                   static_cast<double>(std::count(slips.begin(), slips.end(), 1.)), 0, 0, "sticks"});
 }
 
 const bool brick = register_experiment({.name = "brick",
@@ -58,10 +59,11 @@ const bool brick = register_experiment({.name = "brick",
 
 std::vector<ExperimentRun> angles()
 {
-    return {
-        {.name = "atan_muk", .go = [](Frames* frames) { return slide(std::atan(mu_k), 1, 0.04, frames); }},
-        {.name = "atan_mus", .go = [](Frames* frames) { return slide(std::atan(mu_s), 1, 0.04, frames); }},
-        {.name = "0.25", .go = [](Frames* frames) { return slide(0.25, 1, 0.04, frames); }}};
+    return {{.name = "atan_muk",
+             .compute = [](Frames* frames) { return slide(std::atan(mu_k), 1, 0.04, frames); }},
+            {.name = "atan_mus",
+             .compute = [](Frames* frames) { return slide(std::atan(mu_s), 1, 0.04, frames); }},
+            {.name = "0.25", .compute = [](Frames* frames) { return slide(0.25, 1, 0.04, frames); }}};
 }
 
 void check_angles(const Results& runs, std::vector<Check>& out)
@@ -70,14 +72,14 @@ void check_angles(const Results& runs, std::vector<Check>& out)
         const size_t n = s->rows() - 1;
         out.push_back({"acceleration at 0.25 rad [m/s^2]", (s->at(n, "v") - s->at(n - 1, "v")) / h,
                        g * (std::sin(0.25) - mu_k * std::cos(0.25)), 1e-9, "g (sin - mu_k cos)"});
-        out.push_back({"slip begins at 0.25 rad [s]",
-                       s->when([&](size_t k) { return s->at(k, "slips") > 0; }), 0.0185, 1e-12,
+        out.push_back({"start of slip at 0.25 rad [s]",
+                       s->first_time([&](size_t k) { return s->at(k, "slips") > 0; }), 0.0185, 1e-12,
                        "published run"});
     }
-    // On this slope friction needs just its static bound; the spring comes to it from below.
+    // On this slope the required friction equals the static bound; the spring force approaches it from below.
     if (const Series* s = runs.find("atan_mus")) {
         const auto slips = s->all("slips");
-        out.push_back({"steps in slip at arctan mu_s",
+        out.push_back({"number of steps with slip at arctan mu_s",
                        static_cast<double>(std::count(slips.begin(), slips.end(), 1.)), 0, 0, "sticks"});
     }
 }

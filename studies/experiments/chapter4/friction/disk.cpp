@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A disk rolling on a plane (Fang 2022, Sec. 4.4.3). Thrown without spin it slips, then rolls, then stops.
+/// Disk on a plane (Fang 2022, Sec. 4.4.3). The disk starts with a velocity and without rotation; it slips,
+/// then rolls, then stops.
 ///
-/// Fig. 4.9 is made of two published runs: x, theta and the springs with 1.5 of the critical rolling damping, velocities and
-/// dashpots with springs that begin saturated. Fig. 4.10: other dampings. Fig. 4.11: rolling torques without history.
-/// Closed form, rigid and with kinetic friction alone: slip until t_1, then the deceleration of rolling.
+/// Fig. 4.9 consists of two published runs. Displacement, rotation and springs are from a run with 1.5 times
+/// the critical rolling damping; velocities and dashpots are from a run whose springs are saturated at the
+/// start. Fig. 4.10: other damping ratios. Fig. 4.11: rolling torques without history. The closed form of a
+/// rigid disk with kinetic friction has slip until t_1 and then rolls with constant deceleration until t_2.
 
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
@@ -19,19 +21,19 @@ namespace {
 constexpr double m = 5, R = 0.2, I = 0.1, mu_s = 0.25, mu_k = 0.2, g = 9.8, N = m * g, v_0 = 0.5, eta_r = 0.1;
 const double K_R = 4 * eta_r * 1e5 * R * R, D_critical = 2 * std::sqrt(I * K_R);
 
-struct Setting {
+struct DiskSetup {
     contact::FrictionParameters p = {};
     std::string law = "slide-roll-spin";
     bool saturated = false;
     double h = 1e-4, end = 1.5;
 };
 
-contact::FrictionParameters usual(const std::string& preset_name, double K_E = 1e5)
+contact::FrictionParameters parameters(const std::string& preset_name, double K_E = 1e5)
 {
     return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .eta_r = eta_r});
 }
 
-Series roll(const Setting& set, Frames* frames)
+Series roll(const DiskSetup& setup, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, 0, -g};
@@ -40,25 +42,25 @@ Series roll(const Setting& set, Frames* frames)
     const int disk = scene.add({m, I * lie::Mat3::Identity()}, start),
               plane = scene.add(contact::Inertia{}, {});
     scene.add("disk", disk, shape<contact::Disk>(R), plane, shape<contact::Plane>(),
-              std::make_shared<contact::GivenForce>(N), law(set.p, set.law));
-    scene.check(set.h);
-    bool begun = false;
-    double theta = 0, v = v_0, omega = 0;  // of the node before
-    return sample(scene, set.h, set.end, frames,
+              std::make_shared<contact::GivenForce>(N), law(setup.p, setup.law));
+    scene.check(setup.h);
+    bool saturation_set = false;
+    double theta = 0, v = v_0, omega = 0;  // values at the previous node
+    return sample(scene, setup.h, setup.end, frames,
                   {"t", "x", "theta", "v", "omega", "a", "alpha", "F_E", "F_D", "T_E", "T_D", "S_mm",
                    "Theta_e-3rad", "slips", "rolls"},
                   [&](Series& s, const std::vector<contact::Motion>& body) {
                       contact::Scene::Pair& pair = scene.pair[0];
-                      if (set.saturated &&
-                          !begun) {  // springs a hair beyond their kinetic bounds before the first motion
+                      if (setup.saturated && !saturation_set) {
+                          // springs slightly above their kinetic bounds before the first step
                           const lie::Vec3 &n = pair.contact_state.slip.n, &u = pair.contact_state.slip.u;
                           contact::Deflections& history = pair.history.deflections;
-                          const double S = (1 + 1e-9) * mu_k * N / set.p.K_E;
+                          const double S = (1 + 1e-9) * mu_k * N / setup.p.K_E;
                           history.S = contact::components({-S, 0, 0}, n, u);
                           history.Theta_i = contact::components({S / (2 * R), 0, 0}, n, u);
                           history.slide = history.roll_i = {.slipping = true, .damped = false};
                       }
-                      begun = true;
+                      saturation_set = true;
                       const contact::Motion& b = body[disk];
                       const lie::Vec3 omega_now = b.A * b.omega_bar;
                       const contact::Wrench& w = pair.wrench;
@@ -68,38 +70,43 @@ Series roll(const Setting& set, Frames* frames)
                           return contact::tangent(of, frame.n, frame.u).x();
                       };
                       const double F_E = -w.F_E.x(), T_E = -w.T_roll_E.y();
-                      theta += set.h * omega_now.y();
-                      s.add({scene.t, b.r.x(), theta, b.rdot.x(), omega_now.y(), (b.rdot.x() - v) / set.h,
-                             (omega_now.y() - omega) / set.h, F_E, -w.F.x() - F_E, T_E, -w.T_i.y() - T_E,
+                      theta += setup.h * omega_now.y();
+                      s.add({scene.t, b.r.x(), theta, b.rdot.x(), omega_now.y(), (b.rdot.x() - v) / setup.h,
+                             (omega_now.y() - omega) / setup.h, F_E, -w.F.x() - F_E, T_E, -w.T_i.y() - T_E,
                              -1e3 * along_x(history.S), 1e3 * along_x(history.Theta_i),
                              history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 0. : 1.});
                       v = b.rdot.x(), omega = omega_now.y();
                   });
 }
 
-Setting stick()
+DiskSetup published_setup()
 {
-    Setting set{.p = usual("dissertation")};
-    set.p.D_roll = 1.5 * D_critical;
-    return set;
+    DiskSetup setup{.p = parameters("dissertation")};
+    setup.p.D_roll = 1.5 * D_critical;
+    return setup;
 }
 
 std::vector<ExperimentRun> runs()
 {
     return {
-        {.name = "dissertation", .go = [](Frames* frames) { return roll(stick(), frames); }},
+        {.name = "dissertation", .compute = [](Frames* frames) { return roll(published_setup(), frames); }},
         {.name = "saturated",
-         .go = [](Frames* frames) { return roll({.p = usual("dissertation"), .saturated = true}, frames); }},
+         .compute =
+             [](Frames* frames) {
+                 return roll({.p = parameters("dissertation"), .saturated = true}, frames);
+             }},
         {.name = "balanced",
-         .go = [](Frames* frames) { return roll({.p = usual("balanced"), .end = 3}, frames); }},
+         .compute = [](Frames* frames) { return roll({.p = parameters("balanced"), .end = 3}, frames); }},
         {.name = "stiff",
-         .go =
-             [](Frames* frames) { return roll({.p = usual("balanced", 1e6), .h = 2e-5, .end = 2}, frames); },
-         .for_check = true}};
+         .compute =
+             [](Frames* frames) {
+                 return roll({.p = parameters("balanced", 1e6), .h = 2e-5, .end = 2}, frames);
+             },
+         .check_only = true}};
 }
 
-/// Rigid disk with kinetic friction alone
-struct Rigid {
+/// Closed form: rigid disk with kinetic friction
+struct RigidDisk {
     // slip: v = v_0 - mu_k g t, omega = (mu_k N R - M) t / I until v = R omega; then both decelerate by M
     double M = 2 * eta_r * R * mu_k * N;
     double alpha = (mu_k * N * R - M) / I;
@@ -110,11 +117,11 @@ struct Rigid {
     double theta_2 = 0.5 * alpha * t_1 * t_1 + 0.5 * v_1 * v_1 / (a * R);
 };
 
-/// When the slipping ends, and when the disk first stands, between samples
+/// Time of the end of slip and of the end of rolling [s]
 std::pair<double, double> instants(const Series& s)
 {
-    const double slip = s.when([&](size_t k) { return s.at(k, "slips") == 0; }, 0.01);
-    // the kinetic phase of rolling extended to where it would stop: what follows is the spring coming to rest
+    const double slip = s.first_time([&](size_t k) { return s.at(k, "slips") == 0; }, 0.01);
+    // end of kinetic rolling friction; afterwards the rolling spring oscillates about its rest position
     const auto speed = s.all("omega");
     size_t k = 0;
     while (k + 1 < speed.size() && (s.at(k, 0) < 0.5 || s.at(k, "rolls") == 0)) ++k;
@@ -123,7 +130,7 @@ std::pair<double, double> instants(const Series& s)
 
 void checks(const Results& results, std::vector<Check>& out)
 {
-    const Rigid rigid;
+    const RigidDisk rigid_disk;
     if (const Series* s = results.find("dissertation")) {
         out.push_back({"x at 1.5 s, dissertation [m]", s->last("x"), 0.2093106, 5e-8, "published run"});
         out.push_back(
@@ -133,14 +140,16 @@ void checks(const Results& results, std::vector<Check>& out)
          {std::tuple("balanced", 5e-3, 1.), std::tuple("stiff", 1e-3, 0.)}) {
         const Series* s = results.find(name);
         if (s == nullptr) continue;
-        const std::string of = std::string(", ") + name;
+        const std::string suffix = std::string(", ") + name;
         const auto [slip, stop] = instants(*s);
         const double rest = part > 0 ? 3e-3 : 1e-3;
-        out.push_back({"slip ends" + of + " [s]", slip, rigid.t_1, part_1 * rigid.t_1, "rigid"});
-        out.push_back({"stops" + of + " [s]", stop, rigid.t_2, 1e-3 * rigid.t_2, "rigid"});
-        out.push_back({"x at rest" + of + " [m]", s->last("x"), rigid.x_2, rest * rigid.x_2, "rigid"});
-        out.push_back({"theta at rest" + of + " [rad]", s->last("theta"), rigid.theta_2, rest * rigid.theta_2,
-                       "rigid"});
+        out.push_back(
+            {"end of slip" + suffix + " [s]", slip, rigid_disk.t_1, part_1 * rigid_disk.t_1, "rigid"});
+        out.push_back({"stop time" + suffix + " [s]", stop, rigid_disk.t_2, 1e-3 * rigid_disk.t_2, "rigid"});
+        out.push_back(
+            {"x at rest" + suffix + " [m]", s->last("x"), rigid_disk.x_2, rest * rigid_disk.x_2, "rigid"});
+        out.push_back({"theta at rest" + suffix + " [rad]", s->last("theta"), rigid_disk.theta_2,
+                       rest * rigid_disk.theta_2, "rigid"});
     }
     if (const Series* s = results.find("balanced")) {
         double largest = 0;
@@ -152,24 +161,24 @@ void checks(const Results& results, std::vector<Check>& out)
 
 const bool disk = register_experiment({.name = "disk",
                                        .figure = "4.9",
-                                       .what = "disk thrown without spin: slips, rolls, stops",
+                                       .what = "disk started without rotation: slip, rolling, rest",
                                        .runs = runs,
                                        .checks = checks,
-                                       .in_space = true});
+                                       .has_frames = true});
 
 std::vector<ExperimentRun> dampings()
 {
     std::vector<ExperimentRun> all;
     for (const double part : {0.5, 1., 1.5, 2.})
         for (const std::string& name : presets) {
-            Setting set{.p = usual(name)};
-            set.p.D_roll = part * D_critical;
-            set.p.D_slide = part * 2 * std::sqrt(m * set.p.K_E);
+            DiskSetup setup{.p = parameters(name)};
+            setup.p.D_roll = part * D_critical;
+            setup.p.D_slide = part * 2 * std::sqrt(m * setup.p.K_E);
             all.push_back({.name = name + (part == 0.5   ? "-0.5"
                                            : part == 1   ? "-1"
                                            : part == 1.5 ? "-1.5"
                                                          : "-2"),
-                           .go = [set](Frames* frames) { return roll(set, frames); }});
+                           .compute = [setup](Frames* frames) { return roll(setup, frames); }});
         }
     return all;
 }
@@ -179,23 +188,23 @@ void no_checks(const Results&, std::vector<Check>&) {}
 const bool disk_damping =
     register_experiment({.name = "disk-damping",
                          .figure = "4.10",
-                         .what = "how the disk comes to rest with 0.5, 1, 1.5 and 2 of the critical dampings",
+                         .what = "disk coming to rest with 0.5, 1, 1.5 and 2 times the critical damping",
                          .runs = dampings,
                          .checks = no_checks});
 
-std::vector<ExperimentRun> models()
+std::vector<ExperimentRun> rolling_laws()
 {
     std::vector<ExperimentRun> all;
     for (const std::string law : {"slide-roll-spin", "constant-torque", "epsd"}) {
-        Setting set{.p = usual("balanced"), .law = law, .end = 2};
-        if (law != "slide-roll-spin") set.p.mu_r = 2 * eta_r * mu_k;  // the same torque while rolling
-        all.push_back({.name = law, .go = [set](Frames* frames) { return roll(set, frames); }});
+        DiskSetup setup{.p = parameters("balanced"), .law = law, .end = 2};
+        if (law != "slide-roll-spin") setup.p.mu_r = 2 * eta_r * mu_k;  // the same torque during rolling
+        all.push_back({.name = law, .compute = [setup](Frames* frames) { return roll(setup, frames); }});
     }
     return all;
 }
 
-/// Largest |column| in the last 0.2 s
-double late(const Series& s, const std::string& column)
+/// Largest absolute value of a column in the last 0.2 s
+double largest_at_end(const Series& s, const std::string& column)
 {
     double largest = 0;
     for (size_t k = 0; k < s.rows(); ++k)
@@ -207,21 +216,22 @@ void check_models(const Results& results, std::vector<Check>& out)
 {
     const double M = 2 * eta_r * R * mu_k * N;
     if (const Series* s = results.find("slide-roll-spin"))
-        out.push_back(
-            {"rolling torque at rest, slide-roll-spin [N m]", late(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
+        out.push_back({"rolling torque at rest, slide-roll-spin [N m]", largest_at_end(*s, "T_E"), 0,
+                       1e-6 * M, "comes to rest"});
     if (const Series* s = results.find("epsd"))
-        out.push_back({"rolling torque at rest, epsd [N m]", late(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
+        out.push_back(
+            {"rolling torque at rest, epsd [N m]", largest_at_end(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
     if (const Series* s = results.find("constant-torque"))
-        out.push_back({"rolling torque at rest, constant-torque [N m]", late(*s, "T_E"), M, 1e-9 * M,
-                       "trembles with its full torque"});
+        out.push_back({"rolling torque at rest, constant-torque [N m]", largest_at_end(*s, "T_E"), M,
+                       1e-9 * M, "torque oscillates between its bounds"});
 }
 
-const bool rolling_models =
-    register_experiment({.name = "rolling-models",
-                         .figure = "4.11",
-                         .what = "rolling torque with and without history: only one with it comes to rest",
-                         .runs = models,
-                         .checks = check_models});
+const bool rolling_models = register_experiment(
+    {.name = "rolling-models",
+     .figure = "4.11",
+     .what = "rolling torque laws with and without history; the torque at rest vanishes only with history",
+     .runs = rolling_laws,
+     .checks = check_models});
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// An ellipsoid that rolls over (Fang 2022, Sec. 4.4.6.1, Fig. 4.17), and one that rolls without resistance, whose motion is
-/// known from energy.
+/// Upright ellipsoid that tips over (Fang 2022, Sec. 4.4.6.1, Fig. 4.17). Without rolling resistance the
+/// motion follows from the conservation of energy, which gives reference values.
 
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
@@ -15,26 +15,26 @@ namespace {
 
 constexpr double m = 5, a = 0.2, c = 0.5, g = 9.8, pi = std::numbers::pi;
 
-struct Setting {
+struct EllipsoidSetup {
     contact::FrictionParameters p;
     double v_0 = 0.3, omega_0 = 0, h = 1e-4, end = 3, k_n = 1e7;
-    bool at_rest_height = true;  ///< the normal spring carries the weight at the start
+    bool at_rest_height = true;  ///< start with the static deflection of the normal spring
 };
 
-Series fall(const Setting& set, Frames* frames)
+Series simulate(const EllipsoidSetup& setup, Frames* frames)
 {
     contact::Scene scene;
     scene.gravity = {0, 0, -g};
     const contact::Inertia inertia{
         m, lie::Vec3(m / 5 * (a * a + c * c), m / 5 * (a * a + c * c), m / 5 * 2 * a * a).asDiagonal()};
-    contact::Motion start = at({0, 0, c - (set.at_rest_height ? m * g / set.k_n : 0)}, {0, set.v_0, 0});
-    start.omega_bar = {-set.omega_0, 0, 0};
+    contact::Motion start = at({0, 0, c - (setup.at_rest_height ? m * g / setup.k_n : 0)}, {0, setup.v_0, 0});
+    start.omega_bar = {-setup.omega_0, 0, 0};
     const int body = scene.add(inertia, start), plane = scene.add(contact::Inertia{}, {});
     scene.add("ellipsoid", body, shape<contact::Ellipsoid>(lie::Vec3(a, a, c)), plane,
-              shape<contact::Plane>(), std::make_shared<contact::Hooke>(set.k_n, 0), law(set.p));
-    scene.check(set.h);
+              shape<contact::Plane>(), std::make_shared<contact::Hooke>(setup.k_n, 0), law(setup.p));
+    scene.check(setup.h);
     return sample(
-        scene, set.h, set.end, frames, {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
+        scene, setup.h, setup.end, frames, {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
         [&](Series& s, const std::vector<contact::Motion>& b) {
             const lie::Vec3 axis = b[body].A.col(2);
             const contact::Scene::Pair& pair = scene.pair[0];
@@ -45,13 +45,13 @@ Series fall(const Setting& set, Frames* frames)
         });
 }
 
-Setting falling(const std::string& name)
+EllipsoidSetup falling_setup(const std::string& name)
 {
     return {.p = preset(name, {.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e5, .eta_r = 0.2})};
 }
 
-/// No rolling resistance, friction that always holds
-Setting rolling(double K_E, double h)
+/// No rolling resistance, and friction large enough to prevent slip
+EllipsoidSetup rolling_setup(double K_E, double h)
 {
     return {.p = {.mu_s = 20, .mu_k = 20, .K_E = K_E}, .v_0 = 0.3, .omega_0 = 0.6, .h = h, .end = 0.85};
 }
@@ -60,12 +60,13 @@ std::vector<ExperimentRun> runs()
 {
     std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
-        all.push_back({.name = name, .go = [name](Frames* frames) { return fall(falling(name), frames); }});
-    all.push_back(
-        {.name = "no-resistance", .go = [](Frames* frames) { return fall(rolling(1e5, 1e-4), frames); }});
+        all.push_back({.name = name,
+                       .compute = [name](Frames* frames) { return simulate(falling_setup(name), frames); }});
+    all.push_back({.name = "no-resistance",
+                   .compute = [](Frames* frames) { return simulate(rolling_setup(1e5, 1e-4), frames); }});
     all.push_back({.name = "no-resistance-stiff",
-                   .go = [](Frames* frames) { return fall(rolling(1e7, 5e-6), frames); },
-                   .for_check = true});
+                   .compute = [](Frames* frames) { return simulate(rolling_setup(1e7, 5e-6), frames); },
+                   .check_only = true});
     return all;
 }
 
@@ -78,34 +79,36 @@ void checks(const Results& results, std::vector<Check>& out)
         if (s == nullptr) continue;
         size_t k = 1;
         while (k < s->rows() && s->at(k, "tilt") < 90) ++k;
-        const bool flat = k < s->rows();  // or else the numbers are none
+        const bool flat = k < s->rows();  // otherwise the results are NaN
         const double part =
             flat ? (90 - s->at(k - 1, "tilt")) / (s->at(k, "tilt") - s->at(k - 1, "tilt")) : std::nan("");
         const auto between = [&](const char* column) {
             const size_t end = flat ? k : k - 1;
             return s->at(k - 1, column) + part * (s->at(end, column) - s->at(k - 1, column));
         };
-        const std::string of = std::string(", ") + name;
-        out.push_back({"lies flat" + of + " [s]", between("t"), t_90, dt, "energy"});
-        out.push_back(
-            {"omega then" + of + " [rad/s]", between("omega"), omega_90, domega * omega_90, "energy"});
-        out.push_back({"y then" + of + " [m]", between("y"), y_90, dy, "arc length"});
+        const std::string suffix = std::string(", ") + name;
+        out.push_back({"time at tilt 90 deg" + suffix + " [s]", between("t"), t_90, dt, "energy"});
+        out.push_back({"omega at tilt 90 deg" + suffix + " [rad/s]", between("omega"), omega_90,
+                       domega * omega_90, "energy"});
+        out.push_back({"y at tilt 90 deg" + suffix + " [m]", between("y"), y_90, dy, "arc length"});
     }
     for (const std::string& name : presets) {
         const Series* s = results.find(name);
         if (s == nullptr) continue;
-        const double reversal = s->when([&](size_t k) { return s->at(k, "omega") < 0; }, 0.5);
-        out.push_back({"rolls back, " + name + " [s]", reversal, 1.085, 0.035, "independent code"});
-        out.push_back({"settles at, " + name + " [deg]", s->last("tilt"), 90, 4, "within the static band"});
+        const double reversal = s->first_time([&](size_t k) { return s->at(k, "omega") < 0; }, 0.5);
+        out.push_back(
+            {"reversal of the rotation, " + name + " [s]", reversal, 1.085, 0.035, "independent code"});
+        out.push_back({"final tilt, " + name + " [deg]", s->last("tilt"), 90, 4, "within the static band"});
     }
 }
 
-const bool ellipsoid = register_experiment({.name = "ellipsoid",
-                                            .figure = "4.17",
-                                            .what = "ellipsoid that rolls over and comes to rest on its side",
-                                            .runs = runs,
-                                            .checks = checks,
-                                            .in_space = true});
+const bool ellipsoid =
+    register_experiment({.name = "ellipsoid",
+                         .figure = "4.17",
+                         .what = "upright ellipsoid that tips over and comes to rest on its side",
+                         .runs = runs,
+                         .checks = checks,
+                         .has_frames = true});
 
 }  // namespace
 

@@ -16,19 +16,19 @@ std::vector<Experiment>& list()
 
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
-    std::vector<Snapshots::ContactPoint> touches;
+    std::vector<Snapshots::ContactData> contacts;
     for (size_t k = 0; k < scene.pair.size(); ++k) {
         const contact::Scene::Pair& p = scene.pair[k];
         if (p.contact_state.N > 0)
-            touches.push_back(Snapshots::contact_point(static_cast<int>(k), p.i, p.contact_state, p.wrench,
+            contacts.push_back(Snapshots::contact_data(static_cast<int>(k), p.i, p.contact_state, p.wrench,
                                                        p.history.deflections));
     }
-    to.add(scene.t, bodies, std::move(touches));
+    to.add(scene.t, bodies, std::move(contacts));
 }
 
 }  // namespace
 
-size_t Series::place(const std::string& column) const
+size_t Series::column_index(const std::string& column) const
 {
     return static_cast<size_t>(std::find(columns.begin(), columns.end(), column) - columns.begin());
 }
@@ -36,15 +36,15 @@ size_t Series::place(const std::string& column) const
 std::vector<double> Series::all(const std::string& column) const
 {
     std::vector<double> values;
-    const size_t k = place(column);
+    const size_t k = column_index(column);
     for (size_t row = 0; row < rows(); ++row) values.push_back(at(row, k));
     return values;
 }
 
-double Series::when(const std::function<bool(size_t)>& holds, double from) const
+double Series::first_time(const std::function<bool(size_t)>& condition, double from) const
 {
     for (size_t row = 0; row < rows(); ++row)
-        if (at(row, 0) >= from && holds(row)) return at(row, 0);
+        if (at(row, 0) >= from && condition(row)) return at(row, 0);
     return std::nan("");
 }
 
@@ -53,11 +53,11 @@ Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::
 {
     Series series(std::move(columns));
     const long steps = std::lround(end / h);
-    EvenChoice choice(frames != nullptr ? frames->count : 0, steps);
+    EvenSelection choice(frames != nullptr ? frames->count : 0, steps);
     if (frames != nullptr)
         for (const contact::Scene::Pair& p : scene.pair) {
-            frames->snapshots.show(p.i, p.contact.i);
-            frames->snapshots.show(p.j, p.contact.j);
+            frames->snapshots.add_surface(p.i, p.contact.i);
+            frames->snapshots.add_surface(p.j, p.contact.j);
         }
     series.values.reserve(static_cast<size_t>(steps + 1) * series.columns.size());
     std::vector<contact::Motion> before;
@@ -68,7 +68,7 @@ Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::
         scene.step(h);
         scene.t = t;
         row(series, before);
-        if (choice.takes(n)) add_frame(frames->snapshots, scene, before);
+        if (choice.is_selected(n)) add_frame(frames->snapshots, scene, before);
     }
     return series;
 }

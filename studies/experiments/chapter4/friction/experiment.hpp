@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The experiments on friction: short runs of free bodies in contact, with what must come out of them.
+/// Friction experiments (Fang 2022, Sec. 4.4): short runs of free bodies in contact, and their acceptance
+/// criteria.
 
 #pragma once
 
@@ -12,7 +13,7 @@
 
 namespace hilda::studies::friction {
 
-/// Samples of a run, a row for each node; the first column is t [s].
+/// Samples of a run, one row for each node; the first column is t [s].
 class Series {
 public:
     Series() = default;
@@ -20,53 +21,57 @@ public:
 
     void add(std::initializer_list<double> row) { values.insert(values.end(), row); }
     size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
-    /// The place of a column; columns.size() where there is none
-    size_t place(const std::string& column) const;
+    /// Index of a column; columns.size() if there is no such column
+    size_t column_index(const std::string& column) const;
     double at(size_t row, size_t column) const { return values[row * columns.size() + column]; }
-    double at(size_t row, const std::string& column) const { return at(row, place(column)); }
+    double at(size_t row, const std::string& column) const { return at(row, column_index(column)); }
     double last(const std::string& column) const { return at(rows() - 1, column); }
     /// All values of a column
     std::vector<double> all(const std::string& column) const;
-    /// t of the first row from `from` s on of which this holds, NaN for none
-    double when(const std::function<bool(size_t row)>& holds, double from = 0) const;
+    /// Time [s] of the first row with t >= from that satisfies the condition; NaN if there is none
+    double first_time(const std::function<bool(size_t row)>& condition, double from = 0) const;
 
     std::vector<std::string> columns;
     std::vector<double> values;
 };
 
-/// Snapshots of a run at `count` of its nodes, the first, the last and evenly between
+/// Snapshots of a run at `count` nodes: the first, the last and evenly distributed nodes between
 struct Frames {
     int count = 0;
     Snapshots snapshots = {};
 };
 
-/// Samples a column set at every node while a scene is stepped: what `row` says of the node that the step left, whose
-/// loads are then in scene.pair; `before` is the scene's bodies at that node. Frames too, unless nullptr.
+/// Integrates a scene with step h [s] to `end` [s] and records a row for every node.
+///
+/// `row` is called after each step for the node at the start of the step: `before` are the bodies at that
+/// node, and scene.pair contains the contact loads at that node. Snapshots are stored in `frames` unless it
+/// is nullptr.
 Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
               const std::function<void(Series&, const std::vector<contact::Motion>& before)>& row);
 
+/// One run of an experiment
 struct ExperimentRun {
     std::string name;
-    std::function<Series(Frames*)> go;
-    bool for_check = false;  ///< only its numbers are wanted, with --check
+    std::function<Series(Frames*)> compute;
+    bool check_only = false;  ///< run only with --check
 };
 
-/// What came out, and what should have
+/// Acceptance criterion of an experiment: |measured - required| <= tolerance
 struct Check {
     std::string what;
     double measured = 0, required = 0, tolerance = 0;
-    std::string by;  ///< closed form, published run, ...
+    std::string source;  ///< origin of the required value: closed form, published run, ...
 
     bool passed() const { return std::abs(measured - required) <= tolerance; }
 };
 
-/// The series of an experiment, by the names of their runs
+/// The series of an experiment, by the names of the runs
 class Results {
 public:
     Results(const std::vector<ExperimentRun>& runs, const std::vector<Series>& series)
         : runs(runs), series(series)
     {}
-    /// nullptr for a run that was left out or failed
+    /// nullptr for a run that was not selected or failed
     const Series* find(const std::string& run) const;
 
 private:
@@ -74,30 +79,36 @@ private:
     const std::vector<Series>& series;
 };
 
+/// An experiment: name, figure of the dissertation, description, runs and criteria
 struct Experiment {
     std::string name, figure, what;
     std::vector<ExperimentRun> (*runs)() = nullptr;
     void (*checks)(const Results&, std::vector<Check>& out) = nullptr;
-    bool in_space = false;  ///< its bodies are worth being looked at
+    bool has_frames = false;  ///< the experiment writes frames with --vtk
 };
 
+/// All experiments, sorted by name
 const std::vector<Experiment>& experiments();
+/// Adds an experiment to the list.
 bool register_experiment(Experiment experiment);
 
-/// Friction of a preset from the same parameters: "dissertation" or "balanced"
+/// Friction parameters with the choices of a preset: "dissertation" or "balanced"
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p);
 inline const std::vector<std::string> presets = {"dissertation", "balanced"};
+/// Friction law with these parameters
 std::shared_ptr<const contact::FrictionModel> law(const contact::FrictionParameters& p,
                                                   const std::string& name = "slide-roll-spin");
 
-/// A shape at the origin of its body
-template <class Surface, class... Of>
-contact::Shape shape(Of... of)
+/// A surface in the body frame
+template <class Surface, class... Args>
+contact::Shape shape(Args... args)
 {
-    return {.surface = std::make_shared<Surface>(of...)};
+    return {.surface = std::make_shared<Surface>(args...)};
 }
 
+/// Motion with position r [m] and velocity rdot [m/s], without rotation
 contact::Motion at(const lie::Vec3& r, const lie::Vec3& rdot = lie::Vec3::Zero());
+/// Mass and moment of inertia 2/5 m R² of a homogeneous sphere
 contact::Inertia solid_sphere(double m, double R);
 
 }  // namespace hilda::studies::friction

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cones of friction and cone problems.
+// Friction cones and cone problems.
 #include "contact/scenes/dvi/cone_solver.hpp"
 #include "contact/tangent_basis.hpp"
 #include "tests/support/random_motion.hpp"
@@ -29,7 +29,7 @@ bool in_dual_cone(const Vec3& u, double mu, double rounding)
 
 }  // namespace
 
-TEST_CASE("the projection on a cone is its nearest point", "[contact][dvi][cone]")
+TEST_CASE("the projection on a cone is the nearest point of the cone", "[contact][dvi][cone]")
 {
     Random random(1);
     for (const double mu : {0., 0.2, 0.7, 2.}) {
@@ -51,13 +51,13 @@ TEST_CASE("the projection on a cone is its nearest point", "[contact][dvi][cone]
                 CHECK(distance == 0);
             else {
                 CHECK(distance <= nearest * (1 + 1e-14));
-                CHECK(distance > nearest - 0.2);  // the grid of the search
+                CHECK(distance > nearest - 0.2);  // spacing of the search grid
             }
         }
     }
 }
 
-TEST_CASE("the projection on a cone is idempotent and nonexpansive and leaves a rest in the polar cone",
+TEST_CASE("the projection on a cone is idempotent and nonexpansive with a remainder in the polar cone",
           "[contact][dvi][cone]")
 {
     Random random(2);
@@ -67,7 +67,8 @@ TEST_CASE("the projection on a cone is idempotent and nonexpansive and leaves a 
             const Vec3 on_a = project_on_cone(a, mu), on_b = project_on_cone(b, mu);
             CHECK((project_on_cone(on_a, mu) - on_a).norm() <= 1e-15 * a.norm());
             CHECK((on_a - on_b).norm() <= (a - b).norm() * (1 + 1e-14));
-            // Moreau: a is the sum of its projections on the cone and on the polar one, which are perpendicular
+            // Moreau decomposition: a is the sum of its projections on the cone and on the polar cone, which
+            // are orthogonal
             const Vec3 rest = a - on_a;
             CHECK(in_dual_cone(-rest, mu, 1e-14 * (1 + mu)));
             CHECK(std::abs(rest.dot(on_a)) <= 1e-14 * a.squaredNorm());
@@ -82,8 +83,8 @@ TEST_CASE("the projection on a cone is idempotent and nonexpansive and leaves a 
 
 namespace {
 
-/// Bodies of different inertia, the last one fixed, and contacts anywhere between them. r is what velocities of the
-/// bodies make, and gaps: with any r the contacts may ask for what no motion can do, and there is no minimum.
+/// Bodies of different inertia, the last one fixed, with random contacts between them. r follows from body
+/// velocities and gaps. With an arbitrary r the contacts can be incompatible, and then there is no minimum.
 ConeProblem random_problem(Random& random, int bodies, int contacts, double mu)
 {
     ConeProblem problem;
@@ -103,12 +104,12 @@ ConeProblem random_problem(Random& random, int bodies, int contacts, double mu)
     std::vector<ConeProblem::Velocity> v(bodies);
     for (int b = 0; b + 1 < bodies; ++b) v[b] = {random.vector(), random.vector()};
     std::vector<Vec3> r;
-    problem.relative(v, r);
+    problem.relative_velocities(v, r);
     for (int c = 0; c < contacts; ++c) problem.contact[c].r = r[c] + random.number(0, 0.1) * Vec3::UnitX();
     return problem;
 }
 
-/// N, by its columns
+/// N, column by column
 Eigen::MatrixXd delassus(const ConeProblem& problem)
 {
     const int n = static_cast<int>(problem.contact.size());
@@ -118,8 +119,8 @@ Eigen::MatrixXd delassus(const ConeProblem& problem)
     for (int k = 0; k < 3 * n; ++k) {
         std::vector<Vec3> gamma(n, Vec3::Zero());
         gamma[k / 3][k % 3] = 1;
-        problem.respond(gamma, v);
-        problem.relative(v, u);
+        problem.velocity_change(gamma, v);
+        problem.relative_velocities(v, u);
         for (int c = 0; c < n; ++c) N.block<3, 1>(3 * c, k) = u[c];
     }
     return N;
@@ -139,8 +140,8 @@ Eigen::VectorXd right_side(const ConeProblem& problem)
     return stacked(r);
 }
 
-/// Another road: one contact after the other, with N as a matrix; the three rows of a contact by projected gradients of
-/// their own.
+/// Independent solution: block Gauss-Seidel with N as a matrix; the three rows of a contact by projected
+/// gradients
 Eigen::VectorXd gauss_seidel(const ConeProblem& problem)
 {
     const Eigen::MatrixXd N = delassus(problem);
@@ -150,13 +151,13 @@ Eigen::VectorXd gauss_seidel(const ConeProblem& problem)
         double moved = 0;
         for (int c = 0; 3 * c < r.size(); ++c) {
             const Mat3 N_cc = N.block<3, 3>(3 * c, 3 * c);
-            const Vec3 was = gamma.segment<3>(3 * c);
-            const Vec3 others = r.segment<3>(3 * c) + N.middleRows<3>(3 * c) * gamma - N_cc * was;
-            Vec3 now = was;
+            const Vec3 previous = gamma.segment<3>(3 * c);
+            const Vec3 others = r.segment<3>(3 * c) + N.middleRows<3>(3 * c) * gamma - N_cc * previous;
+            Vec3 now = previous;
             for (int k = 0; k < 30; ++k)
                 now = project_on_cone(now - (N_cc * now + others) / N_cc.norm(), problem.contact[c].mu);
             gamma.segment<3>(3 * c) = now;
-            moved = std::max(moved, (now - was).norm());
+            moved = std::max(moved, (now - previous).norm());
         }
         if (moved < 1e-12) break;
     }
@@ -165,7 +166,7 @@ Eigen::VectorXd gauss_seidel(const ConeProblem& problem)
 
 }  // namespace
 
-TEST_CASE("N without its matrix is symmetric and positive and has the blocks that are said",
+TEST_CASE("the matrix-free N is symmetric and positive semidefinite and has the declared diagonal blocks",
           "[contact][dvi][solver]")
 {
     Random random(3);
@@ -179,13 +180,14 @@ TEST_CASE("N without its matrix is symmetric and positive and has the blocks tha
     }
 }
 
-TEST_CASE("the solution of a cone problem meets its optimality conditions and is that of Gauss and Seidel",
-          "[contact][dvi][solver]")
+TEST_CASE(
+    "the solution of a cone problem satisfies the optimality conditions and equals that of Gauss-Seidel",
+    "[contact][dvi][solver]")
 {
     const unsigned seed = GENERATE(1u, 2u, 3u, 4u);
     const double mu = GENERATE(0., 0.3, 1.);
     Random random(seed);
-    // few contacts: N is regular and γ is unique; many: u alone is
+    // few contacts: N is regular and γ is unique; many contacts: only u is unique
     const int contacts = GENERATE(1, 4, 8);
     const ConeProblem problem = random_problem(random, 4, contacts, mu);
     ConeSolver solver;
@@ -211,7 +213,7 @@ TEST_CASE("the solution of a cone problem meets its optimality conditions and is
     if (contacts == 1) CHECK((other - stacked(gamma)).norm() < 1e-10);
 }
 
-TEST_CASE("one contact has the impulse of sticking or sliding or parting in closed form",
+TEST_CASE("one contact has the closed-form impulses of sticking, sliding and separation",
           "[contact][dvi][solver]")
 {
     // a point mass on the ground: N = I/m
@@ -234,10 +236,10 @@ TEST_CASE("one contact has the impulse of sticking or sliding or parting in clos
         return gamma[0];
     };
     for (const bool coulomb : {false, true}) {
-        CHECK((solution({-1, 0.3, 0.4}, coulomb) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-12);  // sticks
-        CHECK(solution({0.6, 0.3, 0.4}, coulomb) == Vec3::Zero());                            // parts
+        CHECK((solution({-1, 0.3, 0.4}, coulomb) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-12);  // sticking
+        CHECK(solution({0.6, 0.3, 0.4}, coulomb) == Vec3::Zero());                            // separation
     }
-    // slides: by Coulomb's law u_n = 0 and γ_t = -μ γ_n; relaxed u_n = μ |u_t|
+    // sliding: u_n = 0 and γ_t = -μ γ_n t by Coulomb's law; u_n = μ |u_t| by the relaxation
     CHECK((solution({-1, 3, 4}, true) - m * Vec3(1, -0.3, -0.4)).norm() < 1e-12);
     CHECK(s[0] == Approx(5 - mu).epsilon(1e-12));
     CHECK(problem.contact[0].r == Vec3(-1, 3, 4));
@@ -267,13 +269,13 @@ TEST_CASE("the fixed point solves Coulomb's law where the cone problem relaxes i
         CHECK(in_cone(gamma[c], mu, 1e-14));
         CHECK(u_c[0] > -1e-11);  // Signorini
         CHECK(std::abs(u_c[0] * gamma[c][0]) < 1e-11);
-        const Vec3 against(0, u_c[1], u_c[2]);  // and friction against the slip, in full
+        const Vec3 against(0, u_c[1], u_c[2]);  // friction opposes the slip and is at its bound
         if (slip > 1e-9)
             CHECK((slip * Vec3(0, gamma[c][1], gamma[c][2]) + mu * gamma[c][0] * against).norm() < 1e-10);
     }
 }
 
-TEST_CASE("a solver that may not go on says how far it is and a contact of fixed bodies is refused",
+TEST_CASE("the solver reports the residual at its iteration limit and rejects a contact of fixed bodies",
           "[contact][dvi][solver]")
 {
     Random random(7);
@@ -300,7 +302,7 @@ TEST_CASE("impulses do not depend on the units of mass and length", "[contact][d
     Random random(8);
     const ConeProblem problem = random_problem(random, 4, 6, 0.5);
     ConeProblem scaled = problem;
-    const double mass = 0x1p-20, length = 0x1p10;  // powers of two, so that nothing is rounded anew
+    const double mass = 0x1p-20, length = 0x1p10;  // powers of two, so that scaling does not round
     for (auto& b : scaled.body) b.m_inverse /= mass, b.J_inverse /= mass * length * length;
     for (auto& c : scaled.contact) c.s_i *= length, c.s_j *= length, c.r *= length;
     ConeSolver solver;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies that move by rigid contacts as a differential variational inequality.
+// Scenes of rigid bodies with rigid contacts, as a differential variational inequality.
 #include "contact/scenes/dvi/dvi_scene.hpp"
 #include "contact/scenes/dvi/half_step_momentum.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
@@ -38,7 +38,7 @@ Motion at(const Vec3& r, const Vec3& rdot = Vec3::Zero())
     return m;
 }
 
-/// A ball of 2 kg and 0.3 m on a floor
+/// A ball of 2 kg and radius 0.3 m on a floor
 DviScene on_floor(const Vec3& v, double mu, double height = 0)
 {
     DviScene scene;
@@ -57,12 +57,12 @@ void run(DviScene& scene, double h, double end)
 
 }  // namespace
 
-TEST_CASE("a ball at rest stays so and its weight is the normal force", "[contact][dvi][scene]")
+TEST_CASE("a ball at rest stays at rest and its weight is the normal force", "[contact][dvi][scene]")
 {
     DviScene scene = on_floor(Vec3::Zero(), 0.4);
     run(scene, 1e-2, 1);
     CHECK((scene.body[0].r - Vec3(0, 0, 0.3)).norm() < 1e-14);
-    CHECK(scene.pair[0].state.N() == Approx(2 * g).epsilon(1e-10));  // 2 kg times the tolerance in a step
+    CHECK(scene.pair[0].state.N() == Approx(2 * g).epsilon(1e-10));  // error of F: mass times tolerance/h
 }
 
 TEST_CASE("a ball that starts to slide ends rolling at five sevenths of its speed", "[contact][dvi][scene]")
@@ -71,35 +71,36 @@ TEST_CASE("a ball that starts to slide ends rolling at five sevenths of its spee
     const double mu = 0.25, v0 = 2, h = 2e-3;
     DviScene scene = on_floor({v0, 0, 0}, mu);
     scene.options.sliding = sliding;
-    run(scene, h, 0.1);  // still sliding: until 2 v0/(7 μ g) = 0.233 s
+    run(scene, h, 0.1);  // sliding ends at 2 v0/(7 μ g) = 0.233 s
     const double t_half = 0.1 - 0.5 * h;
     CHECK(scene.body[0].rdot.x() == Approx(v0 - mu * g * t_half).epsilon(1e-4));
     CHECK(scene.body[0].omega_bar.y() == Approx(2.5 * mu * g * t_half / 0.3).epsilon(1e-4));
     CHECK(scene.pair[0].state.F.x() == Approx(-mu * 2 * g).epsilon(1e-4));
     run(scene, h, 0.4);
-    CHECK(scene.body[0].rdot.x() == Approx(5. / 7 * v0).epsilon(1e-5));  // it rolled from some step on
+    CHECK(scene.body[0].rdot.x() == Approx(5. / 7 * v0).epsilon(1e-5));  // sliding ends within a step
     CHECK(0.3 * scene.body[0].omega_bar.y() == Approx(scene.body[0].rdot.x()).epsilon(1e-6));
     CHECK(std::abs(scene.body[0].r.z() - 0.3) < 2e-6);
     CHECK(std::abs(scene.pair[0].state.F.x()) < 1e-6);
 }
 
-TEST_CASE("the relaxed law lifts a sliding ball and ends in the same rolling", "[contact][dvi][scene]")
+TEST_CASE("the relaxed law lifts a sliding ball, which ends in the same rolling", "[contact][dvi][scene]")
 {
     const double mu = 0.25, v0 = 2, h = 2e-3;
     DviScene scene = on_floor({v0, 0, 0}, mu);
     scene.options.sliding = DviOptions::convex;
     scene.step(h);
-    // closed form of the one step: b = (v0 - μ g h/2)/(1 + 3.5 μ²) is the slip that is left, u_n = μ b
+    // closed form of one step: b = (v0 - 3.5 μ g h/2)/(1 + 3.5 μ²) is the remaining slip, u_n = μ b
     const double b = (v0 - 3.5 * mu * 0.5 * g * h) / (1 + 3.5 * mu * mu);
     CHECK(scene.body[0].rdot.z() == Approx(mu * b).epsilon(1e-10));
     run(scene, h, 1);
-    // whatever its law, friction has no moment about the floor, but for the gap of h μ |u_t| in which it acts
+    // friction has no moment about the floor, except by the gap of h μ |u_t| at which it acts
     CHECK(scene.body[0].rdot.x() == Approx(5. / 7 * v0).epsilon(h * mu * v0 / 0.3));
 }
 
-TEST_CASE("friction above what sticking needs gives sticking", "[contact][dvi][scene]")
+TEST_CASE("a ball on an incline rolls if the friction coefficient is sufficient and slides otherwise",
+          "[contact][dvi][scene]")
 {
-    // Rolling down an incline: tan α < 3.5 μ
+    // rolling on an incline requires tan α < 3.5 μ
     const double alpha = 0.3;
     DviScene scene = on_floor(Vec3::Zero(), 0.12);
     scene.gravity = g * Vec3(std::sin(alpha), 0, -std::cos(alpha));
@@ -117,9 +118,9 @@ TEST_CASE("friction above what sticking needs gives sticking", "[contact][dvi][s
     CHECK(slides.body[0].r.x() == Approx(0.5 * slower * 0.25).epsilon(1e-4));
 }
 
-TEST_CASE("a ball in a groove presses on both walls as the wedge says", "[contact][dvi][scene]")
+TEST_CASE("a ball in a groove has the wall forces of a wedge", "[contact][dvi][scene]")
 {
-    // Walls at 50 degrees: F_N = m g / (2 cos 50°)
+    // walls at 50 degrees: F_N = m g / (2 cos 50°)
     DviScene scene;
     const double beta = 50 * std::numbers::pi / 180, R = 0.5, mu = GENERATE(0., 0.3);
     scene.add(ball(1, R), at({0, 0, R / std::cos(beta)}));
@@ -131,7 +132,7 @@ TEST_CASE("a ball in a groove presses on both walls as the wedge says", "[contac
     }
     scene.solver.tolerance = 1e-14;
     run(scene, 5e-3, 0.5);
-    if (mu > 0) {  // many balances are possible: together they carry the weight
+    if (mu > 0) {  // the wall forces are indeterminate; only their sum is known
         CHECK((scene.pair[0].state.F + scene.pair[1].state.F).z() == Approx(g).epsilon(1e-11));
         CHECK(scene.pair[0].state.N() == Approx(scene.pair[1].state.N()).epsilon(1e-11));
     } else
@@ -139,7 +140,7 @@ TEST_CASE("a ball in a groove presses on both walls as the wedge says", "[contac
     CHECK((scene.body[0].r - Vec3(0, 0, R / std::cos(beta))).norm() < 1e-13);
 }
 
-TEST_CASE("a ball that falls rebounds with the restitution of its contact", "[contact][dvi][scene]")
+TEST_CASE("a falling ball rebounds with the coefficient of restitution", "[contact][dvi][scene]")
 {
     const double e = GENERATE(0., 0.5, 1.), h = 1e-3;
     DviScene scene;
@@ -150,7 +151,7 @@ TEST_CASE("a ball that falls rebounds with the restitution of its contact", "[co
     scene.step(h);
     CHECK(scene.body[0].rdot.z() == Approx(3 * e).margin(1e-12));
     run(scene, h, 0.1);
-    // parabola from the end of the step that struck
+    // ballistic flight from the end of the step with the impact
     if (e > 0)
         CHECK(scene.body[0].r.z() ==
               Approx(0.3 + 3 * e * (0.1 + h) - 0.5 * g * 0.1 * (0.1 + h)).epsilon(1e-12));
@@ -167,9 +168,9 @@ TEST_CASE("a ball does not stop above the floor and does not pass through it", "
 
 namespace {
 
-/// The ball of 1 kg and 0.5 m in the bowl with the semi-axes 4, 3 and 2 m, sliding without friction from rest at the
-/// contact point (1, 1.5): its centre [m] at 0, 0.1, ... 2 s. From a reduced ODE in two coordinates of the contact point,
-/// integrated to 2e-12 m.
+/// Centre [m] of a ball of 1 kg and radius 0.5 m in the bowl with the semi-axes 4, 3 and 2 m at 0, 0.1, ... 2
+/// s. It slides without friction from rest at the contact point (1, 1.5). From a reduced ODE in two
+/// coordinates of the contact point, integrated to 2e-12 m.
 const Vec3 slides[] = {{0.930736435519058, 1.31529716138416, -1.19886988512596},
                        {0.924494246342734, 1.29866833053719, -1.20642919212852},
                        {0.905787828810182, 1.24904030815781, -1.2282240766992},
@@ -192,7 +193,7 @@ const Vec3 slides[] = {{0.930736435519058, 1.31529716138416, -1.19886988512596},
                        {-0.599422736070369, -1.31484398878456, -1.23952857417357},
                        {-0.68252388691413, -1.31123546459089, -1.23253041628573}};
 
-/// The largest errors of a run of 2 s at those times
+/// Largest errors of a run of 2 s at those times
 struct InBowl {
     double error = 0, gap = 0, N = 0;
     int iterations = 0;
@@ -210,7 +211,7 @@ struct InBowl {
             for (int n = 0; n < sampled; ++n) {
                 scene.step(h);
                 gap = std::max(gap, std::abs(scene.pair[0].state.contact_point.gap));
-                iterations += scene.solved.iterations;
+                iterations += scene.outcome.iterations;
             }
             error = std::max(error, (scene.body[0].r - slides[k]).norm());
         }
@@ -221,7 +222,7 @@ struct InBowl {
 
 }  // namespace
 
-TEST_CASE("a ball in a bowl is where the reduced equations say to second order in the step",
+TEST_CASE("a ball in a bowl converges to the reduced equations with second order in the step",
           "[contact][dvi][bowl][order]")
 {
     const InBowl a(5e-3, {}), b(2.5e-3, {});
@@ -232,7 +233,7 @@ TEST_CASE("a ball in a bowl is where the reduced equations say to second order i
     CHECK(a.N == Approx(9.1922792041740102).epsilon(1e-4));
 }
 
-TEST_CASE("a ball in a bowl sinks in without stabilisation and the start of the text costs an order",
+TEST_CASE("without stabilisation a ball in a bowl drifts, and without the half kick an order is lost",
           "[contact][dvi][bowl][order]")
 {
     const InBowl drifting(5e-3, {.stabilised = false}), finer(2.5e-3, {.stabilised = false});
@@ -245,7 +246,7 @@ TEST_CASE("a ball in a bowl sinks in without stabilisation and the start of the 
     CHECK(std::log2(text.error / half.error) == Approx(1).margin(0.03));
 }
 
-TEST_CASE("a torque-free body keeps its angular momentum exactly and its motion is of second order",
+TEST_CASE("a torque-free body conserves angular momentum exactly and its motion is of second order",
           "[contact][dvi][scene][order]")
 {
     const Vec3 J(0.1, 0.25, 0.3), omega(3, 0.1, 0.2);
@@ -258,7 +259,7 @@ TEST_CASE("a torque-free body keeps its angular momentum exactly and its motion 
         const Vec3 L = J.cwiseProduct(omega);
         run(scene, h, 1);
         const Motion& b = scene.body[0];
-        // the momentum of the last step, carried to its last node
+        // the angular momentum of the last step at its last node
         const Vec3 L_end = b.A * contact::node_momentum(-h * b.omega_bar, J.cwiseProduct(b.omega_bar));
         CHECK((L_end - L).norm() < 1e-13);
         return b.A;
@@ -267,7 +268,7 @@ TEST_CASE("a torque-free body keeps its angular momentum exactly and its motion 
     CHECK(std::log2((a - b).norm() / (b - c).norm()) == Approx(2).margin(0.1));
 }
 
-TEST_CASE("bodies that strike each other keep their momentum and angular momentum", "[contact][dvi][scene]")
+TEST_CASE("bodies that collide conserve momentum and angular momentum", "[contact][dvi][scene]")
 {
     Random random(11);
     DviScene scene;
@@ -303,11 +304,11 @@ TEST_CASE("bodies that strike each other keep their momentum and angular momentu
     CHECK(scene.kinetic_energy() < before);
     const auto last = momenta(h);
     CHECK((last.head<3>() - first.head<3>()).norm() < 1e-13);
-    // forces act at the middle of the gap on both, so even what the margin stops at a distance keeps it
+    // forces act at the middle of the gap on both bodies, so angular momentum is conserved for any gap
     CHECK((last.tail<3>() - first.tail<3>()).norm() < 1e-12);
 }
 
-TEST_CASE("a row of balls passes on one impulse and a crowd finds the contacts that are named otherwise",
+TEST_CASE("a row of balls shares one impulse, with contacts that are listed or found by the neighbour list",
           "[contact][dvi][scene]")
 {
     const bool found = GENERATE(false, true);
@@ -318,10 +319,10 @@ TEST_CASE("a row of balls passes on one impulse and a crowd finds the contacts t
         const int kind = scene.add(contact::BodyType{ball(1, R), sphere(R), R});
         const int floor = scene.add(contact::BodyType{{}, plane});
         scene.neighbors.margin = 0.02;
-        scene.between("balls", kind, kind, {.mu = 0});
-        scene.between("floor", floor, kind, {.mu = 0.3});
-        for (int b = 0; b < 5; ++b) scene.enter(kind, at({2 * R * b, 0, R}, {b == 0 ? 1. : 0., 0, 0}));
-        scene.enter(floor, Motion{});
+        scene.set_contact_law("balls", kind, kind, {.mu = 0});
+        scene.set_contact_law("floor", floor, kind, {.mu = 0.3});
+        for (int b = 0; b < 5; ++b) scene.add_body(kind, at({2 * R * b, 0, R}, {b == 0 ? 1. : 0., 0, 0}));
+        scene.add_body(floor, Motion{});
     } else {
         for (int b = 0; b < 5; ++b) scene.add(ball(1, R), at({2 * R * b, 0, R}, {b == 0 ? 1. : 0., 0, 0}));
         scene.add(Inertia{}, Motion{});
@@ -330,7 +331,7 @@ TEST_CASE("a row of balls passes on one impulse and a crowd finds the contacts t
     }
     scene.step(1e-3);
     CHECK(scene.contacts() == 9);
-    // inelastic: all five go on together, each pushed from behind alone, while friction turns them
+    // inelastic: all five balls move on together; friction spins them
     double sum = 0;
     for (int b = 0; b < 5; ++b) sum += scene.body[b].rdot.x();
     for (int b = 0; b < 5; ++b) CHECK(scene.body[b].rdot.x() == Approx(sum / 5).epsilon(1e-9));
@@ -340,7 +341,7 @@ TEST_CASE("a row of balls passes on one impulse and a crowd finds the contacts t
     for (int b = 0; b < 5; ++b) CHECK(std::abs(scene.body[b].r.z() - R) < 1e-5);
 }
 
-TEST_CASE("a step that fails leaves the bodies where they were", "[contact][dvi][scene]")
+TEST_CASE("a step that fails does not change the bodies", "[contact][dvi][scene]")
 {
     DviScene scene = on_floor({2, 0, 0}, 0.3);
     run(scene, 1e-3, 0.01);
@@ -355,7 +356,7 @@ TEST_CASE("a step that fails leaves the bodies where they were", "[contact][dvi]
     CHECK(scene.t == Approx(0.011));
 }
 
-TEST_CASE("a rigid scene refuses what it has no answer for", "[contact][dvi][scene]")
+TEST_CASE("a rigid scene rejects invalid input", "[contact][dvi][scene]")
 {
     DviScene scene;
     const int b = scene.add(ball(1, 0.1), Motion{}), ground = scene.add(Inertia{}, Motion{});
@@ -364,22 +365,21 @@ TEST_CASE("a rigid scene refuses what it has no answer for", "[contact][dvi][sce
                       "contact 'c': mu must not be negative, got -1");
     CHECK_THROWS_WITH(scene.add("c", b, s, ground, plane, {.restitution = 1.5}),
                       "contact 'c': the coefficient of restitution must be in [0, 1], got 1.5");
-    CHECK_THROWS_WITH(scene.add("c", b, s, 7, plane, {}),
-                      "contact::DviScene: no body has this number, got 7");
+    CHECK_THROWS_WITH(scene.add("c", b, s, 7, plane, {}), "contact::DviScene: no body has this index, got 7");
     CHECK_THROWS_WITH(scene.add("c", b, s, b, plane, {}),
                       "contact::DviScene: a contact needs two different bodies, got 0");
     const int other = scene.add(Inertia{}, Motion{});
     CHECK_THROWS_WITH(scene.add("c", other, s, ground, plane, {}),
-                      "contact 'c': a contact needs a body that moves, got two that do not");
+                      "contact 'c': a contact needs at least one movable body, got two fixed bodies");
     CHECK_THROWS_WITH(scene.step(0), "contact::DviScene: the step must be positive, got 0");
     CHECK_THROWS_WITH(scene.add({-1, Mat3::Identity()}, Motion{}),
-                      "contact::DviScene: a mass must be positive, got -1");
+                      "contact::DviScene: the mass of a body must be positive, got -1");
 }
 
-TEST_CASE("a step of rigid bodies takes nothing from the heap", "[contact][dvi][allocation]")
+TEST_CASE("a step of a rigid scene does not allocate", "[contact][dvi][allocation]")
 {
     if (!tests::counts_allocations) {
-        WARN("not counted: a sanitizer owns the heap");
+        WARN("allocations are not counted under a sanitizer");
         return;
     }
     DviScene scene;
@@ -387,12 +387,12 @@ TEST_CASE("a step of rigid bodies takes nothing from the heap", "[contact][dvi][
     const int kind = scene.add(contact::BodyType{ball(1, 0.1), sphere(0.1), 0.1});
     const int floor = scene.add(contact::BodyType{{}, plane});
     scene.neighbors.margin = 0.02;
-    scene.between("balls", kind, kind, {.mu = 0.3});
-    scene.between("floor", kind, floor, {.mu = 0.3});
-    scene.enter(floor, Motion{});
+    scene.set_contact_law("balls", kind, kind, {.mu = 0.3});
+    scene.set_contact_law("floor", kind, floor, {.mu = 0.3});
+    scene.add_body(floor, Motion{});
     Random random(12);
     for (int b = 0; b < 12; ++b)
-        scene.enter(kind, at(Vec3(0.22 * (b % 3), 0.22 * (b / 3), 0.1), random.vector(0.5)));
+        scene.add_body(kind, at(Vec3(0.22 * (b % 3), 0.22 * (b / 3), 0.1), random.vector(0.5)));
     const auto go = [&] {
         for (int n = 0; n < 100; ++n) scene.step(1e-3);
     };

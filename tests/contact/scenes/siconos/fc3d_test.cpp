@@ -1,9 +1,8 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Cone problems against fc3d of Siconos, which solves Coulomb's law by a nonsmooth Gauss-Seidel method. Built only where
-// libsiconos-numerics is installed.
+// SPDX-License-Identifier: GPL-3.0-or-later Cone problems against fc3d of Siconos, which solves Coulomb's law
+// by a nonsmooth Gauss-Seidel method. Built only if libsiconos-numerics is installed.
 //
-// They must agree with ConeSolver::solve_coulomb() always, and with the convex relaxation where no contact slides: for
-// μ = 0, and for friction enough to stick. Where a contact slides the relaxation lifts it, and differs.
+// ConeSolver::solve_coulomb() must agree always. The convex relaxation must agree if no contact slides: for μ
+// = 0 and if friction is sufficient to stick. It differs for a sliding contact, which it separates.
 #include "contact/scenes/dvi/cone_solver.hpp"
 #include "contact/tangent_basis.hpp"
 #include "tests/support/random_motion.hpp"
@@ -24,7 +23,7 @@ using tests::Random;
 
 namespace {
 
-/// Two layers of two bodies on a fixed one, falling on each other [m/s]
+/// Two layers of two bodies that fall on each other and on a fixed body; fall, slip [m/s]
 ConeProblem falling(Random& random, int contacts, double mu, double fall, double slip)
 {
     constexpr int bodies = 5;
@@ -39,7 +38,7 @@ ConeProblem falling(Random& random, int contacts, double mu, double fall, double
     }
     problem.body.push_back({});
     for (int c = 0; c < contacts; ++c) {
-        const int i = c % 4, j = i < 2 ? i + 2 : 4;  // the higher one first, the ground last
+        const int i = c % 4, j = i < 2 ? i + 2 : 4;  // the upper body first, the ground last
         const Vec3 n = (Vec3::UnitZ() + random.vector(0.4)).normalized();
         Mat3 frame;
         frame << n, contact::tangent_basis(n);
@@ -47,7 +46,7 @@ ConeProblem falling(Random& random, int contacts, double mu, double fall, double
         problem.contact.push_back({i, j, frame, below, -below, mu, Vec3::Zero()});
     }
     std::vector<Vec3> r;
-    problem.relative(v, r);
+    problem.relative_velocities(v, r);
     for (int c = 0; c < contacts; ++c) problem.contact[c].r = r[c];
     return problem;
 }
@@ -59,7 +58,7 @@ struct Solution {
 Solution by_siconos(const ConeProblem& problem)
 {
     const int n = static_cast<int>(problem.contact.size());
-    Eigen::MatrixXd W(3 * n, 3 * n);  // by columns, as fc3d wants it
+    Eigen::MatrixXd W(3 * n, 3 * n);  // column-major, as required by fc3d
     Eigen::VectorXd q(3 * n);
     std::vector<double> mu(n);
     std::vector<ConeProblem::Velocity> v;
@@ -67,8 +66,8 @@ Solution by_siconos(const ConeProblem& problem)
     for (int k = 0; k < 3 * n; ++k) {
         std::vector<Vec3> gamma(n, Vec3::Zero());
         gamma[k / 3][k % 3] = 1;
-        problem.respond(gamma, v);
-        problem.relative(v, column);
+        problem.velocity_change(gamma, v);
+        problem.relative_velocities(v, column);
         for (int c = 0; c < n; ++c) W.block<3, 1>(3 * c, k) = column[c];
     }
     for (int c = 0; c < n; ++c) {
@@ -88,7 +87,7 @@ Solution by_siconos(const ConeProblem& problem)
     Solution out{Eigen::VectorXd::Zero(3 * n), Eigen::VectorXd::Zero(3 * n)};
     const int failed = fc3d_driver(fc, out.gamma.data(), out.u.data(), options);
     solver_options_delete(options);
-    // the numbers are ours: only the shells are theirs to free
+    // the data are ours: Siconos frees only its structures
     M->matrix0 = nullptr;
     NM_clear(M);
     free(M);
@@ -139,7 +138,7 @@ TEST_CASE("without friction the cone problem has the velocities and impulses of 
     if (contacts <= 4) CHECK((theirs.gamma - relaxed.gamma).norm() < 1e-8);  // unique
 }
 
-TEST_CASE("where friction is enough to stick the cone problem and its fixed point are what Siconos says",
+TEST_CASE("if all contacts stick, the cone problem and Coulomb's law agree with Siconos",
           "[contact][dvi][siconos]")
 {
     const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
@@ -152,7 +151,7 @@ TEST_CASE("where friction is enough to stick the cone problem and its fixed poin
     CHECK((theirs.gamma - law.gamma).norm() < 1e-8);
 }
 
-TEST_CASE("where contacts slide the fixed point is what Siconos says and the relaxation is not",
+TEST_CASE("if contacts slide, Coulomb's law agrees with Siconos and the relaxation differs",
           "[contact][dvi][siconos]")
 {
     const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
@@ -163,7 +162,7 @@ TEST_CASE("where contacts slide the fixed point is what Siconos says and the rel
     REQUIRE(largest_slip(theirs) > 1e-2);
     CHECK((theirs.u - law.u).norm() < 1e-8);
     CHECK((theirs.gamma - law.gamma).norm() < 1e-8);
-    // lifted at μ |u_t|, which changes velocities by that much
+    // the relaxation separates the contact with μ |u_t|, which changes velocities by that amount
     const double difference = (theirs.u - relaxed.u).norm();
     CAPTURE(mu, largest_slip(relaxed), difference, difference / (mu * largest_slip(relaxed)));
     CHECK(difference > 0.1 * mu * largest_slip(relaxed));

@@ -6,7 +6,8 @@
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
-TEST_CASE("compare sets integrators beside the reference", "[studies][compare]")
+TEST_CASE("compare lists the differences of several integrators to the reference solution",
+          "[studies][compare]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "compare", "--problem", "double_pendulum_moving", "--integrator",
@@ -24,14 +25,14 @@ TEST_CASE("compare sets integrators beside the reference", "[studies][compare]")
         CAPTURE(name);
         double largest = 0;
         for (const CsvRow& row : rows) {
-            // the watched scalar is the height of the last bar, whose position stands beside it
-            CHECK(row.at(name + ".watched") == row.at(name + ".rz"));
+            // the observable is the height of the last bar, which is also a component of the position
+            CHECK(row.at(name + ".observable") == row.at(name + ".rz"));
             largest = std::max(largest, number(row, name + ".diff_r"));
-            double of_watched_body = 0;
+            double squared_distance = 0;
             for (const char* r : {".rx", ".ry", ".rz"})
-                of_watched_body +=
+                squared_distance +=
                     std::pow(number(row, name + r) - number(row, std::string("reference") + r), 2);
-            CHECK(std::sqrt(of_watched_body) <= number(row, name + ".diff_r") * (1 + 1e-9) + 1e-15);
+            CHECK(std::sqrt(squared_distance) <= number(row, name + ".diff_r") * (1 + 1e-9) + 1e-15);
         }
         CHECK(number(run, "max_r") == Approx(largest));
         CHECK(run.at("end_r") == rows.back().at(name + ".diff_r"));
@@ -40,7 +41,7 @@ TEST_CASE("compare sets integrators beside the reference", "[studies][compare]")
     CHECK(number(runs[1], "max_r") < 0.1 * number(runs[0], "max_r"));
 }
 
-TEST_CASE("compare takes one problem and one step", "[studies][compare]")
+TEST_CASE("compare accepts one problem and one step only", "[studies][compare]")
 {
     const Scratch in;
     const Ended problems = call(in, {"study", "compare", "--problem", "double_pendulum,four_link"});

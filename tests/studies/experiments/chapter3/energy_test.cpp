@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/model_file.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/studies/csv.hpp"
@@ -12,7 +16,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Σ ½ m v² + ½ ω̄ᵀ J̄ ω̄ - m g·r, with masses, inertias and gravity as Table 3.2 of the dissertation has them
+/// Σ ½ m v² + ½ ω̄ᵀ J̄ ω̄ - m g·r with the masses, inertias and gravity of Table 3.2
 double double_pendulum_energy(const lie::State& x)
 {
     const double m[] = {312, 156};
@@ -26,7 +30,7 @@ double double_pendulum_energy(const lie::State& x)
 
 }  // namespace
 
-TEST_CASE("the energy study has the change of the energy that the states have", "[studies][energy]")
+TEST_CASE("the energy study agrees with the energy computed from the states", "[studies][energy]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator",
@@ -65,7 +69,8 @@ TEST_CASE("the energy study has the change of the energy that the states have", 
 }
 
 #ifdef NDEBUG
-TEST_CASE("on the spinning two-bar rA-half-1 gains 236 J and rA-full-1 loses 1875 J", "[studies][energy]")
+TEST_CASE("rA-half-1 gains 236 J and rA-full-1 loses 1875 J on the spinning two-bar pendulum",
+          "[studies][energy]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "energy", "--problem", "n_pendulum_2_spin", "--integrator",
@@ -79,7 +84,7 @@ TEST_CASE("on the spinning two-bar rA-half-1 gains 236 J and rA-full-1 loses 187
 }
 #endif
 
-TEST_CASE("an expectation of the energy study is held against every run", "[studies][energy]")
+TEST_CASE("an expectation of the energy study applies to every run", "[studies][energy]")
 {
     const Scratch in;
     const std::vector<std::string> study = {"study", "energy",  "--problem", "double_pendulum", "--end",

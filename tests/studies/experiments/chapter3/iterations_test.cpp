@@ -6,7 +6,7 @@
 
 using namespace hilda::tests;
 
-TEST_CASE("the stretches of the iterations study add up to its means", "[studies][iterations]")
+TEST_CASE("the time intervals of the iterations study are consistent with its means", "[studies][iterations]")
 {
     const Scratch in;
     const Ended ended =
@@ -15,14 +15,14 @@ TEST_CASE("the stretches of the iterations study add up to its means", "[studies
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     const auto runs = csv(in / "out/iterations/study.csv");
-    const auto stretches = csv(in / "out/iterations/iterations.csv");
+    const auto intervals = csv(in / "out/iterations/iterations.csv");
     REQUIRE(runs.size() == 8);
     for (const CsvRow& run : runs) {
         CAPTURE(run.at("problem"), run.at("integrator"), run.at("h"));
         const double h = number(run, "h");
         double before = 0, sum = 0, most = 0;
         int bins = 0;
-        for (const CsvRow& bin : stretches) {
+        for (const CsvRow& bin : intervals) {
             if (bin.at("problem") != run.at("problem") || bin.at("integrator") != run.at("integrator") ||
                 bin.at("h") != run.at("h"))
                 continue;
@@ -41,7 +41,7 @@ TEST_CASE("the stretches of the iterations study add up to its means", "[studies
     }
 }
 
-TEST_CASE("the iterations study as JSON has what its table has", "[studies][iterations]")
+TEST_CASE("the JSON output of the iterations study contains its table", "[studies][iterations]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "iterations", "--problem", "four_link", "--integrator",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/model_file.hpp"
 #include "studies/framework/stopwatch.hpp"
 #include "studies/framework/work_needed.hpp"
 #include "studies/problems/n_pendulum.hpp"
@@ -13,7 +14,7 @@ using namespace hilda::tests;
 using namespace hilda::studies;
 using Catch::Matchers::Contains;
 
-TEST_CASE("medians, ratios and exponents are those of closed forms", "[studies][timing]")
+TEST_CASE("medians, ratios and exponents agree with closed forms", "[studies][timing]")
 {
     CHECK(spread({3, 1, 2}).median == 2);
     CHECK(spread({4, 1, 2, 3}).median == 2.5);
@@ -23,7 +24,7 @@ TEST_CASE("medians, ratios and exponents are those of closed forms", "[studies][
     CHECK(std::isnan(spread({}).median));
 
     TimedRun a, b;
-    a.repeat = {1, 20, 3}, b.repeat = {2, 40, 4};  // a slow moment in the second repeat
+    a.repeat = {1, 20, 3}, b.repeat = {2, 40, 4};  // the second repeat is slow for both
     CHECK(ratio(a, b) == 0.5);
     b.repeat.clear();
     CHECK(std::isnan(ratio(a, b)));
@@ -39,7 +40,7 @@ TEST_CASE("medians, ratios and exponents are those of closed forms", "[studies][
     CHECK(std::isnan(exponent({64}, {1}).fitted));
 }
 
-TEST_CASE("the work for an accuracy lies on the line between its neighbours", "[studies][timing]")
+TEST_CASE("the work for an accuracy is interpolated on logarithmic axes", "[studies][timing]")
 {
     // e = 1 / t^2: 1e-3 is reached at sqrt(1000)
     const WorkNeeded w = work_needed({1e-2, 1e-4}, {10, 100}, 1e-3);
@@ -52,7 +53,7 @@ TEST_CASE("the work for an accuracy lies on the line between its neighbours", "[
     CHECK(work_needed({std::nan(""), 1e-6}, {std::nan(""), 10}, 1e-3).seconds == 10);
 }
 
-TEST_CASE("the timing study has times, ratios and the machine", "[studies][timing]")
+TEST_CASE("the timing study reports times, ratios and the machine", "[studies][timing]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "timing", "--problem", "double_pendulum", "--integrator",
@@ -76,7 +77,7 @@ TEST_CASE("the timing study has times, ratios and the machine", "[studies][timin
     CHECK_FALSE(record["provenance"]["cpu"].get<std::string>().empty());
 }
 
-TEST_CASE("the seed of scaling gives the same start again and another another", "[studies][scaling]")
+TEST_CASE("the same seed gives the same initial spins and another seed gives others", "[studies][scaling]")
 {
     CHECK(spins(4, 7) == spins(4, 7));
     CHECK(spins(4, 7) != spins(4, 8));
@@ -88,18 +89,18 @@ TEST_CASE("the seed of scaling gives the same start again and another another", 
         mean += w / 1000;
     }
     CHECK(std::abs(mean) < 4 * 10 / std::sqrt(3. * 1000));
-    // std::mt19937_64 is fixed by the standard: its first number from seed 5489 is 14514284786278117030
+    // The standard defines std::mt19937_64: the first number with seed 5489 is 14514284786278117030.
     CHECK(spins(1, 5489)[0] ==
           Approx(20 * (14514284786278117030. / 18446744073709551616.) - 10).epsilon(1e-12));
 
-    // The spin is consistent: nothing is projected away.
+    // The spins are consistent initial velocities: the projection does not change them.
     dae::Description d = dae::read_model(spinning_n_pendulum(3, 7).model, "chain");
     const dae::StartReport start = dae::start(d);
     CHECK(start.velocity_residual < 1e-14);
     for (int b = 0; b < 3; ++b) CHECK(d.x.body[b].omega_bar.x() == Approx(spins(3, 7)[b]));
 }
 
-TEST_CASE("the scaling study runs over N", "[studies][scaling]")
+TEST_CASE("the scaling study runs for each number of bars", "[studies][scaling]")
 {
     const Scratch in;
     const auto study = [&](const std::string& seed) {
@@ -125,7 +126,7 @@ TEST_CASE("the scaling study runs over N", "[studies][scaling]")
     CHECK(number(rows[4], "us_per_step") > 3 * number(rows[0], "us_per_step"));
 }
 
-TEST_CASE("work-precision has errors beside times", "[studies][work precision]")
+TEST_CASE("the work-precision study reports errors and CPU times", "[studies][work precision]")
 {
     const Scratch in;
     std::string integrators = "rA-half-1,rA-half-2";
@@ -137,7 +138,7 @@ TEST_CASE("work-precision has errors beside times", "[studies][work precision]")
     const Ended ended = call(in, arguments);
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("fastest to an rms of 1e-03 m: rA-half-2"));
+    CHECK_THAT(ended.out, Contains("fastest integrator for an rms error of 1e-03 m: rA-half-2"));
     const auto rows = csv(in / "out/work-precision/study.csv");
     REQUIRE(rows.size() == 4 + 2 * adaptive_schemes().size());
     for (size_t k = 0; k < rows.size(); k += 2) {

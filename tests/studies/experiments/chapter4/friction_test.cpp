@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The experiments on friction come out as closed forms and published numbers demand, and the study says so.
+// Friction experiments against closed forms and published values, and the study that runs them.
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
 #include "tests/studies/csv.hpp"
@@ -14,32 +14,32 @@ using namespace hilda::tests;
 namespace friction = hilda::studies::friction;
 using Catch::Matchers::Contains;
 
-TEST_CASE("every experiment on friction gives what it must", "[studies][friction]")
+TEST_CASE("every friction experiment passes its criteria", "[studies][friction]")
 {
     for (const friction::Experiment& experiment : friction::experiments()) {
         std::vector<friction::ExperimentRun> runs = experiment.runs();
-        std::erase_if(runs, [](const friction::ExperimentRun& run) { return run.for_check; });
+        std::erase_if(runs, [](const friction::ExperimentRun& run) { return run.check_only; });
         std::vector<friction::Series> series;
-        for (const friction::ExperimentRun& run : runs) series.push_back(run.go(nullptr));
+        for (const friction::ExperimentRun& run : runs) series.push_back(run.compute(nullptr));
         std::vector<friction::Check> checks;
         experiment.checks(friction::Results(runs, series), checks);
         for (const friction::Check& check : checks) {
-            INFO(experiment.name << ": " << check.what << ": " << check.measured << " for " << check.required
-                                 << " +- " << check.tolerance);
+            INFO(experiment.name << ": " << check.what << ": " << check.measured << ", required "
+                                 << check.required << " +- " << check.tolerance);
             CHECK(check.passed());
         }
         CHECK((experiment.name == "disk-damping" || !checks.empty()));
     }
 }
 
-TEST_CASE("the friction study compares every step with a table", "[studies][friction]")
+TEST_CASE("the friction study compares every step of the runs with a table", "[studies][friction]")
 {
     const Scratch in;
     const Ended first = call(in, {"study", "friction", "--problem", "brick", "--no-plot"});
     CAPTURE(first.err);
     REQUIRE(first.code == 0);
     CHECK_THAT(first.out, Contains("brick (Fig. 4.6)") && Contains("m g sin(alpha) / K_E"));
-    // its own curve, moved at one instant, with the start left unset as published files have it
+    // the curve of the study itself, changed at one instant; row 0 is not set, as in published files
     std::string table = "# comment\nt,x_damped,nothing\n0,1,\n";
     for (const CsvRow& row : csv(in / "out/friction/brick.csv"))
         if (row.at("run") == "damped" && number(row, "t") > 0)
@@ -57,9 +57,9 @@ TEST_CASE("the friction study compares every step with a table", "[studies][fric
     CHECK(number(rows[0], "at t [s]") == 0.05);
 
     CHECK(rows[0].at("nearest") == "*");
-    CHECK_THAT(ended.out, Contains("over the size of its column: 1.00e+00"));
+    CHECK_THAT(ended.out, Contains("relative to the column size: 1.00e+00"));
 
-    // a column that every run has: the one it came from is the nearest
+    // a quantity that every run has: the run of origin is the nearest
     std::string whole = "t,x\n";
     for (const CsvRow& row : csv(in / "out/friction/brick.csv"))
         if (row.at("run") == "damped") whole += row.at("t") + "," + row.at("x") + "\n";
@@ -76,23 +76,23 @@ TEST_CASE("the friction study compares every step with a table", "[studies][fric
     CHECK_THAT(missed.err, Contains("expected difference=1+-0.5, got 0 for whole.csv"));
     const Ended unknown = against("differenz=0");
     CHECK(unknown.code == 2);
-    CHECK_THAT(unknown.err, Contains("'differenz'; did you mean 'difference'?; there are difference"));
+    CHECK_THAT(unknown.err, Contains("'differenz'; did you mean 'difference'?; known keys: difference"));
 
     write(in / "other.csv", "t,pressure\n0,1\n");
     const Ended other = call(
         in, {"study", "friction", "--problem", "brick", "--no-plot", "--force", "--against", "other.csv"});
     CHECK(other.code == 3);
-    CHECK_THAT(other.err, Contains("other.csv: no column of it is a column of the chosen experiments"));
+    CHECK_THAT(other.err, Contains("other.csv: no column is a quantity of the selected experiments"));
 }
 
-TEST_CASE("the friction study names the experiments that it has", "[studies][friction]")
+TEST_CASE("the friction study suggests the nearest name for an unknown experiment", "[studies][friction]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "friction", "--problem", "brik"});
     CHECK(ended.code == 2);
     CHECK(ended.err == "hilda: error: study friction: unknown experiment 'brik'; did you mean 'brick'?\n");
-    const Ended idle = call(in, {"study", "energy", "--check"});
-    CHECK(idle.code == 2);
-    CHECK_THAT(idle.err,
+    const Ended unused = call(in, {"study", "energy", "--check"});
+    CHECK(unused.code == 2);
+    CHECK_THAT(unused.err,
                Contains("--check is for ") && Contains(" friction, ") && Contains("incline-sweep, stacking"));
 }

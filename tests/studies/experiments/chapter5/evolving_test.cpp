@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Contacts that are constraints as a user of the program meets them: runs, checks, columns, studies.
+/// Evolving contacts in the program: runs, checks, columns and studies.
 
+#include "dae/model.hpp"
+#include "dae/model_file.hpp"
+#include "lie/schemes.hpp"
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/running/contact_rows.hpp"
@@ -27,20 +30,19 @@ Vec3 vector(const CsvRow& row, const std::string& name, const std::array<const c
 
 }  // namespace
 
-TEST_CASE("a run tells of the contact points and the forces of a contact that is a constraint",
-          "[studies][evolving]")
+TEST_CASE("a run writes the contact points and the forces of an evolving contact", "[studies][evolving]")
 {
     const Scratch in;
     const Ended ended =
         call(in, {"run", "rolling_ball_in_bowl", "--integrator", "rA-half-1-momentum", "--step", "5e-3",
-                  "--tolerance", "1e-14", "--end", "1", "--every", "0.1", "--reactions", "--output", "a"});
+                  "--tolerance", "1e-14", "--end", "1", "--interval", "0.1", "--reactions", "--output", "a"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     CHECK(ended.err.empty());
     CHECK_THAT(ended.out, Contains("1 contact, 3 degrees of freedom") && Contains("ball-bowl: F_N from "));
     const auto rows = csv(in / "a/trajectory.csv");
     REQUIRE(rows.size() == 11);
-    CHECK(number(rows[0], "ball-bowl.Ff_y") > 0);  // holds the ball back, which turns as it goes down
+    CHECK(number(rows[0], "ball-bowl.Ff_y") > 0);  // friction acts up the slope and accelerates the rotation
     for (const CsvRow& row : rows) {
         const Vec3 r = vector(row, "ball.", {"rx", "ry", "rz"}),
                    C = vector(row, "ball-bowl.", {"Cx", "Cy", "Cz"}),
@@ -55,7 +57,7 @@ TEST_CASE("a run tells of the contact points and the forces of a contact that is
         CHECK((a_j - C).norm() < 1e-14);  // the bowl is the ground
         CHECK(number(row, "constraint_norm") < 8e-15);
         CHECK(number(row, "ball-bowl.lambda_N") < 1e-12);
-        // the constraint pushes the ball from the bowl, with friction across it
+        // the constraint force is the normal force plus a tangential friction force
         const Vec3 n = (r - C).normalized(), F = vector(row, "ball.", {"Fx", "Fy", "Fz"});
         CHECK((F - number(row, "ball-bowl.F_N") * n - F_f).norm() < 1e-11);
         CHECK(std::abs(F_f.dot(n)) < 1e-12);
@@ -70,13 +72,14 @@ TEST_CASE("a run tells of the contact points and the forces of a contact that is
     CHECK(summary["model"]["degrees_of_freedom"] == 3);
 }
 
-TEST_CASE("check says what a contact that is a constraint is", "[studies][evolving][check]")
+TEST_CASE("check reports the rows, unknowns and curvatures of an evolving contact",
+          "[studies][evolving][check]")
 {
     const Scratch in;
     const Ended words = call(in, {"check", "ball_in_bowl"});
     CAPTURE(words.err);
     CHECK(words.code == 0);
-    CHECK_THAT(words.out, Contains("contacts held       1, of rank 1\n") &&
+    CHECK_THAT(words.out, Contains("contact constraints 1, of rank 1\n") &&
                               Contains("  ball-bowl         7 rows, 6 unknowns\n") &&
                               Contains("normal force 9.155246513 N") && Contains("curvatures 2, 2 and -0.") &&
                               Contains("--integrator rA-half-1-momentum"));
@@ -93,10 +96,11 @@ TEST_CASE("check says what a contact that is a constraint is", "[studies][evolvi
     CHECK(facts["condition"].get<double>() < 1e3);
     CHECK(facts["degrees_of_freedom"] == 3);
     CHECK(facts["recommended_integrator"] == "rA-half-1-momentum");
-    CHECK_THAT(call(in, {"check", "double_pendulum"}).out, !Contains("held") && !Contains("recommended"));
+    CHECK_THAT(call(in, {"check", "double_pendulum"}).out,
+               !Contains("contact constraints") && !Contains("recommended"));
 }
 
-TEST_CASE("integrators say what contacts they take and refuse the others", "[studies][evolving]")
+TEST_CASE("integrators list the contacts that they support and reject others", "[studies][evolving]")
 {
     const Scratch in;
     const ordered_json all = ordered_json::parse(call(in, {"integrators", "--json"}).out);
@@ -106,16 +110,16 @@ TEST_CASE("integrators say what contacts they take and refuse the others", "[stu
         CHECK(s["evolving_contacts"] == scheme.algebraic);
         CHECK(s["rolling_contacts"] == (scheme.algebraic && scheme.nonholonomic));
     }
-    CHECK_THAT(call(in, {"integrators"}).out, Contains("evolve, roll") && Contains("recommended"));
+    CHECK_THAT(call(in, {"integrators"}).out, Contains("constraint, rolling") && Contains("recommended"));
     const Ended refused = call(in, {"run", "ball_in_bowl", "--integrator", "rp-half-1"});
     CHECK(refused.code == 3);
-    CHECK_THAT(refused.err, Contains("takes no contacts that evolve; those that do are") &&
+    CHECK_THAT(refused.err, Contains("does not support evolving contacts; integrators that do are") &&
                                 Contains("rA-half-1-momentum"));
     CHECK(call(in, {"run", "rattleback", "--integrator", "rA-rattle"}).code == 3);
     CHECK_FALSE(fs::exists(in / "out"));
 }
 
-TEST_CASE("normals projected on x and y fail where tangents do not", "[studies][evolving]")
+TEST_CASE("normal rows along x and y fail on the loop and tangent rows do not", "[studies][evolving]")
 {
     const Scratch in;
     const auto loop = [&](const std::string& rows, const std::string& output) {
@@ -134,36 +138,36 @@ TEST_CASE("normals projected on x and y fail where tangents do not", "[studies][
     CHECK(summary["model"]["set"].back() == "/contacts/0/normal/rows=fixed-xy");
     CHECK(ordered_json::parse(read(in / "b/model.json"))["contacts"][0]["normal"]["rows"] == "fixed-xy");
 
-    CHECK_THAT(
-        call(in, {"run", "double_pendulum", "--normal-rows", "tangent"}).err,
-        Contains("--normal-rows is for contacts whose normal is a constraint; double_pendulum has none"));
+    CHECK_THAT(call(in, {"run", "double_pendulum", "--normal-rows", "tangent"}).err,
+               Contains("--normal-rows applies to contacts whose normal is a constraint; model "
+                        "double_pendulum has none"));
     CHECK(call(in, {"run", "ball_in_bowl", "--normal-rows", "xy"}).code == 2);
 }
 
-TEST_CASE("a contact that pulls is told of", "[studies][evolving]")
+TEST_CASE("a run warns of a tensile normal force", "[studies][evolving]")
 {
     const Scratch in;
-    // over the top of a dome the ball would fly off
+    // without the bilateral constraint the ball would leave the dome
     write(in / "dome.json", R"({"hilda_model": 1, "name": "dome", "end": 1,
  "bodies": [{"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [0, 0, 1.5], "r_dot": [5, 0, 0]}],
  "contacts": [{"name": "ball-dome", "body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.5},
   "surface_j": {"type": "sphere", "radius": 1}, "normal": {"type": "constraint"}}]})");
     const Ended ended = call(in, {"run", "dome.json", "--output", "a"});
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.err, Contains("contact 'ball-dome': pulls, with up to "));
-    CHECK_THAT(read(in / "a/summary.json"), Contains("pulls, with up to"));
-    CHECK_THAT(call(in, {"check", "dome.json"}).out, Contains("it pulls"));
+    CHECK_THAT(ended.err, Contains("contact 'ball-dome': the normal force is tensile, up to "));
+    CHECK_THAT(read(in / "a/summary.json"), Contains("the normal force is tensile, up to"));
+    CHECK_THAT(call(in, {"check", "dome.json"}).out, Contains("N, tensile"));
 }
 
-TEST_CASE("a ball that bounces is told of, event by event", "[studies][evolving]")
+TEST_CASE("the summary lists the impacts of a bouncing ball", "[studies][evolving]")
 {
     const Scratch in;
-    // falls by 0.1 m, rebounds with half of its speed
+    // falls by 0.1 m; coefficient of restitution 0.5
     write(in / "m.json", R"({"hilda_model": 1, "name": "m", "end": 0.5, "gravity": [0, 0, -9.8],
  "bodies": [{"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [0, 0, 0.6]}],
  "contacts": [{"name": "ball-floor", "body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.5},
   "surface_j": {"type": "plane"}, "normal": {"type": "constraint", "unilateral": true, "restitution": 0.5}}]})");
-    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("it is open") && Contains("6\n"));
+    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("contact open") && Contains("6\n"));
     const Ended ended = call(in, {"run", "m.json", "--integrator", "rA-half-1-momentum", "--step", "1e-2",
                                   "--reactions", "--output", "a"});
     CAPTURE(ended.err);
@@ -171,7 +175,7 @@ TEST_CASE("a ball that bounces is told of, event by event", "[studies][evolving]
     const ordered_json summary = ordered_json::parse(read(in / "a/summary.json"));
     const ordered_json& events = summary["contact_events"];
     REQUIRE(events["count"].get<int>() >= 2);
-    const double t = std::sqrt(2 * 0.1 / 9.8);  // the fall is a parabola, which the scheme has exactly
+    const double t = std::sqrt(2 * 0.1 / 9.8);  // the scheme integrates the parabola exactly
     CHECK(events["first"][0]["what"] == "impact");
     CHECK(events["first"][0]["t"].get<double>() == Approx(t).epsilon(1e-9));
     CHECK(events["first"][0]["speed"].get<double>() == Approx(9.8 * t).epsilon(1e-9));
@@ -181,7 +185,8 @@ TEST_CASE("a ball that bounces is told of, event by event", "[studies][evolving]
     CHECK(number(rows[5], "ball-floor.F_N") == 0);
 }
 
-TEST_CASE("a lambda_N above a millionth of the normal force is no rounding", "[studies][evolving]")
+TEST_CASE("lambda_N above a millionth of the normal force means that the normals differ",
+          "[studies][evolving]")
 {
     CHECK(studies::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 1.1e-5}.normals_differ());
     CHECK(studies::ContactExtremes{.F_N_least = -10, .F_N_most = 1, .lambda_N = 1.1e-5}.normals_differ());
@@ -189,7 +194,8 @@ TEST_CASE("a lambda_N above a millionth of the normal force is no rounding", "[s
         studies::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 0.9e-5}.normals_differ());
 }
 
-TEST_CASE("the truth of a contact is that of minimal coordinates or of small steps", "[studies][evolving]")
+TEST_CASE("the reference solution of a contact agrees with an integration with small steps",
+          "[studies][evolving]")
 {
     for (const char* name :
          {"ball_in_bowl_xy", "rolling_ball_in_bowl_xy", "wobbling_ellipsoid", "rattleback"}) {
@@ -198,22 +204,22 @@ TEST_CASE("the truth of a contact is that of minimal coordinates or of small ste
         dae::Description d = dae::read_model(p.model, name);
         dae::start(d);
         const std::vector<double> at = {0.02};
-        const lie::State by_truth = studies::evolving_reference(d, at).row[0],
+        const lie::State by_reference = studies::evolving_reference(d, at).row[0],
                          by_steps =
                              studies::run_with_small_steps(d, at, lie::scheme("rA-rkmk-4"), 1e-3).row[0];
-        CHECK((by_truth.body[0].r - by_steps.body[0].r).norm() < 1e-10);
-        CHECK((by_truth.body[0].A - by_steps.body[0].A).norm() < 1e-9);
-        CHECK((by_truth.alpha - by_steps.alpha).norm() < 1e-9);
+        CHECK((by_reference.body[0].r - by_steps.body[0].r).norm() < 1e-10);
+        CHECK((by_reference.body[0].A - by_steps.body[0].A).norm() < 1e-9);
+        CHECK((by_reference.alpha - by_steps.alpha).norm() < 1e-9);
         const contact::EvolvingContact& c =
-            *studies::evolving_contacts(*d.model)[0];  // λ itself goes by the tangents
-        const auto of_truth = c.multipliers(d.model->at(c, by_truth), by_truth.lambda),
-                   of_steps = c.multipliers(d.model->at(c, by_steps), by_steps.lambda);
-        CHECK(of_truth.F_N == Approx(of_steps.F_N).epsilon(1e-8));
-        CHECK((of_truth.friction - of_steps.friction).norm() < 1e-7);
+            *studies::evolving_contacts(*d.model)[0];  // λ depends on the tangents
+        const auto from_reference = c.multipliers(d.model->arguments(c, by_reference), by_reference.lambda),
+                   from_steps = c.multipliers(d.model->arguments(c, by_steps), by_steps.lambda);
+        CHECK(from_reference.F_N == Approx(from_steps.F_N).epsilon(1e-8));
+        CHECK((from_reference.friction - from_steps.friction).norm() < 1e-7);
     }
 }
 
-TEST_CASE("the study of contacts that are constraints meets its demands", "[studies][evolving]")
+TEST_CASE("the evolving-contact study passes its criteria", "[studies][evolving]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "evolving-contact", "--problem", "planar,planar-roll", "--end",
@@ -229,8 +235,9 @@ TEST_CASE("the study of contacts that are constraints meets its demands", "[stud
     CHECK(call(in, {"study", "energy", "--normal-rows", "tangent"}).code == 2);
 }
 
-TEST_CASE("a step that the friction of a contact does not stand is refused with the bound of the text's data",
-          "[studies][evolving][friction]")
+TEST_CASE(
+    "a step above the stability limit of the contact friction is rejected and the message states the limit",
+    "[studies][evolving][friction]")
 {
     const Scratch in;
     const auto run = [&](const std::vector<std::string>& more) {
@@ -244,18 +251,18 @@ TEST_CASE("a step that the friction of a contact does not stand is refused with 
     };
     const Ended refused = run({"--step", "5e-3"});
     CHECK(refused.code == 2);
-    // (sqrt(d² + 4 k) - d)/k, d = 350, k = 35000: 4.64e-3 s, cut so that it is stable itself
-    CHECK_THAT(refused.err, Contains("the step 0.005 s is above 0.004638 s, the largest at which contact "
-                                     "'ball-bowl' is stable"));
+    // (sqrt(d² + 4 k) - d)/k, d = 350, k = 35000: 4.64e-3 s, rounded down, so that the printed step is stable
+    CHECK_THAT(refused.err, Contains("the step 0.005 s is above 0.004638 s, the stability limit of contact "
+                                     "'ball-bowl'"));
     CHECK_FALSE(fs::exists(in / "a"));
-    CHECK(run({"--step", "4.638e-3", "--every", "0"}).code == 0);
+    CHECK(run({"--step", "4.638e-3", "--interval", "0"}).code == 0);
     const Ended forced = run({"--step", "5e-3", "--force"});
     CHECK(forced.code == 0);
     CHECK_THAT(forced.err, Contains("0.004638 s"));
 
-    const Ended told = call(in, {"check", "braked_ball_in_bowl"});
-    CHECK(told.code == 0);
-    CHECK_THAT(told.out,
+    const Ended checked = call(in, {"check", "braked_ball_in_bowl"});
+    CHECK(checked.code == 0);
+    CHECK_THAT(checked.out,
                Contains("friction 0 N, stable up to 0.00326 s") && Contains("forces              0"));
     const ordered_json facts =
         ordered_json::parse(call(in, {"check", "braked_ball_in_bowl", "--json"}).out)["evolving_contacts"][0];
@@ -265,12 +272,12 @@ TEST_CASE("a step that the friction of a contact does not stand is refused with 
     CHECK(facts["fallback_stable_step"].is_null());
 }
 
-TEST_CASE("a run writes the friction of a contact that is a constraint", "[studies][evolving][friction]")
+TEST_CASE("a run writes the friction of an evolving contact", "[studies][evolving][friction]")
 {
     const Scratch in;
     const Ended ended =
         call(in, {"run", "braked_ball_in_bowl", "--integrator", "rA-half-1-momentum", "--step", "2.5e-3",
-                  "--end", "1", "--every", "0.05", "--reactions", "--vtk", "0.5", "--output", "a"});
+                  "--end", "1", "--interval", "0.05", "--reactions", "--vtk", "0.5", "--output", "a"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     const auto rows = csv(in / "a/trajectory.csv");
@@ -283,19 +290,20 @@ TEST_CASE("a run writes the friction of a contact that is a constraint", "[studi
         CHECK(std::abs(F_f.dot((r - C).normalized())) < 1e-9);
         CHECK(F_f.norm() < 0.25 * F_N);
         if (number(row, "t") > 0.1) CHECK(F_f.norm() > 0);
-        // all that moves the ball: weight, normal force, friction
-        const Vec3 lack =
+        // the acceleration is that of weight, normal force and friction
+        const Vec3 residual =
             vector(row, "ball.", {"ax", "ay", "az"}) - Vec3(0, 0, -9.81) - F_N * (r - C).normalized() - F_f;
         if (number(row, "t") > 0.1)
-            CHECK(lack.norm() < 0.05);  // F_f is that of the nodes, a leapfrog between
+            CHECK(residual.norm() < 0.05);  // F_f is evaluated at the nodes, the scheme uses half steps
     }
     CHECK_THAT(read(in / "a/vtk/run-000001.vtp"), Contains("\"rolling\""));
 }
 
-TEST_CASE("a contact that hands over is told of and goes on", "[studies][evolving][friction]")
+TEST_CASE("a contact that switches to its fallback is an event and the run continues",
+          "[studies][evolving][friction]")
 {
     const Scratch in;
-    // a block of the fourth power is flat on top of its axes: it rolls there from the side
+    // a superquadric of exponent 4 has zero curvature on its axes; the block rolls there from the side
     const std::string block = R"({"type": "superquadric", "semi_axes": [0.3, 0.3, 0.2], "exponent": 4})";
     const auto model = [&](const std::string& pose, const std::string& fallback) {
         return R"({"hilda_model": 1, "name": "m", "end": 1,
@@ -322,28 +330,28 @@ TEST_CASE("a contact that hands over is told of and goes on", "[studies][evolvin
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     const ordered_json events = ordered_json::parse(read(in / "a/summary.json"))["contact_events"];
-    REQUIRE(events["count"] == 2);  // it falls a little first
+    REQUIRE(events["count"] == 2);  // it falls first, until the contact closes
     CHECK(events["first"][0]["what"] == "closing");
-    CHECK(events["first"][1]["what"] == "handed over");
+    CHECK(events["first"][1]["what"] == "fallback");
     CHECK(events["first"][1]["contact"] == "block-floor");
     const double t = events["first"][1]["t"].get<double>();
     CHECK(t > 0);
     CHECK(t < 1);
     for (const CsvRow& row : csv(in / "a/trajectory.csv"))
         if (number(row, "t") > t + 0.01 && number(row, "block-floor.gap") < -1e-6)
-            CHECK(number(row, "block-floor.F_N") > 0);  // of what has taken over
+            CHECK(number(row, "block-floor.F_N") > 0);  // normal force of the fallback law
 
     write(in / "m.json", model(lies, fallback));
-    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("to which it has handed over"));
+    CHECK_THAT(call(in, {"check", "m.json"}).out, Contains("of the fallback, which is active"));
     const Ended from_start = run(model(lies, fallback));
     REQUIRE(from_start.code == 0);
     const ordered_json first = ordered_json::parse(read(in / "a/summary.json"))["contact_events"]["first"][0];
-    CHECK(first["what"] == "handed over");
+    CHECK(first["what"] == "fallback");
     CHECK(first["t"] == 0);
     CHECK(run(model(lies, "")).code == 3);
 }
 
-TEST_CASE("the study of orders tells first from second order", "[studies][evolving]")
+TEST_CASE("the evolving-order study distinguishes first from second order", "[studies][evolving]")
 {
     const Scratch in;
     const auto study = [&](const std::string& scheme, const std::string& order) {
@@ -358,7 +366,7 @@ TEST_CASE("the study of orders tells first from second order", "[studies][evolvi
     CHECK(call(in, {"study", "evolving-order", "--problem", "double_pendulum"}).code == 2);
 }
 
-TEST_CASE("the study of friction in the bowl meets its demands and refuses the step of the text",
+TEST_CASE("the evolving-friction study passes its criteria and rejects the step of the dissertation",
           "[studies][evolving][friction]")
 {
     const Scratch in;
@@ -388,7 +396,7 @@ TEST_CASE("the study of friction in the bowl meets its demands and refuses the s
               .code == 0);
 }
 
-TEST_CASE("studies of contacts that are constraints write frames", "[studies][evolving][vtk]")
+TEST_CASE("the studies of evolving contacts write frames", "[studies][evolving][vtk]")
 {
     const Scratch in;
     CHECK(call(in, {"study", "evolving-contact", "--problem", "planar-roll", "--end", "0.5", "--vtk", "4",

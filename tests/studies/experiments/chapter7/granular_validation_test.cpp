@@ -9,16 +9,16 @@
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
-TEST_CASE("a validation of the granular room is a study with files of its tables", "[studies][granular]")
+TEST_CASE("a granular validation is a study that writes its tables as files", "[studies][granular]")
 {
     const Scratch in;
     const Ended ended = call(in, {"study", "granular-oblique", "--no-plot", "--check"});
     CAPTURE(ended.err);
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("16 of 16 met"));
+    CHECK_THAT(ended.out, Contains("16 of 16 passed"));
 
     const auto rows = csv(in / "out/granular-oblique/study.csv");
-    REQUIRE(rows.size() == 34);  // two laws, every five degrees
+    REQUIRE(rows.size() == 34);  // two laws, one angle every five degrees
     for (const CsvRow& row : rows) {
         CHECK(number(row, "from_normal") + number(row, "from_surface") == Approx(90));
         if (number(row, "from_normal") < 64.5)
@@ -33,10 +33,10 @@ TEST_CASE("a validation of the granular room is a study with files of its tables
     CHECK(json["study"] == "granular-oblique");
     CHECK(json["grid"] == "quick");
     CHECK(json["checks"].size() == 16);
-    for (const auto& check : json["checks"]) CHECK(check["met"] == true);
+    for (const auto& check : json["checks"]) CHECK(check["passed"] == true);
 }
 
-TEST_CASE("a study of grains refuses what it has no use for", "[studies][granular]")
+TEST_CASE("a granular study rejects options that it does not have", "[studies][granular]")
 {
     const Scratch in;
     CHECK(call(in, {"study", "granular-oblique", "--grid", "coarse"}).code == 2);
@@ -45,7 +45,7 @@ TEST_CASE("a study of grains refuses what it has no use for", "[studies][granula
     CHECK_FALSE(fs::exists(in / "out/granular-oblique"));
 }
 
-TEST_CASE("the studies of grains stand in the list, in its order", "[studies][granular]")
+TEST_CASE("the granular studies are in the sorted list of studies", "[studies][granular]")
 {
     const Scratch in;
     const auto listed = nlohmann::json::parse(call(in, {"study", "--json"}).out);
@@ -59,21 +59,21 @@ TEST_CASE("the studies of grains stand in the list, in its order", "[studies][gr
         CHECK(std::count(kinds.begin(), kinds.end(), kind) == 1);
 }
 
-TEST_CASE("hilda granular runs a validation by its name, unless a file has it", "[studies][granular]")
+TEST_CASE("hilda granular runs a validation by name unless a file has that name", "[studies][granular]")
 {
     const Scratch in;
     const Ended ended = call(in, {"granular", "oblique"});
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("16 of 16 met"));
+    CHECK_THAT(ended.out, Contains("16 of 16 passed"));
     CHECK(call(in, {"granular", "oblique", "--quiet"}).out.empty());
 
     const Ended unknown = call(in, {"granular", "obliqe"});
     CHECK(unknown.code == 3);
     CHECK_THAT(unknown.err,
-               Contains("obliqe: is not there") && Contains("validations: ") && Contains("oblique"));
+               Contains("obliqe: does not exist") && Contains("validations: ") && Contains("oblique"));
     CHECK(std::count(unknown.err.begin(), unknown.err.end(), '\n') == 1);
 
     write(in / "oblique", "{}");
-    CHECK(call(in, {"granular", "oblique"}).code == 3);  // no case
+    CHECK(call(in, {"granular", "oblique"}).code == 3);  // the file is not a valid case
     CHECK(call(in, {"granular", "oblique", "--full"}).code == 2);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scenes on which contact methods are compared: rigid and compliant bodies agree on them, and with closed forms.
+// Scenes for the comparison of contact methods: rigid and compliant contacts agree with each other and with
+// closed forms.
 #include "studies/experiments/chapter8/contact_scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,14 +17,14 @@ void run(Scene& scene, double h, double end)
     for (int n = 0; n < std::lround(end / h); ++n) scene.step(h);
 }
 
-Vec3 force_on_i(const contact::DviScene::Encounter& e) { return e.F; }
-Vec3 force_on_i(const contact::Scene::Encounter& e)
+Vec3 force_on_i(const contact::DviScene::PairState& e) { return e.F; }
+Vec3 force_on_i(const contact::Scene::PairState& e)
 {
     return e.contact_state.N > 0 ? Vec3(e.contact_state.N * e.contact_state.contact_point.n + e.wrench.F)
                                  : Vec3(Vec3::Zero());
 }
 
-/// What a body that does not move carries [N]
+/// Total contact force on a fixed body [N]
 template <class Scene>
 Vec3 load_on(const Scene& scene, int body)
 {
@@ -35,39 +36,39 @@ Vec3 load_on(const Scene& scene, int body)
 
 }  // namespace
 
-TEST_CASE("a chain touches its walls and its neighbours and a pile begins without a contact",
-          "[studies][scenes]")
+TEST_CASE("a chain starts with all contacts closed and a pile starts without contacts", "[studies][scenes]")
 {
     RollingChain chain{.balls = 5};
-    CHECK(touching(scene(chain), 1e-12).size() == 15);  // 10 on the walls, 4 between, 1 that pushes
+    CHECK(contact_pairs(scene(chain), 1e-12).size() == 15);  // 10 walls, 4 balls, 1 push
     chain.speed = 0;
-    CHECK(touching(scene(chain), 1e-12).size() == 14);
+    CHECK(contact_pairs(scene(chain), 1e-12).size() == 14);
 
     const int balls = GENERATE(1, 30, 1000);
     const ContactScene pile = scene(Pile{.balls = balls});
     CHECK(pile.body.size() == static_cast<size_t>(balls) + 1);
-    CHECK(touching(pile, 0).empty());
-    if (balls > 1) CHECK(touching(pile, 0.2 * pile.R).size() > static_cast<size_t>(balls));
+    CHECK(contact_pairs(pile, 0).empty());
+    if (balls > 1) CHECK(contact_pairs(pile, 0.2 * pile.R).size() > static_cast<size_t>(balls));
 }
 
-TEST_CASE("a chain that rolls down a groove goes as one ball would", "[studies][scenes]")
+TEST_CASE("all balls of a chain roll down a groove with the acceleration of a single ball",
+          "[studies][scenes]")
 {
     const RollingChain chain{.balls = 4, .slope = 0.3, .speed = 0};
     const double a = 9.81 * std::sin(0.3) / (1 + 0.4 * chain.R * chain.R / (chain.rho() * chain.rho()));
-    const double t = 0.2, way = 0.5 * a * t * t;
-    auto hard = rigid(scene(chain));
-    hard.solver.tolerance = 1e-11;
-    run(hard, 2e-3, t);
-    auto soft = compliant(scene(chain), {});
-    soft.check(5e-5);
-    run(soft, 5e-5, t);
+    const double t = 0.2, distance = 0.5 * a * t * t;
+    auto rigid_scene = rigid(scene(chain));
+    rigid_scene.solver.tolerance = 1e-11;
+    run(rigid_scene, 2e-3, t);
+    auto compliant_scene = compliant(scene(chain), {});
+    compliant_scene.check(5e-5);
+    run(compliant_scene, 5e-5, t);
     for (int b = 0; b < 4; ++b) {
-        CHECK(hard.body[2 + b].r.x() - 0.2 * b == Approx(-way).epsilon(1e-6));
-        CHECK(soft.body[2 + b].r.x() - 0.2 * b == Approx(-way).epsilon(2e-3));
+        CHECK(rigid_scene.body[2 + b].r.x() - 0.2 * b == Approx(-distance).epsilon(1e-6));
+        CHECK(compliant_scene.body[2 + b].r.x() - 0.2 * b == Approx(-distance).epsilon(2e-3));
     }
 }
 
-TEST_CASE("a chain that is pushed presses the harder the more its balls rub on each other",
+TEST_CASE("the force on a pushed chain agrees with the closed form for any friction between the balls",
           "[studies][scenes]")
 {
     const double mu = GENERATE(0., 0.2);
@@ -75,46 +76,46 @@ TEST_CASE("a chain that is pushed presses the harder the more its balls rub on e
     const double c = mu / std::cos(RollingChain::wall), P_4 = 9.81 * std::sin(0.1) / (1 - c);
     REQUIRE(RollingChain{.balls = 1, .mu_between = mu}.push() == Approx(P_4));
     const int pusher = 6;
-    auto hard = rigid(scene(chain));
-    hard.options.sliding = contact::DviOptions::coulomb;
-    hard.solver.tolerance = 1e-8;
-    run(hard, 2e-3, 0.06);
-    CHECK(load_on(hard, pusher).x() == Approx(-chain.push()).epsilon(1e-4));
-    auto soft = compliant(scene(chain), {});
-    double mean = 0;  // the springs swing
-    run(soft, 5e-5, 0.1);
+    auto rigid_scene = rigid(scene(chain));
+    rigid_scene.options.sliding = contact::DviOptions::coulomb;
+    rigid_scene.solver.tolerance = 1e-8;
+    run(rigid_scene, 2e-3, 0.06);
+    CHECK(load_on(rigid_scene, pusher).x() == Approx(-chain.push()).epsilon(1e-4));
+    auto compliant_scene = compliant(scene(chain), {});
+    double mean = 0;  // the contact springs oscillate
+    run(compliant_scene, 5e-5, 0.1);
     for (int n = 0; n < 1000; ++n) {
-        soft.step(5e-5);
-        mean -= load_on(soft, pusher).x() / 1000;
+        compliant_scene.step(5e-5);
+        mean -= load_on(compliant_scene, pusher).x() / 1000;
     }
     CHECK(mean == Approx(chain.push()).epsilon(1e-2));
 }
 
-TEST_CASE("a pile comes to rest and its bowl carries its weight whether rigid or compliant",
-          "[studies][scenes]")
+TEST_CASE("a rigid and a compliant pile come to rest and the bowl supports their weight", "[studies][scenes]")
 {
     const ContactScene pile = scene(Pile{.balls = 8});
     const double weight = 8 * 9.81;
-    auto hard = rigid(pile);
-    run(hard, 5e-3, 4);
-    CHECK(hard.kinetic_energy() < 1e-6);
-    CHECK(hard.solved.residual <= hard.solver.tolerance);
-    CHECK((load_on(hard, 0) - Vec3(0, 0, -weight)).norm() < 1e-2 * weight);
+    auto rigid_scene = rigid(pile);
+    run(rigid_scene, 5e-3, 4);
+    CHECK(rigid_scene.kinetic_energy() < 1e-6);
+    CHECK(rigid_scene.outcome.residual <= rigid_scene.solver.tolerance);
+    CHECK((load_on(rigid_scene, 0) - Vec3(0, 0, -weight)).norm() < 1e-2 * weight);
 
-    auto soft = compliant(pile, {.stiffness = 2e4});
-    soft.check(4e-4);
-    run(soft, 4e-4, 1.5);
-    CHECK(soft.kinetic_energy() < 1e-6);
-    CHECK((load_on(soft, 0) - Vec3(0, 0, -weight)).norm() < 1e-2 * weight);
-    // The same heap, but for how each came to rest: the centre of mass is as high, against the way of a radius.
+    auto compliant_scene = compliant(pile, {.stiffness = 2e4});
+    compliant_scene.check(4e-4);
+    run(compliant_scene, 4e-4, 1.5);
+    CHECK(compliant_scene.kinetic_energy() < 1e-6);
+    CHECK((load_on(compliant_scene, 0) - Vec3(0, 0, -weight)).norm() < 1e-2 * weight);
+    // The arrangements differ in detail. The centre of mass has the same height within a fifth of a radius.
     double height = 0;
-    for (int b = 1; b <= 8; ++b) height += (soft.body[b].r - hard.body[b].r).z() / 8;
+    for (int b = 1; b <= 8; ++b) height += (compliant_scene.body[b].r - rigid_scene.body[b].r).z() / 8;
     CHECK(std::abs(height) < 0.2 * pile.R);
 }
 
-TEST_CASE("a scene without balls is refused", "[studies][scenes]")
+TEST_CASE("a scene without balls or with a negative radius is rejected", "[studies][scenes]")
 {
-    CHECK_THROWS_WITH(scene(Pile{.balls = 0}), "studies::Pile: there must be a ball, got 0");
+    CHECK_THROWS_WITH(scene(Pile{.balls = 0}),
+                      "studies::Pile: the number of balls must be at least 1, got 0");
     CHECK_THROWS_WITH(scene(RollingChain{.R = -1}),
                       "studies::RollingChain: a radius must be positive, got -1");
 }

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/schemes.hpp"
+
+#include "lie/check.hpp"
 #include "lie/integrator.hpp"
+#include "lie/settings.hpp"
+#include "lie/system.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace hilda::lie {
 
 namespace {
 
-// Built on first use: files enrol their schemes before main, in an order nobody fixes.
+// A local static: the schemes are registered before main(), in an unspecified order of the translation units.
 std::vector<Scheme>& list()
 {
     static std::vector<Scheme> schemes;
@@ -30,18 +36,17 @@ const Scheme& scheme(const std::string& name)
 
 std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
 {
-    const auto refuse_unless = [&](bool Scheme::*takes, const std::string& what) {
-        if (this->*takes) return;
+    const auto require = [&](bool Scheme::*supports, const std::string& what) {
+        if (this->*supports) return;
         std::string names;
         for (const Scheme& s : schemes())
-            if (s.*takes) names += (names.empty() ? "" : ", ") + s.name;
-        reject("integrator " + name, "takes no " + what + "; those that do are " + names, name);
+            if (s.*supports) names += (names.empty() ? "" : ", ") + s.name;
+        reject("integrator " + name, "does not support " + what + "; integrators that do are " + names, name);
     };
     const Rows& rows = system.pattern();
-    if (!rows.algebraic.empty()) refuse_unless(&Scheme::algebraic, "contacts that evolve");
-    if (!rows.regularised.empty())
-        refuse_unless(&Scheme::regularised, "friction in the equations of its step");
-    if (rows.velocity_rows > 0) refuse_unless(&Scheme::nonholonomic, "rolling without slip");
+    if (!rows.algebraic.empty()) require(&Scheme::algebraic, "evolving contacts");
+    if (!rows.regularised.empty()) require(&Scheme::regularised, "implicit friction");
+    if (rows.velocity_rows > 0) require(&Scheme::nonholonomic, "rolling without slip");
     return construct(system, settings);
 }
 

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The inertia of the bodies of a system, the applied loads and their variation.
+
+#pragma once
+
+#include "lie/state.hpp"
+
+#include <vector>
+
+namespace hilda::lie {
+
+/// Inertia of all bodies. It is constant.
+struct Mass {
+    std::vector<double> m;    ///< [kg], positive
+    std::vector<Mat3> J_bar;  ///< [kg m²], body frame, about the centre of mass; symmetric positive definite
+};
+
+/// Applied loads on all bodies.
+struct Loads {
+    std::vector<Vec3> F;      ///< [N], global frame, at the centre of mass
+    std::vector<Vec3> n_bar;  ///< [N m], body frame, without the gyroscopic term
+
+    explicit Loads(int bodies) : F(bodies, Vec3::Zero()), n_bar(bodies, Vec3::Zero()) {}
+    void set_zero()
+    {
+        for (Vec3& f : F) f.setZero();
+        for (Vec3& n : n_bar) n.setZero();
+    }
+};
+
+/// The variation of the loads: block d = ∂(F, n̄ of body `on`)/∂(δr, δθ̄, δṙ, δω̄ of body `by`)
+struct LoadVariation {
+    struct Block {
+        int on = 0, by = 0;
+        Eigen::Matrix<double, 6, 12> d = Eigen::Matrix<double, 6, 12>::Zero();
+    };
+    std::vector<Block> block;
+
+    // workspace for implementations by finite differences
+    State x;
+    Loads plus{0}, minus{0};
+};
+
+}  // namespace hilda::lie

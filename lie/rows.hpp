@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The variations of the constraint rows of a system, as sparse blocks.
+
+#pragma once
+
+#include "lie/so3.hpp"
+
+#include <vector>
+
+namespace hilda::lie {
+
+/// The first variation δΦ = Φ_r δr + Π̄ δθ̄ + Φ_α δα of all rows, with A ← A exp(δθ̄~), as sparse blocks.
+///
+/// Row k has the entries start[k] … start[k+1]-1. An entry holds the six derivatives for one body. The
+/// pattern (start, body, nonzero) is fixed; only the values depend on the state.
+struct Rows {
+    struct Entry {
+        int body = 0;
+        unsigned nonzero = 0b111111;  ///< bit c is clear if component c of (r, pi) is zero in every state
+        Vec3 r = Vec3::Zero();        ///< ∂Φ_k/∂r of the body, global frame
+        Vec3 pi = Vec3::Zero();       ///< Π̄ of row k for the body, body frame
+    };
+
+    /// The algebraic variables first_alpha … first_alpha + count - 1 of State::alpha. They enter the rows
+    /// first … first + rows - 1 and no others. count < rows ≤ 8. The groups are in ascending order of their
+    /// rows.
+    struct AlgebraicGroup {
+        int first = 0, rows = 0, first_alpha = 0, count = 0;
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> D;  ///< ∂Φ/∂α, rows × count
+    };
+
+    /// A pair of regularised friction rows: the nonholonomic rows first and first + 1.
+    ///
+    /// The two multipliers λ [N] model a spring and a dashpot at the end of the step h:
+    ///
+    ///     p λ = K (S + h C v) + D C v,     v = (ṙ, ω̄) at the end of the step,  C the two rows of (Φ_r, Π̄)
+    ///     |λ| ≤ μ N,                       N = max(0, n · (λ_normal_row, λ_normal_row+1, λ_normal_row+2))
+    ///
+    /// p = 1 if the spring and dashpot do not exceed the bound. Otherwise p > 1 scales the compliance such
+    /// that |λ| = μ N. λ is then parallel to the force of spring and dashpot for the velocity at the end of
+    /// the step. BoundedRows determines p.
+    struct Regularised {
+        int first = 0, normal_row = 0;  ///< both rows are unilateral
+        bool solved_first = false;      ///< p is determined before that of the pairs without this flag
+        double K = 0, D = 0, mu = 0;    ///< [N/m] (0: the pair is inactive), [N s/m], [1]
+        Eigen::Vector2d S = Eigen::Vector2d::Zero();  ///< elastic displacement at t_n [m]
+        Vec3 n = Vec3::Zero();                        ///< contact normal, global frame
+        double p = 1, compliance = 0;  ///< set by the integrator; compliance = p mobility(h)/h [1/kg]
+
+        /// 1/(D + h K), the ratio of C v to λ for S = 0 and p = 1 [m/(N s)]; 0 for an inactive pair
+        double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }
+    };
+
+    std::vector<int> start{0};
+    std::vector<Entry> entry;
+    std::vector<AlgebraicGroup> algebraic;
+    std::vector<Regularised> regularised;
+    int velocity_rows = 0;  ///< number of nonholonomic rows, the last ones
+    /// The rows that are inactive in some states, ascending. The saddle system gives an inactive row the
+    /// correction zero. The multiplier of a row must be set to zero when the row becomes inactive.
+    std::vector<int> unilateral;
+
+    /// Sets the compliance of the regularised rows for a step h. In the variables of a step the law of the
+    /// pair is
+    ///
+    ///     C (h v) - compliance (h² λ) = -h K mobility(h) S
+    ///
+    /// For h = 0 a regularised row carries no force: its derivatives are set to zero.
+    void regularise(double h);
+    /// Whether row k belongs to a regularised pair
+    bool is_regularised(int k) const;
+    /// Whether row k is inactive, i.e. all its derivatives are zero. The last row of an algebraic group
+    /// represents the whole group; Φ_α is checked for this row only.
+    bool is_inactive(int k) const;
+
+    int rows() const { return static_cast<int>(start.size()) - 1; }
+    int position_rows() const { return rows() - velocity_rows; }
+    /// Total number over all groups
+    int algebraic_variables() const
+    {
+        int sum = 0;
+        for (const AlgebraicGroup& group : algebraic) sum += group.count;
+        return sum;
+    }
+
+    /// q += factor (Φ_rᵀ λ, Π̄ᵀ λ), six components per body.
+    template <class Lambda, class Q>
+    void add_transpose(double factor, const Lambda& lambda, Q& q) const
+    {
+        for (int k = 0; k < rows(); ++k) {
+            const double l = factor * lambda[k];
+            for (int n = start[k]; n < start[k + 1]; ++n) {
+                q.template segment<3>(6 * entry[n].body) += l * entry[n].r;
+                q.template segment<3>(6 * entry[n].body + 3) += l * entry[n].pi;
+            }
+        }
+    }
+
+    /// q += factor Φ_αᵀ λ, group by group.
+    template <class Lambda, class Q>
+    void add_algebraic_transpose(double factor, const Lambda& lambda, Q&& q) const
+    {
+        int at = 0;
+        for (const AlgebraicGroup& group : algebraic) {
+            for (int c = 0; c < group.count; ++c)
+                for (int k = 0; k < group.rows; ++k)
+                    q[at + c] += factor * group.D(k, c) * lambda[group.first + k];
+            at += group.count;
+        }
+    }
+
+    /// (Φ_r r + Π̄ θ)_k for q = (r, θ), six components per body.
+    template <class Q>
+    double dot(int k, const Q& q) const
+    {
+        double sum = 0;
+        for (int n = start[k]; n < start[k + 1]; ++n)
+            sum += entry[n].r.dot(q.template segment<3>(6 * entry[n].body)) +
+                   entry[n].pi.dot(q.template segment<3>(6 * entry[n].body + 3));
+        return sum;
+    }
+};
+
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// The second variation of all rows: the derivatives of the blocks (Φ_rᵀ, Π̄ᵀ) with respect to the poses.
+///
+/// at(k, a, b) is ∂(r, pi of entry a)/∂(δr, δθ̄ of the body of entry b), both entries of row k counted from
+/// start[k] of the pattern, with A ← A exp(δθ̄~).
+struct SecondVariation {
+    explicit SecondVariation(const Rows& pattern);
+
+    Mat6& at(int k, int a, int b) { return block[first[k] + a * entries[k] + b]; }
+    const Mat6& at(int k, int a, int b) const { return block[first[k] + a * entries[k] + b]; }
+
+    std::vector<int> first, entries;  ///< of each row: its first block, its number of entries
+    std::vector<Mat6> block;
+};
+
+/// The variation of γ of each row, by the entries of the pattern: δγ = Σ r · δr + theta · δθ̄ + rdot · δṙ +
+/// omega · δω̄
+struct GammaVariation {
+    struct Entry {
+        Vec3 r = Vec3::Zero(), theta = Vec3::Zero(), rdot = Vec3::Zero(), omega = Vec3::Zero();
+    };
+    explicit GammaVariation(const Rows& pattern) : entry(pattern.entry.size()) {}
+
+    std::vector<Entry> entry;
+};
+
+}  // namespace hilda::lie

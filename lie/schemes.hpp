@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The list of time-stepping schemes.
+
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hilda::lie {
+
+class Integrator;
+struct Settings;
+class System;
+
+/// A scheme of the list: its name, its properties and its constructor.
+struct Scheme {
+    std::string name;
+    std::string description = {};  ///< one line: the textbook name, and what distinguishes the scheme
+    int order = 1;                 ///< of r, A, ṙ, ω̄ for smooth motions
+    int order_lambda = 1;          ///< of the multipliers, for a start in motion
+    std::string formulation;       ///< rA, rp or reps
+    std::string unknowns;          ///< of the Newton iteration
+    std::string source;            ///< reference
+    /// Whether the scheme chooses internal steps from rtol and atol. Its past steps are not part of State; a run
+    /// cannot be resumed.
+    bool adaptive = false;
+    bool algebraic = false;     ///< supports algebraic variables: evolving contacts
+    bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
+    bool regularised = false;   ///< supports regularised rows: implicit friction
+    std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
+
+    /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of the
+    /// system.
+    std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
+};
+
+/// All schemes, sorted by name
+const std::vector<Scheme>& schemes();
+
+/// The scheme with this name. Throws InvalidInput with the list of names if there is none.
+const Scheme& scheme(const std::string& name);
+
+/// Adds a scheme to the list. Throws std::logic_error if the name is already in the list.
+bool register_scheme(Scheme scheme);
+
+/// Adds the scheme of the class Method, which has the constructor Method(const System&, const Settings&). The file
+/// of a scheme ends with this call.
+template <class Method>
+bool register_scheme(Scheme scheme)
+{
+    scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
+        return std::make_unique<Method>(system, settings);
+    };
+    return register_scheme(std::move(scheme));
+}
+
+}  // namespace hilda::lie

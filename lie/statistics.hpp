@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Counts of a run.
+
+#pragma once
+
+namespace hilda::lie {
+
+/// Numbers of steps, iterations and factorisations of an integrator
+struct Statistics {
+    long steps = 0;
+    long iterations = 0;        ///< of Newton's method
+    long factorizations = 0;    ///< with a new choice of pivots
+    long refactorizations = 0;  ///< with the pivots of an earlier factorisation
+    double correction = 0;      ///< norm of the last correction, in the units of Settings::tolerance
+
+    double iterations_per_step() const
+    {
+        return steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0;
+    }
+};
+
+}  // namespace hilda::lie

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/steps/half_implicit_step.hpp"
+
+#include "lie/system.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace hilda::lie {
+
+HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
+                                   double q)
+    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()),
+      within_bounds(model.pattern())
+{}
+
+int HalfImplicitStep::step(State& x, double h)
+{
+    x_n = x;
+    Attempt attempt(x, x_n);
+    begin(h);
+    within_bounds.all_stick(K);
+    K.assemble(x_n, h);  // the Newton matrix of t_n (Eqs. 3.32, 3.51)
+    set_known_part(h);
+    predict(h);
+    x.t = x_n.t + h;
+    refreshed = false;
+    int corrections = 0;
+    for (int solved = 0; solved <= most_solved; ++solved) {
+        corrections += solve(x, h);
+        if (within_bounds(K, rows_of_node(), z, x)) {
+            accept(x, h);
+            return done(attempt, corrections);
+        }
+        if (refreshed) scale_compliance_as_K(C_n, h);
+    }
+    no_convergence(name, correction, x);
+}
+
+HalfImplicitStep::Vec6 HalfImplicitStep::velocity(int i) const
+{
+    Vec6 v;
+    v << x_n.body[i].rdot, x_n.body[i].omega_bar;
+    return v;
+}
+
+void HalfImplicitStep::leave(State& x, double h)
+{
+    for (int i = 0; i < model.bodies(); ++i) {
+        x.body[i].rdot = z.segment<3>(6 * i) / h;
+        x.body[i].omega_bar = z.segment<3>(6 * i + 3) / h;
+    }
+}
+
+Vec3 HalfImplicitStep::known_moment(int i, double h) const
+{
+    return h * (model.mass().J_bar[i] * (velocity(i).tail<3>() - (w - 1) * h * x_n.body[i].omegadot_bar)) +
+           w * h * h * tau_bar(i, node().body[i]);
+}
+
+void HalfImplicitStep::correct(int k, const State& x)
+{
+    if (k == 1) set_linear_residual(rows_of_node());
+    set_constraint_residual(k, x, q);
+    if (k == 1)
+        K.solve(e);
+    else
+        K.solve_constraints(e);
+    z += e;
+}
+
+/// Newton's method from the present z. Returns the number of corrections.
+int HalfImplicitStep::solve(State& x, double h)
+{
+    for (int k = 1; k <= settings.max_iterations; ++k) {
+        place(x);
+        place_algebraic(x, 1 / q);
+        if (k > patience) refresh(x, h);
+        correct(refreshed ? 1 : k, x);
+        if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
+    }
+    no_convergence(name, correction, x);
+}
+
+void HalfImplicitStep::set_known_part(double h)
+{
+    model.loads(node(), loads);
+    for (int i = 0; i < model.bodies(); ++i) {
+        b.segment<3>(6 * i) =
+            h * model.mass().m[i] * (velocity(i).head<3>() - (w - 1) * h * x_n.body[i].rddot) +
+            w * h * h * loads.F[i];
+        b.segment<3>(6 * i + 3) = known_moment(i, h);
+    }
+    K.constraint_part(b).setZero();
+    K.algebraic_part(b).setZero();
+    if (K.rows().velocity_rows > 0) set_nonholonomic_part(h);
+    for (const Rows::Regularised& c : K.rows().regularised)
+        K.constraint_part(b).segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
+}
+
+/// The nonholonomic rows require C_n (v + v_{n+1}) = 2 ν. This is of second order if v and v_{n+1} are the velocities
+/// half a step before and after t_n.
+void HalfImplicitStep::set_nonholonomic_part(double h)
+{
+    for (int i = 0; i < model.bodies(); ++i) z.segment<6>(6 * i) = h * velocity(i);
+    model.nu(x_n, K.constraint_part(e));
+    const Rows& C = K.rows();
+    for (int k = C.position_rows(); k < C.rows(); ++k)
+        K.constraint_part(b)[k] = 2 * h * K.constraint_part(e)[k] - C.dot(k, z);
+}
+
+/// Initial guess from the accelerations and multipliers of the previous step                          Eq. 3.34
+void HalfImplicitStep::predict(double h)
+{
+    for (int i = 0; i < model.bodies(); ++i) {
+        const Motion& body = x_n.body[i];
+        z.segment<6>(6 * i) = h * velocity(i);
+        z.segment<3>(6 * i) += h * h * body.rddot;
+        z.segment<3>(6 * i + 3) += h * h * body.omegadot_bar;
+    }
+    K.constraint_part(z) = w * h * h * x_n.lambda;
+    K.algebraic_part(z).setZero();
+}
+
+/// Norm of the correction in r, θ̄ and α, the unknowns of Eqs. 3.27 and 3.43
+double HalfImplicitStep::length()
+{
+    double sum = K.algebraic_part(e).squaredNorm() / (q * q);
+    for (int i = 0; i < model.bodies(); ++i)
+        sum += e.segment<3>(6 * i).squaredNorm() / (q * q) + e.segment<3>(6 * i + 3).squaredNorm();
+    return std::sqrt(sum);
+}
+
+/// Assembles K at the iterate x. Used when the iteration with K of t_n converges too slowly.
+void HalfImplicitStep::refresh(const State& x, double h)
+{
+    if (!refreshed) C_n = K.rows();
+    refreshed = true;
+    K.assemble(x, h);
+}
+
+/// Applies the compliance scales of K to the rows C.
+void HalfImplicitStep::scale_compliance_as_K(Rows& C, double h) const
+{
+    for (size_t n = 0; n < C.regularised.size(); ++n) C.regularised[n].p = K.rows().regularised[n].p;
+    C.regularise(h);
+}
+
+void HalfImplicitStep::accept(State& x, double h)
+{
+    place(x);
+    place_algebraic(x, 1 / q);
+    x.lambda = K.constraint_part(z) / (w * h * h);
+    b.setZero();
+    rows_of_node().add_transpose(1, x.lambda, b);
+    for (int i = 0; i < model.bodies(); ++i) {
+        Motion& body = x.body[i];
+        body.A = orthonormalised(body.A);
+        body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / model.mass().m[i];  // Eqs. 3.24, 3.39
+        body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, node().body[i]) - b.segment<3>(6 * i + 3));
+    }
+    leave(x, h);
+}
+
+}  // namespace hilda::lie

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <CLI/Version.hpp>
 #include <hilda/version.hpp>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -77,15 +76,6 @@ void sync_directory(const std::string& path)
     close(descriptor);
 }
 
-std::string processor()
-{
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name"))
-            if (const size_t at = line.find(": "); at != std::string::npos) return line.substr(at + 2);
-    return "unknown";
-}
-
 }  // namespace
 
 void write_file(const std::string& name, const std::string& content)
@@ -143,32 +133,40 @@ void make_directory(const std::string& directory)
     if (error) throw IoError(directory + ": cannot be created: " + error.message());
 }
 
-std::string as_text(const nlohmann::ordered_json& json)
+std::string processor()
 {
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name"))
+            if (const size_t at = line.find(": "); at != std::string::npos) return line.substr(at + 2);
+    return "unknown";
 }
 
-nlohmann::ordered_json provenance(const std::string& command_line, int threads)
+std::vector<std::pair<std::string, std::string>> libraries()
 {
-    return {
-        {"version", version::number},
-        {"git", version::git},
-        {"build_type", version::build_type},
-        {"flags", version::flags},
-        {"compiler", version::compiler},
-        {"libraries",
-         {{"Eigen", version::eigen},
-          {"KLU", version::klu},
-          {"SPQR", version::spqr},
-          {"GSL", version::gsl},
-          {"SUNDIALS", version::sundials},
-          {"CLI11", CLI11_VERSION},
-          {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-          {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-                                        NLOHMANN_JSON_VERSION_PATCH)}}},
-        {"command_line", command_line},
-        {"cpu", processor()},
-        {"threads", threads}};
+    return {{"Eigen", version::eigen},
+            {"KLU", version::klu},
+            {"SPQR", version::spqr},
+            {"GSL", version::gsl},
+            {"SUNDIALS", version::sundials},
+            {"CLI11", CLI11_VERSION},
+            {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+            {"nlohmann_json", version::nlohmann_json}};
+}
+
+Json provenance(const std::string& command_line, int threads)
+{
+    Json all = Json::object();
+    for (const auto& [library, number] : libraries()) all[library] = number;
+    return {{"version", version::number},
+            {"git", version::git},
+            {"build_type", version::build_type},
+            {"flags", version::flags},
+            {"compiler", version::compiler},
+            {"libraries", all},
+            {"command_line", command_line},
+            {"cpu", processor()},
+            {"threads", threads}};
 }
 
 }  // namespace hilda::studies

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "studies/exit_codes.hpp"
-
-#include <nlohmann/json_fwd.hpp>
+#include "studies/json.hpp"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace hilda::studies {
 
@@ -28,11 +29,12 @@ bool is_missing_or_empty(const std::string& directory);
 /// Creates the directory and its parents. IoError.
 void make_directory(const std::string& directory);
 
-/// JSON text with an indentation of two spaces and a final line break. Invalid UTF-8 (possible in a command
-/// line) is replaced.
-std::string as_text(const nlohmann::ordered_json& json);
+/// Name and version of each library
+std::vector<std::pair<std::string, std::string>> libraries();
+/// Model name of the processor, "unknown" if the system does not tell it
+std::string processor();
 
 /// Version, git state, compiler and flags, libraries, command line, processor and number of threads, as JSON
-nlohmann::ordered_json provenance(const std::string& command_line, int threads);
+Json provenance(const std::string& command_line, int threads);
 
 }  // namespace hilda::studies

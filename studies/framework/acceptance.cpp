@@ -21,10 +21,10 @@ Criterion criterion(const std::string& what, double measured, double value, doub
     return between(what, measured, value - tolerance, value + tolerance);
 }
 
-bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, nlohmann::ordered_json& json)
+bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, Json& json)
 {
     Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"passed"}, {"what"}});
-    json["checks"] = nlohmann::ordered_json::array();
+    json["checks"] = Json::array();
     for (const Criterion& d : criteria) {
         table.add({d.measured, d.least, d.most, d.passed() ? "yes" : "NO", d.what});
         json["checks"].push_back({{"what", d.what},

@@ -6,7 +6,6 @@
 #include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <ctime>
 
@@ -89,9 +88,9 @@ std::string failures(const std::vector<const Run*>& run_pointers)
     return lines.empty() ? lines : "\nfailed:\n" + lines;
 }
 
-nlohmann::ordered_json as_json(const Run& m)
+Json as_json(const Run& m)
 {
-    nlohmann::ordered_json out = {{"problem", m.c->problem.name}, {"integrator", m.scheme->name}};
+    Json out = {{"problem", m.c->problem.name}, {"integrator", m.scheme->name}};
     if (m.rtol > 0)
         out["rtol"] = m.rtol;
     else

@@ -7,8 +7,7 @@
 #include "lie/settings.hpp"
 #include "lie/statistics.hpp"
 #include "studies/framework/benchmark.hpp"
-
-#include <nlohmann/json_fwd.hpp>
+#include "studies/json.hpp"
 
 #include <span>
 
@@ -54,6 +53,6 @@ std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
 std::string failures(const std::vector<const Run*>& run_pointers);
 
 /// problem, integrator, h or rtol, status and message of a run, for study.json
-nlohmann::ordered_json as_json(const Run& run);
+Json as_json(const Run& run);
 
 }  // namespace hilda::studies

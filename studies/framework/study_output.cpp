@@ -14,37 +14,35 @@
 
 namespace hilda::studies {
 
-using nlohmann::ordered_json;
-
 namespace {
 
-ordered_json whole(const StudyOptions& options, const StudyOutput& output)
+Json whole(const StudyOptions& options, const StudyOutput& output)
 {
     const lie::Settings& s = options.settings;
     constexpr const char* solvers[] = {"auto", "klu", "condensed"};
-    ordered_json json = {{"study", output.kind},
-                         {"tolerance", s.tolerance},
-                         {"settings",
-                          {{"tolerance", s.tolerance},
-                           {"linear_solver", solvers[static_cast<int>(s.linear_solver)]},
-                           {"rho_infinity", s.rho_infinity},
-                           {"reparametrise", s.reparametrise},
-                           {"rtol", s.rtol},
-                           {"atol", s.atol > 0 ? ordered_json(s.atol) : ordered_json("as rtol")}}},
-                         {"seed", options.seed},
-                         {"set", options.set},
-                         {"provenance", provenance(options.command_line, options.jobs)}};
+    Json json = {{"study", output.kind},
+                 {"tolerance", s.tolerance},
+                 {"settings",
+                  {{"tolerance", s.tolerance},
+                   {"linear_solver", solvers[static_cast<int>(s.linear_solver)]},
+                   {"rho_infinity", s.rho_infinity},
+                   {"reparametrise", s.reparametrise},
+                   {"rtol", s.rtol},
+                   {"atol", s.atol > 0 ? Json(s.atol) : Json("as rtol")}}},
+                 {"seed", options.seed},
+                 {"set", options.set},
+                 {"provenance", provenance(options.command_line, options.jobs)}};
     if (options.repeats > 0) json["repeats"] = options.repeats;
     json.update(output.json);
     return json;
 }
 
-void write(const StudyOptions& options, const StudyOutput& output, const ordered_json& json)
+void write(const StudyOptions& options, const StudyOutput& output, const Json& json)
 {
     const std::string in = options.output + "/";
     std::vector<std::string> written = {"study.csv", "study.json"};
     write_file(in + "study.csv", output.table);
-    write_file(in + "study.json", as_text(json));
+    write_file(in + "study.json", json.text());
     for (const auto& [name, content] : output.files) {
         write_file(in + name, content);
         written.push_back(name);
@@ -64,9 +62,9 @@ void write(const StudyOptions& options, const StudyOutput& output, const ordered
 int finish(const StudyOptions& options, const StudyOutput& output,
            const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured)
 {
-    const ordered_json json = whole(options, output);
+    const Json json = whole(options, output);
     if (options.json)
-        std::cout << as_text(json);
+        std::cout << json.text();
     else if (!options.quiet)
         std::cout << output.text.str() << failures(run_pointers);
     if (!options.output.empty()) write(options, output, json);
@@ -78,11 +76,6 @@ int finish(const StudyOptions& options, const StudyOutput& output,
         return exit_code::numerical_failure;
     }
     return as_expected(options.expect, measured) ? exit_code::done : exit_code::expectation_failed;
-}
-
-ordered_json number_or_null(double value)
-{
-    return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
 }  // namespace hilda::studies

@@ -6,8 +6,7 @@
 #include "studies/framework/expectations.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/table.hpp"
-
-#include <nlohmann/json.hpp>
+#include "studies/json.hpp"
 
 #include <sstream>
 #include <utility>
@@ -18,8 +17,7 @@ struct StudyOutput {
     std::string kind = {};
     std::ostringstream text = {};  ///< text for stdout
     std::string table = {};        ///< contents of study.csv
-    nlohmann::ordered_json json =
-        nlohmann::ordered_json::object();  ///< contents of study.json after the common keys
+    Json json = Json::object();    ///< contents of study.json after the common keys
     std::vector<std::pair<std::string, std::string>> files = {};  ///< further files: name and contents
     std::vector<std::string> figures = {};                        ///< files that plots/KIND.py draws
 };
@@ -28,8 +26,5 @@ struct StudyOutput {
 /// an expectation failed. The common keys of study.json are settings, seed, repeats and provenance.
 int finish(const StudyOptions& options, const StudyOutput& output,
            const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured);
-
-/// The number, or null if it is not finite
-nlohmann::ordered_json number_or_null(double value);
 
 }  // namespace hilda::studies

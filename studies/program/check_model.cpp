@@ -11,7 +11,6 @@
 #include "studies/running/contact_rows.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iostream>
@@ -92,17 +91,14 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
 }
 
 /// null if there is no limit (infinite) or no value (NaN)
-nlohmann::ordered_json finite_or_null(double stable_step)
-{
-    return std::isfinite(stable_step) ? nlohmann::ordered_json(stable_step) : nullptr;
-}
+Json finite_or_null(double stable_step) { return std::isfinite(stable_step) ? Json(stable_step) : nullptr; }
 
 std::string stability_text(double step)
 {
     return std::isfinite(step) ? fmt::format("stable up to {:.3g} s", step) : "stable with any step";
 }
 
-nlohmann::ordered_json as_json(const CompliantContactInfo& c)
+Json as_json(const CompliantContactInfo& c)
 {
     return {{"name", c.name},
             {"gap", c.gap},
@@ -175,9 +171,9 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
     return all;
 }
 
-nlohmann::ordered_json as_json(const lie::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json as_json(const lie::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-nlohmann::ordered_json as_json(const ContactConstraintInfo& c)
+Json as_json(const ContactConstraintInfo& c)
 {
     return {{"name", c.name},
             {"rows", c.rows},
@@ -228,7 +224,7 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
     return all;
 }
 
-nlohmann::ordered_json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
+Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
 }  // namespace
 
@@ -256,14 +252,14 @@ int check_model(const CheckOptions& options)
     const Change change_of_start = change(model, given, d.x);
 
     if (options.json) {
-        nlohmann::ordered_json out = {
+        Json out = {
             {"status", "ok"},
             {"model", d.name},
             {"bodies", model.bodies()},
             {"constraints", model.constraints()},
             {"forces", other_forces},
-            {"contacts", nlohmann::ordered_json::array()},
-            {"evolving_contacts", nlohmann::ordered_json::array()},
+            {"contacts", Json::array()},
+            {"evolving_contacts", Json::array()},
             {"rows", start.rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
@@ -285,7 +281,7 @@ int check_model(const CheckOptions& options)
                                   {"A", as_json(change_of_start.A)},
                                   {"rdot", as_json(change_of_start.rdot)},
                                   {"omega_bar", as_json(change_of_start.omega_bar)}};
-        std::cout << as_text(out);
+        std::cout << out.text();
         return exit_code::done;
     }
 

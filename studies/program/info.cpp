@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <hilda/version.hpp>
-#include <nlohmann/json.hpp>
 
 #include <sys/utsname.h>
 
@@ -36,12 +35,13 @@ std::string version_line() { return fmt::format("hilda {} ({})", version::number
 int info(bool json, const std::string& command_line)
 {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    nlohmann::ordered_json all = provenance(command_line, cores);
+    Json all = provenance(command_line, cores);
     all["system"] = system_name();
     all["devices"] = devices;
-    all["figures"] = python_and_matplotlib();
+    const std::string figures = python_and_matplotlib();
+    all["figures"] = figures;
     if (json) {
-        std::cout << as_text(all);
+        std::cout << all.text();
         return exit_code::done;
     }
     const auto line = [](const char* what, const std::string& text) {
@@ -49,14 +49,14 @@ int info(bool json, const std::string& command_line)
     };
     line("version", fmt::format("{}, git {}", version::number, version::git));
     line("build", fmt::format("{}, {}, {}", version::build_type, version::compiler, version::flags));
-    std::string libraries;
-    for (const auto& [name, number] : all["libraries"].items())
-        libraries += (libraries.empty() ? "" : ", ") + name + ' ' + number.get<std::string>();
-    line("libraries", libraries);
+    std::string versions;
+    for (const auto& [name, number] : libraries())
+        versions += (versions.empty() ? "" : ", ") + name + ' ' + number;
+    line("libraries", versions);
     line("system", system_name());
-    line("processor", fmt::format("{}, {} threads", all["cpu"].get<std::string>(), cores));
+    line("processor", fmt::format("{}, {} threads", processor(), cores));
     line("devices", devices);
-    line("figures", all["figures"].get<std::string>());
+    line("figures", figures);
     line("registered", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),
                                    problems().size(), studies().size()));
     return exit_code::done;

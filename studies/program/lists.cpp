@@ -8,7 +8,6 @@
 #include "studies/output.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iostream>
@@ -37,13 +36,13 @@ void print_aligned(const std::vector<Line>& lines)
 void show(bool json, const Line& keys, const std::vector<Line>& lines)
 {
     if (!json) return print_aligned(lines);
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    Json all = Json::array();
     for (const Line& line : lines) {
-        nlohmann::ordered_json one;
+        Json one;
         for (size_t c = 0; c < keys.size(); ++c) one[keys[c]] = line[c];
         all.push_back(one);
     }
-    std::cout << as_text(all);
+    std::cout << all.text();
 }
 
 }  // namespace
@@ -80,20 +79,19 @@ std::string contacts_of(const lie::Scheme& s)
 int list_integrators(bool json)
 {
     if (json) {
-        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        Json all = Json::array();
         for (const lie::Scheme& s : lie::schemes())
             all.push_back({{"name", s.name},
                            {"description", s.description},
-                           {"order", s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order)},
-                           {"order_lambda",
-                            s.adaptive ? nlohmann::ordered_json() : nlohmann::ordered_json(s.order_lambda)},
+                           {"order", s.adaptive ? Json() : Json(s.order)},
+                           {"order_lambda", s.adaptive ? Json() : Json(s.order_lambda)},
                            {"adaptive", s.adaptive},
                            {"evolving_contacts", s.algebraic},
                            {"rolling_contacts", s.algebraic && s.nonholonomic},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"source", s.source}});
-        std::cout << as_text(all);
+        std::cout << all.text();
         return exit_code::done;
     }
     std::vector<Line> lines = {

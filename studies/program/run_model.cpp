@@ -8,13 +8,9 @@
 #include "studies/program/named_model.hpp"
 #include "studies/running/single_run.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <iostream>
 
 namespace hilda::studies {
-
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -60,7 +56,7 @@ int run_model(const RunOptions& options)
     const std::vector<std::string> directory = directories(options);
     const Interrupt interrupt;
     int code = exit_code::done;
-    ordered_json all = ordered_json::array();
+    Json all = Json::array();
     for (size_t k = 0; k < directory.size(); ++k) {
         if (Interrupt::caught() != 0) {
             code = exit_code::signal + Interrupt::caught();
@@ -78,7 +74,7 @@ int run_model(const RunOptions& options)
         if (k > 0) std::cout << '\n';
         print(result, std::cout);
     }
-    if (options.json) std::cout << as_text(directory.size() == 1 ? all[0] : ordered_json{{"runs", all}});
+    if (options.json) std::cout << (directory.size() == 1 ? all.at(0) : Json{{"runs", all}}).text();
     return code;
 }
 

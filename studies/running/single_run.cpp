@@ -14,7 +14,6 @@
 #include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -338,7 +337,7 @@ void SingleRun::finish()
         result.files.emplace_back("run.pvd");
     }
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
-    write_file(path("summary.json"), as_text(summary(result)));
+    write_file(path("summary.json"), summary(result).text());
 }
 
 void SingleRun::log(const std::string& what) const

@@ -6,7 +6,6 @@
 #include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <ostream>
@@ -24,9 +23,9 @@ std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, 
 
 }  // namespace
 
-nlohmann::ordered_json summary(const RunResult& r)
+Json summary(const RunResult& r)
 {
-    nlohmann::ordered_json out = {{"status", r.status}, {"exit_code", r.exit_code}};
+    Json out = {{"status", r.status}, {"exit_code", r.exit_code}};
     if (!r.message.empty()) out["message"] = r.message;
     out["model"] = {{"name", r.model},
                     {"bodies", r.bodies},
@@ -60,7 +59,7 @@ nlohmann::ordered_json summary(const RunResult& r)
                          {"energy_drift", r.invariants.energy_drift},
                          {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
     if (!r.contacts.empty()) {
-        out["contacts"] = nlohmann::ordered_json::array();
+        out["contacts"] = Json::array();
         for (size_t k = 0; k < r.invariants.contact.size(); ++k) {
             const ContactExtremes& c = r.invariants.contact[k];
             out["contacts"].push_back({{"name", r.contacts[k]},
@@ -71,7 +70,7 @@ nlohmann::ordered_json summary(const RunResult& r)
     }
     if (!r.events.empty()) {
         constexpr size_t most = 1000;  // a bouncing ball that comes to rest causes many events
-        out["contact_events"] = {{"count", r.events.size()}, {"first", nlohmann::ordered_json::array()}};
+        out["contact_events"] = {{"count", r.events.size()}, {"first", Json::array()}};
         for (size_t k = 0; k < std::min(most, r.events.size()); ++k) {
             const RunResult::Event& e = r.events[k];
             out["contact_events"]["first"].push_back(

@@ -5,9 +5,8 @@
 
 #include "dae/start.hpp"
 #include "lie/statistics.hpp"
+#include "studies/json.hpp"
 #include "studies/running/csv_trajectory.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <iosfwd>
 #include <string>
@@ -49,7 +48,7 @@ struct RunResult {
 };
 
 /// The contents of summary.json
-nlohmann::ordered_json summary(const RunResult& result);
+Json summary(const RunResult& result);
 
 /// Prints the result as a short table.
 void print(const RunResult& result, std::ostream& out);

@@ -24,8 +24,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "compare";
 constexpr long min_rows = 100, max_rows = 1000;  // limits on the number of rows of compare.csv
 constexpr std::array<const char*, 4> quantities = {"r", "A", "v", "omega"};
@@ -147,11 +145,11 @@ std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>&
     return csv;
 }
 
-ordered_json as_json(const std::vector<ComparedRun>& runs)
+Json as_json(const std::vector<ComparedRun>& runs)
 {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const ComparedRun& run : runs) {
-        ordered_json row = as_json(static_cast<const Run&>(run));
+        Json row = as_json(static_cast<const Run&>(run));
         for (size_t q = 0; q < 4; ++q)
             row[std::string("max_") + quantities[q]] = number_or_null(run.largest[q]);
         for (size_t q = 0; q < 4; ++q) row[std::string("end_") + quantities[q]] = number_or_null(run.last[q]);

@@ -31,8 +31,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "convergence";
 // Rounding level of an error, relative to the size of the quantity; reference solutions are accurate to 1e-13
 constexpr double rounding = 2e-12;
@@ -227,15 +225,15 @@ Table as_table(const std::vector<ConvergenceRun>& runs)
 }
 
 /// The series of study.json
-ordered_json as_json(const std::vector<Series>& all)
+Json as_json(const std::vector<Series>& all)
 {
-    ordered_json out = ordered_json::array();
+    Json out = Json::array();
     for (const Series& series : all) {
         const ConvergenceRun& first = *series.front();
-        ordered_json fits = ordered_json::object(), rows = ordered_json::array();
+        Json fits = Json::object(), rows = Json::array();
         for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
         for (const ConvergenceRun* run : series) {
-            ordered_json row = {{"h", run->h}, {"status", run->status}};
+            Json row = {{"h", run->h}, {"status", run->status}};
             if (!run->message.empty()) row["message"] = run->message;
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
             row["iterations_per_step"] = run->statistics.iterations_per_step();

@@ -22,8 +22,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "energy";
 constexpr long max_rows = 1000;  // limit on the rows per run in energy.csv
 
@@ -128,11 +126,11 @@ std::string curves(const std::vector<EnergyRun>& runs)
     return csv;
 }
 
-ordered_json as_json(const std::vector<EnergyRun>& runs)
+Json as_json(const std::vector<EnergyRun>& runs)
 {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const EnergyRun& run : runs) {
-        ordered_json row = as_json(static_cast<const Run&>(run));
+        Json row = as_json(static_cast<const Run&>(run));
         row.update({{"energy_start", run.start},
                     {"end_drift", number_or_null(run.drift)},
                     {"max_drift", number_or_null(run.largest)},

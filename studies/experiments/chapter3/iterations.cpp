@@ -19,8 +19,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "iterations";
 constexpr long max_bins = 300;  // limit on the rows per run in iterations.csv
 
@@ -131,11 +129,11 @@ std::string over_time(const std::vector<IterationsRun>& runs)
     return csv;
 }
 
-ordered_json as_json(const std::vector<IterationsRun>& runs)
+Json as_json(const std::vector<IterationsRun>& runs)
 {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const IterationsRun& run : runs) {
-        ordered_json row = as_json(static_cast<const Run&>(run));
+        Json row = as_json(static_cast<const Run&>(run));
         row.update({{"steps", run.statistics.steps},
                     {"iterations_per_step", number_or_null(run.mean())},
                     {"max_iterations", run.max_iterations},

@@ -23,8 +23,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "scaling";
 const std::string baseline = "rA-full-1";
 constexpr int fit_from = 64;  // smallest N of the fit; below, the costs independent of N matter
@@ -137,11 +135,11 @@ void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std
     table.print(out);
 }
 
-ordered_json as_json(const std::vector<ScalingRun>& runs)
+Json as_json(const std::vector<ScalingRun>& runs)
 {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const ScalingRun& run : runs) {
-        ordered_json row = as_json(static_cast<const Run&>(run));
+        Json row = as_json(static_cast<const Run&>(run));
         row.update({{"bars", run.N},
                     {"us_per_step", number_or_null(run.microseconds().median)},
                     {"us_per_step_min", number_or_null(run.microseconds().least)},
@@ -195,7 +193,7 @@ int scaling(const StudyOptions& options)
         options.repeats, options.jobs,
         *std::max_element(chain.start_seconds.begin(), chain.start_seconds.end()));
     std::vector<Measured> measurements;
-    ordered_json exponents = ordered_json::object();
+    Json exponents = Json::object();
     for (const lie::Scheme* s : schemes) {
         const Exponent p = exponent_of(runs, s);
         measurements.push_back(

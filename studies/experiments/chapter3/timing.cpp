@@ -18,8 +18,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "timing";
 const std::string baseline = "rA-full-1";
 
@@ -109,11 +107,11 @@ void print_half_over_full(const std::vector<StepTimeRun>& runs, std::ostream& ou
     out << fmt::format("mean {:.3f}\n", sum / static_cast<double>(count));
 }
 
-ordered_json as_json(const std::vector<StepTimeRun>& runs)
+Json as_json(const std::vector<StepTimeRun>& runs)
 {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const StepTimeRun& run : runs) {
-        ordered_json row = as_json(static_cast<const Run&>(run));
+        Json row = as_json(static_cast<const Run&>(run));
         row.update({{"us_per_step", number_or_null(run.microseconds().median)},
                     {"us_per_step_min", number_or_null(run.microseconds().least)},
                     {"us_per_step_max", number_or_null(run.microseconds().most)},

@@ -25,8 +25,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "work-precision";
 constexpr double target_error = 1e-3;  // rms error of r for which the CPU time is interpolated [m]
 
@@ -152,14 +150,14 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ost
                 : fmt::format("no integrator reaches an rms error of {:.0e} m\n", target_error));
 }
 
-ordered_json as_json(const std::vector<WorkSeries>& all)
+Json as_json(const std::vector<WorkSeries>& all)
 {
-    ordered_json out = ordered_json::array();
+    Json out = Json::array();
     for (const WorkSeries& series : all) {
         const WorkNeeded w = work_to_target(series);
-        ordered_json rows = ordered_json::array();
+        Json rows = Json::array();
         for (const WorkRun* run : series) {
-            ordered_json row = as_json(static_cast<const Run&>(*run));
+            Json row = as_json(static_cast<const Run&>(*run));
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
             row["steps"] = run->statistics.steps;
             row["iterations_per_step"] = run->statistics.iterations_per_step();

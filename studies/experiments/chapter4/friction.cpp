@@ -29,7 +29,6 @@ namespace hilda::studies {
 namespace {
 
 using namespace friction;
-using nlohmann::ordered_json;
 
 const std::string kind = "friction";
 constexpr size_t max_rows = 2000;  // limit on the rows per run in NAME.csv
@@ -262,7 +261,7 @@ int study(const StudyOptions& options)
                  {"tolerance", "{:.1e}"},
                  {"by"},
                  {"passed"}});
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     size_t criteria = 0, failed = 0;
     for (SelectedExperiment& c : all) {
         if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), c.checks);

@@ -29,8 +29,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "incline-sweep";
 constexpr double degree = std::numbers::pi / 180;
 const std::array<const char*, 4> state_names = {"rest", "rolling", "rolling with slip", "slip"};
@@ -310,7 +308,7 @@ int incline_sweep(const StudyOptions& options)
         {"h", h},
         {"end", end},
         {"grid", g.name},
-        {"states", state_names},
+        {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
         {"rest_limit", {{"least", number_or_null(b.rest.least)}, {"most", number_or_null(b.rest.most)}}},
         {"rolling_limit",
          {{"least", number_or_null(b.rolling.least)}, {"most", number_or_null(b.rolling.most)}}},

@@ -28,8 +28,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 const std::string kind = "stacking";
 constexpr double kilogram = 1000;  // [g]
 constexpr int refinement = 5;      // ratio of the steps of the cell that --check computes again
@@ -287,7 +285,7 @@ int stacking(const StudyOptions& options)
     if (options.check) checks = criteria(cells, g, refined, h);
     int undecided = 0;
     for (const StackCell& c : cells) undecided += c.undecided;
-    ordered_json curves = ordered_json::array();
+    Json curves = Json::array();
     output.text << '\n';
     for (const double gap : g.gaps) {
         const MassCurve c = curve(cells, gap);

@@ -41,7 +41,6 @@ namespace hilda::studies {
 namespace {
 
 using contact::EvolvingContact;
-using nlohmann::ordered_json;
 namespace norm = evolving_norm;
 
 const std::string kind = "evolving-contact";

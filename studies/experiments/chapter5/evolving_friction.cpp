@@ -38,7 +38,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
 using reference::ContactInstant;
 using reference::PlanarBowl;
 

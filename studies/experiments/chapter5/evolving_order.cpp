@@ -33,7 +33,6 @@ namespace hilda::studies {
 
 namespace {
 
-using nlohmann::ordered_json;
 namespace norm = evolving_norm;
 
 const std::string kind = "evolving-order";
@@ -127,15 +126,15 @@ Table as_table(const std::vector<OrderRun>& runs)
     return table;
 }
 
-ordered_json as_json(const std::vector<OrderSeries>& all)
+Json as_json(const std::vector<OrderSeries>& all)
 {
-    ordered_json out = ordered_json::array();
+    Json out = Json::array();
     for (const OrderSeries& series : all) {
         const OrderRun& first = *series.front();
-        ordered_json fits = ordered_json::object(), rows = ordered_json::array();
+        Json fits = Json::object(), rows = Json::array();
         for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
         for (const OrderRun* run : series) {
-            ordered_json row = {{"h", run->h}, {"status", run->status}};
+            Json row = {{"h", run->h}, {"status", run->status}};
             for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->error[n]);
             rows.push_back(row);
         }

@@ -38,7 +38,6 @@ namespace {
 
 using lie::Vec3;
 using methods::Method;
-using nlohmann::ordered_json;
 
 const std::string kind = "contact-methods";
 const std::vector<std::string> parts = {"bowl", "many", "chain", "pile"};

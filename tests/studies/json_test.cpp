@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/json.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+using hilda::studies::Json;
+using nlohmann::ordered_json;
+
+namespace {
+
+std::string text(const ordered_json& json)
+{
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TEST_CASE("studies: Json writes the text of nlohmann::ordered_json")
+{
+    SECTION("numbers, texts and truth values")
+    {
+        CHECK(Json().text() == "null\n");
+        CHECK(Json(nullptr).text() == "null\n");
+        CHECK(Json(true).text() == "true\n");
+        CHECK(Json("a \"b\"\n").text() == text("a \"b\"\n"));
+        for (const double x : {0.0, -0.0, 1.0, 0.1, 1e-300, 1e22, 1.0 / 3, -2.5e-7})
+            CHECK(Json(x).text() == text(x));
+        for (const double x : {infinity, -infinity, std::nan("")}) {
+            CHECK(Json(x).text() == "null\n");
+            CHECK(hilda::studies::number_or_null(x).text() == "null\n");
+        }
+        CHECK(Json(-3).text() == "-3\n");
+        CHECK(Json(std::uint32_t{4294967295}).text() == "4294967295\n");
+        CHECK(Json(std::size_t{1} << 53).text() == "9007199254740992\n");
+        CHECK(Json("\xff").text() == text("\xff"));  // not UTF-8
+    }
+    SECTION("the initializer list of a value")
+    {
+        const std::string name = "n";
+        const std::vector<std::string> words = {"a", "b"};
+        const Json ours = {{"name", name},
+                           {"two", {"x", "y"}},
+                           {"pairs", {{"k", 1}, {"l", {{"m", nullptr}}}}},
+                           {"mixed", {{"k", 1}, 2.5}},
+                           {"point", {0.5, 1.5, 2.5}},
+                           {"words", words},
+                           {"none", std::vector<int>{}},
+                           {"empty", Json::object()}};
+        const ordered_json theirs = {{"name", name},
+                                     {"two", {"x", "y"}},
+                                     {"pairs", {{"k", 1}, {"l", {{"m", nullptr}}}}},
+                                     {"mixed", {{"k", 1}, 2.5}},
+                                     {"point", {0.5, 1.5, 2.5}},
+                                     {"words", words},
+                                     {"none", std::vector<int>{}},
+                                     {"empty", ordered_json::object()}};
+        CHECK(ours.text() == text(theirs));
+    }
+    SECTION("changes")
+    {
+        Json ours;
+        ordered_json theirs;
+        ours["b"] = 1;
+        theirs["b"] = 1;
+        ours["a"]["c"].push_back("d");
+        theirs["a"]["c"].push_back("d");
+        ours.update({{"b", 2}, {"e", false}});
+        theirs.update({{"b", 2}, {"e", false}});
+        const Json copy = ours;
+        ours["b"] = 3;
+        CHECK(copy.text() == text(theirs));
+        CHECK(copy.size() == 3);
+        CHECK(ours.text() != copy.text());
+    }
+}
+
+TEST_CASE("studies: Json refuses operations of another kind of value")
+{
+    Json number = 1, array = Json::array();
+    CHECK_THROWS_AS(number["a"], std::logic_error);
+    CHECK_THROWS_AS(array["a"], std::logic_error);
+    CHECK_THROWS_AS(number.push_back(1), std::logic_error);
+    CHECK_THROWS_AS(array.update({1, 2}), std::logic_error);
+    CHECK_THROWS_AS(array.at(0), std::out_of_range);
+    CHECK(array.size() == 0);
+}

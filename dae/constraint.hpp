@@ -8,13 +8,14 @@
 
 namespace hilda::dae {
 
-/// Position rows Φ(r, A, α) = 0 of two bodies with algebraic variables α, and velocity rows C v = 0.
+/// Position rows Φ(r, A, α) = 0 of two bodies with algebraic variables α, and velocity rows C_v v = 0.
 ///
-///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α) = 0                      Fang (2022), Eqs. 5.31 to 5.36
+///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α) = 0,    C_v v = 0        Fang (2022), Eqs. 5.31 to 5.36
 ///
-/// C = (Φ_r, Π̄) holds the derivatives of all rows and v = (ṙ, ω̄) the velocities. The constraint has fewer
-/// algebraic variables than position rows. Its velocity rows are nonholonomic constraints such as rolling.
-/// They have no Φ and may be regularised, as friction rows are. No row depends explicitly on time: ν = 0.
+/// v = (ṙ, ω̄) are the velocities. C = (Φ_r, Π̄) holds the derivatives of all rows, and C_v is its part for
+/// the velocity rows. The constraint has fewer algebraic variables than position rows. Its velocity rows
+/// are nonholonomic constraints such as rolling. They have no Φ. They may be regularised, as friction rows
+/// are. No row depends explicitly on time: ν = 0.
 ///
 /// Use this class for a constraint that needs variables of its own, such as the contact points of two bodies
 /// in contact. A single scalar row without such variables is a Block.
@@ -44,7 +45,8 @@ public:
     /// each pair is N = n · λ, where λ are the multipliers of the first three position rows.
     virtual bool is_regularised() const { return false; }
     int regularised_pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
-    /// Whether this pair is brought within its bound before the pairs for which the function returns false
+    /// Whether the compliance scale of this pair is determined before those of the pairs for which the
+    /// function returns false; see lie::BoundedRows
     virtual bool solved_first(int /*pair*/) const { return false; }
 
     /// Number of internal states in State::internal_state. Φ may use them to select one of several equivalent
@@ -58,9 +60,10 @@ public:
         inactive = 1,        ///< an open unilateral constraint; it may become active again
         fallback_active = 2  ///< replaced by a force until the end of the run
     };
-    /// Whether the mode can differ from `active`. If not, no mode is stored.
+    /// Whether the mode can differ from `active`. If it cannot, no mode is stored.
     virtual bool may_be_inactive() const { return false; }
-    /// Whether a force can replace the constraint. Without a fallback the constraint throws where it fails.
+    /// Whether a force can replace the constraint (fallback). Without a fallback the constraint throws
+    /// lie::NumericalFailure if it fails.
     virtual bool has_fallback() const { return false; }
 
     /// Arguments of an evaluation: the motions of the two bodies, and the constraint's own part of the state
@@ -69,7 +72,7 @@ public:
         double t;                                 ///< [s]
         const double *alpha, *internal_state;     ///< algebraic_variables() and internal_states() numbers
         bool inactive;                            ///< whether the mode differs from `active`
-        const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or none
+        const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or nullptr
     };
 
     /// Φ: position_rows() numbers
@@ -90,15 +93,19 @@ public:
     virtual void gamma(const Arguments& x, double* out) const = 0;
     /// K, D, mu, S and n of the regularised pairs, in the order of their rows
     virtual void regularisation(const Arguments& /*x*/, lie::Rows::Regularised* /*out*/) const {}
-    /// Sparsity pattern of a row: bit c (0 to 11) is clear if derivative c by (r_i, π̄_i, r_j, π̄_j) is zero in
-    /// every state.
+    /// Sparsity pattern of a row: bit c (0 to 11) is clear if the derivative with respect to component c of
+    /// (r_i, π̄_i, r_j, π̄_j) is zero in every state.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
 
-    /// Computes α for the poses of the bodies. The initial guess is x.alpha. With `afresh` x.alpha is not
-    /// used, and α is found from the poses alone.
-    virtual void update_alpha(const Arguments& x, bool afresh, double* alpha) const = 0;
-    /// Updates the internal states, at a start and once per accepted step. If the constraint cannot continue
-    /// from x it returns false where it has a fallback, and throws lie::NumericalFailure otherwise.
+    /// Computes α for the poses of the bodies: algebraic_variables() numbers. `alpha` may be the array
+    /// x.alpha.
+    ///
+    /// With global_search = false the search starts from x.alpha. With global_search = true x.alpha is not
+    /// used, and α depends on the poses alone. Throws lie::NumericalFailure if no α is found.
+    virtual void update_alpha(const Arguments& x, bool global_search, double* alpha) const = 0;
+    /// Updates the internal states, at a start and once per accepted step. Returns true if the constraint can
+    /// continue from x. If it cannot, returns false with a fallback, and throws lie::NumericalFailure without
+    /// one.
     virtual bool update_internal_state(const Arguments& x, bool start, double* internal_state) const = 0;
 
     /// Signed distance of the two bodies at the points α [m], negative for an overlap
@@ -107,12 +114,12 @@ public:
     virtual double separation_speed(const Arguments& x) const = 0;
     /// Whether the constraint can open. A unilateral constraint may start with a positive gap.
     virtual bool is_unilateral() const { return false; }
-    /// Velocity that violates the active constraint [m/s]
+    /// Magnitude of the velocity that violates the active constraint [m/s]
     virtual double velocity_error(const Arguments& x) const = 0;
     /// Largest |gap| of an active constraint at a start [m]
     virtual double position_tolerance() const = 0;
-    /// Reason why the constraint cannot be used from a start x, in the form "what is wrong, got value". An
-    /// empty string if it can.
+    /// Reason why a run cannot start from x, in the form "what is wrong, got value". An empty string if it
+    /// can.
     virtual std::string start_error(const Arguments& /*x*/) const { return {}; }
     /// Name of a row for messages
     virtual std::string row_name(int row) const { return "row " + std::to_string(row + 1); }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double tolerance = 1e-8;             // of |f - 1|
 constexpr double stagnation_tolerance = 1e-5;  // of |f - 1|, if rounding prevents it from decreasing further
-constexpr double smallest_bound = 1e-9;        // relative to |λ(1)|, in the place of a bound of zero
+constexpr double smallest_bound = 1e-9;        // relative to |λ(1)|; replaces smaller bounds
 
 }  // namespace
 

@@ -24,7 +24,7 @@ struct Motion {
 struct State {
     double t = 0;  ///< [s]
     std::vector<Motion> body;
-    Eigen::VectorXd alpha;   ///< algebraic variables, e.g. the surface parameters of evolving contacts
+    Eigen::VectorXd alpha;   ///< algebraic variables, e.g. the contact points of evolving contacts
     Eigen::VectorXd lambda;  ///< multiplier of each constraint row
     /// Integer state variables of the system, constant during a step: the branch of a driver, the number of
     /// turns

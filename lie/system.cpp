@@ -19,11 +19,11 @@ double energy(const System& system, const State& x)
 
 namespace {
 
-// Increment of the differences. For quantities of size one, truncation h² and rounding 1e-16/h are equal at
-// about 6e-6.
+// Increment of the central differences. For quantities of order one, the truncation error h² and the rounding
+// error 1e-16/h are about equal at 6e-6.
 constexpr double h = 6e-6;
 
-/// Adds `by` to component c of (δr, δθ̄, δṙ, δω̄).
+/// Changes component c (0 to 11) of (r, A, ṙ, ω̄) by the amount `by`; a rotation is A ← A exp(by ẽ_c).
 void displace(Motion& body, int c, double by)
 {
     if (c < 3)
@@ -36,7 +36,8 @@ void displace(Motion& body, int c, double by)
         body.omega_bar[c - 9] += by;
 }
 
-/// Calls use(body, component, state at +h, state at -h) for the first `components` components of each body.
+/// Calls use(body, component, state displaced by +h, state displaced by -h) for the first `components`
+/// components of each body; see displace().
 template <class Use>
 void for_each_difference(const State& x, int components, Use use)
 {

@@ -10,10 +10,11 @@ namespace hilda::contact {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double contact_tolerance = 1e-6;  // gap relative to the smaller size
-// overlap at the start, relative to a radius of curvature or to the size
+constexpr double contact_tolerance = 1e-6;  // largest gap of is_near_contact(), relative to the smaller size
+// largest overlap at the start, relative to a radius of curvature or to the size
 constexpr double max_relative_overlap = 0.1;
-constexpr double no_curvature = 1e-12;  // relative to the curvatures of the two surfaces: rounding
+// a curvature below this is counted as zero, relative to the curvatures of the two surfaces
+constexpr double no_curvature = 1e-12;
 
 /// Velocity of the material point of body b at C [m/s, global]
 Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
@@ -130,8 +131,9 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
         return got(
             "one surface does not fit into the other: the sum of their curvatures must not be negative",
             least, "1/m");
-    // The curvature of a disk parallel to the plane is zero, but the disk is tilted when it comes into
-    // contact. That of a foot on a plane is always zero.
+    // Surfaces that are still apart may have positive curvature when they come into contact: a disk parallel
+    // to the plane has zero curvature, but usually touches it tilted. A foot and a plane, both of size 0, have
+    // zero curvature always.
     const bool may_curve = contact_point.gap > 0 && (i.surface->size() > 0 || j.surface->size() > 0);
     if (mean <= rounding && !may_curve && (law->needs_curvature() || friction->needs_curvature()))
         return got("the normal or friction law needs curvature: the sum of the curvatures must be positive",

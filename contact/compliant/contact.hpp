@@ -8,40 +8,45 @@
 
 namespace hilda::contact {
 
-/// The object is constant; the caller owns the ContactHistory. The calls of a step are
+/// A pair of surfaces with a normal law and a friction law. The object is constant; the caller owns the
+/// ContactHistory. The calls of a step are
 ///
 ///     ContactState now = contact.evaluate(bi, bj, history);   // contact point, N, sliding displacement
 ///     contact.advance(now, bi, bj, history);                  // friction history, once per accepted step
-///     Wrench w = contact.load(now, rates, history);           // friction loads, in addition to N n
+///     Wrench w = contact.load(now, rates, history);           // friction loads, see Wrench
+///
+/// The normal force is N n on body i and -N n on body j, in the global frame, at the point C.
 class CompliantContact : public FrictionPair {
 public:
-    /// InvalidInput for surfaces that never have a single contact point.
+    /// Throws lie::InvalidInput for a pair of shapes that make_detector() rejects.
     CompliantContact(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
                      std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction);
 
-    /// The state of the contact at the poses and velocities of bi, bj. lie::NumericalFailure
+    /// The state of the contact for the poses and velocities of bi and bj. Throws lie::NumericalFailure
     /// "contact_not_converged" with the name of the contact if no contact point is found.
     ContactState evaluate(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 
-    /// The reason why a run cannot start at these poses, or an empty text: the contact point is not unique, a
-    /// surface does not fit into the other, a law needs curvature and there is none, or the overlap exceeds a
-    /// tenth of a radius of curvature or of the size of a surface. lie::NumericalFailure if the search for
-    /// the contact point fails.
+    /// The reason why a run cannot start at these poses, or an empty text if it can. The reasons are: the
+    /// contact point is not unique; one surface does not fit into the other; a law needs a positive curvature
+    /// and the surfaces have none; the overlap exceeds a tenth of the radius of curvature or of the size of a
+    /// surface, whichever is smaller. Throws lie::NumericalFailure if the search for the contact point fails.
     std::string start_error(const Motion& bi, const Motion& bj) const;
 
-    /// The largest step [s] for which symplectic Euler is stable: FrictionPair::stable_step with stiffness
-    /// and damping of the normal law
+    /// The largest step [s] for which symplectic Euler is stable: FrictionPair::stable_step() with the
+    /// stiffness and damping of the normal law in the state `now`
     double stable_step(const ContactState& now, const Motion& bi, const Motion& bj, int contacts_of_i = 1,
                        int contacts_of_j = 1) const;
 
-    /// Estimate of the contact state at the largest compression to be expected from this start, for
-    /// stable_step(). The kinetic energy of the approach, and the work of a weight [N] over the gap and the
-    /// compression, are stored in the spring of the normal law. The bodies are treated as free (no joints).
-    /// The state returned has zero velocities. For a law without a spring it has the present overlap.
+    /// Estimate of the contact state at the largest compression expected after this start, for stable_step().
+    ///
+    /// At this compression the spring of the normal law stores its present energy, the kinetic energy of the
+    /// approach, and the work of the force `weight` [N] over the gap and the compression. The bodies are
+    /// treated as free, without joints. The normal force is that for zero velocities. For a law without a
+    /// spring the overlap is the present one.
     ContactState state_at_largest_compression(const Motion& bi, const Motion& bj,
                                               const ContactHistory& history, double weight) const;
 
-    /// True if the gap is less than 1e-6 times the smaller size of the surfaces
+    /// Whether the gap is at most 1e-6 times the smaller size of the surfaces
     bool is_near_contact(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 
     /// Elastic energy of the normal law [J]

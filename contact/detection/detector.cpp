@@ -14,6 +14,7 @@ namespace hilda::contact {
 
 namespace {
 
+/// The detector of the pair (j, i), used for (i, j)
 class ExchangedDetector final : public Detector {
 public:
     explicit ExchangedDetector(std::unique_ptr<Detector> ji) : ji(std::move(ji)) {}
@@ -54,7 +55,7 @@ std::string names(const Shape& i, const Shape& j)
     return named(i) + " and " + named(j);
 }
 
-/// Rejects the pairs of surfaces that never have a single contact point.
+/// Rejects the pairs of surfaces that never have a single contact point, and those without a detector.
 void check_pair(const Shape& i, const Shape& j)
 {
     constexpr const char* where = "contact::make_detector";
@@ -94,7 +95,7 @@ std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j)
         if (auto detector = make(i, j)) return detector;
         if (auto detector = make(j, i)) return std::make_unique<ExchangedDetector>(std::move(detector));
     }
-    throw std::logic_error("common_normal takes every pair");
+    throw std::logic_error("common_normal accepts every pair");
 }
 
 }  // namespace hilda::contact

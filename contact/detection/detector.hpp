@@ -14,7 +14,7 @@ namespace hilda::contact {
 
 using lie::Motion;
 
-/// Contact points of an earlier instant, each in the frame of its body [m]. They are the initial guess of the
+/// Contact points of an earlier time, each in the frame of its body [m]. They are the initial guess of the
 /// search.
 struct PreviousPoints {
     Vec3 c_i, c_j;
@@ -26,22 +26,24 @@ class Detector {
 public:
     virtual ~Detector() = default;
 
-    /// The contact point of bodies i and j at the poses r, A of bi and bj.
+    /// The contact point of bodies i and j at the poses (r, A) of bi and bj.
     ///
-    /// With `from` the search starts at those points, and returns the solution found there if the surfaces
-    /// overlap. Without `from`, or if that search fails, the search starts from the poses alone. If the
-    /// bodies do not touch and several pairs of points have the smallest distance, any one of them is
+    /// An iterative detector starts from the points `from`. If the surfaces overlap at the solution, it
+    /// returns this solution. If `from` is nullptr, if the search fails or if its solution has a gap, the
+    /// detector may also search from the poses alone. Detectors in closed form do not use `from`. If the
+    /// bodies are separated and several pairs of points have the smallest distance, one of these pairs is
     /// returned.
     ///
     /// Throws lie::NumericalFailure "contact_not_converged" if the bodies may be in contact and no contact
-    /// point is found; NoUniqueContactPoint if the pose is the reason. The message has the residual and the
-    /// number of iterations; the caller adds the names of the bodies.
+    /// point is found, and the derived NoUniqueContactPoint if the pose has no unique contact point. The
+    /// message states the reason. The caller adds the name of the contact.
     virtual ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints* from) const = 0;
 };
 
 /// The detector for a pair of surfaces: a closed form if there is one, otherwise Newton's method on the
-/// common normal (CommonNormal). InvalidInput for a pair that has no single contact point in any pose, such
-/// as two planes.
+/// common normal (CommonNormal). Throws lie::InvalidInput for a pair that has no single contact point in any
+/// pose, such as two planes, for a pair without a detector, such as a disk and a sphere, and for a shape
+/// without a surface or with an invalid pose.
 std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j);
 
 }  // namespace hilda::contact

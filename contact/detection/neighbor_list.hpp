@@ -16,28 +16,30 @@ namespace hilda::contact {
 struct BodyType {
     Inertia inertia;
     Shape shape;
-    /// Radius of the bounding sphere about the centre of mass [m]. Infinite for an unbounded body such as a
-    /// floor or a bowl. There is no contact between two unbounded bodies.
+    /// Radius of the bounding sphere about the centre of mass [m]. It is infinite for an unbounded body
+    /// such as a floor or a bowl. Two unbounded bodies do not interact.
     double reach = std::numeric_limits<double>::infinity();
 };
 
-/// The pairs of bodies that may be in contact (Verlet list). Law is constant data of two body types, set
-/// before the run. State is the data of one pair from step to step: it starts as State() when the pair enters
-/// the list and is deleted when the pair leaves it. The list is updated when a body has moved by half the
-/// skin. It is sorted by body numbers.
+/// The pairs of bodies that may be in contact (Verlet list).
+///
+/// `Law` holds the constant data of two body types and is set before the run. `State` holds the data of
+/// one pair from step to step. It is State() when the pair enters the list, and it is deleted when the
+/// pair leaves the list. The list is rebuilt when a bounded body has moved by half the skin. It is sorted
+/// by the smaller body number of a pair, then by the larger one.
 template <class Law, class State>
 class NeighborList {
 public:
     struct Pair {
         const Law* law;
-        int i, j;  ///< in the order of the types of the law
+        int i, j;  ///< body numbers, in the order in which set_law() received the types
         State state = {};
     };
 
-    double margin = 0;  ///< the list contains all pairs of bounding spheres closer than this [m]
-    double skin = 0.1;  ///< additional distance, relative to the smallest reach
+    double margin = 0;  ///< the list contains all pairs of bounding spheres that are closer than this [m]
+    double skin = 0.1;  ///< additional distance at a rebuild, relative to the smallest reach
 
-    /// Adds a body type and returns its number. InvalidInput unless the reach is positive.
+    /// Adds a body type and returns its number. Throws lie::InvalidInput unless the reach is positive.
     int add_type(const BodyType& type)
     {
         if (!(type.reach > 0))
@@ -48,6 +50,7 @@ public:
         return static_cast<int>(types.size()) - 1;
     }
 
+    /// Throws lie::InvalidInput if there is no type k.
     const BodyType& body_type(int k) const
     {
         if (k < 0 || k >= static_cast<int>(types.size()))
@@ -55,7 +58,8 @@ public:
         return types[k];
     }
 
-    /// Adds body b, the last body of the system, with type k. Earlier bodies without a type are ignored.
+    /// Adds body b with type k. b must exceed the numbers of all bodies added before. Bodies that are not
+    /// added have no type and are not in the list. Throws lie::InvalidInput if there is no type k.
     void add_body(int b, int k)
     {
         type_of.resize(b, none);
@@ -65,8 +69,8 @@ public:
         reference_position.clear();
     }
 
-    /// Sets the law of a pair of types, which may be equal. Bodies of types without a law do not interact.
-    /// InvalidInput if both types are unbounded or the pair has a law already.
+    /// Sets the law of a pair of types, which may be equal. Bodies whose types have no law do not interact.
+    /// Throws lie::InvalidInput if both types are unbounded or if the pair has a law already.
     void set_law(int type_i, int type_j, std::unique_ptr<const Law> law)
     {
         if (std::isinf(body_type(type_i).reach) && std::isinf(body_type(type_j).reach))
@@ -80,8 +84,8 @@ public:
         reference_position.clear();
     }
 
-    /// The pairs at these poses, updated if necessary. lie::NumericalFailure "nonfinite" if a position is not
-    /// finite.
+    /// The pairs at these poses; the list is rebuilt if necessary. `body` holds all bodies of the system.
+    /// Throws lie::NumericalFailure "nonfinite" if the position of a bounded body is not finite.
     std::vector<Pair>& find(const std::vector<Motion>& body)
     {
         if (needs_update(body)) update(body);
@@ -90,7 +94,7 @@ public:
 
     const std::vector<Pair>& pair() const { return pairs; }  ///< the pairs of the last find()
 
-    /// The pairs at these poses with new states, without changing the list. For checks before a run.
+    /// The pairs at these poses, with new states. The list does not change. For checks before a run.
     std::vector<Pair> pairs_near(const std::vector<Motion>& body) const
     {
         std::vector<Pair> out;

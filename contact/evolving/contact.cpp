@@ -28,8 +28,8 @@ double smaller_size(const Shape& i, const Shape& j)
     return a + b;
 }
 
-/// |∇G|, checked. `a`: the point in the surface frame [m], for the message. Throws lie::NumericalFailure
-/// "contact_lost" where the gradient vanishes or is not a number.
+/// |∇G|. `a` is the point in the surface frame [m], for the message. Throws lie::NumericalFailure
+/// "contact_lost" if the gradient vanishes or is not a number.
 double gradient_norm(const Vec3& gradient, const Vec3& a)
 {
     const double g = gradient.norm();
@@ -42,7 +42,7 @@ double gradient_norm(const Vec3& gradient, const Vec3& a)
 
 }  // namespace
 
-/// Contact point, normal and surface row of one body, in global axes
+/// Contact point, normal and surface function of one body, in global axes
 struct EvolvingContact::Side {
     Vec3 arm;  // A ᾱ [m]
     Vec3 n;    // A n̄
@@ -60,7 +60,7 @@ struct EvolvingContact::Side {
 
 namespace {
 
-/// The same with the second derivatives of the surface
+/// The quantities of Side, and the second derivatives of the surface
 struct CurvedSide {
     Vec3 arm, n, u, a;  // u = ∇G/|∇G| in global axes; a: the point in the surface frame
     double G, g;        // G/|∇G|, |∇G|
@@ -142,7 +142,7 @@ void EvolvingContact::variation(const Arguments& x, Derivatives& out) const
 {
     const CurvedSide side_i(shape_i, x.bi, x.alpha), side_j(shape_j, x.bj, x.alpha + 3);
     const Mat32 T = tangents(x);
-    Mat32 T_slip = Mat32::Zero(), T_roll = Mat32::Zero();  // transposed rows of the slip and of ω_i - ω_j
+    Mat32 T_slip = Mat32::Zero(), T_roll = Mat32::Zero();  // transposed rows of slip and of rolling
     if (friction != Friction::none) T_slip = projected_tangents(x, side_i.n);
     if (law.has_rolling_resistance())
         T_roll = -lie::tilde(side_i.n) *
@@ -171,7 +171,7 @@ void EvolvingContact::gamma(const Arguments& x, double* out) const
     const Vec3 n = side_i.n;
     const Vec3 omega_i = x.bi.A * x.bi.omega_bar, omega_j = x.bj.A * x.bj.omega_bar;
 
-    // Montana's contact equations without charts, with s the slip:
+    // Contact equations of Montana (1988) in coordinate-free form, with the slip velocity s:
     //     (K_i + K_j) A_i ᾱ̇_i = n × (ω_i - ω_j) - K_j s,    (K_i + K_j) A_j ᾱ̇_j = n × (ω_i - ω_j) + K_i s
     const Mat32 T = tangent_basis(n);
     const Vec3 slip = velocity(x.bi, side_i.arm) - velocity(x.bj, side_j.arm),
@@ -189,7 +189,8 @@ void EvolvingContact::gamma(const Arguments& x, double* out) const
         point = centripetal + 2 * omega.cross(adot);
         material = centripetal + omega.cross(adot);
         surface_row = -adot.dot(side.H * adot);
-        // ᾱ̇ᵀ (∂²n/∂ᾱ²) ᾱ̇ needs third derivatives of G; they are taken along ᾱ̇ by central differences.
+        // ᾱ̇ᵀ (∂²n/∂ᾱ²) ᾱ̇ needs third derivatives of G. They are computed by central differences of ∂n/∂ᾱ
+        // along ᾱ̇.
         Vec3 third_derivative = Vec3::Zero();
         if (const double speed = adot.norm(); speed > 0) {
             const double step = 1e-5 * L;
@@ -209,7 +210,8 @@ void EvolvingContact::gamma(const Arguments& x, double* out) const
     Eigen::Vector2d::Map(out + 3) = -L * (tangents(x).transpose() * (normal_i + normal_j));
     if (friction != Friction::none)
         Eigen::Vector2d::Map(out + 7) = projected_tangents(x, n).transpose() * (material_j - material_i);
-    // γ is used at starts and restarts only; zero is exact for bodies that do not roll there.
+    // γ of a regularised row is used at starts and restarts only. Zero is exact if the bodies do not roll
+    // then.
     if (law.has_rolling_resistance()) Eigen::Vector2d::Map(out + 9).setZero();
 }
 
@@ -242,8 +244,8 @@ void EvolvingContact::regularisation(const Arguments& x, lie::Rows::Regularised*
              law.D_roll * kappa * kappa, 2 * law.eta_r);
 }
 
-/// Updates S, Z and the slip flags from the multipliers of the last step (see ImplicitFriction). A start and
-/// an inactive contact reset them.
+/// Updates S, Z and the slip flags from the multipliers of the last step (see ImplicitFriction). They are set
+/// to zero at a start and for an inactive contact.
 void EvolvingContact::update_friction(const Arguments& x, bool start, double* internal_state) const
 {
     constexpr double bound_tolerance = 1e-4;  // relative to |λ|; above the tolerance of lie::BoundedRows
@@ -269,14 +271,14 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, double* in
 
 unsigned EvolvingContact::nonzero(int row) const
 {
-    constexpr unsigned turns = 0b111000;
+    constexpr unsigned rotation = 0b111000;
     if (row < 3) {
-        const unsigned one = 1u << row | turns;
-        return one | one << 6;
+        const unsigned one_body = 1u << row | rotation;
+        return one_body | one_body << 6;
     }
-    if (row < 5) return turns | turns << 6;
+    if (row < 5) return rotation | rotation << 6;
     if (row < 7) return 0;
-    if (row > 8) return turns | turns << 6;
+    if (row > 8) return rotation | rotation << 6;
     return 0b111111111111;
 }
 
@@ -291,11 +293,11 @@ ContactPoint EvolvingContact::contact_point(const Arguments& x) const
     return contact_point;
 }
 
-void EvolvingContact::update_alpha(const Arguments& x, bool afresh, double* alpha) const
+void EvolvingContact::update_alpha(const Arguments& x, bool global_search, double* alpha) const
 {
     Vec3 a_i = Vec3::Zero(), a_j = Vec3::Zero();
     bool found = false;
-    if (!afresh) {
+    if (!global_search) {
         CommonNormal::Pair p = common_normal.placed(x.bi, x.bj);
         p.a_i = shape_i.to_surface(Vec3::Map(x.alpha)), p.a_j = shape_j.to_surface(Vec3::Map(x.alpha + 3));
         for (int k = 0; k < max_iterations && !found; ++k) {

@@ -22,50 +22,51 @@ struct Unilateral {
     } impact = Impact::newton;
 };
 
-/// Contact constraint between two smooth surfaces, written in their contact points.
+/// Contact constraint between two smooth surfaces, with the contact points as unknowns.
 ///
-/// The contact points ᾱ_i, ᾱ_j ∈ R³ in the body frames are six algebraic unknowns. The seven position rows
-/// are
+/// The contact points ᾱ_i, ᾱ_j ∈ R³ [m], relative to the centres of mass and in the body frames, are six
+/// algebraic variables. The seven position rows are
 ///
 ///     Ψ = r_i + A_i ᾱ_i - r_j - A_j ᾱ_j           3 rows: the contact points coincide                 (5.12)
 ///     N = L Tᵀ (A_i n̄_i + A_j n̄_j)                2 rows: the normals are opposite                    (5.17)
 ///     G = G_i(ᾱ_i)/|∇G_i|,  G_j(ᾱ_j)/|∇G_j|       2 rows: the points lie on the surfaces              (5.27)
 ///
-/// n̄ = σ ∇G/|∇G| is the outward unit normal of a body. T (3 × 2, global axes) is a tangent basis of A_i n̄_i
-/// at the last node and is constant during a step. L is the smaller size of the two surfaces [m]. All rows
-/// are lengths, so the conditioning does not depend on the size of the bodies. Seven rows minus six unknowns
-/// remove one degree of freedom, the one along the normal.
+/// n̄ = σ ∇G/|∇G| is the outward unit normal of a body in its frame, with σ of Surface::sigma(). The
+/// columns of T (3 × 2, global axes) are an orthonormal basis of the plane perpendicular to A_i n̄_i at the
+/// last node. T is constant during a step. L is the smaller size of the two surfaces [m]. All rows are
+/// lengths, so the conditioning does not depend on the size of the bodies. Seven rows with six algebraic
+/// variables remove one degree of freedom: the relative motion along the normal.
 ///
-/// (5.17) projects on the global x and y axes instead of T. That choice is singular for a normal in the
-/// xy-plane; it is available as NormalRows::fixed_xy for comparison.
+/// (5.17) uses the global x and y axes in place of T. That choice is singular for a normal in the
+/// xy-plane. It is available as NormalRows::fixed_xy for comparison.
 ///
 /// The multipliers λ_Ψ, λ_N, λ_G are forces [N]. If the relative curvature K_i + K_j is regular in the
 /// tangent plane,
 ///
 ///     λ_N = 0,    λ_Ψ = F_N A_i n̄_i,    λ_G = -F_N (σ_i, σ_j)
 ///
-/// with the normal force F_N, positive in compression. The force on body i is -λ_Ψ. A nonzero λ_N shows that
-/// the normals supplied are not the gradients of the surface functions.
+/// with the normal force F_N, positive in compression. The force on body i is -λ_Ψ. λ_N = 0 holds because n̄
+/// is parallel to ∇G.
 ///
-/// update_internal_state() throws lie::NumericalFailure "contact_lost" if n_i · n_j ≥ -½ and
-/// "contact_singular" if the smaller eigenvalue of K_i + K_j times L is at most 1e-6. With a fallback it
-/// returns false instead.
+/// For an active contact update_internal_state() throws lie::NumericalFailure: "contact_lost" if
+/// n_i · n_j ≥ -½, and "contact_singular" if the smaller eigenvalue of K_i + K_j in the tangent plane, times
+/// L, is at most 1e-6. With a fallback it returns false instead.
 class EvolvingContact final : public dae::Constraint {
 public:
     enum class NormalRows { tangent, fixed_xy };
     enum class Friction {
-        none,  ///< none in the constraint; an EvolvingFriction can add it as a force
+        none,  ///< the constraint has no friction; an EvolvingFriction can add friction as a force
         /// Ideal rolling: two nonholonomic rows make the tangential velocities of the material points in
         /// contact equal.
         rolling,
-        /// ImplicitFriction: the same two rows, regularised and bounded, and two more for the rolling
-        /// resistance
+        /// Friction by ImplicitFriction: the same two rows, regularised and bounded, and two more rows if
+        /// there is rolling resistance
         implicit
     };
 
-    /// A contact between bodies i and j of the model; dae::ground is the ground. Throws lie::InvalidInput if
-    /// neither surface is curved, if the restitution is outside [0, 1], or if make_detector() rejects the
-    /// pair.
+    /// A contact between bodies i and j of the model; one of them may be dae::ground. Throws
+    /// lie::InvalidInput if neither surface has a size, if the restitution is outside [0, 1], or if
+    /// make_detector() rejects the pair.
     EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j,
                     Friction friction = Friction::none, NormalRows normal_rows = NormalRows::tangent,
                     const Unilateral& unilateral = {});
@@ -82,9 +83,16 @@ public:
     bool is_regularised() const override { return friction == Friction::implicit; }
     bool solved_first(int pair) const override { return pair == rolling_pair; }
     int algebraic_variables() const override { return 6; }
-    /// Internal state variables: T by columns, and the time of the last rebound [s]. With implicit friction
-    /// also the time of the node [s], and for sliding and for rolling the elastic displacement along T, S or
-    /// Z [m] (2 numbers), and a slip flag. The constants are the indices in this array.
+    /// Number of internal states. They are, by index:
+    ///
+    ///     0 … 5     T by columns
+    ///     6         last_rebound: time of the last rebound [s]; -∞ before the first one
+    ///
+    /// and with implicit friction also
+    ///
+    ///     7         node_time: time of the node [s]
+    ///     8 … 10    sliding_state: elastic displacement S along T [m] (2 numbers); 1 if slipping, else 0
+    ///     11 … 13   rolling_state: the same for rolling, with the elastic displacement Z [m]
     int internal_states() const override { return is_regularised() ? 14 : 7; }
     static constexpr int last_rebound = 6, node_time = 7, sliding_state = 8, rolling_state = 11;
 
@@ -96,7 +104,7 @@ public:
     void gamma(const Arguments& x, double* out) const override;
     unsigned nonzero(int row) const override;
     void regularisation(const Arguments& x, lie::Rows::Regularised* out) const override;
-    void update_alpha(const Arguments& x, bool afresh, double* alpha) const override;
+    void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
     bool update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
     double gap(const Arguments& x) const override { return contact_point(x).gap; }
     double separation_speed(const Arguments& x) const override;
@@ -106,8 +114,8 @@ public:
     std::string start_error(const Arguments& x) const override;
     std::string row_name(int row) const override;
 
-    /// The contact point that corresponds to α in x: points, normal into body i, gap along the normal, shape
-    /// operators
+    /// The contact point at α of x. The normal is that of surface j, which points into body i; the gap is the
+    /// component of C_i - C_j along it.
     ContactPoint contact_point(const Arguments& x) const;
     /// The multipliers of this contact, extracted from those of the model
     struct Multipliers {
@@ -115,7 +123,7 @@ public:
 
         Vec3 Psi = Vec3::Zero();                  ///< λ_Ψ [N, global axes]
         Vec2 N = Vec2::Zero(), G = Vec2::Zero();  ///< λ_N, λ_G [N]
-        /// λ of the two rows of ideal rolling or of implicit sliding friction, along T [N]
+        /// λ of the two rows of ideal rolling or of implicit sliding friction, along T' [N]
         Vec2 rolling = Vec2::Zero();
         double F_N = 0;                  ///< normal force λ_Ψ · n_i [N]
         Vec3 tangential = Vec3::Zero();  ///< λ_Ψ - F_N n_i [N]; zero up to rounding
@@ -130,8 +138,8 @@ public:
     const ImplicitFriction law;  ///< used if friction == Friction::implicit
     const NormalRows normal_rows;
     const Unilateral unilateral;
-    /// Whether a ContactForce replaces this constraint when there is no unique contact point or the
-    /// multiplier is indeterminate. To be set before the contact is added to a model.
+    /// Whether a ContactForce replaces this constraint when the contact point is not unique or the multiplier
+    /// is indeterminate. To be set before the contact is added to a model.
     bool fallback = false;
 
 private:
@@ -144,8 +152,8 @@ private:
     /// T' = (I - n nᵀ) T: the tangent basis of the node projected on the tangent plane of the normal n
     Mat32 projected_tangents(const Arguments& x, const Vec3& n) const;
     enum RowPair { sliding_pair = 0, rolling_pair = 1 };
-    /// (K_i + K_j)⁻¹ on the tangent plane, 3 × 3 in global axes [m]. Its eigenvalues, the lever arms 1/κ, are
-    /// limited to 10 L.
+    /// (K_i + K_j)⁻¹ in the tangent plane of the normal n, as a 3 × 3 matrix in global axes [m]. Its
+    /// eigenvalues, the lever arms 1/κ, are limited to 10 L.
     Mat3 lever_arms(const Mat3& K_sum, const Vec3& n) const;
     void update_friction(const Arguments& x, bool start, double* internal_state) const;
 

@@ -17,7 +17,7 @@ using lie::State;
 
 constexpr double gap_tolerance = 1e-13;  // gap counted as zero, relative to L
 constexpr int max_gap_iterations = 80;   // of regula falsi
-constexpr int max_events = 50;           // per contact in one step
+constexpr int max_events = 50;           // in one step, for each contact
 constexpr double min_remainder = 1e-9;   // remaining time that is skipped, relative to h
 
 }  // namespace
@@ -40,8 +40,9 @@ void UnilateralStep::TrackedContact::record(double t, double F_N)
     last_node = {t, F_N};
 }
 
-/// Zero of the parabola through the F_N of the last two nodes and this one, F_N < 0 at t. Newton's method
-/// starts at the zero of the secant through the last node and this one.
+/// Time [s] at which the parabola through F_N of the last two nodes and of the present one is zero. The
+/// present F_N at t is negative. Newton's method starts from the zero of the secant through the last node
+/// and the present one.
 double UnilateralStep::TrackedContact::lift_off_time(double t, double F_N) const
 {
     if (!(last_node.t < t) || !(last_node.F_N > 0)) return t;
@@ -58,7 +59,7 @@ double UnilateralStep::TrackedContact::lift_off_time(double t, double F_N) const
     return std::clamp(last_node.t + s, last_node.t, t);
 }
 
-/// F_N of these multipliers in the pose of x
+/// Normal component of the multipliers λ_Ψ of c in the pose of x: F_N [N], or a normal impulse [N s]
 double UnilateralStep::force(const TrackedContact& c, const State& x, const Eigen::VectorXd& lambda) const
 {
     return c.contact->multipliers(model.arguments(*c.contact, x), lambda).F_N;
@@ -162,8 +163,8 @@ int UnilateralStep::advance(State& x, double h)
     double remaining = h;
     for (int part = 0; part < max_parts; ++part) {
         node = x;
-        // A staggered scheme with a history finds the multipliers of this node only in the step that leaves
-        // it.
+        // A staggered scheme computes the multipliers of this node in the step that starts there. After a
+        // restart they are known already.
         const bool restarts = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
         const bool forces_known = !scheme->is_staggered() || restarts;
         if (forces_known && deactivate_tensile(node)) restart(node);
@@ -186,7 +187,7 @@ int UnilateralStep::advance(State& x, double h)
         const double elapsed = find_closing(trial, remaining, closing);
         if (closing == nullptr) {
             x = trial;
-            if (part > 0) restart(x);  // its history belongs to another step size
+            if (part > 0) restart(x);  // the history of x is that of another step size
             return iterations;
         }
         if (elapsed > 0) model.accepted(node, trial);
@@ -217,9 +218,9 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
     return k;
 }
 
-/// Switches the active contact with the smallest relative curvature (eigenvalue of K_i + K_j times L) to its
-/// fallback. Such a contact is the likeliest reason why a step fails. Returns false if no active contact has
-/// a fallback.
+/// Switches the active contact with the smallest relative curvature (smaller eigenvalue of K_i + K_j,
+/// times L) to its fallback. This contact is the most likely reason of a failed step. Returns false if no
+/// active contact has a fallback.
 bool UnilateralStep::switch_least_curved_to_fallback(State& x)
 {
     TrackedContact* least_curved = nullptr;
@@ -266,8 +267,8 @@ void UnilateralStep::restart(State& x)
     while (deactivate_tensile(x));
 }
 
-/// Deactivates the active unilateral contact with the most negative F_N, by the multipliers in x. Returns
-/// false if there is none.
+/// Deactivates the active unilateral contact with the most negative F_N, computed from the multipliers in x.
+/// Returns false if no F_N is negative beyond rounding.
 bool UnilateralStep::deactivate_tensile(State& x)
 {
     TrackedContact* worst = nullptr;
@@ -286,7 +287,8 @@ bool UnilateralStep::deactivate_tensile(State& x)
     return true;
 }
 
-/// Of the contacts that overlap in `to`, the one whose gap, interpolated linearly from `from`, is zero first
+/// Returns the inactive contact that closes first between `from` and `to`, by linear interpolation of the
+/// gaps. Returns nullptr if no inactive contact overlaps in `to`.
 UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from, const State& to)
 {
     TrackedContact* next = nullptr;
@@ -299,8 +301,9 @@ UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from
     return next;
 }
 
-/// Length of the step from restart_node at which the first gap is zero; `to` is then the state there. Returns
-/// h and first = nullptr if no inactive contact overlaps in `to`.
+/// Returns the length of the step from restart_node after which the first gap is zero, and sets `to` to the
+/// state there and `first` to the contact. Returns h and sets `first` to nullptr if no inactive contact
+/// overlaps in `to`.
 double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
 {
     first = nullptr;
@@ -309,9 +312,9 @@ double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
         first = next;
         h = find_zero_gap(*next, to, h);
         if (!(h > 0)) {
-            // The gap is zero already at the node. Without a noticeable approach speed this is no impact, for
-            // example because the contact became inactive here and does not separate: it stays active for
-            // this step.
+            // The gap is already zero at the node. If the approach speed is within rounding, there is no
+            // impact. For example, the contact has become inactive at this node but does not separate. It
+            // then becomes active again and stays active for this step.
             if (!(whole * separation_speed(*next, restart_node) < -rounding * next->contact->L))
                 next->stays_active = true;
             to = restart_node;
@@ -321,13 +324,13 @@ double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
     return h;
 }
 
-/// Step length in (0, h] at which the gap of c is zero, given a negative gap after h. Returns 0 if the gap is
-/// zero at the beginning and does not open.
+/// Step length in (0, h] after which the gap of c is zero, given a negative gap after h. Returns 0 if the
+/// gap is zero at the node and no positive gap is found after h/2, h/4, …, h/64.
 double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double h)
 {
     const double tolerance = gap_tolerance * c.contact->L;
     double a = 0, g_a = gap(c, restart_node), b = h, g_b = gap(c, to);
-    for (int halving = 0; g_a <= tolerance; ++halving) {  // it opens first and closes again
+    for (int halving = 0; g_a <= tolerance; ++halving) {  // the gap may open first and close again
         if (halving == 6 || !(separation_speed(c, restart_node) > 0)) return 0;
         a = halving == 0 ? 0.5 * h : 0.5 * a;
         try_step(restart_node, to, a);
@@ -353,7 +356,7 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double 
         }
         if (!(b - a > 1e-15 * h)) break;
     }
-    // rounding prevents a gap within the tolerance: take the last step without overlap
+    // Rounding prevents a gap within the tolerance. Take the longest step known to have no overlap.
     try_step(restart_node, to, a);
     return a;
 }

@@ -12,17 +12,20 @@
 
 namespace hilda::contact {
 
-/// Event of a contact: its type, time, and approach speed.
+/// Event of a contact: its type, its time and the approach speed.
 struct ContactEvent {
     enum class Type {
-        lift_off,        ///< active to inactive, the normal force became negative
+        /// active to inactive: the normal force, or the normal impulse in the impact of another contact,
+        /// would be tensile
+        lift_off,
         impact,          ///< an impact with a rebound; the contact stays inactive
         closing,         ///< inactive to active
         fallback_active  ///< a compliant contact force replaces the constraint
     } type = Type::lift_off;
-    double t = 0;      ///< [s]
-    int contact = 0;   ///< index in Model::evolving()
-    double speed = 0;  ///< approach speed of an impact or a closing [m/s], else 0
+    double t = 0;     ///< [s]
+    int contact = 0;  ///< index in Model::general_constraints()
+    /// Approach speed of an impact, of a closing, or of an impact that switches to the fallback [m/s]; else 0
+    double speed = 0;
 
     bool operator==(const ContactEvent&) const = default;
 };
@@ -30,42 +33,52 @@ struct ContactEvent {
 /// Integrator for models with contacts that can become inactive. It wraps any scheme that accepts evolving
 /// contacts.
 ///
-/// An active contact has its constraint rows in force. For an inactive contact the nearest points of the two
-/// surfaces are tracked. A contact whose fallback is active stays so until the end of the run. The mode of
-/// each contact is stored in State::discrete_state.
+/// The constraint rows of an active contact are part of the equations. The rows of an inactive contact are
+/// not; its variables α are the nearest points of the two surfaces and are updated after each step. If the
+/// fallback of a contact is active, it stays active until the end of the run. The mode of each contact is
+/// stored in State::discrete_state.
 ///
-/// - Lift-off: if F_N < 0 at t_n, the step from t_n is repeated without the contact, the most negative one
-///   first. Up to then the contact was active with F_N = O(h), so the motion after lift-off is of second
-///   order. With rolling it is of first order, because the friction is finite at lift-off. The time reported
-///   is the zero of the parabola through F_N at the last nodes.
-/// - Impact: if a gap is negative at t_{n+1}, the step length at which it is zero is found by regula falsi
-///   (Illinois variant); every trial starts from t_n. The velocities jump there and the rest of the step
-///   follows.
-/// - Impulses: the compression makes all active contacts and the other constraints hold after the impact.
-///   Newton's law then prescribes the normal velocity v⁺ = -e v⁻; Poisson's law adds e times the normal
-///   impulse of compression. Other active contacts remain active if their normal impulse is not negative;
-///   else they become inactive.
-/// - Friction in impacts: the rows of ideal rolling take part, so a contact with ideal rolling has a
-///   tangential impulse that removes the slip (a sphere that lands without spin keeps 5/7 of its tangential
-///   velocity). Regularised rows of implicit friction and tracked friction forces have no impulse.
+/// - Lift-off: if F_N < 0 at t_n, the contact becomes inactive and the step from t_n is computed without
+///   it. If this holds for several contacts, the one with the most negative F_N becomes inactive first,
+///   and the forces are computed again. The contact is thus active for up to one step too long, and F_N is
+///   O(h) there. The resulting error of the motion is of second order. With ideal rolling it is of first
+///   order, because the friction force is not O(h) at lift-off. The time reported is the zero of the
+///   parabola through F_N at the last nodes.
+/// - Impact: if a gap is negative at t_{n+1}, the step length for which it is zero is found by regula falsi
+///   (Illinois variant). Every trial starts from t_n, or from the last event in the step. At zero gap the
+///   velocities jump. The remaining part of the step follows.
+/// - Impulses: the compression impulses make the velocities satisfy the rows of all active contacts,
+///   including the new one, and of the other constraints. Newton's law then replaces the normal velocity
+///   zero by v⁺ = -e v⁻. Poisson's law adds e times the normal impulse of compression. Another active
+///   contact remains active if its normal impulse is not negative; otherwise it becomes inactive.
+/// - Friction in impacts: a contact with ideal rolling has a tangential impulse that removes the slip,
+///   because its rolling rows are satisfied after the impact. For example, a solid sphere that lands
+///   without spin keeps 5/7 of its tangential velocity. The regularised rows of implicit friction and
+///   tracked friction forces have no impulse.
 /// - Closing: the contact becomes active if e = 0, if the time of flight after the rebound would be shorter
 ///   than a step, or if its last rebound was less than a step ago.
-/// - Fallback, if the contact has one: a contact whose multiplier is not determined together with those of
-///   the active constraints at its impact switches to it; without a fallback this is lie::NumericalFailure
-///   "contact_rank". If a step fails, the active contact with the smallest K_i + K_j that has a fallback
-///   switches to it, and the step is repeated.
+/// - Fallback at an impact: the multiplier of the contact may not be determined together with those of the
+///   active constraints. The contact then switches to its fallback. Without a fallback the step throws
+///   lie::NumericalFailure "contact_rank".
+/// - Fallback after a failure: if a step fails, one contact switches to its fallback and the step is
+///   repeated. It is the active contact with a fallback for which the smaller eigenvalue of K_i + K_j,
+///   times L, is least.
 ///
-/// The scheme restarts from the node of each event; its multi-step history is discarded. rA-half-1, which
-/// takes v_0 as v_{-½}, has at each restart an error of the velocity of about h times the acceleration.
+/// The scheme restarts from the node of each event, and its multi-step history is discarded. rA-half-1
+/// takes v_0 as v_{-½}. At each restart its velocity therefore has an error of the order of h times the
+/// acceleration.
 ///
-/// Limitations: contacts that close at the same time are treated one after the other. A gap that closes and
-/// opens again within one step is not detected. A contact with its third impact in one step (for example
-/// alternating impacts on the two walls of a groove) stays active until the end of the step.
+/// Limitations: contacts that close at the same time are treated one after the other. A gap that closes
+/// and opens again within one step is not detected. A contact with its third impact in one step stays
+/// active until the end of the step. This happens, for example, to a ball that strikes the two walls of a
+/// narrowing groove in turn.
 class UnilateralStep final : public lie::Integrator {
 public:
     /// The model must outlive the integrator.
     UnilateralStep(const dae::Model& model, const lie::Scheme& scheme, const lie::Settings& settings);
 
+    /// Throws lie::NumericalFailure "too_many_impacts" if the step has more events than the internal
+    /// limit, and the exceptions of the scheme.
     int step(lie::State& x, double h) override;
     bool is_staggered() const override { return scheme->is_staggered(); }
     void fill_node(lie::State& node, const lie::State& after) const override;
@@ -75,26 +88,30 @@ public:
     const lie::System& system() const override { return model; }
     lie::Statistics statistics() const override { return scheme->statistics(); }
 
-    /// All events so far, in order of time
+    /// All events so far, in the order in which they were detected. The times of lift-offs that are
+    /// detected at the same node need not be ascending.
     const std::vector<ContactEvent>& events() const { return event_log; }
 
-    /// Normal force of an active contact at a node [s, N]; t is NaN if there is none.
+    /// Time [s] of a node at which a contact was active, and its normal force [N]. t is NaN if there is no
+    /// such node.
     struct NodeForce {
         double t = std::numeric_limits<double>::quiet_NaN(), F_N = 0;
     };
     /// What the integrator stores in addition to the State; needed by checkpoints
     struct History {
         std::vector<ContactEvent> events;
-        std::vector<NodeForce>
-            node_forces;  ///< the last two of each contact that can become inactive; for lift_off_time()
+        /// The previous and the last node of each contact that can become inactive, for lift_off_time()
+        std::vector<NodeForce> node_forces;
     };
     History history() const;
-    void restore(const History& saved);  ///< lie::InvalidInput if the number of contacts differs
+    /// Throws lie::InvalidInput if the number of contacts differs.
+    void restore(const History& saved);
 
 private:
     static constexpr int max_impacts = 3;  ///< of one contact in one step
-    static constexpr double rounding =
-        1e-9;  ///< relative to the largest force; also to L, for the approach in one step
+    /// A tensile force is noticeable above this value times the largest force, and an approach in one step
+    /// above this value times L.
+    static constexpr double rounding = 1e-9;
 
     struct TrackedContact {
         const EvolvingContact* contact;
@@ -146,9 +163,10 @@ private:
     lie::State at_entry;                  ///< state at the call of step(); restored if the step fails
     lie::State step_start;                ///< state from which the current attempt of the step starts
     lie::State node, trial;               ///< begin and end of a part of the step
-    lie::State restart_node;              ///< `node` filled in (see fill_node()), without a history
-    lie::State full_node, before_impact;  ///< t_n, filled in (see fill_node()); state before an impact
-    /// Impulse that the next velocity jump adds: 6 numbers per body, global force and body-frame torque part
+    lie::State restart_node;              ///< `node`, completed by fill_node(), without a history
+    lie::State full_node, before_impact;  ///< node at t_n, completed by fill_node(); state before an impact
+    /// Impulse that the next velocity jump adds, 6 numbers per body: linear impulse [N s, global frame] and
+    /// angular impulse [N m s, body frame]
     Eigen::VectorXd momentum;
     Eigen::VectorXd v;  ///< right side and solution of a velocity jump
 };

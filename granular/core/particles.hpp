@@ -11,9 +11,9 @@ namespace hilda::granular {
 
 /// Position of a particle centre: owner cell and local integer coordinates.
 ///
-/// The difference of two neighbouring positions is an exact integer, independent of their distance from the
-/// origin. The owner cell is assigned at a neighbour search. Between searches only the local coordinates
-/// change, and they may lie outside [0, CellGrid::width).
+/// The difference of two neighbouring positions is an exact integer, wherever they are in the domain. The
+/// owner cell is assigned at a neighbour search. Between searches only the local coordinates change, and they
+/// may lie outside [0, CellGrid::width).
 struct alignas(16) Position {
     std::uint32_t cell = 0;            ///< owner cell, packed by CellGrid::pack()
     std::int32_t x = 0, y = 0, z = 0;  ///< relative to the low corner of the owner cell [CellGrid::unit]
@@ -29,10 +29,11 @@ struct Species {
     std::uint16_t material = 0, replica = 0;
 };
 
-/// Compensation: the rounding remainders of one step, which are added in the next step (Kahan summation).
+/// Compensation of a particle: the rounding remainders of one step, which are added in the next step (Kahan
+/// summation).
 ///
-/// The remainder of the position is stored in 10 bits per axis. The remainders of the velocities are stored
-/// as bfloat16, the upper 16 bits of a float.
+/// The remainder of the displacement has 10 bits per axis. The remainders of the velocities are stored as
+/// bfloat16, the upper 16 bits of a float.
 struct alignas(16) Compensation {
     std::int32_t displacement = 0;                         ///< packed remainder; see SplitDisplacement
     std::uint16_t v[3] = {0, 0, 0}, omega[3] = {0, 0, 0};  ///< [m/s, rad/s]
@@ -42,10 +43,10 @@ struct alignas(16) Compensation {
 constexpr std::uint32_t dither_to_nearest = 1u << 15;
 /// The bits of x rounded to bfloat16, in the upper 16 bits of the result.
 ///
-/// Stochastic rounding: with `dither` uniformly distributed in [0, 2^16), |x| is rounded up with a
-/// probability equal to the discarded fraction. A small constant contribution per step is therefore preserved
-/// on average. The rounding is odd, round(-x) = -round(x), so that the total momentum of a mirror-symmetric
-/// system remains exactly zero.
+/// Stochastic rounding: for a random `dither`, uniformly distributed over the integers in [0, 2^16), |x| is
+/// rounded up with a probability equal to the discarded fraction. A small constant contribution per step is
+/// therefore preserved on average. The rounding is odd, round(-x) = -round(x). The total momentum of a
+/// mirror-symmetric system therefore remains exactly zero.
 template <class R>
 HILDA_HD inline Int<R> round_to_bfloat16(const R& x, std::uint32_t dither)
 {
@@ -69,22 +70,22 @@ HILDA_HD inline Vec<float> load_bfloat16(const std::uint16_t* three)
     return {to_float32(three[0]), to_float32(three[1]), to_float32(three[2])};
 }
 
-/// A displacement split into whole units x, y, z and the packed remainder: three signed 10-bit numbers of
-/// 1/1024 unit.
+/// A displacement split into whole units x, y, z and a remainder. The remainder consists of three signed
+/// 10-bit numbers in units of 1/1024, packed into the bits 0 to 29.
 template <class R>
 struct SplitDisplacement {
     Int<R> x, y, z, remainder;
 };
-/// The remainder of a split displacement [units]
+/// The remainder of a split displacement as a vector [units]
 template <class R>
 HILDA_HD inline Vec<R> unpack_remainder(const Int<R>& remainder)
 {
     const auto part = [](const Int<R>& bits) { return R(0x1p-10f) * to_float(bits >> 22); };
     return {part(remainder << 22), part(remainder << 12), part(remainder << 2)};
 }
-/// Splits a displacement [units]. The remainder is rounded to 1/1024 unit after `dither` is added to it;
-/// `dither` is distributed uniformly in (-1/2, 1/2) in units of 1/1024, so that a small constant velocity is
-/// not lost.
+/// Splits a displacement [units]. `dither`/1024 is added to the remainder before it is rounded to a
+/// multiple of 1/1024. `dither` is uniformly distributed in (-1/2, 1/2), so that a small constant velocity
+/// is not lost.
 template <class R>
 HILDA_HD inline SplitDisplacement<R> split_displacement(const Vec<R>& displacement, float dither)
 {
@@ -110,7 +111,7 @@ struct CellGrid {
     double low[3] = {0, 0, 0};                         ///< low corner of the domain [m]
     double unit = 1;                                   ///< length unit of local coordinates [m]
     std::int32_t cells[3] = {1, 1, 1};                 ///< number of cells along each axis
-    std::int32_t width[3] = {widest, widest, widest};  ///< of a cell [units]
+    std::int32_t width[3] = {widest, widest, widest};  ///< width of a cell along each axis [units]
     /// Width of the part of the last cell that is in the domain [units]
     std::int32_t last[3] = {widest, widest, widest};
     std::int32_t periodic[3] = {0, 0, 0};  ///< 1 along a periodic axis
@@ -125,10 +126,11 @@ struct CellGrid {
     HILDA_HD static std::int32_t z_of(std::uint32_t cell) { return cell >> (bits_x + bits_y); }
 };
 
-/// Difference of the positions i - j along one axis [units]; the minimum image along a periodic axis.
+/// Difference of the positions i - j along one axis [units]; the minimum image along a periodic axis. cell_i,
+/// cell_j: cell indices along the axis; i, j: local coordinates [units].
 ///
-/// The arithmetic is modulo 2^32. Overflow of an intermediate result cancels as long as the difference itself
-/// is below 2^31 units, which is at least four cell widths.
+/// The arithmetic is modulo 2^32. The result is exact if the difference is below 2^31 units in magnitude,
+/// which is at least four cell widths. An overflow of an intermediate result does not matter.
 HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
                                         std::int32_t j, const CellGrid& g, int axis)
 {
@@ -140,7 +142,7 @@ HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j
                                      (static_cast<std::uint32_t>(i) - static_cast<std::uint32_t>(j)));
 }
 
-/// Difference of two positions [units]
+/// Difference of two positions i - j [units]
 struct Difference {
     std::int32_t x, y, z;
 };
@@ -159,7 +161,8 @@ HILDA_HD inline Vec<double> global_position(const CellGrid& g, const Position& p
             g.low[2] + (static_cast<double>(CellGrid::z_of(p.cell)) * g.width[2] + p.z) * g.unit};
 }
 
-/// The radius in units, truncated. Both particles of a pair use this value, so that the overlap is symmetric.
+/// The radius [units], truncated to an integer. Both particles of a pair use this value, so that the
+/// overlap is the same for both.
 HILDA_HD inline std::int32_t radius_in_units(float radius, float units_per_metre)
 {
     return static_cast<std::int32_t>(radius * units_per_metre);

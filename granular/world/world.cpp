@@ -110,7 +110,8 @@ void World::set_force(std::uint32_t id, const Vec3& F)
     forces_changed = true;
 }
 
-/// Throws ParticleLost for the particle with the index k of the arrays, with id, time and velocity.
+/// Throws ParticleLost for the particle with index k in the arrays. The message has its id, the time and its
+/// velocity.
 void World::throw_lost(std::uint32_t k, const std::string& how) const
 {
     const Particles<par::Cpu>& p = engine->arrays().particle;
@@ -122,15 +123,15 @@ void World::throw_lost(std::uint32_t k, const std::string& how) const
     throw ParticleLost(what.str(), id, time);
 }
 
-/// Rebuilds the neighbour list if a pair outside it may be in contact: if a particle or a boundary may have
-/// moved by more than half the skin since the list was built.
+/// Rebuilds the neighbour list if a particle or a boundary may have moved by more than half the skin since
+/// the list was built. Before that no pair outside the list can be in contact.
 void World::update_neighbours()
 {
     const double allowed = 0.5 * domain.skin;
     if (particle_displacement <= allowed && boundary_displacement <= allowed) return;
-    // particle_displacement is the sum of the largest displacements of each step, an upper bound. It is
-    // replaced by the measured largest displacement of one particle, which may be smaller, before the list is
-    // rebuilt.
+    // particle_displacement is an upper bound: the sum over the steps of the largest displacement in each
+    // step. The largest displacement of one particle since the last rebuild may be smaller. If it is at
+    // most 0.8 of the limit, the list remains valid.
     if (std::isfinite(particle_displacement) && boundary_displacement <= allowed) {
         const double measured = engine->largest_displacement() * domain.grid.unit;
         if (measured <= 0.8 * allowed) {
@@ -183,8 +184,8 @@ StepParameters World::step_parameters(Part part) const
             .velocity_dither = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
 }
 
-/// Integrates the velocities of tools, boundaries with a mass m and a moment of inertia I, by symplectic
-/// Euler:
+/// Integrates the velocities of tools by symplectic Euler. A tool is a boundary with a mass m and a moment of
+/// inertia I.
 ///
 ///     v += h ((F_contact + F)/m + g) along the free axes,    ω += h T/I
 void World::accelerate_tools()
@@ -202,7 +203,7 @@ void World::accelerate_tools()
 }
 
 /// Moves the boundaries by h v and rotates their axes by h ω (Rodrigues' formula). Returns an upper bound of
-/// the displacement of a boundary point within the domain [m].
+/// the displacement of the boundary points within the domain [m].
 double World::move_boundaries()
 {
     const double h = options.h;
@@ -271,7 +272,8 @@ void World::one_step()
         }
         throw_lost(fastest, "moves by more than a cell in one step");
     };
-    // The displacement of a step uses the velocity before or after the update, depending on the scheme.
+    // Depending on the scheme, a step moves the particles with the velocity before or after its update. The
+    // bound of the displacement uses the larger one.
     const auto advance = [&](Part part) {
         const float before = std::exchange(max_speed, std::sqrt(engine->advance(step_parameters(part))));
         const double displacement = options.h * static_cast<double>(par::nan_max(before, max_speed));

@@ -24,30 +24,31 @@ public:
     using std::invalid_argument::invalid_argument;
 };
 
-/// A particle has left the domain, moved by more than a cell in one step, or has a velocity that is not
-/// finite. The state of the world is then that at the beginning of the step or within the step. Do not
-/// continue the run with it.
+/// A particle has left the domain, has moved by more than a cell in one step, or has a velocity that is not
+/// finite. Do not continue the run: the step may be computed in part only.
 class ParticleLost : public std::runtime_error {
 public:
     ParticleLost(const std::string& what, std::uint32_t id, double t) : runtime_error(what), id(id), t(t) {}
 
-    std::uint32_t id;
-    double t;  ///< [s]
+    std::uint32_t id;  ///< of the particle
+    double t;          ///< [s]
 };
 
+/// A sphere: its properties and its state
 struct Particle {
     Vec3 r = {0, 0, 0};                     ///< centre, in the global frame [m]
     double radius = 0;                      ///< [m]
     int material = 0;                       ///< index into the materials of the world
     Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m/s, rad/s]
     bool fixed = false;                     ///< the centre does not move; omega stays constant
-    double mass = 0;                        ///< [kg]; 0: computed from radius and density
+    double mass = 0;                        ///< [kg]; 0: from radius and density; not used if fixed
     std::uint16_t replica = 0;              ///< index of the replica it belongs to
     /// Euler parameters e0, e1, e2, e3 of the rotation from the body frame to the global frame; normalised on
     /// insertion. They are integrated only if WorldOptions::orientation is set.
     std::array<double, 4> e = {1, 0, 0, 0};
 };
 
+/// A contact at t. Vectors are in the global frame.
 struct ContactRecord {
     std::uint32_t i = 0, j = 0;  ///< ids; j is the number of a boundary if `boundary` is true
     bool boundary = false;
@@ -56,15 +57,17 @@ struct ContactRecord {
     double delta = 0;    ///< overlap [m]
     Vec3 F = {0, 0, 0};  ///< force on i [N]
     Vec3 T = {0, 0, 0};  ///< rolling and spin torque on i [N m]
-    Vec3 u = {0, 0, 0};  ///< tangential displacement [m]; with mindlin-incremental the elastic force [N]
+    /// Tangential displacement of i relative to j [m]; with mindlin-incremental the elastic force [N]
+    Vec3 u = {0, 0, 0};
     std::uint16_t replica = 0;
 };
 
+/// Constant parameters of a world
 struct WorldOptions {
-    Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the domain [m]
-    std::array<bool, 3> periodic = {false, false, false};
-    Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
-    double h = 0;                  ///< step [s]
+    Vec3 low = {0, 0, 0}, high = {0, 0, 0};                ///< lower and upper corner of the domain [m]
+    std::array<bool, 3> periodic = {false, false, false};  ///< along x, y, z
+    Vec3 gravity = {0, 0, -9.81};                          ///< [m/s²]
+    double h = 0;                                          ///< step [s]
     double skin = 0.1;  ///< skin of the neighbour list, in diameters of the largest particle, in (0, 1]
     Scheme scheme = Scheme::symplectic_euler;
     bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
@@ -73,8 +76,8 @@ struct WorldOptions {
 
 /// Particles and boundaries with explicit time integration, on the CPU or on a GPU.
 ///
-/// A run depends only on the arguments of the member functions. The same calls give bitwise identical results
-/// for any number of threads and on every device.
+/// A run depends only on the arguments of the constructor and of the member functions. The same calls give
+/// bitwise identical results for any number of threads and on every device.
 ///
 /// Replicas are independent systems that share one domain and one set of boundaries. Particles of different
 /// replicas do not interact.
@@ -82,7 +85,7 @@ class World {
 public:
     /// Throws InvalidCase, and DeviceError if the device of the options is not available.
     World(const WorldOptions& options, std::vector<Material> materials);
-    /// Uses an engine supplied by the caller.
+    /// A world with an engine supplied by the caller
     World(const WorldOptions& options, std::vector<Material> materials, std::unique_ptr<Engine> engine);
     World(World&&) = default;
     ~World();
@@ -92,9 +95,12 @@ public:
     void set_law(int material_i, int material_j, const PairLaw& law);
     /// Adds a boundary and returns its number. Throws InvalidCase.
     int add(const Boundary& boundary);
-    /// Adds a particle and returns its id. Throws InvalidCase. The particle is inserted at the next step: its
-    /// place and its overlaps (at most 5 % of a radius) are checked then. Schemes that use the previous
-    /// acceleration start the particle with the acceleration of gravity.
+    /// Adds a particle and returns its id. Throws InvalidCase.
+    ///
+    /// The particle is pending until the next call of step(), set_velocity() or to_bytes() inserts it. The
+    /// insertion checks its position and its overlaps, which may be at most 5 % of the smaller radius. If
+    /// it is inserted during a run, schemes that use the previous acceleration start it with that of
+    /// gravity.
     std::uint32_t add(const Particle& particle);
 
     /// Inserts pending particles and computes n ≥ 0 steps. Throws InvalidCase if a pending particle cannot be
@@ -104,18 +110,23 @@ public:
     long steps() const { return step_count; }
 
     std::vector<Particle> particles() const;  ///< state at t, ordered by id, pending particles last
-    /// Contacts at t, those with boundaries last, each group ordered by ids
+    /// Contacts at t: those between particles, with i < j, then those with boundaries. Each group is
+    /// ordered by i, then by j. Throws ParticleLost if the neighbour list has to be rebuilt and a particle
+    /// is outside the domain.
     std::vector<ContactRecord> contacts() const;
     /// Resultant of the contact forces on a boundary at t, about Boundary::r [N, N m]. With `replica` ≥ 0
     /// only the contacts of that replica are included.
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
-    /// The same, computed from a result of contacts()
+    /// The same, computed from the result of contacts()
     Wrench wrench(const std::vector<ContactRecord>& contacts, int boundary, int replica = -1) const;
     /// Sums over all contacts at t. totals() takes about a sixth of the time of contacts().
     struct Totals {
         std::size_t contacts = 0;
-        std::array<double, 9> stress = {};  ///< stress() over the volume of the domain [Pa]
-        std::vector<Wrench> on_boundary;    ///< resultants of the contact forces, by number of the boundary
+        /// Love-Weber stress over the volume of the domain, 3 × 3 by rows [Pa]; positive in compression. See
+        /// stress() in output.hpp.
+        std::array<double, 9> stress = {};
+        /// Resultants of the contact forces on each boundary, about its Boundary::r [N, N m]
+        std::vector<Wrench> on_boundary;
     };
     Totals totals() const;
 
@@ -123,25 +134,27 @@ public:
     /// boundaries and applied forces, and add particles. It must not register further callbacks. Callbacks
     /// are called in the order of registration. They are not part of a checkpoint.
     void before_each_step(std::function<void(World&)> f);
-    /// Access to a boundary, to prescribe v, omega and F. A boundary with a mass is accelerated by contact
-    /// forces.
+    /// Access to a boundary, to prescribe v, omega and F. A boundary with a mass is accelerated by the
+    /// contact forces. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
+    /// Throws InvalidCase.
     void set_force(std::uint32_t id, const Vec3& F);
     /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws InvalidCase.
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
     /// If true, torques do not accelerate the rotation of particles.
     void set_omega_locked(bool locked) { rotation_locked = locked; }
 
-    /// Serialises the state. `run_id` identifies the run; from_bytes rejects another value. The neighbour
-    /// list is rebuilt before the next step, as in a world that is restored. Both then continue with bitwise
-    /// identical results.
+    /// Serialises the state after the insertion of pending particles. from_bytes() accepts the result only
+    /// with the same `run_id`. Both this world and a restored one rebuild the neighbour list before the
+    /// next step and then continue with bitwise identical results. Throws InvalidCase if a pending
+    /// particle cannot be inserted.
     std::string to_bytes(const std::string& run_id);
-    /// Restores the state into a world that was constructed by the same calls. Throws FileError, whose
-    /// message begins with `file`.
+    /// Restores the state into a world that was constructed by the same calls. `file` is the file name in
+    /// messages. Throws FileError.
     void from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file);
 
-    double kinetic_energy() const;  ///< translational and rotational [J]
+    double kinetic_energy() const;  ///< translational and rotational, of the particles [J]
     /// Volume of the domain [m³]
     double volume() const
     {
@@ -160,8 +173,8 @@ public:
         double neighbours = 0, loads = 0, advance = 0;
     };
     Times take_times() { return std::exchange(times, {}); }
-    /// With `on`, the device is synchronised between the parts of a step, so that take_times() attributes the
-    /// time correctly. Steps take longer then.
+    /// With `on`, the device is synchronised between the parts of a step. take_times() then attributes the
+    /// time of a GPU correctly, but the steps take longer.
     void set_timed(bool on) { timed = on; }
     /// Memory bandwidth of a copy on the device, bytes read plus bytes written [B/s]
     double copy_rate() { return engine->copy_rate(); }
@@ -173,15 +186,16 @@ public:
     /// Forces a rebuild of the neighbour list before the next step, as in a world restored from a checkpoint
     void invalidate_neighbours() { particle_displacement = std::numeric_limits<double>::infinity(); }
 
-    /// Time scales that limit the step of an explicit scheme; infinite if there is no movable particle or no
-    /// law.
+    /// Time scales that limit the step of an explicit scheme. Infinite if no particle can move; the collision
+    /// time is also infinite if there is no law.
     ///
     ///     rayleigh:   π R √(ρ/G) / (0.1631 ν + 0.8766)
-    ///     collision:  the smaller of π √(m*/k_n) and π/γ_n with a given stiffness
-    ///                 2.87 (m*²/(R* E*² v))^(1/5) with the Hertz law   Johnson (1985), Sec. 11.4
+    ///     collision:  the smaller of π √(m*/k_n) and π/γ_n for a law with constants k_n and γ_n
+    ///                 2.87 (m*²/(R* E*² v))^(1/5) for the Hertz law    Johnson (1985), Sec. 11.4
     ///
-    /// The collision is one of two equal particles with v the largest speed, at least 0.1 m/s. All laws are
-    /// applied to all particles, whether or not their materials occur together.
+    /// R, ρ, G, ν: radius, density, shear modulus and Poisson's ratio of a particle. The collision is that
+    /// of two equal particles, m* = m/2 and R* = R/2. v is the largest speed of all particles, at least
+    /// 0.1 m/s. Each law is applied to each particle, whatever its material.
     struct StepLimits {
         double rayleigh = std::numeric_limits<double>::infinity();   ///< smallest Rayleigh time [s]
         double collision = std::numeric_limits<double>::infinity();  ///< shortest duration of a collision [s]
@@ -214,7 +228,7 @@ private:
     WorldOptions options;
     std::vector<Material> materials;
     std::vector<PairLaw> laws;
-    std::vector<std::uint8_t> law_of;
+    std::vector<std::uint8_t> law_of;  ///< index into laws, or no_law: materials × materials
     std::vector<Boundary> boundaries;
     std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;  ///< particles added since the last insertion
@@ -225,7 +239,7 @@ private:
     std::size_t inserted_count = 0;
     double time = 0;
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
-    /// [m]. The list is a cache: the members that describe it are mutable.
+    /// [m]; infinite if the list must be rebuilt. The list is a cache, therefore these members are mutable.
     mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
     mutable long rebuild_count = 0;
     mutable bool laws_changed = true;

@@ -74,7 +74,7 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key)
 
 Vec3 read_semi_axes(dae::ObjectReader& o)
 {
-    const Vec3 semi_axes = o.vec3("semi_axes");
+    Vec3 semi_axes = o.vec3("semi_axes");
     if (!(semi_axes.minCoeff() > 0))
         o.fail("semi_axes", "semi_axes must be positive, got " + dae::described(*o.find("semi_axes")));
     return semi_axes;

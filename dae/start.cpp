@@ -228,7 +228,7 @@ void solve_with_internal_states(const Model& model, lie::Saddle& K, State& x)
 std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
 {
     model.prepare(x);
-    const std::vector<int> redundant = dependent_rows(model, x, tolerance);
+    std::vector<int> redundant = dependent_rows(model, x, tolerance);
     for (const int k : redundant) model.drop(k);
     if (model.rows() > 0) {
         lie::Saddle K(model, lie::Metric::mass, start_solver(model));

@@ -152,8 +152,8 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
              << (round ? "the radius of curvature " : "the size ") << length << " m";
         return got(what.str(), -contact_point.gap, "m");
     };
-    if (const std::string why = too_deep(*i.surface, contact_point.K_i); !why.empty()) return why;
-    if (const std::string why = too_deep(*j.surface, contact_point.K_j); !why.empty()) return why;
+    if (std::string why = too_deep(*i.surface, contact_point.K_i); !why.empty()) return why;
+    if (std::string why = too_deep(*j.surface, contact_point.K_j); !why.empty()) return why;
     return {};
 }
 

@@ -328,14 +328,14 @@ CommonNormal::SearchResult CommonNormal::solve(Pair& p, const Vec3& origin) cons
     contact_point.K_i = at_i.shape_operator(), contact_point.K_j = at_j.shape_operator();
 
     constexpr const char* not_positive_definite = "the surfaces do not curve away from each other";
-    if (!std::isfinite(correction))
-        end.failure = not_positive_definite;
-    else if (!(correction <= tolerance * smaller_size))
-        end.failure = "Newton's method did not converge";
-    else if (!(at_i.n.dot(n) < -0.5))
-        end.failure = "the normals are not opposite";
-    else if (!positive_definite(relative_curvature(contact_point)))
-        end.failure = not_positive_definite;
+    const auto failure = [&]() -> const char* {
+        if (!std::isfinite(correction)) return not_positive_definite;
+        if (!(correction <= tolerance * smaller_size)) return "Newton's method did not converge";
+        if (!(at_i.n.dot(n) < -0.5)) return "the normals are not opposite";
+        if (!positive_definite(relative_curvature(contact_point))) return not_positive_definite;
+        return nullptr;
+    };
+    end.failure = failure();
     end.not_positive_definite = end.failure == not_positive_definite;
     return end;
 }

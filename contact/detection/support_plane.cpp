@@ -23,7 +23,7 @@ public:
             return at_support(at, bj, n, *i.surface->support(down));
         } catch (const lie::NumericalFailure& e) {
             const Vec3 tilted = (down + tilt * down.unitOrthogonal()).normalized();
-            const ContactPoint contact_point = at_support(at, bj, n, *i.surface->support(tilted));
+            ContactPoint contact_point = at_support(at, bj, n, *i.surface->support(tilted));
             if (contact_point.gap > 0) return contact_point;
             throw NoUniqueContactPoint(e.what());
         }

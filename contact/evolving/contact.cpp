@@ -367,7 +367,7 @@ double EvolvingContact::velocity_error(const Arguments& x) const
 
 std::string EvolvingContact::start_error(const Arguments& x) const
 {
-    if (const std::string why = common_normal.width_conflict(x.bi, x.bj); !why.empty()) return why;
+    if (std::string why = common_normal.width_conflict(x.bi, x.bj); !why.empty()) return why;
     ContactPoint at;
     try {
         at = detector->detect(x.bi, x.bj, nullptr);

@@ -98,7 +98,10 @@ std::vector<double> critical_masses(const std::vector<Stack>& stacks, const Stac
     std::vector<int> stable(n, 0), collapsed(n, max_mass);
     std::vector<double> mass(n);
     for (int width = max_mass; width > 1; width /= 2) {
-        for (std::size_t k = 0; k < n; ++k) mass[k] = (stable[k] + collapsed[k]) / 2 * grams / 1000.;
+        for (std::size_t k = 0; k < n; ++k) {
+            const int middle = (stable[k] + collapsed[k]) / 2;
+            mass[k] = middle * grams / 1000.;
+        }
         const std::vector<double> z = heights(stacks, mass, run);
         for (std::size_t k = 0; k < n; ++k)
             (z[k] < collapse_height ? collapsed[k] : stable[k]) = (stable[k] + collapsed[k]) / 2;

@@ -2,6 +2,7 @@
 #include "granular/validations/validation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -20,7 +21,8 @@ const std::vector<Validation>& validations() { return list(); }
 bool register_validation(Validation v)
 {
     const auto before = [](const Validation& a, const Validation& b) { return a.name < b.name; };
-    list().insert(std::upper_bound(list().begin(), list().end(), v, before), v);
+    const auto at = std::upper_bound(list().begin(), list().end(), v, before);
+    list().insert(at, std::move(v));
     return true;
 }
 

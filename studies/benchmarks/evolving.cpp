@@ -36,7 +36,8 @@ struct Bowls {
         const contact::Shape ball{std::make_shared<contact::Sphere>(0.5)};
         const auto bowl = std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true);
         for (long k = 0; k < balls; ++k) {
-            const Vec3 place(10.0 * static_cast<double>(k % 50), 10.0 * static_cast<double>(k / 50), 0);
+            const long column = k % 50, row = k / 50;
+            const Vec3 place(10.0 * static_cast<double>(column), 10.0 * static_cast<double>(row), 0);
             model.add({"ball " + std::to_string(k), 1, 0.1 * lie::Mat3::Identity()});
             model.constrain("bowl " + std::to_string(k),
                             std::make_unique<contact::EvolvingContact>(static_cast<int>(k), ball, dae::ground,

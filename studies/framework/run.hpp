@@ -40,13 +40,20 @@ lie::Settings settings_of(const Run& run, const lie::Settings& of_study);
 /// run, so that the other runs of the study continue.
 void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* const> observers = {});
 
+/// Pointers to the elements of a vector, as pointers to their base class
+template <class Pointer, class Runs>
+std::vector<Pointer> pointers(Runs& runs)
+{
+    std::vector<Pointer> all;
+    all.reserve(runs.size());
+    for (auto& run : runs) all.push_back(&run);
+    return all;
+}
 /// Pointers to the Run part of the runs of any study
 template <class AnyRun>
 std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
 {
-    std::vector<const Run*> all;
-    for (const AnyRun& run : runs) all.push_back(&run);
-    return all;
+    return pointers<const Run*>(runs);
 }
 
 /// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles

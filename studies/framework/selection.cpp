@@ -36,9 +36,9 @@ Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
     return fixed;
 }
 
-std::vector<double> steps_or(const StudyOptions& options, std::vector<double> defaults)
+std::vector<double> steps_or(const StudyOptions& options, const std::vector<double>& defaults)
 {
-    std::vector<double> steps = options.steps.empty() ? std::move(defaults) : options.steps;
+    std::vector<double> steps = options.steps.empty() ? defaults : options.steps;
     std::sort(steps.rbegin(), steps.rend());
     return steps;
 }

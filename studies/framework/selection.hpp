@@ -19,7 +19,7 @@ Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
                            const std::vector<std::string>& defaults = {});
 
 /// The steps of --steps, or `defaults`, in descending order [s]
-std::vector<double> steps_or(const StudyOptions& options, std::vector<double> defaults);
+std::vector<double> steps_or(const StudyOptions& options, const std::vector<double>& defaults);
 
 /// The step of --steps, or the default [s]. UsageError for more than one step.
 double one_step(const std::string& kind, const StudyOptions& options, double defaults);

@@ -175,8 +175,7 @@ int scaling(const StudyOptions& options)
     }
     Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
         .run([&](long k) { march(runs[k], options.settings); });
-    std::vector<TimedRun*> timed;
-    for (ScalingRun& run : runs) timed.push_back(&run);
+    const auto timed = pointers<TimedRun*>(runs);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
     for (ScalingRun& run : runs)
         for (const ScalingRun& baseline_run : runs)

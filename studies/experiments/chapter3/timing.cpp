@@ -132,8 +132,7 @@ int timing(const StudyOptions& options)
     for (const Benchmark& c : all) check_steps(kind, c, steps);
 
     std::vector<StepTimeRun> runs = runs_of(all, schemes, steps);
-    std::vector<TimedRun*> timed;
-    for (StepTimeRun& run : runs) timed.push_back(&run);
+    const auto timed = pointers<TimedRun*>(runs);
     Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
         .run([&](long k) { march(runs[k], options.settings); });
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });

@@ -35,9 +35,9 @@ struct WorkRun : TimedRun {
 void compute(WorkRun& run, const StudyOptions& options)
 {
     EvaluatedRun evaluated;
-    static_cast<Run&>(evaluated) = run;
+    static_cast<Run&>(evaluated) = static_cast<const Run&>(run);
     evaluate(evaluated, options.settings);
-    static_cast<Run&>(run) = evaluated;
+    static_cast<Run&>(run) = static_cast<const Run&>(evaluated);
     run.errors = evaluated.errors;
 }
 
@@ -212,8 +212,7 @@ int work_precision(const StudyOptions& options)
             }
     Pool(options.jobs, options.quiet ? "" : kind + ", errors", static_cast<long>(runs.size()))
         .run([&](long k) { compute(runs[k], options); });
-    std::vector<TimedRun*> timed;
-    for (WorkRun& run : runs) timed.push_back(&run);
+    const auto timed = pointers<TimedRun*>(runs);
     time_in_turn(kind, options, timed, [&](long) { return options.settings; });
 
     const std::vector<WorkSeries> series = series_of(runs);

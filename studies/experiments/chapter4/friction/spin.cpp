@@ -230,17 +230,17 @@ void check_ellipsoids(const Results& results, std::vector<Check>& out)
     // Table 4.7 at K_E = 5e6: curvature, stiffness, static micro-deflection, static torque
     struct TableRow {
         const char* body;
-        double K, K_psi, S_s, T_s;
+        double kappa;               // mean curvature at the contact point [1/m]
+        double K, K_psi, S_s, T_s;  // published
     };
     const double K_E = 5e6, N = steel_m * g;
     const contact::Ellipsoid surface(lie::Vec3(a, a, c));
     const double sphere_R = std::cbrt(a * a * c);
-    for (const auto& [row, kappa] :
-         {std::pair(TableRow{"sphere", 36.84, 1.795e-2, 3.876e-3, 6.957e-5}, 1 / sphere_R),
-          std::pair(TableRow{"flat", 29, 2.10546e-2, 3.5785e-3, 7.53438e-5},
-                    surface.mean_curvature({a, 0, 0})),
-          std::pair(TableRow{"upright", 125, 7.94947e-3, 5.82379e-3, 4.6296e-5},
-                    surface.mean_curvature({0, 0, c}))}) {
+    for (const TableRow& row :
+         {TableRow{"sphere", 1 / sphere_R, 36.84, 1.795e-2, 3.876e-3, 6.957e-5},
+          TableRow{"flat", surface.mean_curvature({a, 0, 0}), 29, 2.10546e-2, 3.5785e-3, 7.53438e-5},
+          TableRow{"upright", surface.mean_curvature({0, 0, c}), 125, 7.94947e-3, 5.82379e-3, 4.6296e-5}}) {
+        const double kappa = row.kappa;
         contact::ContactState now;
         now.contact_point.n = now.slip.n = lie::Vec3::UnitZ();
         now.slip.u = lie::Vec3::UnitX();

@@ -214,6 +214,7 @@ TEST_CASE("a step with evolving contacts does not allocate", "[contact][evolving
                     return before;
                 };
                 for (int n = 0; n < 3; ++n) scene.model.accepted(step(), x);
+                // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): the copy is measured
                 const long of_copy = allocations_during([&] { const lie::State copy = x; });
                 const long taken = allocations_during([&] {
                     for (int n = 0; n < 100; ++n) scene.model.accepted(step(), x);

@@ -131,8 +131,9 @@ Mat3 derivatives(const F& f, const Vec3& a)
 TEST_CASE("the derivatives of a surface agree with finite differences", "[contact][surface]")
 {
     Random random(GENERATE(range(0u, 20u)));
-    for (const auto& [name, s] : surfaces()) {
-        INFO(name);
+    for (const auto& surface : surfaces()) {
+        INFO(surface.first);
+        const auto& s = surface.second;
         const Vec3 a = point_on(*s, random) + random.vector(0.05);
         Vec3 gradient;
         for (int k = 0; k < 3; ++k)

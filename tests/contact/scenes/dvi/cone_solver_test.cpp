@@ -4,6 +4,7 @@
 #include "contact/tangent_basis.hpp"
 #include "tests/support/random_motion.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 using namespace hilda;

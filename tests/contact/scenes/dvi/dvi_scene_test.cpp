@@ -391,8 +391,10 @@ TEST_CASE("a step of a rigid scene does not allocate", "[contact][dvi][allocatio
     scene.set_contact_law("floor", kind, floor, {.mu = 0.3});
     scene.add_body(floor, Motion{});
     Random random(12);
-    for (int b = 0; b < 12; ++b)
-        scene.add_body(kind, at(Vec3(0.22 * (b % 3), 0.22 * (b / 3), 0.1), random.vector(0.5)));
+    for (int b = 0; b < 12; ++b) {
+        const int column = b % 3, row = b / 3;
+        scene.add_body(kind, at(Vec3(0.22 * column, 0.22 * row, 0.1), random.vector(0.5)));
+    }
     const auto go = [&] {
         for (int n = 0; n < 100; ++n) scene.step(1e-3);
     };

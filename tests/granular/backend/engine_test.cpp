@@ -55,7 +55,8 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     for (int k = 0; k < 75; ++k) {
         Particle p;
         p.radius = R * (0.8 + 0.15 * in(random)), p.material = k % 2;
-        p.r = 2.1 * R * Vec3{k % 5 + 0.5, k / 5 % 3 - 1., 0.9 * (k / 15) - 1.4};
+        const int column = k % 5, row = k / 5 % 3, layer = k / 15;
+        p.r = 2.1 * R * Vec3{column + 0.5, row - 1., 0.9 * layer - 1.4};
         p.v = {0.3 * in(random), 0.3 * in(random), 0.3 * in(random)};
         p.omega = {40 * in(random), 40 * in(random), 40 * in(random)};
         world.add(p);

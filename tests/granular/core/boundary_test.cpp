@@ -174,9 +174,10 @@ TEST_CASE("the distance of a boundary is the minimum distance to its points", "[
 TEST_CASE("the normal of a boundary is the gradient of the distance and points to the closest point",
           "[granular][shapes]")
 {
-    for (const auto& [name, b] : all())
-        for (const Vec3& at : points(b)) {
-            INFO(name << ", at " << at.x << " " << at.y << " " << at.z);
+    for (const auto& named : all())
+        for (const Vec3& at : points(named.second)) {
+            const auto& b = named.second;
+            INFO(named.first << ", at " << at.x << " " << at.y << " " << at.z);
             const Nearest near = nearest(b, at);
             CHECK(near.n.norm() == Approx(1).epsilon(1e-14));
             constexpr double e = 1e-6;

@@ -103,10 +103,12 @@ TEST_CASE("particles can be added to a periodic gas while others cross its faces
     o.periodic = {true, true, true}, o.gravity = {0, 0, 0};
     World world(o, {glass()});
     world.set_law(0, 0, hertz_mindlin(glass(), 1));
-    for (int k = 0; k < 27; ++k)
-        world.add(Particle{.r = 8 * R * Vec3{k % 3 - 1., k / 3 % 3 - 1., k / 9 - 1.},
+    for (int k = 0; k < 27; ++k) {
+        const int column = k % 3, row = k / 3 % 3, layer = k / 9;
+        world.add(Particle{.r = 8 * R * Vec3{column - 1., row - 1., layer - 1.},
                            .radius = R,
                            .v = {1. - 0.1 * (k % 7), 0.3, -0.5}});
+    }
     int joined = 0;
     world.before_each_step([&](World& w) {
         if (w.steps() % 500 != 499) return;

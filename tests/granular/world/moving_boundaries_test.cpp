@@ -39,7 +39,8 @@ void add_heap(World& world, int n, std::uint16_t replica, unsigned seed)
     for (int k = 0; k < n * n * n; ++k) {
         Particle p;
         p.radius = R, p.replica = replica;
-        p.r = 2.1 * R * Vec3{k % n - 0.5 * (n - 1), k / n % n - 0.5 * (n - 1), k / (n * n) + 0.6};
+        const int column = k % n, row = k / n % n, layer = k / (n * n);
+        p.r = 2.1 * R * Vec3{column - 0.5 * (n - 1), row - 0.5 * (n - 1), layer + 0.6};
         p.r += {shift(engine), shift(engine), shift(engine)};
         world.add(p);
     }

@@ -81,10 +81,12 @@ TEST_CASE("the stress is symmetric without friction, and at rest with friction",
     World world(o, {rubber()});
     world.set_law(0, 0, hertz_mindlin(rubber(), 0.1, mu));
     for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
-    for (int k = 0; k < 27; ++k)
-        world.add(Particle{.r = {(1.1 + 2.2 * (k % 3)) * R + shift(engine),
-                                 (1.1 + 2.2 * (k / 3 % 3)) * R + shift(engine), (1.1 + 2.2 * (k / 9)) * R},
+    for (int k = 0; k < 27; ++k) {
+        const int column = k % 3, row = k / 3 % 3, layer = k / 9;
+        world.add(Particle{.r = {(1.1 + 2.2 * column) * R + shift(engine),
+                                 (1.1 + 2.2 * row) * R + shift(engine), (1.1 + 2.2 * layer) * R},
                            .radius = R});
+    }
     world.step(50000);
     const auto sigma = stress(world, world.contacts(), width * width * 6 * R);
     const double p = sigma[8];

@@ -50,7 +50,8 @@ std::vector<Particle> heap(int n, double spread, RandomNumbers& random)
     for (int k = 0; k < n * n * n; ++k) {
         Particle p;
         p.radius = R * (1 - random.number(0, spread));
-        p.r = 2.1 * R * Vec3{k % n + 0.6, k / n % n + 0.6, k / (n * n) + 0.6} + random.vector(0.03 * R);
+        const int column = k % n, row = k / n % n, layer = k / (n * n);
+        p.r = 2.1 * R * Vec3{column + 0.6, row + 0.6, layer + 0.6} + random.vector(0.03 * R);
         p.v = random.vector(0.2), p.omega = random.vector(50);
         all.push_back(p);
     }
@@ -118,8 +119,10 @@ TEST_CASE("particles at rest are hit by moving and rotating boundaries", "[granu
     else
         plate.v = {0.3, 0, 0};
     world.add(plate);
-    for (int k = 0; k < 20; ++k)
-        world.add(Particle{.r = {(1.3 + 0.3 * k) * R, (1 + 2.2 * (k / 2)) * R, k % 2 * 3 * R}, .radius = R});
+    for (int k = 0; k < 20; ++k) {
+        const int layer = k % 2, row = k / 2;
+        world.add(Particle{.r = {(1.3 + 0.3 * k) * R, (1 + 2.2 * row) * R, layer * 3 * R}, .radius = R});
+    }
     std::set<unsigned> touched;
     for (int k = 0; k < 3000; ++k) {
         world.step(3);

@@ -68,7 +68,7 @@ public:
         constrain(name, std::move(rows));
     }
 
-    /// Adds a general constraint. Its rows follow those of all blocks.
+    /// Adds a general constraint. Its rows follow those of all blocks. Throws as for blocks.
     void constrain(const std::string& name, std::unique_ptr<Constraint> constraint);
     const std::vector<std::unique_ptr<Constraint>>& general_constraints() const { return general_constraint; }
     /// Arguments of a general constraint in the state x. They refer to x.

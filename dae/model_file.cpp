@@ -375,7 +375,7 @@ StartReport start(Description& description, const StartOptions& options)
         throw ContactError(description.contact_place[k] + ": " + e.what(), e.contact);
     } catch (const ForceError& e) {
         const auto k = static_cast<size_t>(e.force);
-        if (k >= description.force_place.size()) throw;  // a constraint that is not from the file
+        if (k >= description.force_place.size()) throw;  // a force that is not from the file
         throw ForceError(description.force_place[k] + ": " + e.what(), e.force);
     }
 }

@@ -15,8 +15,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Writes a file atomically: writes FILE.new, flushes it to the disk and renames it. A file that is
-/// interrupted is not visible under its name. Throws FileError.
+/// Writes a file atomically: writes FILE.new, flushes it to the disk and renames it. If the writing is
+/// interrupted, FILE has its old contents or does not exist. Throws FileError.
 void write_file(const std::string& file, const std::string& bytes);
 /// Reads a file of at most `most` bytes. Throws FileError.
 std::string read_file(const std::string& file, std::size_t most);

@@ -25,7 +25,7 @@ template <class Value>
     throw InvalidInput(text.str());
 }
 
-/// A computation that failed. The state remains that of t_n.
+/// A computation that failed. If a step of an integrator throws it, the state remains that of t_n.
 class NumericalFailure : public std::runtime_error {
 public:
     NumericalFailure(std::string status, const std::string& what)
@@ -46,9 +46,10 @@ public:
 
     double correction;  ///< norm of the last correction, in the units of Settings::tolerance
     int iterations;
-    /// Name of the constraint row with the largest residual at the last iterate; empty if there are no rows
+    /// Name of the constraint row with the largest |Φ| at the last iterate. Set by integrators only; empty if
+    /// there are no rows.
     std::string largest = {};
-    double residual = 0;  ///< Φ of that row
+    double residual = 0;  ///< |Φ| of that row
 };
 
 /// A matrix is singular to working precision: redundant or singular constraints.

@@ -20,23 +20,25 @@ public:
 
     /// Advances x from t_n to t_{n+1} = t_n + h and returns the number of Newton iterations.
     ///
-    /// If NumericalFailure is thrown, x is unchanged. A multi-step scheme stores its data in x.history. These data are
-    /// valid for this scheme and this h only; x.history must be empty when the scheme or the step changes.
+    /// If NumericalFailure is thrown, x is unchanged. A multi-step scheme stores its data in x.history. These
+    /// data are valid for this scheme and this h only; x.history must be empty when the scheme or the step
+    /// changes.
     virtual int step(State& x, double h) = 0;
 
-    /// Whether a step computes λ_n, r̈_n, ω̄̇_n of the node at its beginning, as half-implicit schemes do. step()
-    /// returns these values in its result, and fill_node() copies them to the node to which they belong.
+    /// Whether a step computes λ_n, r̈_n, ω̄̇_n of the node at its beginning, as half-implicit schemes do.
+    /// step() returns these values in its result, and fill_node() copies them to the node to which they
+    /// belong.
     virtual bool is_staggered() const { return false; }
     /// Completes `node` at t_n from `after`, the result of the step from t_n to t_{n+1}.
     virtual void fill_node(State& /*node*/, const State& /*after*/) const {}
-    /// Whether the scheme uses x.history. An empty history then marks a start, where λ, r̈, ω̄̇ of x are those at x.t.
+    /// For staggered schemes: whether an empty x.history marks a start, where λ, r̈, ω̄̇ of x are those at x.t.
     virtual bool keeps_history() const { return false; }
 
     /// The state in which the present pivots of the linear solver were chosen.
     ///
-    /// The pivots affect the last digits of a result. They are the only data that a scheme may keep outside State. A
-    /// restarted run calls choose_pivots() with this state to reproduce the digits. The default, no state, is for
-    /// schemes whose first step from a saved node chooses the same pivots again.
+    /// The pivots affect the last digits of a result. They are the only data that a scheme may keep outside
+    /// State. A restarted run calls choose_pivots() with this state to reproduce the digits. The default, no
+    /// state, is for schemes whose first step from a saved node chooses the same pivots again.
     virtual const State* pivots() const { return nullptr; }
     /// Chooses the pivots in the state x.
     virtual void choose_pivots(const State& /*x*/) {}

@@ -23,16 +23,16 @@ struct Scheme {
     std::string formulation;       ///< rA, rp or reps
     std::string unknowns;          ///< of the Newton iteration
     std::string source;            ///< reference
-    /// Whether the scheme chooses internal steps from rtol and atol. Its past steps are not part of State; a run
-    /// cannot be resumed.
+    /// Whether the scheme chooses internal steps from rtol and atol. Its past steps are not part of State; a
+    /// run cannot be resumed.
     bool adaptive = false;
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
 
-    /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of the
-    /// system.
+    /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of
+    /// the system.
     std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
 };
 
@@ -45,8 +45,8 @@ const Scheme& scheme(const std::string& name);
 /// Adds a scheme to the list. Throws std::logic_error if the name is already in the list.
 bool register_scheme(Scheme scheme);
 
-/// Adds the scheme of the class Method, which has the constructor Method(const System&, const Settings&). The file
-/// of a scheme ends with this call.
+/// Adds the scheme of the class Method, which has the constructor Method(const System&, const Settings&). The
+/// file of a scheme ends with this call.
 template <class Method>
 bool register_scheme(Scheme scheme)
 {

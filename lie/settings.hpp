@@ -9,9 +9,9 @@ namespace hilda::lie {
 
 /// Settings of an integrator. Each scheme uses those that apply to it.
 struct Settings {
-    /// Newton's method stops when the norm of the correction is below this tolerance. Half-implicit schemes measure
-    /// (Δr, Δθ̄, Δλ̂) in m, rad and kg m; fully implicit schemes measure h² (Δr̈, Δω̄̇, Δλ), in the same units.
-    /// NewtonStep::converged defines the norm.
+    /// Newton's method stops when the norm of the correction is below this tolerance. Half-implicit schemes
+    /// measure (Δr, Δθ̄, Δλ̂) in m, rad and kg m; fully implicit schemes measure h² (Δr̈, Δω̄̇, Δλ), in the same
+    /// units. NewtonStep::converged defines the norm.
     double tolerance = 1e-10;
     int max_iterations = 30;
     LinearSolver linear_solver = LinearSolver::automatic;
@@ -19,7 +19,8 @@ struct Settings {
     bool reparametrise = false;  ///< Euler angles: change to another body frame near their singularity
     double rtol = 1e-10;         ///< adaptive schemes: relative error tolerance of a step
     double atol = 0;  ///< adaptive schemes: absolute error tolerance [m, m/s; 1, 1/s]; 0: equal to rtol
-    /// Adaptive schemes call this function between their internal steps and throw Interrupted if it returns true.
+    /// Adaptive schemes call this function between their internal steps and throw Interrupted if it returns
+    /// true.
     bool (*stop)() = nullptr;
 };
 

@@ -75,7 +75,7 @@ Vec3 log(const Mat3& A);
 ///     J_r(θ) = I - (1 - cos x)/x² θ̃ + (x - sin x)/x³ θ̃²,    x = |θ|
 Mat3 right_jacobian(const Vec3& theta);
 
-/// J_r(θ)⁻¹ for |θ| < 2π. J_r is singular at |θ| = 2π; the result is not finite there.
+/// J_r(θ)⁻¹ for |θ| < 2π. J_r is singular at |θ| = 2π; the result has no correct digits there.
 Mat3 right_jacobian_inverse(const Vec3& theta);
 
 /// The rotation nearest to B in the Frobenius norm (B = A S with S symmetric positive definite).

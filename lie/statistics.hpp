@@ -10,7 +10,7 @@ struct Statistics {
     long steps = 0;
     long iterations = 0;        ///< of Newton's method
     long factorizations = 0;    ///< with a new choice of pivots
-    long refactorizations = 0;  ///< with the pivots of an earlier factorisation
+    long refactorizations = 0;  ///< with earlier pivots of KLU, or by the condensed solver
     double correction = 0;      ///< norm of the last correction, in the units of Settings::tolerance
 
     double iterations_per_step() const

@@ -21,7 +21,8 @@ struct TimeGrid {
 
     /// The grid from 0 to the first node at or after t_end, with the output interval ceil(dt/h) (dt = 0: each
     /// node). t_end and dt are matched exactly if they are multiples of h up to rounding. Throws InvalidInput
-    /// if h is not positive, t_end or dt is negative, or one of them is not finite.
+    /// if h is not positive, t_end or dt is negative, one of them is not finite, or the number of steps
+    /// exceeds 1e15.
     static TimeGrid over(double t_end, double h, double dt = 0);
 
     bool is_row(long n) const { return n % interval == 0 || n == steps; }

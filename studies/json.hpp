@@ -11,10 +11,11 @@
 
 namespace hilda::studies {
 
-/// A JSON value that is built in memory and then written. The members of an object keep the order of their insertion.
+/// A JSON value that is built in memory and then written. The members of an object keep the order of their
+/// insertion.
 ///
-/// The syntax is that of nlohmann::ordered_json, which writes the text. Its header is not included here: it would take
-/// seconds of compile time in each file that builds a value.
+/// The syntax is that of nlohmann::ordered_json, which writes the text. Its header is not included here: it
+/// would take seconds of compile time in each file that builds a value.
 class Json {
 public:
     Json();  ///< null
@@ -44,7 +45,8 @@ public:
     Json& operator=(Json other) noexcept;
     ~Json();
 
-    /// The member of an object; it is added if there is none. Null becomes an object. std::logic_error for other values.
+    /// The member of an object; it is added if there is none. Null becomes an object. std::logic_error for
+    /// other values.
     Json& operator[](const std::string& key);
     /// Appends to an array. Null becomes an array. std::logic_error for other values.
     void push_back(Json element);
@@ -53,7 +55,8 @@ public:
     const Json& at(size_t element) const;  ///< element of an array; std::out_of_range
     size_t size() const;                   ///< number of elements or members; 0 for other values
 
-    /// The text, indented by two spaces, with a line break at the end. Bytes that are not UTF-8 are replaced by U+FFFD.
+    /// The text, indented by two spaces, with a line break at the end. Bytes that are not UTF-8 are replaced
+    /// by U+FFFD.
     std::string text() const;
 
 private:

@@ -43,8 +43,9 @@ public:
     /// many alternating projections, which start from the origin of one surface or, if `corner` is not zero,
     /// from a far point in that direction. Returns false if no points are found.
     bool set_start_points(Pair& p, int projections, const Vec3& corner) const;
-    /// One step of Newton's method. It is shortened if it would rotate a normal by more than 0.5 rad. Returns
-    /// the larger displacement of the two points [m]; it is not finite if the equations are singular.
+    /// One step of Newton's method. It is shortened if it would rotate a normal by more than 0.5 rad or move
+    /// a point by more than twice the larger size. Returns the larger displacement of the two points [m]; it
+    /// is not finite if the equations are singular.
     double newton_step(Pair& p) const;
 
     /// If one surface is convex and the other concave, compares their widths along the axes of both frames.

@@ -27,8 +27,9 @@ namespace hilda::contact {
 /// At a node the dampers use the mean rates Δs/h of the last step, as in Chapter 4. Elsewhere they use the
 /// velocities of the state. The alternative, the velocities that leapfrog schemes extrapolate to t_n, was
 /// rejected: the matrix whose singularity defines stable_step() becomes 4 M - 4 h D - h² K, which halves the
-/// limit where damping dominates. With the mean rates, which lag by h/2, the limit holds for all
-/// half-implicit schemes except rA-half-2. rA-half-2 and rA-rattle are stable up to three fifths of it.
+/// limit where damping dominates. With the mean rates, those of the middle of the last step, the limit holds
+/// for all half-implicit schemes except rA-half-2. rA-half-2 and rA-rattle are stable up to three fifths of
+/// it.
 class EvolvingFriction final : public TrackedForce {
 public:
     /// Takes the name and the bodies of a contact of this model. Throws lie::InvalidInput if the contact

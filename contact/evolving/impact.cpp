@@ -97,7 +97,7 @@ void UnilateralStep::add_impulse(const TrackedContact& c, double impulse, const 
 /// Velocity jump K (v⁺, P) = (M v⁻ + impulse, ν): all active contacts and the other constraints hold after
 /// it; the contact `rebounding` separates with this speed [m/s]. Contacts with a negative normal impulse
 /// become inactive, the most negative first, and the jump is computed again. The impulses P [N s] are left in
-/// x.lambda. Regularised rows are empty in K here, so implicit friction has no impulse; the rows of ideal
+/// x.lambda. Regularised rows are inactive in K here, so implicit friction has no impulse; the rows of ideal
 /// rolling have one.
 void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebounding, double speed)
 {

@@ -68,9 +68,9 @@ SlidingDisplacement zero_displacement(const ContactPoint& contact_point, const V
 /// The displacement from the contact frame at t_0 to the contact point at t_1, for bodies at the poses bi, bj
 /// of t_1.
 ///
-/// The tangent vectors are transported by the smallest rotation of the normal, which is the minimum of
-/// Eq. A.6 in closed form. p_b points from the present position of the old contact point of body b to the new
-/// one. It is projected onto the tangent plane and scaled to the length of the path along the surface
+/// The tangent vectors are transported by the smallest rotation of the normal. It is the maximum of f(θ) in
+/// Sec. A.6 in closed form. p_b points from the present position of the old contact point of body b to the
+/// new one. It is projected onto the tangent plane and scaled to the length of the path along the surface
 /// (Fig. 4.2; Surface::arc).
 ///
 /// lie::NumericalFailure "contact_not_converged" if the normal rotates by more than about 172° in the step.

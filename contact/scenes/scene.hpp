@@ -45,7 +45,7 @@ public:
     /// stability limit of a contact.
     void check(double h) const;
 
-    /// A contact between two given bodies, with its state at the node that the last step left
+    /// A contact between two given bodies, with its state at the first node of the last step
     struct Pair {
         CompliantContact contact;
         int i, j;
@@ -54,7 +54,7 @@ public:
         Wrench wrench = {};
     };
 
-    /// State of a pair of bodies in the neighbour list, at the node that the last step left
+    /// State of a pair of bodies in the neighbour list, at the first node of the last step
     struct PairState {
         ContactHistory history = {};
         ContactState contact_state = {};

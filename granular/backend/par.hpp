@@ -122,7 +122,7 @@ void fill(Backend b, T* to, std::size_t n, T value)
 {
     for_each(b, n, FillWith<T>{to, value});
 }
-/// to[k] = from[where[k]]
+/// to[k] = from[index[k]]
 template <class Backend, class T>
 void gather(Backend b, T* to, const T* from, const std::uint32_t* index, std::size_t n)
 {

@@ -2,7 +2,7 @@
 #include "granular/program/formula.hpp"
 
 #ifdef HILDA_FORMULAS
-// The only include of another room: models and cases share one grammar of formulas.
+// The only include from another folder: models and cases share one grammar of formulas.
 #include "dae/expression.hpp"
 #endif
 

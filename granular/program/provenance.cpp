@@ -15,7 +15,7 @@ namespace hilda::granular {
 
 namespace {
 
-// A build of this room alone has no generated version header.
+// A build of the folder granular alone has no generated version header.
 #if __has_include(<hilda/version.hpp>)
 constexpr const char* git = studies::version::git;
 #else

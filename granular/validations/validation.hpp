@@ -2,8 +2,8 @@
 /// Validations: small simulations whose result is known in closed form, from another code or from
 /// measurements.
 ///
-/// The computations depend on this room only, so that they can be run on a GPU machine. The study of the same
-/// name writes files and figures.
+/// The computations depend on the folder granular only, so that they can be run on a GPU machine. The study
+/// of the same name writes files and figures.
 
 #pragma once
 

@@ -27,7 +27,7 @@ public:
     std::vector<double> value;
 
     /// Factors the values with the pivots of the last full factorisation. Returns false if there is none, or
-    /// if the reciprocal condition is below 1e-3 of its value then: factor() is needed.
+    /// if the reciprocal condition is below 1e-3 of that of the full factorisation. Call factor() then.
     bool refactor();
     /// Factors the values with new pivots. Throws SingularMatrix, and NonFinite for values that are not
     /// finite. `what` is the name of the matrix for the message.

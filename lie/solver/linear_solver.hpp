@@ -9,7 +9,7 @@ namespace hilda::lie {
 enum class LinearSolver {
     automatic,  ///< algebraic variables eliminated; then `condensed` if it takes fewer operations than KLU
     klu,        ///< KLU for the whole matrix K
-    condensed  ///< algebraic variables eliminated; then the Schur complement C M⁻¹ Cᵀ of the constraints, by blocks
+    condensed   ///< algebraic variables eliminated; then the Schur complement C M⁻¹ Cᵀ, by blocks
 };
 
 }  // namespace hilda::lie

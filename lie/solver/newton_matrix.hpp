@@ -3,7 +3,7 @@
 /// each factorisation their values are added.
 ///
 ///     const int at = N.declare(row, column, 6, 6);      // overlapping blocks are summed
-///     N.analyse();
+///     N.analyse(n);                                     // n unknowns
 ///     N.set_zero();  N.add(at, 0.5 * h * B);  N.factor();  N.solve(b);
 
 #pragma once

@@ -98,8 +98,8 @@ void HalfImplicitStep::set_known_part(double h)
         K.constraint_part(b).segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
 }
 
-/// The nonholonomic rows require C_n (v + v_{n+1}) = 2 ν. This is of second order if v and v_{n+1} are the velocities
-/// half a step before and after t_n.
+/// The nonholonomic rows require C_n (v + v_{n+1}) = 2 ν. This is of second order if v and v_{n+1} are the
+/// velocities half a step before and after t_n.
 void HalfImplicitStep::set_nonholonomic_part(double h)
 {
     for (int i = 0; i < model.bodies(); ++i) z.segment<6>(6 * i) = h * velocity(i);
@@ -109,7 +109,7 @@ void HalfImplicitStep::set_nonholonomic_part(double h)
         K.constraint_part(b)[k] = 2 * h * K.constraint_part(e)[k] - C.dot(k, z);
 }
 
-/// Initial guess from the accelerations and multipliers of the previous step                          Eq. 3.34
+/// Initial guess from the accelerations and multipliers of the previous step                         Eq. 3.34
 void HalfImplicitStep::predict(double h)
 {
     for (int i = 0; i < model.bodies(); ++i) {

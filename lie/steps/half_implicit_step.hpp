@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Base class of the half-implicit schemes: loads and multipliers act at t_n, the constraints hold at t_{n+1}, and the
-/// Newton matrix is K of t_n.                                                     Fang (2022), Secs. 3.5, 3.6
+/// Base class of the half-implicit schemes: loads and multipliers act at t_n, the constraints hold at
+/// t_{n+1}, and the Newton matrix is K of t_n.                                    Fang (2022), Secs. 3.5, 3.6
 
 #pragma once
 
@@ -13,10 +13,10 @@ namespace hilda::lie {
 
 /// With v = (ṙ, ω̄) at the beginning of the step, and the weight w of r̈_n in the velocity at its end,
 ///
-///     M v_{n+1} + w h Cᵀ λ_n = M (v - (w - 1) h r̈_{n-1}) + w h (F_n, τ̄_n),     z = (h v_{n+1}, w h² λ_n)
+///     M v_{n+1} + w h Cᵀ λ_n = M (v - (w - 1) h v̇_{n-1}) + w h (F_n, τ̄_n),     z = (h v_{n+1}, w h² λ_n)
 ///
-/// w = 1 gives the scheme of first order (3.25), w = 3/2 the scheme of second order (3.35). A derived class defines how
-/// the positions depend on z. To first order, δ(r, θ̄, α) = δz/q with the number q of the scheme.
+/// w = 1 gives the scheme of first order (3.25), w = 3/2 the scheme of second order (3.35). A derived class
+/// defines how the positions depend on z. To first order, δ(r, θ̄, α) = δz/q with the number q of the scheme.
 class HalfImplicitStep : public SaddleStep {
 public:
     int step(State& x, double h) final;
@@ -29,7 +29,8 @@ protected:
 
     HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q);
 
-    /// Prepares the data that the scheme carries from step to step, from x_n.history or, at a start, from x_n.
+    /// Prepares the data that the scheme carries from step to step, from x_n.history or, at a start, from
+    /// x_n.
     virtual void begin(double /*h*/) {}
     /// (ṙ, ω̄) of body i at the beginning of the step
     virtual Vec6 velocity(int i) const;
@@ -43,7 +44,8 @@ protected:
     virtual Vec3 known_moment(int i, double h) const;
     /// Correction k of z (SaddleStep::correct). k = 1 solves for the residual of all equations.
     virtual void correct(int k, const State& x);
-    /// The rows of t_n, in whose directions the multipliers act. They differ from the rows of K after a refresh.
+    /// The rows of t_n, in whose directions the multipliers act. They differ from the rows of K after a
+    /// refresh.
     const Rows& rows_of_node() const { return refreshed ? C_n : K.rows(); }
 
     const std::string name;

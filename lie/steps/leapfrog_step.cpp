@@ -79,7 +79,8 @@ void LeapfrogStep::half_kick(double h)
     }
 }
 
-/// Velocities at the node for the evaluation of the loads, by linear extrapolation of the half-step velocities
+/// Velocities at the node for the evaluation of the loads, by linear extrapolation of the half-step
+/// velocities
 void LeapfrogStep::extrapolate(State& x) const
 {
     for (int i = 0; i < model.bodies(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Base class of the half-implicit schemes whose velocities belong to the middle of a step: the half step backwards at
-/// a start, the velocities at the nodes, and the history of half-step velocities.
+/// Base class of the half-implicit schemes whose velocities belong to the middle of a step: the half step
+/// backwards at a start, the velocities at the nodes, and the history of half-step velocities.
 
 #pragma once
 

@@ -21,7 +21,8 @@ public:
     const System& system() const override { return model; }
 
 protected:
-    /// Restores x from x_n at the end of its scope unless the step has been accepted, also after an exception.
+    /// Restores x from x_n at the end of its scope unless the step has been accepted, also after an
+    /// exception.
     class Attempt {
     public:
         Attempt(State& x, const State& x_n) : x(x), x_n(x_n) {}
@@ -36,38 +37,40 @@ protected:
         const State& x_n;
     };
 
-    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                                 Eq. 3.4b
+    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                               Eq. 2.13c
     Vec3 tau_bar(int i, const Motion& body) const;
 
     /// Whether the iteration ends with correction k = 1, 2, … .
     ///
-    /// `motion` is the Euclidean norm of (Δr, Δθ̄) over all bodies. Δλ̂ is `factor` times `multipliers`. The test uses
+    /// `motion` is the Euclidean norm of (Δr, Δθ̄) of all bodies and Δα. Δλ̂ is `factor` times `multipliers`.
+    /// The test uses
     ///
     ///     correction² = (motion² + |Δλ̂|²) / max(1, bodies/4)
     ///
-    /// For up to four bodies this is the Euclidean norm of Fang (2022). For more bodies it is the root mean square
-    /// over groups of four, so that the accuracy of a body does not depend on the length of a chain.
+    /// For up to four bodies this is the Euclidean norm of Fang (2022). For more bodies it is the root mean
+    /// square over groups of four, so that the accuracy of a body does not depend on the length of a chain.
     ///
     /// The iteration ends
     /// - if the correction is below the tolerance, or below four ulp of the largest coordinate, or
     /// - for k > 2, if it is below 1000 ulp and has decreased by less than a factor of two.
-    /// Changes of a multiplier below its rounding error (rounding_mass times ulp) are ignored. Without these limits a
-    /// heavy body, or one far from the origin, would prevent convergence.
+    /// Changes of a multiplier below its rounding error (rounding_mass times ulp) are ignored. Without these
+    /// limits a heavy body, or one far from the origin, would prevent convergence.
     bool converged(int k, double motion, const Eigen::Ref<const Eigen::VectorXd>& multipliers, double factor);
 
-    /// Copies λ, r̈, ω̄̇ from the result of a step to the node at its beginning: fill_node() of half-implicit schemes.
+    /// Copies λ, r̈, ω̄̇ from the result of a step to the node at its beginning: fill_node() of half-implicit
+    /// schemes.
     static void take_loads(State& node, const State& after);
 
     /// Throws NumericalFailure if a body rotates by π or more in the step.
     ///
-    /// The equations of an implicit scheme have several solutions, which differ by full revolutions of a body. A
-    /// rotation of at least π indicates the wrong one.
+    /// The equations of an implicit scheme have several solutions, which differ by full revolutions of a
+    /// body. A rotation of at least π indicates the wrong one.
     void refuse_whole_turns(const State& x, double h, const std::string& scheme) const;
 
     /// Marks the step as accepted, updates the counters and returns the number of iterations k.
     int done(Attempt& attempt, int k);
 
-    /// Throws NoConvergence. The message names the constraint row with the largest |Φ| at the last iterate x.
+    /// Throws NoConvergence with the constraint row that has the largest |Φ| at the last iterate x.
     [[noreturn]] void no_convergence(const std::string& scheme, double correction, const State& x) const;
 
     /// The counters, with the factorisations of the scheme's matrix
@@ -89,8 +92,8 @@ private:
     void set_rounding_mass();
 
     long steps = 0, iterations = 0;
-    /// Sensitivity of the multiplier of each row to rounding errors of Φ [kg]: four times the total mass of the bodies
-    /// that constraints connect with the row, directly or through other bodies
+    /// Sensitivity of the multiplier of each row to rounding errors of Φ [kg]: four times the total mass of
+    /// the bodies that constraints connect with the row, directly or through other bodies
     Eigen::VectorXd rounding_mass;
     double ulp = 0;  ///< of the largest coordinate in x_n [m]
 };

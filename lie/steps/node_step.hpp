@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Base class of the schemes whose result is complete at the node: velocities that satisfy the constraints, and
-/// accelerations and multipliers from the saddle system at the node.
+/// Base class of the schemes whose result is complete at the node: velocities that satisfy the constraints,
+/// and accelerations and multipliers from the saddle system at the node.
 
 #pragma once
 

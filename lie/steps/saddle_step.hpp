@@ -21,16 +21,16 @@ protected:
     ///
     ///     K e = (b - K z, -factor Φ),    z ← z + e                         Fang (2022), Eqs. 3.30, 3.31
     ///
-    /// The rows of the bodies, of the algebraic variables and the nonholonomic rows are linear in z. Their residual is
-    /// zero from the second correction on.
+    /// The rows of the bodies, of the algebraic variables and the nonholonomic rows are linear in z. Their
+    /// residual is zero from the second correction on.
     void correct(int k, const State& x, double factor);
 
     /// e = b - K z, with the rows of K or with the rows C
     void set_linear_residual() { set_linear_residual(K.rows()); }
     void set_linear_residual(const Rows& C);
 
-    /// Sets the constraint part of e to -factor Φ(x). For k = 1 the nonholonomic rows receive the residual that
-    /// set_linear_residual() has computed, for k > 1 zero.
+    /// Sets the constraint part of e to -factor Φ(x). For k = 1 the nonholonomic rows receive the residual
+    /// that set_linear_residual() has computed, for k > 1 zero.
     void set_constraint_residual(int k, const State& x, double factor);
 
     /// The components (r, θ̄) of all bodies

@@ -8,28 +8,28 @@
 ///     Φ(r_{n+1}, q_{n+1}, t_{n+1}) = 0,    (pᵀp - 1)/2 = 0 at t_{n+1}                               (d)
 ///
 /// with δπ̄ = T δq: T = 2G for p, T = B for ε. The gyroscopic term of p is 2Gᵀ(-ω̄ × J̄ ω̄) instead of the
-/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25. The two differ by a multiple of p, which changes λ^P only; with the form above λ^P is zero.
-/// The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n). The Newton matrix is that of (a), (b), (d),
-/// evaluated once per step at t_n:
+/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25. The two differ by a multiple of p, which changes λ^P only; with the form above λ^P
+/// is zero. The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n). The Newton matrix is that of
+/// (a), (b), (d), evaluated once per step at t_n:
 ///
 ///     | M    0     Φ_rᵀ  0 |
 ///     | 0   TᵀJ̄T   Φ_qᵀ  p |
 ///     | Φ_r Φ_q    0     0 |
 ///     | 0    pᵀ    0     0 |
 ///
-/// Plain start: ṙ_{-1/2} = ṙ_0. The half-step velocities are stored as those of the following node, and its loads are
-/// evaluated with them. Order 1.
+/// Plain start: ṙ_{-1/2} = ṙ_0. The half-step velocities are stored as those of the following node, and its
+/// loads are evaluated with them. Order 1.
 ///
-/// Start with a half step: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0. The velocities of a node are the means of those half a step before
-/// and after it. The loads at t_n are evaluated, one step earlier, with 1.5 ṙ_{n-1/2} - 0.5 ṙ_{n-3/2}. Order 2 in all
-/// quantities.
+/// Start with a half step: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0. The velocities of a node are the means of those half a
+/// step before and after it. The loads at t_n are evaluated with the extrapolated velocity 1.5 ṙ_{n-1/2} -
+/// 0.5 ṙ_{n-3/2}. Order 2 in all quantities.
 ///
 /// In p the scheme is rA-half-1 with another map from the velocity to the rotation. Since G(a) b = -G(b) a,
 ///
 ///     ω̄_{n+1/2} = 2G(p_n) ṗ_{n+1/2} = 2G(p_{n+1}) ṗ_{n+1/2}
 ///
-/// and ½G times (b) is J̄ (ω̄_{n+1/2} - ω̄_{n-1/2})/h + Π̄ᵀλ = τ̄. The rotation angle of the step is 2 asin(h|ω̄|/2) instead
-/// of h|ω̄|.
+/// and ½G times (b) is J̄ (ω̄_{n+1/2} - ω̄_{n-1/2})/h + Π̄ᵀλ = τ̄. The rotation angle of the step is 2
+/// asin(h|ω̄|/2) instead of h|ω̄|.
 
 #pragma once
 
@@ -145,8 +145,8 @@ private:
     int at_lambda() const { return width * model.bodies(); }
     int at_norm(int i) const { return at_lambda() + model.rows() + i; }
 
-    // State::history holds for each body: ṙ, ω̄ at t_{n-1}; ṙ_{n-1/2}; q_n, its frame (0 for p), and q̇_{n-1/2}. q is
-    // stored because A does not determine the sign of p.
+    // State::history holds for each body: ṙ, ω̄ at t_{n-1}; ṙ_{n-1/2}; q_n, its frame (0 for p), and
+    // q̇_{n-1/2}. q is stored because A does not determine the sign of p.
     static constexpr int stride = 6 + 3 + k + 1 + k;
 
     /// Sets the data of each body from x_n and its history.
@@ -176,13 +176,15 @@ private:
         }
     }
 
-    /// Limits the distance of the angles from the singular set: changes the frame, or throws SingularParametrisation.
+    /// Limits the distance of the angles from the singular set: changes the frame, or throws
+    /// SingularParametrisation.
     ///
-    /// At the distance δ two of the angles change 1/δ times as fast as the orientation. Their truncation error is that
-    /// of a step 1/δ times as long. Without reparametrisation the limit is 0.1: a step that rotates the body by
-    /// 0.01 rad changes the angles by 0.1 there, and below it neither the convergence of Newton's method with a
-    /// constant B nor the order is reliable. With reparametrisation the limit is 0.5. The new frame is then nearly
-    /// twice as far from its singular set, so that the frame does not alternate between two choices.
+    /// At the distance δ two of the angles change 1/δ times as fast as the orientation. Their truncation
+    /// error is that of a step 1/δ times as long. Without reparametrisation the limit is 0.1: a step that
+    /// rotates the body by 0.01 rad changes the angles by 0.1 there, and below it neither the convergence of
+    /// Newton's method with a constant B nor the order is reliable. With reparametrisation the limit is 0.5.
+    /// The new frame is then nearly twice as far from its singular set, so that the frame does not alternate
+    /// between two choices.
     void keep_off_singular_set(int i, double h, bool at_start)
     {
         Part& p = part[i];
@@ -192,7 +194,8 @@ private:
         const Coordinates from = p.at;
         p.at = from.in_best_frame();
         if (at_start) return;
-        // q̇ is defined such that q_{n-1} and q_n remain the same two orientations. This is exact for the scheme.
+        // q̇ is defined such that q_{n-1} and q_n remain the same two orientations. This is exact for the
+        // scheme.
         Coordinates before = from;
         before.q -= h * p.qdot;
         p.qdot = p.at.since(before) / h;
@@ -229,7 +232,8 @@ private:
         N.factor();
     }
 
-    /// The part of the residual that is constant in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} + h² Tᵀ(τ̄ - J̄ Ṫq̇)
+    /// The part of the residual that is constant in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} +
+    /// h² Tᵀ(τ̄ - J̄ Ṫq̇)
     void set_known_part(double h)
     {
         model.loads(x_n, loads);
@@ -244,7 +248,7 @@ private:
         }
     }
 
-    /// Initial guess from the accelerations and multipliers of the previous step                      Eq. 3.34
+    /// Initial guess from the accelerations and multipliers of the previous step                     Eq. 3.34
     void predict(double h)
     {
         for (int i = 0; i < model.bodies(); ++i) {

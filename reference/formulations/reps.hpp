@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rε formulation: orientation by Euler angles ε = (θ, φ, ψ).            Fang (2022), Eq. 2.1b, Sec. 2.1.6
+/// The rε formulation: orientation by Euler angles ε = (θ, φ, ψ).           Fang (2022), Eq. 2.1b, Sec. 2.1.6
 
 #pragma once
 
@@ -9,12 +9,12 @@
 
 namespace hilda::reference {
 
-/// The Euler angles ε of one body as coordinates, for a frame fixed in the body: A = R(ε) Cᵀ, where C is one of the three
-/// cyclic permutations of the axes. δπ̄ = C B(ε) δε and ω̄ = C B ε̇.
+/// The Euler angles ε of one body as coordinates, for a frame fixed in the body: A = R(ε) Cᵀ, where C is one
+/// of the three cyclic permutations of the axes. δπ̄ = C B(ε) δε and ω̄ = C B ε̇.
 ///
-/// The angles are singular for sin φ = 0: the third axis of the frame is then parallel to the global z axis. One of three
-/// orthogonal axes makes an angle of at least acos(1/√3) = 0.955 rad with any line, so one of the three frames is always
-/// at least that far from its singular set.
+/// The angles are singular for sin φ = 0: the third axis of the frame is then parallel to the global z axis.
+/// One of three orthogonal axes makes an angle of at least acos(1/√3) = 0.955 rad with any line, so one of
+/// the three frames is always at least that far from its singular set.
 struct EulerAngles {
     static constexpr int size = 3;
     static constexpr bool unit_length = false;

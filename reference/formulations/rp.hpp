@@ -15,8 +15,8 @@ inline Eigen::Matrix4d Q(const lie::Vec3& w)
     return Q;
 }
 
-/// The Euler parameters p of one body as coordinates: δπ̄ = 2G δp, ω̄ = 2G ṗ, ω̄̇ = 2G p̈ (since Ġ ṗ = 0), and |p| = 1.
-/// G(a) b = -G(b) a.                                                                 Eqs. 2.20 to 2.22
+/// The Euler parameters p of one body as coordinates: |p| = 1, δπ̄ = 2G δp, ω̄ = 2G ṗ, and ω̄̇ = 2G p̈ since
+/// Ġ ṗ = 0. G(a) b = -G(b) a.                                                               Eqs. 2.20 to 2.22
 ///
 /// A(p) is the rotation of p/|p|. It is a rotation for every iterate p, and its variation is exactly
 /// δπ̄ = 2G δp / |p|².

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A fully implicit step of the rp equations. Newton's method evaluates and factors the exact matrix in each iteration.
+/// A fully implicit step of the rp equations. Newton's method evaluates and factors the exact matrix in each
+/// iteration.
 ///                                                                                  Fang (2022), Fig. 2.1
 
 #pragma once
@@ -13,8 +14,8 @@ namespace hilda::reference {
 
 /// Base class of the schemes; a derived class defines the time-stepping formula.
 ///
-/// State::history holds p and ṗ of each body, and then the data of the derived class. p and ṗ are stored because A and
-/// ω̄ do not determine the sign of p and the component of ṗ along p.
+/// State::history holds p and ṗ of each body, and then the data of the derived class. p and ṗ are stored
+/// because A and ω̄ do not determine the sign of p and the component of ṗ along p.
 class RpImplicit : public lie::NewtonStep {
 public:
     RpImplicit(const lie::System& model, const lie::Settings& settings, std::string name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The rp equations at one time, and their exact Newton matrix.       Fang (2022), Eqs. 2.23 to 2.27, 2.30 to 2.32
+/// The rp equations at one time, and their exact Newton matrix.  Fang (2022), Eqs. 2.23 to 2.27, 2.30 to 2.32
 ///
 ///     e_r = M r̈ + Φ_rᵀ λ - F
 ///     e_p = 2Gᵀ w + p λ^P,    w = J̄ ω̄̇ + ω̄ × J̄ ω̄ + Π̄ᵀ λ - n̄,    ω̄ = 2G ṗ,  ω̄̇ = 2G p̈
@@ -10,11 +10,11 @@
 ///
 ///     q̇ = q̇* + g_v q̈,    q = q* + g_q q̈
 ///
-/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) instead of -8 Ġᵀ J̄ Ġ p. The two terms differ by a multiple of p, which changes
-/// λ^P only. With the form above λ^P is zero.
+/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) instead of -8 Ġᵀ J̄ Ġ p. The two terms differ by a multiple of p, which
+/// changes λ^P only. With the form above λ^P is zero.
 ///
-/// The Newton matrix is the exact derivative of e. It contains the second variations of the constraints and the
-/// derivatives of the loads. An iterate does not satisfy |p| = 1. A is the rotation of p/|p|, so that
+/// The Newton matrix is the exact derivative of e. It contains the second variations of the constraints and
+/// the derivatives of the loads. An iterate does not satisfy |p| = 1. A is the rotation of p/|p|, so that
 /// Φ_p = 2Π̄G/|p|² is exact. With G(a) b = -G(b) a and G(p)ᵀw = Q(w) p, for each body
 ///
 ///     ∂e_p = 2Q(w) ∂p + 2Gᵀ ∂w + λ^P ∂p + p ∂λ^P
@@ -51,7 +51,8 @@ public:
     int at_lambda() const { return 7 * bodies; }
     int at_norm() const { return 7 * bodies + rows; }
 
-    /// Sets the positions, velocities and accelerations of x from z. p(i) and pdot(i) are then those of body i.
+    /// Sets the positions, velocities and accelerations of x from z. p(i) and pdot(i) are then those of body
+    /// i.
     void place(const RpFormula& formula, const Eigen::VectorXd& z, lie::State& x);
     lie::Vec4 p(int i) const { return q.segment<4>(7 * i + 3); }
     lie::Vec4 pdot(int i) const { return qdot.segment<4>(7 * i + 3); }
@@ -60,7 +61,7 @@ public:
     void residual(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x,
                   Eigen::VectorXd& e);
 
-    /// Sets N = ∂e/∂z, for the arguments of the last residual().                                                Eq. 2.32
+    /// Sets N = ∂e/∂z, for the arguments of the last residual().                                     Eq. 2.32
     void assemble(const RpFormula& formula, const Eigen::VectorXd& z, const lie::State& x);
 
     lie::NewtonMatrix N;

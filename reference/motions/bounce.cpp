@@ -105,7 +105,7 @@ std::optional<double> TwoBalls::collision_time() const
         lie::reject("reference::TwoBalls",
                     "the balls must not be in contact at the start: the gap must be positive",
                     r.norm() - radii);
-    // |r + v t|² = reach²: gap + 2 (r·v) t + v² t²
+    // |r + v t|² = radii²: gap + 2 (r·v) t + v² t²
     const double discriminant = r.dot(v) * r.dot(v) - v.squaredNorm() * gap;
     if (!(r.dot(v) < 0 && discriminant > 0)) return {};
     return gap / (std::sqrt(discriminant) - r.dot(v));

@@ -35,7 +35,8 @@ struct Flight {
 ///     t_{k+1} = t_k + 2 eᵏ w/a,    t_∞ = t_1 + 2 (w/a) e/(1 - e)
 ///
 /// After t_∞ the ball remains on the plane and slides. The tangential acceleration is that of gravity at all
-/// times.
+/// times. All functions but resting_force() throw lie::InvalidInput for a member or an argument outside its
+/// range.
 struct BouncingBall {
     Vec3 n = Vec3::UnitZ();   ///< unit normal of the plane through the origin
     double R = 0.5, e = 0.5;  ///< radius of the ball [m]; coefficient of restitution, 0 ≤ e ≤ 1
@@ -61,6 +62,9 @@ struct BouncingBall {
 ///
 ///     |Δr + Δv t| = R_1 + R_2                  time of the collision, n from ball 1 to ball 2 then
 ///     P = m_1 m_2/(m_1 + m_2) (1 + e) (-n·Δv)  impulse
+///
+/// All functions throw lie::InvalidInput for a radius or mass that is not positive, for e outside [0, 1], and
+/// for balls that touch or overlap at t = 0.
 struct TwoBalls {
     struct Ball {
         double R = 0.5, m = 1;                       ///< [m, kg]

@@ -102,7 +102,7 @@ struct HeavyTop {
 ///     k²  = w_1² J_1 (J_2 - J_1)/(w_3² J_3 (J_3 - J_2)),    at most one
 ///
 /// Throws lie::InvalidInput for moments in another order, for w_1 or w_3 not positive, and for k² > 1, where
-/// the polhode encircles the axis of J_1.
+/// the polhode encircles the axis of J_1. Throws lie::NumericalFailure "gsl_failed" if GSL fails.
 Vec3 asymmetric_top(const Vec3& J_bar, double w_1, double w_3, double t);
 
 }  // namespace hilda::reference

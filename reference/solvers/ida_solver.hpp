@@ -24,7 +24,8 @@ namespace hilda::reference {
 /// projected onto the constraints. IDA restarts if the update changes the equations, or if advance() gets a
 /// state that is not the one the last call returned.
 ///
-/// Throws lie::InvalidInput if rtol < 1e-14 or the state has continuous internal states (friction histories);
+/// Throws lie::InvalidInput if rtol or an atol other than 0 is below 1e-14, or if the state has continuous
+/// internal states (friction histories);
 /// lie::NumericalFailure "ida_failed" with the message of IDA if IDA fails; lie::NonFinite with the name of
 /// the equation if a residual is not finite; lie::Interrupted if settings.stop() returns true. Exceptions of
 /// the system are rethrown. After an exception x is unchanged.

@@ -23,8 +23,9 @@ lie::Trajectory reference_solution(const dae::Model& model, const lie::State& x,
 /// States at the given instants by a closed form, with multipliers from inverse dynamics.
 ///
 /// The closed form is used only if it is a solution of this model: it starts at x, its states satisfy the
-/// constraints on positions and velocities, and loads, inertia and constraint forces are in balance, each
-/// within a relative tolerance of 1e-9. Otherwise, and if the closed form throws lie::InvalidInput or
+/// constraints on positions and velocities, and loads, inertia and constraint forces are in balance. The
+/// tolerance is 1e-9, absolute for positions [m, rad] and relative for velocities and loads. A model with
+/// discrete states does not use it. Otherwise, and if the closed form throws lie::InvalidInput or
 /// lie::NumericalFailure, the function above is used: a user can change a model such that its closed form no
 /// longer applies.
 lie::Trajectory reference_solution(const dae::Model& model, const lie::State& x,

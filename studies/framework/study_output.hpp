@@ -23,7 +23,8 @@ struct StudyOutput {
 };
 
 /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed, 6 if
-/// an expectation failed. The common keys of study.json are settings, seed, repeats and provenance.
+/// an expectation failed. The common keys of study.json are study, tolerance, settings, seed, set, provenance
+/// and, if options.repeats > 0, repeats.
 int finish(const StudyOptions& options, const StudyOutput& output,
            const std::vector<const Run*>& run_pointers, const std::vector<Measured>& measured);
 

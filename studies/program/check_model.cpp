@@ -211,9 +211,9 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
         fmt::format("at {} m, normal {} into body i, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
         fmt::format("normal force {:.10g} N{}", c.F_N,
                     c.fallback_active ? ", of the fallback, which is active"
-                    : c.inactive      ? ", contact open"
+                    : c.inactive      ? ", contact inactive"
                     : c.F_N >= 0      ? ""
-                    : c.unilateral    ? ", contact opens in the first step"
+                    : c.unilateral    ? ", contact separates in the first step"
                                       : ", tensile"),
         fmt::format(
             "curvatures {:.4g}, {:.4g} and {:.4g}, {:.4g} 1/m; least relative curvature times size {:.3g}",

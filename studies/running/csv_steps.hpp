@@ -33,7 +33,7 @@ public:
     void accepted(const lie::State& x, long n, int iterations) override;
 
     /// Cost of the step that ends at the current node. Its row is written after the following step, because
-    /// schemes with staggered velocities complete the node only then.
+    /// schemes with staggered velocities fill the node only then.
     struct Cost {
         long factorizations = 0, wall_ns = 0;
         double correction = 0;  ///< norm of the last Newton correction

@@ -33,8 +33,8 @@ private:
 /// File format: VTK XML PolyData, ASCII, with the polygons of the surfaces and a vertex for each contact with
 /// a positive normal force.
 ///     cell data    `body` (number, -1: ground), `contact` (number, -1 for polygons)
-///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the first
-///                  body [N], `slipping`, `rolling` (0 or 1); all vectors global
+///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the
+///                  first body [N], `slipping`, `rolling` (0 or 1); all vectors global
 class Snapshots {
 public:
     /// Adds a surface of a body (-1: ground). A surface that was added before is ignored.

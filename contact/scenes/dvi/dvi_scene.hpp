@@ -82,7 +82,7 @@ public:
         RigidLaw law;
         std::unique_ptr<const Detector> detector;
     };
-    /// State of a pair of bodies at the node that the last step left
+    /// State of a pair of bodies at the first node of the last step
     struct PairState {
         bool found = false;          ///< `points` is set
         PreviousPoints points = {};  ///< contact points in the body frames
@@ -99,7 +99,7 @@ public:
 
     double t = 0;  ///< [s]
     /// Poses at t. rdot and omega_bar belong to the middle of the last step; rddot is their change over a
-    /// step divided by its length, so that v_n = v_{n+1/2} - h/2 v̈ at the node that the last step left.
+    /// step divided by its length, so that v_n = v_{n+1/2} - h/2 r̈ at the first node of the last step.
     std::vector<Motion> body;
     std::vector<Pair> pair;
     NeighborList<RigidContact, PairState> neighbors;

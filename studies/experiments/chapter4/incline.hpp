@@ -29,11 +29,11 @@ enum class InclineState { rest, rolling, rolling_with_slip, slip };
 InclineState state_of(const contact::Scene& scene);
 
 /// Largest slope on which the sphere comes to rest [rad], from the Coulomb bounds: tan α = 2 η_r μ_k, at most
-/// μ_s. A.7 has μ_s instead of μ_k. The kinetic value applies, because the sphere rolls back before it comes
-/// to rest.
+/// μ_s. Sec. A.7 has μ_s instead of μ_k. The kinetic value applies, because the sphere rolls back before it
+/// comes to rest.
 double rest_limit(double eta_r);
 /// Largest slope of rolling without slip [rad]: tan α = 7/2 μ_s - 5 η_r μ_k. On steeper slopes rolling
-/// requires a friction force above μ_s N (A.7).
+/// requires a friction force above μ_s N (Sec. A.7).
 double rolling_limit(double eta_r);
 
 }  // namespace hilda::studies

@@ -3,9 +3,9 @@
 ///
 /// Each cell of the grid is a run of 1 s. Its state follows from the modes of sliding and rolling friction at
 /// the end (Table 4.4): 0 rest, 1 rolling, 2 rolling with slip, 3 slip without rolling. The boundaries
-/// between the states are compared with the Coulomb bounds (A.7; rest limit with μ_k, see incline.hpp). The
-/// default preset is `dissertation`, which reproduces the published figure. --check evaluates the differences
-/// and returns exit code 6 if a criterion fails.
+/// between the states are compared with the Coulomb bounds (Sec. A.7; rest limit with μ_k, see incline.hpp).
+/// The default preset is `dissertation`, which reproduces the published figure. --check evaluates the
+/// differences and returns exit code 6 if a criterion fails.
 
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter4/incline.hpp"
@@ -153,8 +153,8 @@ std::vector<Criterion> criteria(const StateMap& map, const Boundaries& b, bool d
     if (dissertation)
         for (const auto& [which, value] :
              {std::pair("smallest", b.rolling.least), std::pair("largest", b.rolling.most)})
-            all.push_back(between(fmt::format("rolling limit minus A.7, {} [deg]", which), value, -0.8 - half,
-                                  0.05 + half));
+            all.push_back(between(fmt::format("rolling limit minus Sec. A.7, {} [deg]", which), value,
+                                  -0.8 - half, 0.05 + half));
     all.push_back(between("smallest eta_r with slip without rolling, first row above 1/2", b.slip_from,
                           0.5 + 0.1 * row, 0.5 + 1.1 * row));
     return all;
@@ -239,7 +239,7 @@ void print(const StateMap& map, std::ostream& out)
                  {"rest up to [deg]", "{:.2f}"},
                  {"rest limit [deg]", "{:.2f}"},
                  {"rolling up to [deg]", "{:.2f}"},
-                 {"limit A.7 [deg]", "{:.2f}"}});
+                 {"limit Sec. A.7 [deg]", "{:.2f}"}});
     const size_t stride = std::max<size_t>(1, (map.eta.size() - 1) / 8);
     for (size_t e = 0; e < map.eta.size(); e += stride) {
         const double eta = map.eta[e];

@@ -27,7 +27,7 @@ Motion at(double x, double z)
     return motion;
 }
 
-/// Whether a friction spring slips or the contact is open
+/// Whether a friction spring slips or the surfaces are separated
 bool slips_or_separated(const contact::ContactHistory& history)
 {
     const contact::Deflections& h = history.deflections;

@@ -3,14 +3,15 @@
 /// inequality (DVI) and springs (DEM). Fang (2022), Sec. 8.2 names this comparison as future work.
 ///
 /// bowl    A ball slides without friction in the bowl of Sec. 5.5 for 2 s, released at (1, 1.5). Error of the
-///         position relative to the solution in minimal coordinates, over CPU time. Except for the variants "text",
-///         all methods start with half a kick, so that the differences are caused by the contact method.
+///         position relative to the solution in minimal coordinates, over CPU time. Except for the variants
+///         "text", all methods start with half a kick, so that the differences are caused by the contact
+///         method.
 /// many    1 to 10000 independent balls in the bowl: CPU time per step and contact.
-/// chain   1 to 3333 balls in a row in an inclined groove, supported by a fixed ball, three contacts per ball. The
-///         contact forces are coupled through the whole chain. The exact solution is at rest; any motion is an
-///         error.
-/// pile    Balls fall into a bowl without friction: contacts open and close, and the number of contacts may exceed
-///         the number of degrees of freedom.
+/// chain   1 to 3333 balls in a row in an inclined groove, supported by a fixed ball, three contacts per
+///         ball. The contact forces are coupled through the whole chain. The exact solution is at rest; any
+///         motion is an error.
+/// pile    Balls fall into a bowl without friction: contacts close and lift off, and the number of contacts
+///         may exceed the number of degrees of freedom.
 
 #include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter8/method.hpp"
@@ -100,8 +101,8 @@ ContactScene with_static_compression(ContactScene setup, const reference::Contac
 struct StiffnessAndStep {
     double k, h;
 };
-/// Stiffness [N/m] and step [s]; the steps are a tenth of the limit given by the oscillation period of the
-/// contact.
+/// Stiffness k [N/m] and step [s]; the steps are 0.8, 0.5, 0.3 and 0.25 of the stability limit 2 √(m/k) of
+/// the contact spring.
 const std::vector<StiffnessAndStep> stiffnesses = {{1e5, 5e-3}, {1e6, 1e-3}, {1e7, 2e-4}, {1e8, 5e-5}};
 
 void add_bowl(std::vector<MethodRun>& runs)

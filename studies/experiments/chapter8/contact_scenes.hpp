@@ -83,8 +83,10 @@ contact::DviScene rigid(const ContactScene& setup);
 
 /// Compliant contacts: linear normal springs, friction law slide-roll-spin without rolling resistance
 struct Compliance {
-    double stiffness = 1e6;    ///< normal and tangential contact stiffness [N/m]
-    double restitution = 0.2;  ///< coefficient of restitution of two balls
+    double stiffness = 1e6;  ///< normal and tangential contact stiffness [N/m]
+    /// Coefficient of restitution of a ball and a fixed body; it is smaller for two balls, whose damping is
+    /// the same and whose effective mass is m/2
+    double restitution = 0.2;
 };
 contact::Scene compliant(const ContactScene& setup, const Compliance& compliance);
 

@@ -20,7 +20,8 @@ public:
     virtual int contacts() const = 0;  ///< number of active contacts in the last step
     /// Accumulated iterations: of Newton's method or of the cone solver; for springs the number of steps
     virtual long iterations() const = 0;
-    /// Number of opened and closed contacts, for methods that locate these events
+    /// Number of contact events (closing, impact, lift-off, switch to the fallback), for methods that locate
+    /// them
     virtual int events() const { return 0; }
 };
 
@@ -30,7 +31,7 @@ struct EvolvingOptions {
     lie::LinearSolver solver = lie::LinearSolver::automatic;
     double tolerance = 1e-12;  ///< of Newton's method
     double reach = 0;          ///< pairs with a smaller gap at the start are contacts [m]
-    bool unilateral = false;   ///< contacts open and close, restitution 0
+    bool unilateral = false;   ///< unilateral contacts with restitution 0
 };
 /// Frictionless evolving contacts. Bodies without a finite mass are part of the ground. InvalidInput for a
 /// moving body without a finite mass and for a scene with friction.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the layout of the source tree: allowed includes between the rooms, the folders of each room, the
 // number of units in a folder, no catch-all folders, and the entries of the top level.
+#include "tests/support/paths.hpp"
+
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = HILDA_SOURCE_DIR;
+const fs::path root = hilda::tests::source_dir;
 const std::set<std::string> rooms = {"lie", "dae", "contact", "granular", "reference", "tests", "studies"};
 
 /// The rooms that each room may include, besides itself.

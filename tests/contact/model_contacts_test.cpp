@@ -4,6 +4,7 @@
 
 #include "contact/compliant/contact_force.hpp"
 #include "dae/model_file.hpp"
+#include "tests/support/paths.hpp"
 
 #include <filesystem>
 
@@ -12,7 +13,7 @@ using contact::ContactForce;
 
 namespace {
 
-const std::filesystem::path models = std::filesystem::path(HILDA_TEST_DATA) / "models";
+const std::filesystem::path models = std::filesystem::path(tests::test_data) / "models";
 const std::string steel = R"({"type": "hooke", "stiffness": 1e4})", rough = R"({"mu_s": 0.3, "K_E": 1e4})",
                   sphere = R"({"type": "sphere", "radius": 0.2})", flat = R"({"type": "plane"})";
 

@@ -8,6 +8,7 @@
 #include "dae/joints.hpp"
 #include "dae/start.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
@@ -25,7 +26,7 @@ constexpr double pi = 3.14159265358979323846;
 /// The numbers of a CSV file without its header line
 std::vector<std::vector<double>> table(const std::string& file)
 {
-    std::ifstream in(HILDA_TEST_DATA "/" + file);
+    std::ifstream in(std::string(tests::test_data) + "/" + file);
     INFO("cannot read " << file);
     REQUIRE(in);
     std::vector<std::vector<double>> rows;

@@ -17,6 +17,7 @@
 #include "dae/model_file.hpp"
 #include "dae/object_reader.hpp"
 #include "lie/euler_parameters.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace hilda;
 using dae::ground;
@@ -25,7 +26,7 @@ using lie::Vec3;
 
 namespace {
 
-const std::filesystem::path models = std::filesystem::path(HILDA_TEST_DATA) / "models";
+const std::filesystem::path models = std::filesystem::path(tests::test_data) / "models";
 
 dae::Description load(const std::string& name, const std::vector<std::string>& set = {})
 {

@@ -5,6 +5,7 @@
 
 #include "dae/model.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/paths.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -38,7 +39,7 @@ struct Reference {
 
 inline std::vector<Reference> references(const std::string& file)
 {
-    std::ifstream in(HILDA_TEST_DATA "/" + file);
+    std::ifstream in(std::string(test_data) + "/" + file);
     INFO("cannot read " << file);
     REQUIRE(in);
     std::vector<Reference> all;

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "tests/support/paths.hpp"
+
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -74,7 +76,7 @@ public:
     Program(const Scratch& in, const std::vector<std::string>& arguments, const Limits& limits = {})
         : out(limits.stdout_to.empty() ? in / ".out" : fs::path(limits.stdout_to)), err(in / ".err")
     {
-        std::vector<std::string> words = {HILDA_PROGRAM};
+        std::vector<std::string> words = {hilda_program};
         words.insert(words.end(), arguments.begin(), arguments.end());
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());

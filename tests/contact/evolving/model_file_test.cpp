@@ -7,6 +7,7 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "dae/model_file.hpp"
+#include "tests/support/paths.hpp"
 
 #include <filesystem>
 
@@ -17,7 +18,7 @@ using contact::EvolvingFriction;
 
 namespace {
 
-const std::filesystem::path models = std::filesystem::path(HILDA_TEST_DATA) / "models";
+const std::filesystem::path models = std::filesystem::path(tests::test_data) / "models";
 const std::string ball = R"({"type": "sphere", "radius": 0.5})", flat = R"({"type": "plane"})",
                   bowl = R"({"type": "ellipsoid", "semi_axes": [4, 3, 2], "concave": true})",
                   constraint = R"({"type": "constraint"})";

@@ -6,6 +6,7 @@
 #include "granular/keys.hpp"
 #include "granular/text_place.hpp"
 #include "granular/world/output.hpp"
+#include "tests/support/paths.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -65,7 +66,7 @@ TEST_CASE("a case has the values of its file", "[granular][case]")
 
 TEST_CASE("the example case is valid", "[granular][case]")
 {
-    const std::string file = std::string(HILDA_SOURCE_DIR) + "/granular/cases/bed.json";
+    const std::string file = std::string(tests::source_dir) + "/granular/cases/bed.json";
     const granular::Case c = read_case(granular::read_file(file, 10000), file);
     CHECK(c.world->count() > 5000);
     CHECK(c.boundaries == std::vector<std::string>{"box-x", "box+x", "box-y", "box+y", "box-z"});

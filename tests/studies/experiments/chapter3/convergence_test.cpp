@@ -2,6 +2,7 @@
 /// The convergence study. Two independent prototypes agree on the expected errors and iterations.
 
 #include "tests/studies/csv.hpp"
+#include "tests/support/paths.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,8 @@ using nlohmann::json;
 /// What `hilda ARGUMENTS` prints on stdout, as JSON
 json json_of(const std::string& arguments)
 {
-    const std::string command = std::string(HILDA_PROGRAM) + " " + arguments + " --json --quiet";
+    const std::string command =
+        std::string(hilda::tests::hilda_program) + " " + arguments + " --json --quiet";
     FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::string text;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs libhilda.so (the rooms lie, dae and contact), its headers, the programs, and a package for
+# Installs libhilda.so (the rooms io, lie, dae and contact), its headers, the programs, and a package for
 # find_package(hilda CONFIG). The library does not use GSL.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -8,7 +8,7 @@ set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
 
 # The target is not named `hilda`, the name of the program in the build folder.
 add_library(hilda_library SHARED
-    $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
+    $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
 add_library(hilda::hilda ALIAS hilda_library)
 set_target_properties(hilda_library PROPERTIES
     OUTPUT_NAME hilda
@@ -34,7 +34,7 @@ install(TARGETS hilda_library EXPORT hilda_targets)
 if(TARGET hilda_program)
     install(TARGETS hilda_program hilda_granular_program)
 endif()
-foreach(room lie dae contact)
+foreach(room io lie dae contact)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
         FILES_MATCHING PATTERN "*.hpp")
 endforeach()

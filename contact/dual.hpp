@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "dae/elementary.hpp"
+#include "io/elementary.hpp"
 
 #include <Eigen/Core>
 
@@ -84,8 +84,8 @@ inline Dual chain(const Dual& x, double u, double u1, double u2)
     return {u, u1 * x.g, u1 * x.h + 0.5 * u2 * Dual::symmetric_product(x.g, x.g)};
 }
 
-using dae::acos, dae::asin, dae::atan, dae::cos, dae::cosh, dae::exp, dae::log, dae::pow, dae::sin, dae::sinh;
-using dae::sqrt, dae::tan, dae::tanh;
+using io::acos, io::asin, io::atan, io::cos, io::cosh, io::exp, io::log, io::pow, io::sin, io::sinh;
+using io::sqrt, io::tan, io::tanh;
 
 /// Polar angle of the point (x, y) [rad]. Not defined for x = y = 0.
 inline Dual atan2(const Dual& y, const Dual& x)

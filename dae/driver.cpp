@@ -19,7 +19,7 @@ std::string shortest(double c)
 
 Driver::Driver(double constant) : Driver(shortest(constant)) {}
 
-Driver::Driver(std::string_view text) : expression(std::make_shared<const Expression>(text))
+Driver::Driver(std::string_view text) : expression(std::make_shared<const io::Expression>(text))
 {
     constant = expression->is_constant();
     if (constant) value = expression->value(0);

@@ -8,13 +8,13 @@
 #include <string>
 #include <string_view>
 
-#include "dae/expression.hpp"
+#include "io/expression.hpp"
 
 namespace hilda::dae {
 
-/// A prescribed function of time: a constant, by default 0, or an Expression in t.
+/// A prescribed function of time: a constant, by default 0, or an io::Expression in t.
 ///
-/// The constructors throw ExpressionError for an invalid expression and for a constant that is not finite.
+/// The constructors throw io::ExpressionError for an invalid expression and for a constant that is not finite.
 class Driver {
 public:
     Driver(double constant = 0);
@@ -24,7 +24,7 @@ public:
     double fdot(double t) const { return constant ? 0 : expression->jet(t).fdot; }
     double fddot(double t) const { return constant ? 0 : expression->jet(t).fddot; }
     /// f, ḟ and f̈ together
-    Jet jet(double t) const { return expression->jet(t); }
+    io::Jet jet(double t) const { return expression->jet(t); }
 
     bool is_constant() const { return constant; }
     const std::string& text() const { return expression->text(); }
@@ -39,7 +39,7 @@ private:
     // Most drivers are constant and are evaluated in every iteration. The value is stored for them.
     bool constant;
     double value = 0;
-    std::shared_ptr<const Expression> expression;
+    std::shared_ptr<const io::Expression> expression;
 };
 
 }  // namespace hilda::dae

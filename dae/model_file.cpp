@@ -4,7 +4,8 @@
 
 #include "dae/forces/prescribed.hpp"
 #include "dae/model_file_types.hpp"
-#include "dae/nearest.hpp"
+#include "io/expression.hpp"
+#include "io/nearest.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -155,7 +156,7 @@ private:
         if (name != "ground" && found == by_name.end()) {
             std::vector<std::string> known = {"ground"};
             for (const auto& entry : by_name) known.push_back(entry.first);
-            const std::string meant = nearest(name, known);
+            const std::string meant = io::nearest(name, known);
             o.fail(key, "no body has this name, got " + described({.value = name}) +
                             (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
         }
@@ -184,7 +185,7 @@ private:
             throw;
         } catch (const lie::InvalidInput& e) {
             o.fail(e.what());
-        } catch (const ExpressionError& e) {
+        } catch (const io::ExpressionError& e) {
             o.fail(e.what());
         }
     }
@@ -288,12 +289,12 @@ private:
         if (b == ground) o.fail("body", "a " + type + " must act on a movable body, got 'ground'");
         const Vec3 point_bar = type == "force" ? o.vec3("point_bar", Vec3::Zero()) : Vec3::Zero();
         const Frame frame = o.one_of("frame", {"global", "body"}) == "global" ? Frame::global : Frame::body;
-        std::array<Expression, 3> in_t = components(o);
+        std::array<io::Expression, 3> in_t = components(o);
         if (type == "force") return std::make_unique<PrescribedForce>(b, point_bar, frame, std::move(in_t));
         return std::make_unique<PrescribedTorque>(b, frame, std::move(in_t));
     }
 
-    std::array<Expression, 3> components(ObjectReader& o)
+    std::array<io::Expression, 3> components(ObjectReader& o)
     {
         const Json::List& list = o.list("components", true);
         if (list.size() != 3)
@@ -306,13 +307,13 @@ private:
                 source.fail(v, at,
                             "a component must be a number or an expression in a string, got " + described(v));
             try {
-                Expression e(v.number() != nullptr ? shortest(*v.number()) : *v.string());
+                io::Expression e(v.number() != nullptr ? shortest(*v.number()) : *v.string());
                 if (!std::isfinite(e.value(0)))
                     source.fail(v, at,
                                 "a component must be finite at t = 0, got " + described(v) + " with " +
                                     shortest(e.value(0)));
                 return e;
-            } catch (const ExpressionError& e) {
+            } catch (const io::ExpressionError& e) {
                 source.fail(v, at, e.what());
             }
         };

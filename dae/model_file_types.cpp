@@ -9,6 +9,8 @@
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/joints.hpp"
+#include "io/expression.hpp"
+#include "io/jet.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -24,13 +26,13 @@ Driver driver(ObjectReader& o, std::string_view key, const std::optional<std::st
     const std::string text = o.formula(key, fallback);
     try {
         Driver f(text);
-        const Jet start = f.jet(0);
+        const io::Jet start = f.jet(0);
         if (!std::isfinite(f.f(0)) || !std::isfinite(start.fdot) || !std::isfinite(start.fddot))
             o.fail(key, std::string(key) + " and its derivatives must be finite at t = 0, got " +
                             described({.value = text}) + " with the value " + shortest(f.f(0)) +
                             " and the derivatives " + shortest(start.fdot) + ", " + shortest(start.fddot));
         return f;
-    } catch (const ExpressionError& e) {
+    } catch (const io::ExpressionError& e) {
         o.fail(key, e.what());
     }
 }
@@ -149,7 +151,7 @@ constexpr Type<ReadPairForce> pair_forces[] = {
              const std::string law = o.formula("force");
              try {
                  spring.law.emplace(law, std::vector<std::string>{"l", "ldot", "t"});
-             } catch (const ExpressionError& e) {
+             } catch (const io::ExpressionError& e) {
                  o.fail("force", e.what());
              }
          }

@@ -18,7 +18,7 @@ class Model;
 const std::vector<std::string>& constraint_types();
 
 /// Reads the keys of a constraint of this type between the bodies i and j. x holds the initial data. Throws
-/// PlacedError, or lie::InvalidInput or ExpressionError without a location from the constructor of the
+/// PlacedError, or lie::InvalidInput or io::ExpressionError without a location from the constructor of the
 /// constraint.
 Blocks read_constraint(const std::string& type, ObjectReader& o, int i, int j, const State& x);
 
@@ -39,7 +39,7 @@ struct ContactPair {
 };
 
 /// Reads an element of "contacts", except for the keys name, body_i and body_j, and adds its forces and
-/// general constraints to the model. Throws PlacedError, or lie::InvalidInput or ExpressionError without a
+/// general constraints to the model. Throws PlacedError, or lie::InvalidInput or io::ExpressionError without a
 /// location from the constructor of the contact.
 using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
 

@@ -2,7 +2,7 @@
 /// ObjectReader and the reader of orientations.
 #include "dae/object_reader.hpp"
 
-#include "dae/nearest.hpp"
+#include "io/nearest.hpp"
 #include "lie/euler_parameters.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& words)
 /// Ending of a message about an unknown word
 std::string suggestion(std::string_view word, const std::vector<std::string>& known)
 {
-    const std::string meant = nearest(word, known);
+    const std::string meant = io::nearest(word, known);
     return meant.empty() ? "; allowed: " + joined(known) : "; did you mean '" + meant + "'?";
 }
 
@@ -249,8 +249,8 @@ void ObjectReader::fail_missing_key(std::string_view key)
     const std::vector<std::string> this_key = {std::string(key)};
     const auto stem = [](std::string_view word) { return word.substr(0, word.size() - 1); };
     for (const Json::Member& m : *value.object())
-        if (std::find(known.begin(), known.end(), m.key) == known.end() && nearest(m.key, this_key) == key &&
-            stem(m.key) != stem(key)) {
+        if (std::find(known.begin(), known.end(), m.key) == known.end() &&
+            io::nearest(m.key, this_key) == key && stem(m.key) != stem(key)) {
             known = this_key;
             fail_unknown_key(m);
         }

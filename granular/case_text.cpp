@@ -2,6 +2,7 @@
 #include "granular/case_text.hpp"
 
 #include "granular/text_place.hpp"
+#include "io/error.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -29,9 +30,9 @@ std::string rename_notice(const RenamedKey& key)
 struct SyntaxError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
-struct DuplicateKey : InvalidCase {
+struct DuplicateKey : io::InvalidInput {
     DuplicateKey(const std::string& key, std::string place)
-        : InvalidCase("the key " + key + " occurs twice in one object"), place(std::move(place))
+        : io::InvalidInput("the key " + key + " occurs twice in one object"), place(std::move(place))
     {}
     std::string place;
 };
@@ -75,7 +76,7 @@ Json parse(const std::string& text)
     std::size_t count = 0;
     const auto callback = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > max_depth)
-            throw InvalidCase("must not be nested deeper than " + std::to_string(max_depth));
+            throw io::InvalidInput("must not be nested deeper than " + std::to_string(max_depth));
         if (event == Json::parse_event_t::object_start) open.emplace_back();
         if (event == Json::parse_event_t::object_end && !open.empty()) open.pop_back();
         if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second &&
@@ -92,7 +93,7 @@ Json parse(const std::string& text)
     } catch (const Json::parse_error& e) {
         throw SyntaxError(text_place(text, std::max<std::size_t>(e.byte, 1) - 1) + ": is not valid JSON");
     } catch (const Json::exception& e) {  // for example a number out of range
-        throw InvalidCase(e.what());
+        throw io::InvalidInput(e.what());
     }
 }
 
@@ -105,7 +106,7 @@ Json value_of(const std::string& text)
         try {
             plain.dump();
         } catch (const Json::exception&) {
-            throw InvalidCase("the value is not UTF-8");
+            throw io::InvalidInput("the value is not UTF-8");
         }
         return plain;
     }
@@ -122,7 +123,7 @@ std::string unescaped(const std::string& part)
         }
         const char next = k + 1 < part.size() ? part[++k] : ' ';
         if (next != '0' && next != '1')
-            throw InvalidCase("'~' is written ~0 in a pointer, and '/' in a key is ~1");
+            throw io::InvalidInput("'~' is written ~0 in a pointer, and '/' in a key is ~1");
         key += next == '0' ? '~' : '/';
     }
     return key;
@@ -150,11 +151,11 @@ CaseText::CaseText(std::string text, std::string name) : file_text(std::move(tex
     try {
         all = parse(file_text);
     } catch (const SyntaxError& e) {
-        throw InvalidCase(file + ':' + e.what());
+        throw io::InvalidInput(file + ':' + e.what());
     } catch (const DuplicateKey& e) {
-        throw InvalidCase(file + ':' + e.place + ": " + e.what());
-    } catch (const InvalidCase& e) {
-        throw InvalidCase(file + ": " + e.what());
+        throw io::InvalidInput(file + ':' + e.place + ": " + e.what());
+    } catch (const io::InvalidInput& e) {
+        throw io::InvalidInput(file + ": " + e.what());
     }
     replace_old_names();
 }
@@ -166,8 +167,8 @@ void CaseText::replace_old_names()
         if (!all.contains(key.old_name)) continue;
         const std::string pointer = std::string("/") + key.old_name;
         if (all.contains(key.new_name))
-            throw InvalidCase(with_location(pointer + ": is the old name of " + key.new_name +
-                                            ", which is given as well; remove one of them"));
+            throw io::InvalidInput(with_location(pointer + ": is the old name of " + key.new_name +
+                                                 ", which is given as well; remove one of them"));
         Json with_new_name = Json::object();  // in the same order
         for (const auto& [name, value] : all.items())
             with_new_name[name == key.old_name ? key.new_name : name] = value;
@@ -189,22 +190,22 @@ void CaseText::set(const Setting& requested)
     Json* at = &all;
     std::string path;
     try {
-        if (!setting.pointer.starts_with('/')) throw InvalidCase("must be /json/pointer=VALUE");
+        if (!setting.pointer.starts_with('/')) throw io::InvalidInput("must be /json/pointer=VALUE");
         for (std::size_t from = 1; from <= setting.pointer.size();) {
             const std::size_t to = std::min(setting.pointer.find('/', from), setting.pointer.size());
             const std::string key = unescaped(setting.pointer.substr(from, to - from));
             Json* next = child(*at, key);
             const bool last = to == setting.pointer.size();
             if (next == nullptr && last && at->is_object()) next = &(*at)[key];
-            if (next == nullptr) throw InvalidCase("entry \"" + key + "\" does not exist");
+            if (next == nullptr) throw io::InvalidInput("entry \"" + key + "\" does not exist");
             at = next;
             from = to + 1;
             path += '/' + key;
         }
         *at = value_of(setting.value);
-    } catch (const InvalidCase& e) {
-        throw InvalidCase(file + ':' + text_place(file_text, path) + " (" + (path.empty() ? "/" : path) +
-                          "): " + setting.origin + ": " + e.what());
+    } catch (const io::InvalidInput& e) {
+        throw io::InvalidInput(file + ':' + text_place(file_text, path) + " (" + (path.empty() ? "/" : path) +
+                               "): " + setting.origin + ": " + e.what());
     }
     applied.push_back(setting);
 }

@@ -22,11 +22,11 @@ class CaseText {
 public:
     using Json = Keys::Json;
 
-    /// `file` is the name used in messages. Throws InvalidCase if the text is not JSON, if a key occurs twice
+    /// `file` is the name used in messages. Throws io::InvalidInput if the text is not JSON, if a key occurs twice
     /// in one object, or if a key is given under its old and its new name.
     CaseText(std::string text, std::string file);
 
-    /// Changes an entry that exists, or adds a key to an object that exists. Throws InvalidCase.
+    /// Changes an entry that exists, or adds a key to an object that exists. Throws io::InvalidInput.
     void set(const Setting& setting);
 
     const Json& json() const { return all; }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/keys.hpp"
 
+#include "io/error.hpp"
+#include "io/expression.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +12,7 @@ namespace hilda::granular {
 Keys::Keys(const Json& object, std::string place) : place(std::move(place)), of(object)
 {
     if (!of.is_object())
-        throw InvalidCase(this->place + ": must be an object, got " + of.dump().substr(0, 60));
+        throw io::InvalidInput(this->place + ": must be an object, got " + of.dump().substr(0, 60));
 }
 
 bool Keys::has(const std::string& key)
@@ -20,7 +23,7 @@ bool Keys::has(const std::string& key)
 
 const Keys::Json& Keys::at(const std::string& key)
 {
-    if (!has(key)) throw InvalidCase(place_of(key) + ": is missing");
+    if (!has(key)) throw io::InvalidInput(place_of(key) + ": is missing");
     return of.at(key);
 }
 
@@ -125,7 +128,7 @@ bool Keys::has_formula(const std::string& key)
     return std::any_of(at(key).begin(), at(key).end(), [](const Json& part) { return part.is_string(); });
 }
 
-VectorFormula Keys::formulas(const std::string& key, const Compile& compile)
+VectorFormula Keys::formulas(const std::string& key)
 {
     const Json& value = at(key);
     if (!value.is_array() || value.size() != 3) refuse(key, "must be three numbers or formulas", value);
@@ -137,11 +140,10 @@ VectorFormula Keys::formulas(const std::string& key, const Compile& compile)
             continue;
         }
         if (!value[k].is_string()) refuse(part, "must be a finite number or a formula", value[k]);
-        if (!compile) refuse(part, "must be a number, because this program has no formulas", value[k]);
         try {
-            all.of[k] = compile(value[k].get<std::string>());
-        } catch (const InvalidCase& e) {
-            throw InvalidCase(place_of(part) + ": " + e.what());
+            all.of[k] = [e = io::Expression(value[k].get<std::string>())](double t) { return e.value(t); };
+        } catch (const io::ExpressionError& e) {
+            throw io::InvalidInput(place_of(part) + ": " + e.what());
         }
     }
     return all;
@@ -166,7 +168,7 @@ void Keys::end() const
         if (!known.contains(key)) {
             std::string names;
             for (const std::string& k : known) names += (names.empty() ? "" : ", ") + k;
-            throw InvalidCase(place_of(key) + ": unknown key; valid keys are " + names);
+            throw io::InvalidInput(place_of(key) + ": unknown key; valid keys are " + names);
         }
 }
 

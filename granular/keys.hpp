@@ -5,6 +5,7 @@
 
 #include "granular/case/motion.hpp"
 #include "granular/core/material.hpp"
+#include "io/error.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -14,13 +15,13 @@
 namespace hilda::granular {
 
 /// One JSON object of a case. The accessors record the keys that they look up; end() rejects all others.
-/// Accessors without a default value throw InvalidCase if the key is missing, and all throw InvalidCase if
+/// Accessors without a default value throw io::InvalidInput if the key is missing, and all throw io::InvalidInput if
 /// the value is invalid.
 class Keys {
 public:
     using Json = nlohmann::ordered_json;
 
-    /// `place` is the JSON pointer of the object. Throws InvalidCase if `object` is not a JSON object.
+    /// `place` is the JSON pointer of the object. Throws io::InvalidInput if `object` is not a JSON object.
     Keys(const Json& object, std::string place);
 
     bool has(const std::string& key);
@@ -39,19 +40,19 @@ public:
     /// Whether the value is an array that contains a string, that is, a formula
     bool has_formula(const std::string& key);
     /// A vector of three components, each a number or a formula in t
-    VectorFormula formulas(const std::string& key, const Compile& compile);
+    VectorFormula formulas(const std::string& key);
     Keys object(const std::string& key);
     /// Elements of an array with their JSON pointers; empty if the key is missing
     std::vector<std::pair<const Json*, std::string>> list(const std::string& key);
     const Json& raw(const std::string& key);
 
-    /// Throws InvalidCase if the object has a key that was not looked up.
+    /// Throws io::InvalidInput if the object has a key that was not looked up.
     void end() const;
     template <class Value>
     [[noreturn]] void refuse(const std::string& key, const std::string& rule, const Value& value) const
     {
         const Json& shown = value;
-        throw InvalidCase(place_of(key) + ": " + rule + ", got " + shown.dump());
+        throw io::InvalidInput(place_of(key) + ": " + rule + ", got " + shown.dump());
     }
     std::string place_of(const std::string& key) const { return key.empty() ? place : place + "/" + key; }
 

@@ -1,41 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Exceptions for invalid input and for numerical failures.
+/// Exceptions of numerical failures.
 
 #pragma once
 
-#include <sstream>
-#include <stdexcept>
+#include "io/error.hpp"
+
 #include <string>
 
 namespace hilda::lie {
 
-/// Invalid input. what() contains the place, the error and the value.
-class InvalidInput : public std::invalid_argument {
-public:
-    using std::invalid_argument::invalid_argument;
-};
-
-/// Throws InvalidInput "where: what, got value".
-template <class Value>
-[[noreturn]] void reject(const std::string& where, const std::string& what, const Value& value)
-{
-    std::ostringstream text;
-    text.precision(17);
-    text << where << ": " << what << ", got " << value;
-    throw InvalidInput(text.str());
-}
-
-/// A computation that failed. If a step of an integrator throws it, the state remains that of t_n.
-class NumericalFailure : public std::runtime_error {
-public:
-    NumericalFailure(std::string status, const std::string& what)
-        : std::runtime_error(what), status(std::move(status))
-    {}
-
-    /// newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ida_failed,
-    /// ...
-    std::string status;
-};
+using io::InvalidInput;
+using io::NumericalFailure;
+using io::reject;
 
 /// Newton's method has not reached its tolerance.
 class NoConvergence : public NumericalFailure {

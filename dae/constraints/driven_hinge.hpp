@@ -5,6 +5,7 @@
 #include "dae/block.hpp"
 #include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
+#include "io/jet.hpp"
 
 namespace hilda::dae {
 
@@ -111,7 +112,7 @@ private:
     };
     DrivenVector b_bar(double t) const
     {
-        const Jet a = g.jet(t);
+        const io::Jet a = g.jet(t);
         const double c = std::cos(a.f), s = std::sin(a.f);
         const Vec3 b = c * u_bar_prime - s * u_bar;
         const Vec3 db_dg = -s * u_bar_prime - c * u_bar;

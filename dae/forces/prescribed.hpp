@@ -2,8 +2,8 @@
 /// Forces and torques that are given functions of time.
 #pragma once
 
-#include "dae/expression.hpp"
 #include "dae/force.hpp"
+#include "io/expression.hpp"
 #include "lie/check.hpp"
 
 #include <array>
@@ -20,9 +20,9 @@ public:
     int body;
     Vec3 point_bar;  ///< point of application [m], body frame
     Frame frame;
-    std::array<Expression, 3> components;  ///< in t
+    std::array<io::Expression, 3> components;  ///< in t
 
-    PrescribedForce(int body, const Vec3& point_bar, Frame frame, std::array<Expression, 3> components)
+    PrescribedForce(int body, const Vec3& point_bar, Frame frame, std::array<io::Expression, 3> components)
         : body(body), point_bar(point_bar), frame(frame), components(std::move(components))
     {
         if (body < 0) lie::reject("prescribed force", "the body must not be the ground; body number", body);
@@ -45,9 +45,9 @@ class PrescribedTorque final : public Force {
 public:
     int body;
     Frame frame;
-    std::array<Expression, 3> components;  ///< in t
+    std::array<io::Expression, 3> components;  ///< in t
 
-    PrescribedTorque(int body, Frame frame, std::array<Expression, 3> components)
+    PrescribedTorque(int body, Frame frame, std::array<io::Expression, 3> components)
         : body(body), frame(frame), components(std::move(components))
     {
         if (body < 0) lie::reject("prescribed torque", "the body must not be the ground; body number", body);

@@ -2,8 +2,8 @@
 /// Translational spring-damper-actuator.
 #pragma once
 
-#include "dae/expression.hpp"
 #include "dae/force.hpp"
+#include "io/expression.hpp"
 #include "lie/check.hpp"
 
 #include <optional>
@@ -24,10 +24,10 @@ public:
     int i, j;
     Vec3 s_bar_i, s_bar_j;
     double stiffness = 0, damping = 0, free_length = 0;  ///< k [N/m], c [N s/m], l_0 [m]
-    std::optional<Expression> law;                       ///< F in the variables l, ldot, t
+    std::optional<io::Expression> law;                   ///< F in the variables l, ldot, t
 
     SpringDamper(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, double stiffness, double damping,
-                 double free_length, std::optional<Expression> law = {})
+                 double free_length, std::optional<io::Expression> law = {})
         : i(i), j(j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), stiffness(stiffness), damping(damping),
           free_length(free_length), law(std::move(law))
     {}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/boundary_keys.hpp"
 
+#include "io/error.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +29,7 @@ Vec3 value_at_start(const VectorFormula& f)
 
 /// Reads r and v. Vectors of numbers become initial values, vectors with a formula also become prescribed
 /// motions.
-NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& compile)
+NamedBoundary read_motion(Keys& keys, const std::string& name)
 {
     NamedBoundary all{.name = name, .boundary = {}};
     all.motion.name = name;
@@ -36,7 +38,7 @@ NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& co
             number = keys.vector(key, {0, 0, 0});
             return;
         }
-        formula = keys.formulas(key, compile);
+        formula = keys.formulas(key);
         number = value_at_start(*formula);
     };
     read("r", all.boundary.r, all.motion.r);
@@ -48,11 +50,11 @@ NamedBoundary read_motion(Keys& keys, const std::string& name, const Compile& co
 }
 
 /// Reads the keys of a boundary that may be a tool: omega, mass, inertia, free and F.
-void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
+void read_tool(Keys& keys, NamedBoundary& tool)
 {
     Boundary& b = tool.boundary;
     if (keys.has_formula("omega")) {
-        tool.motion.omega = keys.formulas("omega", compile);
+        tool.motion.omega = keys.formulas("omega");
         b.omega = value_at_start(*tool.motion.omega);
     } else {
         b.omega = keys.vector("omega", {0, 0, 0});
@@ -66,7 +68,7 @@ void read_tool(Keys& keys, NamedBoundary& tool, const Compile& compile)
     if (tool.motion.v && !finite((*tool.motion.v)(0)))
         keys.refuse("v", "must be finite at t = 0 if the boundary has a mass", keys.raw("v"));
     if (keys.has_formula("F")) {
-        tool.motion.F = keys.formulas("F", compile);
+        tool.motion.F = keys.formulas("F");
         b.F = value_at_start(*tool.motion.F);
     } else {
         b.F = keys.vector("F", {0, 0, 0});
@@ -89,8 +91,8 @@ std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
         const bool known =
             std::any_of(std::begin(sides), std::end(sides), [&](auto& s) { return s.first == name; });
         if (!known || !open.insert(name).second)
-            throw InvalidCase(place + ": must be one of -x, +x, -y, +y, -z, +z, each once, got " +
-                              side->dump());
+            throw io::InvalidInput(place + ": must be one of -x, +x, -y, +y, -z, +z, each once, got " +
+                                   side->dump());
     }
     std::vector<NamedBoundary> all;
     for (const auto& [side, normal] : sides) {
@@ -113,12 +115,12 @@ std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
 
 }  // namespace
 
-std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name, const Compile& compile)
+std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name)
 {
     const std::string type = keys.text("type");
-    NamedBoundary one = read_motion(keys, name, compile);
+    NamedBoundary one = read_motion(keys, name);
     if (type == "box") return read_box(keys, one);
-    read_tool(keys, one, compile);
+    read_tool(keys, one);
     Boundary& b = one.boundary;
     if (type == "plane") {
         b.axis = unit_vector(keys, "normal");

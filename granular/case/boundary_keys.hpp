@@ -14,7 +14,7 @@ struct NamedBoundary {
 };
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
-/// names NAME-x, NAME+x, NAME-y, ... Throws InvalidCase.
-std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name, const Compile& compile);
+/// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
+std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name);
 
 }  // namespace hilda::granular

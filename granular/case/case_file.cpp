@@ -4,6 +4,7 @@
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/fill.hpp"
 #include "granular/case/pair_keys.hpp"
+#include "io/error.hpp"
 
 #include <algorithm>
 
@@ -13,14 +14,14 @@ namespace {
 
 using Json = Keys::Json;
 
-/// Calls f and prefixes the message of an InvalidCase with the JSON pointer of the entry.
+/// Calls f and prefixes the message of an io::InvalidInput with the JSON pointer of the entry.
 template <class F>
 auto with_place(const std::string& place, const F& f)
 {
     try {
         return f();
-    } catch (const InvalidCase& e) {
-        throw InvalidCase(place + ": " + e.what());
+    } catch (const io::InvalidInput& e) {
+        throw io::InvalidInput(place + ": " + e.what());
     }
 }
 
@@ -66,7 +67,7 @@ void read_domain(Keys domain, WorldOptions& o)
     domain.end();
 }
 
-/// Compares an estimate of the required memory with the available memory. Throws InvalidCase.
+/// Compares an estimate of the required memory with the available memory. Throws io::InvalidInput.
 ///
 /// The peak occurs while contacts.csv is written. It was measured on a close-packed crystal with six contacts
 /// per particle and rolling and spin laws: 3460 bytes per particle.
@@ -90,7 +91,7 @@ void check_memory(double particles, double largest, const WorldOptions& o, const
         char what[200];
         std::snprintf(what, sizeof what, "%s: %.3g %s need about %.3g GB of memory%s; %.3g GB are available",
                       place, many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
-        throw InvalidCase(what);
+        throw io::InvalidInput(what);
     };
     check("/fill", particles, "particles", of_output + in_world, available.memory, "");
     check("/fill", particles, "particles", in_world, available.device_memory, " of the GPU");
@@ -115,7 +116,7 @@ void seed_fills(Case& c, std::uint64_t seed)
 void read(Case& out, const Environment& environment)
 {
     Keys keys(out.source.json(), "");
-    if (keys.count("hilda_case", -1) != 1) throw InvalidCase("/hilda_case: must be 1");
+    if (keys.count("hilda_case", -1) != 1) throw io::InvalidInput("/hilda_case: must be 1");
     out.name = keys.text("name", "case");
     keys.text("note", "");
 
@@ -144,7 +145,7 @@ void read(Case& out, const Environment& environment)
         Keys m(*object, place);
         materials.push_back(read_material(m));
     }
-    if (materials.empty()) throw InvalidCase("/materials: must have at least one entry");
+    if (materials.empty()) throw io::InvalidInput("/materials: must have at least one entry");
     const auto material = [&](Keys& k, const std::string& key) {
         const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
         for (std::size_t n = 0; n < materials.size(); ++n)
@@ -170,7 +171,7 @@ void read(Case& out, const Environment& environment)
             b.refuse("name",
                      "must not contain commas, quotes or line ends, because it is part of column names",
                      name);
-        for (NamedBoundary& n : read_boundary(b, name, environment.compile)) {
+        for (NamedBoundary& n : read_boundary(b, name)) {
             if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
                 b.refuse("name", "another boundary has this name", n.name);
             n.boundary.material = boundary_material;
@@ -238,7 +239,7 @@ void read(Case& out, const Environment& environment)
         try {
             apply_motions(*out.world, {motion}, out.h);
         } catch (const NotFinite& e) {
-            throw InvalidCase(place + ": " + e.what());
+            throw io::InvalidInput(place + ": " + e.what());
         }
     }
     out.world->before_each_step([all, h = out.h](World& w) { apply_motions(w, all, h); });
@@ -254,10 +255,10 @@ Case read_case(const std::string& text, const std::string& file, const Environme
         out.notices = out.source.notices();
         if (environment.seed) seed_fills(out, *environment.seed);
         read(out, environment);
-    } catch (const InvalidCase& e) {
-        throw InvalidCase(out.source.with_location(e.what()));
+    } catch (const io::InvalidInput& e) {
+        throw io::InvalidInput(out.source.with_location(e.what()));
     } catch (const Json::exception& e) {
-        throw InvalidCase(out.source.with_location(e.what()));
+        throw io::InvalidInput(out.source.with_location(e.what()));
     }
     return out;
 }
@@ -266,7 +267,7 @@ void insert_particles(const Case& c)
 {
     try {
         c.world->step(0);
-    } catch (const InvalidCase& e) {
+    } catch (const io::InvalidInput& e) {
         // Messages of the world refer to particles by their ids.
         const std::string what = e.what();
         std::string place;
@@ -279,7 +280,7 @@ void insert_particles(const Case& c)
         } else if (what.starts_with("domain: ")) {
             place = "/domain";
         }
-        throw InvalidCase(c.source.with_location(place.empty() ? what : place + ": " + what));
+        throw io::InvalidInput(c.source.with_location(place.empty() ? what : place + ": " + what));
     }
 }
 

@@ -30,7 +30,6 @@ struct Environment {
     static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
     std::size_t memory = any, device_memory = any;  ///< available memory of the host and of the GPU [bytes]
-    Compile compile = {};                           ///< compiler of formulas; without one they are rejected
     Device device = {};
     std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
     std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...
@@ -39,10 +38,10 @@ struct Environment {
 /// Reads a case and constructs its world. `file` is the name used in messages. The required memory is
 /// estimated and compared with the available memory before the particles are generated.
 ///
-/// Throws InvalidCase with file, line, column and JSON pointer of the invalid entry, and DeviceError.
+/// Throws io::InvalidInput with file, line, column and JSON pointer of the invalid entry, and DeviceError.
 Case read_case(const std::string& text, const std::string& file, const Environment& environment = {});
 
-/// Inserts the particles into the world. Throws InvalidCase with the place of the entry whose particles are
+/// Inserts the particles into the world. Throws io::InvalidInput with the place of the entry whose particles are
 /// invalid.
 void insert_particles(const Case& c);
 

@@ -2,7 +2,8 @@
 #include "granular/case/fill.hpp"
 
 #include "granular/case/split_mix.hpp"
-#include "granular/files.hpp"
+#include "io/checksum.hpp"
+#include "io/files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +67,7 @@ std::vector<Vec3> poisson(const FillSpec& f, const Vec3& low, const Vec3& high, 
     const long nx = cells(high.x - low.x), ny = cells(high.y - low.y), nz = cells(high.z - low.z);
     constexpr double most_cells = 4e8;
     if (static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz) > most_cells)
-        throw InvalidCase(
+        throw io::InvalidInput(
             "the box must not have more than 4e8 cells of spacing/sqrt(3); increase the spacing or split the "
             "box");
     std::vector<std::int32_t> in(static_cast<std::size_t>(nx * ny * nz), -1);
@@ -105,13 +106,13 @@ FillSpec read_table(Keys& keys)
     f.type = FillSpec::Type::csv;
     const std::string file = keys.text("file");
     try {
-        const std::string text = read_file(file, std::size_t{1} << 36);
+        const std::string text = io::read_file(file, std::size_t{1} << 36);
         f.particles = particles_of_csv(text, file);
-        f.checksum = checksum(text.data(), text.size());
-    } catch (const FileError& e) {
-        throw InvalidCase(keys.place_of("file") + ": " + e.what());
-    } catch (const InvalidCase& e) {
-        throw InvalidCase(keys.place_of("file") + ": " + e.what());
+        f.checksum = io::checksum(text.data(), text.size());
+    } catch (const io::IoError& e) {
+        throw io::InvalidInput(keys.place_of("file") + ": " + e.what());
+    } catch (const io::InvalidInput& e) {
+        throw io::InvalidInput(keys.place_of("file") + ": " + e.what());
     }
     for (const Particle& p : f.particles) f.radius = std::max(f.radius, p.radius);
     return f;

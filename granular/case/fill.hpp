@@ -29,12 +29,12 @@ struct FillSpec {
     std::uint64_t checksum = 0;            ///< of the table file
 };
 
-/// Reads an entry of `fill`, without material and replica. Throws InvalidCase.
+/// Reads an entry of `fill`, without material and replica. Throws io::InvalidInput.
 FillSpec read_fill(Keys& keys);
 
 /// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
 /// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,
-/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws InvalidCase with
+/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws io::InvalidInput with
 /// file and line.
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
 
@@ -42,7 +42,7 @@ std::vector<Particle> particles_of_csv(const std::string& text, const std::strin
 /// first.
 double estimated_count(const FillSpec& filling);
 
-/// Generates the particles. The result is the same on all platforms (see SplitMix). Throws InvalidCase.
+/// Generates the particles. The result is the same on all platforms (see SplitMix). Throws io::InvalidInput.
 std::vector<Particle> fill(const FillSpec& filling);
 
 }  // namespace hilda::granular

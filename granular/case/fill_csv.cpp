@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reader of particle tables (CSV).
 #include "granular/case/fill.hpp"
+#include "io/error.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -42,13 +43,14 @@ struct Row {
     Number number(const std::string& name, const char* rule) const
     {
         const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-        if (at == names.size()) throw InvalidCase(place + ": missing column " + name);
+        if (at == names.size()) throw io::InvalidInput(place + ": missing column " + name);
         const std::string_view text = cell[at];
         Number value{};
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         bool good = error == std::errc() && end == text.data() + text.size();
         if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
-        if (!good) throw InvalidCase(place + ": " + name + ' ' + rule + ", got '" + std::string(text) + '\'');
+        if (!good)
+            throw io::InvalidInput(place + ": " + name + ' ' + rule + ", got '" + std::string(text) + '\'');
         return value;
     }
     double real(const std::string& name) const { return number<double>(name, "must be a finite number"); }
@@ -76,19 +78,19 @@ std::vector<Particle> particles_of_csv(const std::string& text, const std::strin
         }
         const Row row{names, cells(here), file + ':' + std::to_string(line + 1)};
         if (row.cell.size() != names.size())
-            throw InvalidCase(row.place + ": the number of cells must be that of the column names, " +
-                              std::to_string(names.size()) + ", got " + std::to_string(row.cell.size()));
+            throw io::InvalidInput(row.place + ": the number of cells must be that of the column names, " +
+                                   std::to_string(names.size()) + ", got " + std::to_string(row.cell.size()));
         Particle p;
         p.r = row.vector("x", "y", "z"), p.radius = row.real("radius");
         if (!(p.radius > 0))
-            throw InvalidCase(row.place + ": radius must be positive, got " + std::to_string(p.radius));
+            throw io::InvalidInput(row.place + ": radius must be positive, got " + std::to_string(p.radius));
         if (row.has("material")) p.material = row.number<int>("material", "must be the number of a material");
         if (row.has("vx")) p.v = row.vector("vx", "vy", "vz");
         if (row.has("omega_x")) p.omega = row.vector("omega_x", "omega_y", "omega_z");
         if (row.has("e0")) p.e = {row.real("e0"), row.real("e1"), row.real("e2"), row.real("e3")};
         all.push_back(p);
     }
-    if (all.empty()) throw InvalidCase(file + ": contains no particles");
+    if (all.empty()) throw io::InvalidInput(file + ": contains no particles");
     return all;
 }
 

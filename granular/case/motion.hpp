@@ -4,15 +4,13 @@
 #pragma once
 
 #include "granular/world/world.hpp"
+#include "io/error.hpp"
 
 #include <optional>
 
 namespace hilda::granular {
 
 using Formula = std::function<double(double t)>;
-/// Compiles the text of a formula; throws InvalidCase. The grammar is supplied by the program that reads the
-/// case.
-using Compile = std::function<Formula(const std::string& text)>;
 
 struct VectorFormula {
     std::array<Formula, 3> of;
@@ -35,9 +33,9 @@ struct BoundaryMotion {
 };
 
 /// The value of a formula is not finite. what() states the boundary, the key and the time.
-class NotFinite : public std::runtime_error {
+class NotFinite : public io::NumericalFailure {
 public:
-    using std::runtime_error::runtime_error;
+    explicit NotFinite(const std::string& what) : NumericalFailure("not_finite", what) {}
 };
 
 /// Sets velocities and forces of the boundaries for the next step h [s]. To be called by

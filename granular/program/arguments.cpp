@@ -2,6 +2,9 @@
 #include "granular/program/arguments.hpp"
 
 #include "granular/program/provenance.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
+#include "io/provenance.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -52,26 +55,6 @@ Setting setting_of(const std::string& text)
     return {.pointer = text.substr(0, equals),
             .value = text.substr(equals + 1),
             .origin = "--set '" + text + '\''};
-}
-
-/// The command line, quoted for a shell
-std::string in_one_line(int argc, char** argv)
-{
-    std::string line;
-    for (int k = 0; k < argc; ++k) {
-        const std::string word = argv[k];
-        const bool plain = !word.empty() && word.find_first_not_of(
-                                                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                "0123456789_-+=/.,:@%") == std::string::npos;
-        std::string quoted = word;
-        if (!plain && k > 0) {  // the program name may be "hilda granular"
-            quoted = "'";
-            for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-            quoted += '\'';
-        }
-        line += (k > 0 ? " " : "") + quoted;
-    }
-    return line;
 }
 
 }  // namespace
@@ -145,14 +128,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
             throw CLI::ValidationError("--every is the old name of --interval; give only one of them");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);
-        std::fprintf(stderr, "hilda: error: granular: %s\n", e.what());
-        return usage;
+        return io::report(io::UsageError(std::string("granular: ") + e.what()));
     }
     if (!every.empty()) {
         entries[2].second = every;  // the origin in messages is then --interval
-        if (!o.quiet)
-            std::fprintf(stderr,
-                         "hilda: warning: --every was renamed to --interval; the old name is still read\n");
+        if (!o.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
     const std::set<std::string> of_all = {"CASE", "--threads", "--device", "--full", "--quiet", "--verbose"};
     for (const CLI::Option* option : app.get_options())
@@ -171,7 +151,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     if (!checkpoint.empty()) o.checkpoint = *number_in<double>(checkpoint);
     o.device = *device_of(o.device_name);
     if (o.output.empty()) o.output = "out/" + std::filesystem::path(o.file).stem().string();
-    o.command_line = in_one_line(argc, argv);
+    o.command_line = argv[0];  // may be "hilda granular"
+    if (argc > 1) o.command_line += ' ' + io::shell_quoted(argc - 1, argv + 1);
     return {};
 }
 

@@ -7,18 +7,6 @@
 
 namespace hilda::granular {
 
-enum Exit {
-    ok = 0,
-    internal = 1,
-    usage = 2,
-    bad_case = 3,
-    numerical = 4,
-    io = 5,
-    check_failed = 6,
-    no_device = 7,
-    by_signal = 128
-};
-
 struct Options {
     std::string file, output, device_name = "cpu", command_line;
     Device device = {};

@@ -2,14 +2,13 @@
 #include "granular/program/provenance.hpp"
 
 #include "granular/build.hpp"
+#include "io/provenance.hpp"
 
 #if __has_include(<hilda/version.hpp>)
 #include <hilda/version.hpp>
 #endif
 
 #include <CLI/Version.hpp>
-
-#include <fstream>
 
 namespace hilda::granular {
 
@@ -22,15 +21,6 @@ constexpr const char* git = studies::version::git;
 constexpr const char* git = "unknown";
 #endif
 
-std::string processor()
-{
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name"))
-            if (const std::size_t at = line.find(": "); at != std::string::npos) return line.substr(at + 2);
-    return "unknown";
-}
-
 }  // namespace
 
 std::string version_line()
@@ -38,15 +28,12 @@ std::string version_line()
     return std::string("hilda-granular ") + build::number + " (git " + git + ", " + build::build_type + ")";
 }
 
-nlohmann::ordered_json provenance(const std::string& command_line, int threads, const std::string& device)
+io::Json provenance(const std::string& command_line, int threads, const std::string& device)
 {
-    nlohmann::ordered_json libraries = {
-        {"Thrust", build::thrust},
-        {"OpenMP", build::openmp},
-        {"CLI11", CLI11_VERSION},
-        {"nlohmann_json", std::to_string(NLOHMANN_JSON_VERSION_MAJOR) + '.' +
-                              std::to_string(NLOHMANN_JSON_VERSION_MINOR) + '.' +
-                              std::to_string(NLOHMANN_JSON_VERSION_PATCH)}};
+    io::Json libraries = {{"Thrust", build::thrust},
+                          {"OpenMP", build::openmp},
+                          {"CLI11", CLI11_VERSION},
+                          {"nlohmann_json", io::json_library_version()}};
     if (*build::cuda != '\0') libraries["CUDA"] = build::cuda;
     return {{"version", build::number},
             {"git", git},
@@ -55,7 +42,7 @@ nlohmann::ordered_json provenance(const std::string& command_line, int threads, 
             {"compiler", build::compiler},
             {"libraries", libraries},
             {"command_line", command_line},
-            {"cpu", processor()},
+            {"cpu", io::processor()},
             {"threads", threads},
             {"device", device}};
 }

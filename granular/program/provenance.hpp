@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "io/json.hpp"
 
 namespace hilda::granular {
 
@@ -11,7 +11,6 @@ namespace hilda::granular {
 std::string version_line();
 
 /// Version, build, libraries, command line, processor, threads and device
-
-nlohmann::ordered_json provenance(const std::string& command_line, int threads, const std::string& device);
+io::Json provenance(const std::string& command_line, int threads, const std::string& device);
 
 }  // namespace hilda::granular

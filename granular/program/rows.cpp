@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/rows.hpp"
 
-#include "granular/files.hpp"
 #include "granular/world/output.hpp"
+#include "io/files.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -24,8 +24,8 @@ void Rows::record()
 {
     const World& w = *c.world;
     if (frame_interval > 0 && w.steps() % frame_interval == 0) {
-        make_directory(directory + "/vtk");
-        write_file(directory + "/vtk/" + frame(next_frame), particles_vtp(w));
+        io::make_directory(directory + "/vtk");
+        io::write_file(directory + "/vtk/" + frame(next_frame), particles_vtp(w));
         frames.emplace_back(w.t(), frame(next_frame++));
     }
     if (w.steps() % interval != 0) return;
@@ -51,14 +51,14 @@ void Rows::record()
 void Rows::load()
 {
     const std::string name = directory + "/run.csv";
-    csv = read_file(name, std::size_t{1} << 32);
+    csv = io::read_file(name, std::size_t{1} << 32);
     rows = static_cast<std::size_t>(c.world->steps() / interval) + 1;  // including t = 0
     std::size_t at = 0;
     for (std::size_t k = 0; k <= rows; ++k) {  // and the header line
         at = csv.find('\n', at);
         if (at++ == std::string::npos)
-            throw FileError(name + ": must have at least " + std::to_string(rows + 1) + " lines, got " +
-                            std::to_string(k));
+            throw io::IoError(name + ": must have at least " + std::to_string(rows + 1) + " lines, got " +
+                              std::to_string(k));
     }
     csv.resize(at);
     if (frame_interval == 0) return;
@@ -68,11 +68,11 @@ void Rows::load()
             frames.emplace_back(static_cast<double>(step) * c.h, frame(next_frame));
 }
 
-void Rows::write() const { write_file(directory + "/run.csv", csv); }
+void Rows::write() const { io::write_file(directory + "/run.csv", csv); }
 
 void Rows::write_frames() const
 {
-    if (!frames.empty()) write_file(directory + "/vtk/run.pvd", pvd(frames));
+    if (!frames.empty()) io::write_file(directory + "/vtk/run.pvd", pvd(frames));
 }
 
 std::string Rows::frame(std::size_t k)

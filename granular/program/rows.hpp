@@ -15,7 +15,7 @@ public:
 
     /// Records the row and the frame of the current step, if it is a multiple of their intervals
     void record();
-    /// Reads the rows and frames of an interrupted run up to the current step. Throws FileError.
+    /// Reads the rows and frames of an interrupted run up to the current step. Throws io::IoError.
     void load();
     /// Writes run.csv
     void write() const;

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/run.hpp"
 
-#include "granular/files.hpp"
-#include "granular/program/progress.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/program/rows.hpp"
 #include "granular/world/output.hpp"
+#include "io/files.hpp"
+#include "io/interrupt.hpp"
+#include "io/json.hpp"
+#include "io/message.hpp"
+#include "io/progress.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 namespace hilda::granular {
 
-volatile std::sig_atomic_t caught = 0;
-
 namespace {
 
 namespace fs = std::filesystem;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
@@ -32,28 +38,24 @@ public:
 
     int execute()
     {
-        std::error_code none;
-        if (fs::is_directory(o.output, none) && !fs::is_empty(o.output, none) && !o.force && !o.resume) {
-            std::fprintf(
-                stderr, "hilda: error: %s: is not empty; --force overwrites it, --resume continues its run\n",
-                o.output.c_str());
-            return usage;
-        }
+        if (!io::is_missing_or_empty(o.output) && !o.force && !o.resume)
+            throw io::UsageError(o.output +
+                                 ": is not empty; --force overwrites it, --resume continues its run");
         for (const std::string& n : c.notices) warn(c.source.with_location(n));
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written
         log("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(), c.boundaries.size(), steps,
             c.h);
-        make_directory(o.output);
+        io::make_directory(o.output);
         if (o.resume && done()) {
-            if (!o.quiet) std::fprintf(stderr, "hilda: %s: the run is complete already\n", o.output.c_str());
-            if (o.json) std::fputs(read_file(file("summary.json"), most_of_summary).c_str(), stdout);
-            return ok;
+            if (!o.quiet) io::message("hilda: " + o.output + ": the run is complete already\n");
+            if (o.json) std::fputs(io::read_file(file("summary.json"), most_of_summary).c_str(), stdout);
+            return io::exit_code::done;
         }
         if (!o.resume || !load()) {
             for (const char* old : {"checkpoint", "checkpoint.1", "summary.json"})
                 std::remove(file(old).c_str());
-            write_file(file("case.json"), text);
+            io::write_file(file("case.json"), text);
         }
         resumed_at = c.world->steps();
         begin = saved = Clock::now();
@@ -69,7 +71,7 @@ private:
 
     void warn(const std::string& what) const
     {
-        if (!o.quiet) std::fprintf(stderr, "hilda: warning: %s\n", what.c_str());
+        if (!o.quiet) io::warning(what);
     }
     template <class... Values>
     void log(const char* format, const Values&... values) const
@@ -92,7 +94,7 @@ private:
             std::snprintf(what, sizeof what, "/step: must not be above %.3g s, the stability limit, got %g",
                           stable, c.h);
             if (!o.force)
-                throw InvalidCase(c.source.with_location(std::string(what) + "; --force overrides"));
+                throw io::InvalidInput(c.source.with_location(std::string(what) + "; --force overrides"));
             warn(c.source.with_location(what));
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
             std::snprintf(what, sizeof what,
@@ -102,21 +104,21 @@ private:
         }
         if (c.end < c.h) {
             std::snprintf(what, sizeof what, "/end: must be at least one step, got %g", c.end);
-            throw InvalidCase(c.source.with_location(what));
+            throw io::InvalidInput(c.source.with_location(what));
         }
     }
 
-    /// Whether the output directory contains a completed run of this case. Throws FileError if it contains
+    /// Whether the output directory contains a completed run of this case. Throws io::IoError if it contains
     /// another case.
     bool done() const
     {
         if (!fs::exists(file("case.json"))) return false;
-        if (read_file(file("case.json"), std::size_t{1} << 28) != text)
-            throw FileError(file("case.json") +
-                            ": is another case, or this case with other options; --force overwrites it");
+        if (io::read_file(file("case.json"), std::size_t{1} << 28) != text)
+            throw io::IoError(file("case.json") +
+                              ": is another case, or this case with other options; --force overwrites it");
         if (fs::exists(file("checkpoint")) || !fs::exists(file("summary.json"))) return false;
         const auto summary =
-            nlohmann::json::parse(read_file(file("summary.json"), most_of_summary), nullptr, false);
+            nlohmann::json::parse(io::read_file(file("summary.json"), most_of_summary), nullptr, false);
         return summary.is_object() && summary.value("status", "") == "ok";
     }
 
@@ -127,9 +129,9 @@ private:
         for (const char* name : {"checkpoint", "checkpoint.1"}) {
             if (!fs::exists(file(name))) continue;
             try {
-                c.world->from_bytes(read_file(file(name), std::size_t{1} << 40), text + c.files_read,
+                c.world->from_bytes(io::read_file(file(name), std::size_t{1} << 40), text + c.files_read,
                                     file(name));
-            } catch (const FileError& e) {
+            } catch (const io::IoError& e) {
                 if (damage.empty()) damage = e.what();
                 continue;
             }
@@ -138,7 +140,7 @@ private:
             log("continues from %s at t = %g s", file(name).c_str(), c.world->t());
             return true;
         }
-        if (!damage.empty()) throw FileError(damage);
+        if (!damage.empty()) throw io::IoError(damage);
         return false;
     }
 
@@ -148,29 +150,28 @@ private:
     /// A snapshot of the last instant is held in memory, for a signal that arrives between two instants.
     int run_steps()
     {
-        Progress line(o.quiet);
+        io::ProgressLine line(o.quiet);
         World& w = *c.world;
         try {
             if (rows.count() == 0) rows.record();
             take_snapshot();
-            while (w.steps() < steps && caught == 0) {
+            while (w.steps() < steps && io::Interrupt::caught() == 0) {
                 long next = steps;
                 for (const long between : {interval, frame_interval, checkpoint_interval})
                     if (between > 0) next = std::min(next, (w.steps() / between + 1) * between);
-                while (w.steps() < next && caught == 0) {
+                while (w.steps() < next && io::Interrupt::caught() == 0) {
                     w.step();
-                    line.update(c, rate());
+                    if (line.is_due()) line.show(progress());
                 }
                 if (w.steps() < next) break;
                 rows.record();
                 if (w.steps() % checkpoint_interval == 0 && w.steps() < steps) checkpoint_instant();
             }
-        } catch (const ParticleLost& e) {
+        } catch (const io::NumericalFailure& e) {
             line.clear();
-            return failed("particle_lost", e.what());
-        } catch (const NotFinite& e) {
-            line.clear();
-            return failed("not_finite", e.what());
+            io::report(e);
+            message = e.what(), status = e.status;
+            return io::exit_code::numerical_failure;
         } catch (const DeviceError&) {
             line.clear();
             save();
@@ -181,7 +182,7 @@ private:
             throw;
         }
         line.clear();
-        if (w.steps() == steps) return ok;
+        if (w.steps() == steps) return io::exit_code::done;
         status = "interrupted";
         save();
         if (!o.quiet)
@@ -189,7 +190,7 @@ private:
                          "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint at t = "
                          "%.6g s in %s\n",
                          w.t(), snapshot_time, o.output.c_str());
-        return by_signal + caught;
+        return io::exit_code::signal + io::Interrupt::caught();
     }
 
     void checkpoint_instant()
@@ -199,7 +200,8 @@ private:
         const double min_spacing = std::max(0.2, 20 * snapshot_seconds);
         c.world->invalidate_neighbours();
         const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint;
-        if (due || caught != 0 || seconds_since(snapshot_taken) > min_spacing) take_snapshot();
+        if (due || io::Interrupt::caught() != 0 || seconds_since(snapshot_taken) > min_spacing)
+            take_snapshot();
         if (due) save();
     }
 
@@ -220,16 +222,23 @@ private:
         rows.write();
         std::rename(file("checkpoint").c_str(),
                     file("checkpoint.1").c_str());  // fails the first time, as intended
-        write_file(file("checkpoint"), snapshot);
+        io::write_file(file("checkpoint"), snapshot);
         saved = Clock::now();
         log("checkpoint at t = %g s, %zu bytes", snapshot_time, snapshot.size());
     }
 
-    int failed(const char* how, const std::string& what)
+    /// Text of the progress line
+    std::string progress() const
     {
-        std::fprintf(stderr, "hilda: error[%s]: %s\n", how, what.c_str());
-        message = what, status = how;
-        return numerical;
+        const World& w = *c.world;
+        const double rate_now = rate();
+        const double left =
+            rate_now > 0 ? (c.end - w.t()) / c.h * static_cast<double>(w.count()) / rate_now : 0;
+        char text_of_line[160];
+        std::snprintf(text_of_line, sizeof text_of_line,
+                      "t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left", w.t(), c.end,
+                      1e-6 * rate_now, left);
+        return text_of_line;
     }
 
     double rate() const  ///< [particle-steps/s]
@@ -245,28 +254,27 @@ private:
         snapshot.clear();
         snapshot.shrink_to_fit();
         rows.write();
-        write_file(file("particles.csv"), particles_csv(w));
-        write_file(file("contacts.csv"), contacts_csv(w));
+        io::write_file(file("particles.csv"), particles_csv(w));
+        io::write_file(file("contacts.csv"), contacts_csv(w));
         rows.write_frames();
         const std::string text_of_summary = summary(code, speed, seconds);
-        write_file(file("summary.json"), text_of_summary);
-        if (code == ok)
-            for (const char* old : {"checkpoint", "checkpoint.1", "checkpoint.new"})
+        io::write_file(file("summary.json"), text_of_summary);
+        if (code == io::exit_code::done)
+            for (const char* old : {"checkpoint", "checkpoint.1", "checkpoint.tmp"})
                 std::remove(file(old).c_str());
         if (o.json)
             std::fputs(text_of_summary.c_str(), stdout);
-        else if (code == ok && !o.quiet)
+        else if (code == io::exit_code::done && !o.quiet)
             std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
                         c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * speed, o.output.c_str());
     }
 
     std::string summary(int code, double speed, double seconds) const
     {
-        using Json = nlohmann::ordered_json;
         const World& w = *c.world;
-        Json s = {{"status", status}, {"exit_code", code}};
+        io::Json s = {{"status", status}, {"exit_code", code}};
         if (!message.empty()) s["message"] = message;
-        Json set = Json::array();
+        io::Json set = io::Json::array();
         for (const Setting& setting : c.source.settings())
             set.push_back(setting.pointer + '=' + setting.value);
         s["case"] = {{"name", c.name},
@@ -290,7 +298,7 @@ private:
         s["provenance"]["bytes_per_particle"] =
             w.count() > 0 ? static_cast<double>(w.bytes()) / static_cast<double>(w.count()) : 0;
         if (resumed_at > 0) s["provenance"]["resumed_at_step"] = resumed_at;
-        return s.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+        return s.text();
     }
 
     const Options& o;

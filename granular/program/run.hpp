@@ -5,14 +5,9 @@
 
 #include "granular/program/arguments.hpp"
 
-#include <csignal>
-
 namespace hilda::granular {
 
-/// Number of the signal that requested the end of the run, or 0
-extern volatile std::sig_atomic_t caught;
-
-/// Runs a case to its end and returns the exit code. Throws InvalidCase, FileError, DeviceError.
+/// Runs a case to its end and returns the exit code. Throws io::InvalidInput, io::IoError, DeviceError.
 int run(const Options& options, Case c);
 
 }  // namespace hilda::granular

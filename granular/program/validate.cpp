@@ -2,9 +2,12 @@
 #include "granular/program/validate.hpp"
 
 #include "granular/program/arguments.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
+#include "io/progress.hpp"
 
-#include <unistd.h>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -64,20 +67,19 @@ std::string known_validations()
 
 int validate(const Validation& v, ValidationOptions options, bool quiet)
 {
-    const bool show = !quiet && isatty(STDERR_FILENO) != 0;
-    if (show) options.progress = [](double part) { std::fprintf(stderr, "\rhilda: %3.0f %%", 100 * part); };
-    const auto clear = [&] {
-        if (show) std::fprintf(stderr, "\r%14s\r", "");
+    io::ProgressLine line(quiet);
+    options.progress = [&](double share) {
+        if (line.is_due()) line.show(v.name + ' ' + std::to_string(std::lround(100 * share)) + " %");
     };
     ValidationResult result;
     try {
         result = v.run(options);
-    } catch (const ParticleLost& e) {
-        clear();
-        std::fprintf(stderr, "hilda: error[particle_lost]: %s: %s\n", v.name.c_str(), e.what());
-        return numerical;
+    } catch (const io::NumericalFailure& e) {
+        line.clear();
+        io::message("hilda: error[" + e.status + "]: " + v.name + ": " + e.what() + '\n');
+        return io::exit_code::numerical_failure;
     }
-    clear();
+    line.clear();
     std::vector<std::vector<std::string>> lines = {{"measured", "lower", "upper", "", "what"}};
     for (const ValidationCheck& c : result.checks)
         lines.push_back(
@@ -96,7 +98,8 @@ int validate(const Validation& v, ValidationOptions options, bool quiet)
         print(lines);
         std::printf("%ld of %zu passed\n", static_cast<long>(passed), result.checks.size());
     }
-    return passed == static_cast<long>(result.checks.size()) ? ok : check_failed;
+    return passed == static_cast<long>(result.checks.size()) ? io::exit_code::done
+                                                             : io::exit_code::expectation_failed;
 }
 
 }  // namespace hilda::granular

@@ -5,8 +5,9 @@
 //
 // Layout, little endian: magic, format, length in bytes; run id, scalars, lists (length and elements);
 // checksum.
-#include "granular/files.hpp"
 #include "granular/world/world.hpp"
+#include "io/checksum.hpp"
+#include "io/error.hpp"
 
 #include <bit>
 #include <cstring>
@@ -45,7 +46,7 @@ struct Reader {
     void raw(void* to, std::size_t n)
     {
         if (static_cast<std::size_t>(end - at) < n)
-            throw FileError(file + ": the checkpoint is damaged: it is truncated");
+            throw io::IoError(file + ": the checkpoint is damaged: it is truncated");
         if (n > 0) std::memcpy(to, at, n);
         at += n;
     }
@@ -62,7 +63,7 @@ struct Reader {
         using T = std::remove_reference_t<decltype(*to.data())>;
         const auto n = one<std::uint64_t>();
         if (n > static_cast<std::size_t>(end - at) / sizeof(T))
-            throw FileError(file + ": the checkpoint is damaged: a list is longer than the file");
+            throw io::IoError(file + ": the checkpoint is damaged: a list is longer than the file");
         to.resize(n);
         raw(static_cast<void*>(to.data()), n * sizeof(T));
         return n;
@@ -105,7 +106,7 @@ std::string World::to_bytes(const std::string& run_id)
         array(rotation_history, rotation_history.size());
     const std::uint64_t length = a.bytes.size() + trailer_size;
     std::memcpy(a.bytes.data() + sizeof magic + sizeof format, &length, sizeof length);
-    a(checksum(a.bytes.data(), a.bytes.size()));
+    a(io::checksum(a.bytes.data(), a.bytes.size()));
     invalidate_neighbours();
     return std::move(a.bytes);
 }
@@ -113,7 +114,7 @@ std::string World::to_bytes(const std::string& run_id)
 void World::from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file)
 {
     const auto damaged = [&](const std::string& how) {
-        return FileError(file + ": the checkpoint is damaged: " + how);
+        return io::IoError(file + ": the checkpoint is damaged: " + how);
     };
     if (bytes.size() < header_size + trailer_size || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
         throw damaged("the header is missing");
@@ -124,13 +125,14 @@ void World::from_bytes(const std::string& bytes, const std::string& run_id, cons
     if (length != bytes.size())
         throw damaged("it must have " + std::to_string(length) + " bytes, got " +
                       std::to_string(bytes.size()));
-    if (sum != checksum(bytes.data(), bytes.size() - trailer_size)) throw damaged("the checksum is wrong");
+    if (sum != io::checksum(bytes.data(), bytes.size() - trailer_size))
+        throw damaged("the checksum is wrong");
     if (version != format)
-        throw FileError(file + ": the checkpoint has format " + std::to_string(version) +
-                        "; this program reads format " + std::to_string(format));
+        throw io::IoError(file + ": the checkpoint has format " + std::to_string(version) +
+                          "; this program reads format " + std::to_string(format));
     std::string run;
     a.list(run);
-    if (run != run_id) throw FileError(file + ": the checkpoint belongs to another run");
+    if (run != run_id) throw io::IoError(file + ": the checkpoint belongs to another run");
     insert_pending();
     step_count = a.one<long>(), rebuild_count = a.one<long>();
     max_speed = a.one<float>(), domain = a.one<Domain>();
@@ -145,9 +147,9 @@ void World::from_bytes(const std::string& bytes, const std::string& run_id, cons
     a.list(particle.acc), a.list(particle.alpha);
     a.list(particle.orientation);
     if (a.list(particle.orientation_compensation) != (options.orientation ? n : 0))
-        throw FileError(file + ": the checkpoint " + (options.orientation ? "has no" : "has") +
-                        " orientations, but /orientation of this case is " +
-                        (options.orientation ? "true" : "false"));
+        throw io::IoError(file + ": the checkpoint " + (options.orientation ? "has no" : "has") +
+                          " orientations, but /orientation of this case is " +
+                          (options.orientation ? "true" : "false"));
     particle.count = static_cast<std::uint32_t>(n);
     inserted_count = n;
     pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));

@@ -7,6 +7,7 @@
 #include "granular/backend/engine.hpp"
 #include "granular/core/boundary.hpp"
 #include "granular/core/pair_law.hpp"
+#include "io/error.hpp"
 
 #include <array>
 #include <functional>
@@ -18,17 +19,14 @@
 #include <vector>
 
 namespace hilda::granular {
-/// Invalid input. what() states the place, the violated rule and the value.
-class InvalidCase : public std::invalid_argument {
-public:
-    using std::invalid_argument::invalid_argument;
-};
 
 /// A particle has left the domain, has moved by more than a cell in one step, or has a velocity that is not
 /// finite. Do not continue the run: the step may be computed in part only.
-class ParticleLost : public std::runtime_error {
+class ParticleLost : public io::NumericalFailure {
 public:
-    ParticleLost(const std::string& what, std::uint32_t id, double t) : runtime_error(what), id(id), t(t) {}
+    ParticleLost(const std::string& what, std::uint32_t id, double t)
+        : NumericalFailure("particle_lost", what), id(id), t(t)
+    {}
 
     std::uint32_t id;  ///< of the particle
     double t;          ///< [s]
@@ -83,7 +81,7 @@ struct WorldOptions {
 /// replicas do not interact.
 class World {
 public:
-    /// Throws InvalidCase, and DeviceError if the device of the options is not available.
+    /// Throws io::InvalidInput, and DeviceError if the device of the options is not available.
     World(const WorldOptions& options, std::vector<Material> materials);
     /// A world with an engine supplied by the caller
     World(const WorldOptions& options, std::vector<Material> materials, std::unique_ptr<Engine> engine);
@@ -91,11 +89,11 @@ public:
     ~World();
 
     /// Sets the contact law between two materials. A boundary has the law of its material. At most 255 laws
-    /// can be set. Throws InvalidCase.
+    /// can be set. Throws io::InvalidInput.
     void set_law(int material_i, int material_j, const PairLaw& law);
-    /// Adds a boundary and returns its number. Throws InvalidCase.
+    /// Adds a boundary and returns its number. Throws io::InvalidInput.
     int add(const Boundary& boundary);
-    /// Adds a particle and returns its id. Throws InvalidCase.
+    /// Adds a particle and returns its id. Throws io::InvalidInput.
     ///
     /// The particle is pending until the next call of step(), set_velocity() or to_bytes() inserts it. The
     /// insertion checks its position and its overlaps, which may be at most 5 % of the smaller radius. If
@@ -103,7 +101,7 @@ public:
     /// gravity.
     std::uint32_t add(const Particle& particle);
 
-    /// Inserts pending particles and computes n ≥ 0 steps. Throws InvalidCase if a pending particle cannot be
+    /// Inserts pending particles and computes n ≥ 0 steps. Throws io::InvalidInput if a pending particle cannot be
     /// inserted (with n = 0 as well), ParticleLost, DeviceError.
     void step(long n = 1);
     double t() const { return time; }
@@ -138,20 +136,20 @@ public:
     /// contact forces. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
-    /// Throws InvalidCase.
+    /// Throws io::InvalidInput.
     void set_force(std::uint32_t id, const Vec3& F);
-    /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws InvalidCase.
+    /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws io::InvalidInput.
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
     /// If true, torques do not accelerate the rotation of particles.
     void set_omega_locked(bool locked) { rotation_locked = locked; }
 
     /// Serialises the state after the insertion of pending particles. from_bytes() accepts the result only
     /// with the same `run_id`. Both this world and a restored one rebuild the neighbour list before the
-    /// next step and then continue with bitwise identical results. Throws InvalidCase if a pending
+    /// next step and then continue with bitwise identical results. Throws io::InvalidInput if a pending
     /// particle cannot be inserted.
     std::string to_bytes(const std::string& run_id);
     /// Restores the state into a world that was constructed by the same calls. `file` is the file name in
-    /// messages. Throws FileError.
+    /// messages. Throws io::IoError.
     void from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file);
 
     double kinetic_energy() const;  ///< translational and rotational, of the particles [J]

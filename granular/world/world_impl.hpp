@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/world/world.hpp"
+#include "io/error.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -24,7 +25,7 @@ template <class Value>
     std::ostringstream text;
     text.precision(9);
     text << where << ": " << what << ", got " << value;
-    throw InvalidCase(text.str());
+    throw io::InvalidInput(text.str());
 }
 
 inline bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

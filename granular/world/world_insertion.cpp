@@ -2,6 +2,7 @@
 // Insertion of particles into a world: choice of the cell grid, conversion of positions, checks of laws and
 // overlaps.
 #include "granular/world/world_impl.hpp"
+#include "io/error.hpp"
 
 #include <algorithm>
 
@@ -29,7 +30,7 @@ std::uint32_t World::add(const Particle& p)
     return id;
 }
 
-/// Cell grid for particles up to the largest of these. Throws InvalidCase.
+/// Cell grid for particles up to the largest of these. Throws io::InvalidInput.
 Domain World::domain_of(const std::vector<Particle>& all) const
 {
     Domain in;
@@ -80,7 +81,7 @@ Domain World::domain_of(const std::vector<Particle>& all) const
 }
 
 /// Cell and position within the cell of each particle. Throws ParticleLost if a particle that was inserted
-/// earlier is outside the domain, and InvalidCase if a new one is.
+/// earlier is outside the domain, and io::InvalidInput if a new one is.
 std::vector<World::CellPosition> World::cell_positions(const Domain& in,
                                                        const std::vector<Particle>& all) const
 {
@@ -119,7 +120,7 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in,
 /// cannot be used.
 void World::insert_pending()
 {
-    if (!insertion_error.empty()) throw InvalidCase(insertion_error);
+    if (!insertion_error.empty()) throw io::InvalidInput(insertion_error);
     if (pending.empty()) return;
     if (laws.empty()) refuse("world", "at least one law must be set", "none");
     const std::vector<Particle> all = particles();
@@ -178,13 +179,13 @@ void World::insert_pending()
     rebuild_neighbours();
     try {
         check_overlaps(first);
-    } catch (const InvalidCase& e) {
+    } catch (const io::InvalidInput& e) {
         insertion_error = e.what();
         throw;
     }
 }
 
-/// Checks that each pair of materials that can be in contact has a law. Throws InvalidCase.
+/// Checks that each pair of materials that can be in contact has a law. Throws io::InvalidInput.
 void World::check_laws(const std::vector<Particle>& particles) const
 {
     const std::size_t n = materials.size();
@@ -208,7 +209,7 @@ void World::check_laws(const std::vector<Particle>& particles) const
 }
 
 /// Checks that the particles with ids from `first` on overlap other particles and boundaries by at most 5 %
-/// of the smaller radius. Throws InvalidCase.
+/// of the smaller radius. Throws io::InvalidInput.
 void World::check_overlaps(std::uint32_t first) const
 {
     constexpr double max_overlap = 0.05;  // overlap over the smaller radius

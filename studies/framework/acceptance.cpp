@@ -21,14 +21,14 @@ Criterion criterion(const std::string& what, double measured, double value, doub
     return between(what, measured, value - tolerance, value + tolerance);
 }
 
-bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, Json& json)
+bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Json& json)
 {
     Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"passed"}, {"what"}});
-    json["checks"] = Json::array();
+    json["checks"] = io::Json::array();
     for (const Criterion& d : criteria) {
         table.add({d.measured, d.least, d.most, d.passed() ? "yes" : "NO", d.what});
         json["checks"].push_back({{"what", d.what},
-                                  {"measured", number_or_null(d.measured)},
+                                  {"measured", io::number_or_null(d.measured)},
                                   {"least", d.least},
                                   {"most", d.most},
                                   {"passed", d.passed()}});

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "studies/json.hpp"
+#include "io/json.hpp"
 
 #include <iosfwd>
 #include <string>
@@ -26,6 +26,6 @@ Criterion criterion(const std::string& what, double measured, double value, doub
 
 /// Evaluates the criteria. Prints a table and the line "N of M passed", and adds the same as "checks" to the
 /// contents of study.json. Returns true if all criteria pass.
-bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, Json& json);
+bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Json& json);
 
 }  // namespace hilda::studies

@@ -3,8 +3,8 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "studies/exit_codes.hpp"
-#include "studies/message.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
 
 #include <fmt/format.h>
 
@@ -24,10 +24,10 @@ Benchmark make_benchmark(Problem problem, const StudyOptions& options, const Def
     dae::Description d = dae::read_model(problem.model, problem.name, options.set);
     const dae::StartReport report = dae::start(d, {});
     if (!options.quiet) {
-        for (const std::string& w : d.warnings) warning(w);
+        for (const std::string& w : d.warnings) io::warning(w);
         for (const std::string& row : report.dropped)
-            warning(problem.name + ": " + row +
-                    ": redundant with the constraints before it, dropped from the equations");
+            io::warning(problem.name + ": " + row +
+                        ": redundant with the constraints before it, dropped from the equations");
     }
     Benchmark c;
     c.end = options.end ? *options.end : end(d);
@@ -48,7 +48,8 @@ std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& o
         all.push_back(make_benchmark(problem_or_file(name), options, end));
         for (size_t k = 0; k + 1 < all.size(); ++k)
             if (all[k].problem.name == all.back().problem.name)
-                throw UsageError("study " + kind + ": two problems are called '" + all[k].problem.name + "'");
+                throw io::UsageError("study " + kind + ": two problems are called '" + all[k].problem.name +
+                                     "'");
     }
     return all;
 }
@@ -61,14 +62,14 @@ bool divides(double h, double end)
     return steps >= 1 && std::abs(end / h - steps) <= 1e-6;
 }
 
-/// UsageError for a step above the stability limit of a force, as in hilda run
+/// io::UsageError for a step above the stability limit of a force, as in hilda run
 void check_stable(const std::string& kind, const Benchmark& c, const std::vector<double>& steps)
 {
     const dae::Model& model = *c.started->model;
     const dae::Model::StableStep stable = model.stable_step(c.started->x);
     for (const double h : steps)
         if (h > stable.h)
-            throw UsageError(
+            throw io::UsageError(
                 fmt::format("study {}: {}: the step {} s is above {:.3g} s, the stability limit of {} in an "
                             "explicit step; "
                             "--steps sets others",
@@ -83,7 +84,7 @@ void check_steps(const std::string& kind, const Benchmark& c, const std::vector<
     check_stable(kind, c, steps);
     for (const double h : steps)
         if (h > most * (1 + 1e-9) || !divides(h, c.end))
-            throw UsageError(fmt::format(
+            throw io::UsageError(fmt::format(
                 "study {}: --steps must divide the end of {}, {} s, and be at most {:.4g} s, got {}", kind,
                 c.problem.name, c.end, most, h));
 }
@@ -93,8 +94,8 @@ void check_steps(const std::string& kind, const Benchmark& c, const std::vector<
     check_stable(kind, c, steps);
     for (const double h : steps)
         if (!divides(h, c.end))
-            throw UsageError(fmt::format("study {}: --steps must divide the end of {}, {} s, got {}", kind,
-                                         c.problem.name, c.end, h));
+            throw io::UsageError(fmt::format("study {}: --steps must divide the end of {}, {} s, got {}",
+                                             kind, c.problem.name, c.end, h));
 }
 
 }  // namespace hilda::studies

@@ -34,7 +34,7 @@ using DefaultEnd = std::function<double(const dae::Description&)>;
 double end_of_model(const dae::Description& d);
 
 /// Benchmarks of the problems of --problem, or of the problems `defaults` without --problem. They are read in
-/// sequence, so that the first error is reproducible. Warnings name redundant constraint rows. UsageError for
+/// sequence, so that the first error is reproducible. Warnings name redundant constraint rows. io::UsageError for
 /// two problems with the same name, lie::InvalidInput for an invalid model.
 std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
                                   const std::vector<std::string>& defaults,
@@ -43,7 +43,7 @@ std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& o
 /// Benchmark of one problem
 Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end = end_of_model);
 
-/// UsageError for a step that does not divide the end time, is larger than `most` [s], or exceeds the
+/// io::UsageError for a step that does not divide the end time, is larger than `most` [s], or exceeds the
 /// stability limit of a force.
 void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps, double most);
 void check_steps(const std::string& kind, const Benchmark& c, const std::vector<double>& steps);

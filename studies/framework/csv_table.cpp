@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/csv_table.hpp"
 
+#include "io/files.hpp"
 #include "lie/check.hpp"
-#include "studies/output.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -35,8 +35,8 @@ std::vector<std::string> fields(const std::string& line)
 std::string contents(const std::string& file)
 {
     try {
-        return read_file(file, most);
-    } catch (const IoError& error) {
+        return io::read_file(file, most);
+    } catch (const io::IoError& error) {
         throw lie::InvalidInput(error.what());
     }
 }

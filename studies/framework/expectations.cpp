@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/expectations.hpp"
 
-#include "studies/exit_codes.hpp"
-#include "studies/message.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
 #include "studies/program/arguments.hpp"
 
 #include <fmt/format.h>
@@ -18,8 +18,8 @@ void check_keys(const std::string& kind, const StudyOptions& options, std::span<
         if (std::find(known.begin(), known.end(), e.key) != known.end()) continue;
         std::string all;
         for (const std::string& key : known) all += (all.empty() ? "" : ", ") + key;
-        throw UsageError("study " + kind + ": --expect: unknown key" + with_nearest(e.key, known) +
-                         "; known keys: " + all);
+        throw io::UsageError("study " + kind + ": --expect: unknown key" + with_nearest(e.key, known) +
+                             "; known keys: " + all);
     }
 }
 
@@ -34,12 +34,13 @@ bool as_expected(const std::vector<Expectation>& expectations, const std::vector
             seen = true;
             if (std::abs(found->second - e.value) <= e.tolerance) continue;
             passed = false;
-            message(
+            io::message(
                 fmt::format("hilda: error: expected {}, got {:.6g} for {}\n", e.text, found->second, m.of));
         }
         if (seen) continue;
         passed = false;
-        message(fmt::format("hilda: error: expected {}, but no run has a value of '{}'\n", e.text, e.key));
+        io::message(
+            fmt::format("hilda: error: expected {}, but no run has a value of '{}'\n", e.text, e.key));
     }
     return passed;
 }

@@ -16,7 +16,7 @@ struct Measured {
     std::map<std::string, double> value;
 };
 
-/// UsageError for a key that is not in `known`.
+/// io::UsageError for a key that is not in `known`.
 void check_keys(const std::string& kind, const StudyOptions& options, std::span<const std::string> known);
 
 /// Compares all expectations with all measured values of their keys. Prints a line on stderr for each

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/problem.hpp"
 
-#include "dae/nearest.hpp"
+#include "io/nearest.hpp"
 #include "lie/check.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
@@ -48,7 +48,7 @@ Problem problem(const std::string& name)
 
     std::string all;
     for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
-    const std::string meant = dae::nearest(name, names);
+    const std::string meant = io::nearest(name, names);
     throw lie::InvalidInput("no built-in model is called '" + name + "'" +
                             (meant.empty() ? "." : "; did you mean '" + meant + "'?") + " Built-in models: " +
                             all + ", and n_pendulum_N for N from 1 to " + std::to_string(most_bars));

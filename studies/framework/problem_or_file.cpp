@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dae/model_file.hpp"
+#include "io/files.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
-#include "studies/output.hpp"
 #include "studies/program/named_model.hpp"
 
 #include <filesystem>
@@ -17,7 +17,7 @@ Problem problem_or_file(const std::string& name_or_path)
         throw lie::InvalidInput(name_or_path + ": there is no such file");
     return {.name = std::filesystem::path(name_or_path).stem().string(),
             .what = "model file " + name_or_path,
-            .model = read_file(name_or_path, most),
+            .model = io::read_file(name_or_path, most),
             .reference_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& t) {

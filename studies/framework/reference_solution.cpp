@@ -3,8 +3,8 @@
 
 #include "contact/evolving/unilateral.hpp"
 #include "dae/model_file.hpp"
+#include "io/error.hpp"
 #include "lie/settings.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/running/diagnosis.hpp"
 
@@ -28,41 +28,41 @@ Reference::Reference(const std::string& kind, const StudyOptions& options, const
     const std::string study = "study " + kind + ": ";
     if (options.reference.empty()) {
         if (options.reference_step || options.reference_rtol)
-            throw UsageError(study + "--reference-step and --reference-rtol need --reference NAME");
+            throw io::UsageError(study + "--reference-step and --reference-rtol need --reference NAME");
         return;
     }
     scheme = &lie::scheme(options.reference);
     if (scheme->adaptive) {
         if (options.reference_step)
-            throw UsageError(study + "the reference " + scheme->name +
-                             " chooses its own steps: use --reference-rtol instead of --reference-step");
+            throw io::UsageError(study + "the reference " + scheme->name +
+                                 " chooses its own steps: use --reference-rtol instead of --reference-step");
         rtol = options.reference_rtol.value_or(own_rtol);
         if (!options.force && evaluated.smallest_rtol > 0 && rtol * finer > evaluated.smallest_rtol * slack)
-            throw UsageError(fmt::format(
+            throw io::UsageError(fmt::format(
                 "{}the reference {} at rtol {} is too coarse for runs with rtol {}: its rtol must be {} "
                 "times smaller; --force accepts it",
                 study, scheme->name, step_text(rtol), step_text(evaluated.smallest_rtol), finer));
         if (!options.force && evaluated.smallest_step > 0 && rtol > coarsest_rtol * slack)
-            throw UsageError(fmt::format(
+            throw io::UsageError(fmt::format(
                 "{}the reference {} at rtol {} is coarser than {}, the limit for runs with a fixed "
                 "step: reduce --reference-rtol; --force accepts it",
                 study, scheme->name, step_text(rtol), step_text(coarsest_rtol)));
         return;
     }
     if (options.reference_rtol)
-        throw UsageError(study + "the reference " + scheme->name +
-                         " has a fixed step: use --reference-step instead of --reference-rtol");
+        throw io::UsageError(study + "the reference " + scheme->name +
+                             " has a fixed step: use --reference-step instead of --reference-rtol");
     if (!options.reference_step && !(evaluated.smallest_step > 0))
-        throw UsageError(study + "the reference " + scheme->name +
-                         " needs --reference-step, because no run of the study has a fixed step");
+        throw io::UsageError(study + "the reference " + scheme->name +
+                             " needs --reference-step, because no run of the study has a fixed step");
     if (!options.force && scheme->order < evaluated.highest_order)
-        throw UsageError(
+        throw io::UsageError(
             fmt::format("{}the reference {} has order {}, lower than order {} of a run: choose another "
                         "integrator; --force accepts it",
                         study, scheme->name, scheme->order, evaluated.highest_order));
     h = options.reference_step.value_or(evaluated.smallest_step / 10);
     if (!options.force && evaluated.smallest_step > 0 && !(h * slack < evaluated.smallest_step))
-        throw UsageError(
+        throw io::UsageError(
             fmt::format("{}the reference {} at h = {} s is coarser than a run at h = {} s: its step must be "
                         "smaller; --force accepts it",
                         study, scheme->name, step_text(h), step_text(evaluated.smallest_step)));
@@ -92,12 +92,12 @@ void Reference::evaluate(Benchmark& c) const
 }
 
 /// Step of the reference integrator [s], which divides the interval of the instants. The default is reduced
-/// to such a step; UsageError if --reference-step is not one.
+/// to such a step; io::UsageError if --reference-step is not one.
 double Reference::step(const Benchmark& c) const
 {
     const double wanted = h > 0 ? h : c.instants.dt, nodes = c.instants.dt / wanted;
     if (options.reference_step && std::abs(nodes - std::round(nodes)) > 1e-6)
-        throw UsageError(
+        throw io::UsageError(
             fmt::format("--reference-step must divide the interval {:.6g} s of the instants of {}, got {}",
                         c.instants.dt, c.problem.name, wanted));
     return c.instants.dt / std::max(1., std::ceil(nodes - 1e-6));

@@ -18,7 +18,7 @@ struct Evaluated {
 /// Computes the reference solutions of benchmarks.
 class Reference {
 public:
-    /// UsageError, unless --force is given, for a reference integrator that is not more accurate than the
+    /// io::UsageError, unless --force is given, for a reference integrator that is not more accurate than the
     /// runs: its step must be smaller and its order not lower than theirs; its rtol must be ten times smaller
     /// than theirs, and at most 1e-8 for runs with a fixed step.
     Reference(const std::string& kind, const StudyOptions& options, const Evaluated& evaluated);

@@ -88,9 +88,9 @@ std::string failures(const std::vector<const Run*>& run_pointers)
     return lines.empty() ? lines : "\nfailed:\n" + lines;
 }
 
-Json as_json(const Run& m)
+io::Json as_json(const Run& m)
 {
-    Json out = {{"problem", m.c->problem.name}, {"integrator", m.scheme->name}};
+    io::Json out = {{"problem", m.c->problem.name}, {"integrator", m.scheme->name}};
     if (m.rtol > 0)
         out["rtol"] = m.rtol;
     else

@@ -3,11 +3,11 @@
 
 #pragma once
 
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/statistics.hpp"
 #include "studies/framework/benchmark.hpp"
-#include "studies/json.hpp"
 
 #include <span>
 
@@ -60,6 +60,6 @@ std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
 std::string failures(const std::vector<const Run*>& run_pointers);
 
 /// problem, integrator, h or rtol, status and message of a run, for study.json
-Json as_json(const Run& run);
+io::Json as_json(const Run& run);
 
 }  // namespace hilda::studies

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/selection.hpp"
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 
 #include <algorithm>
 
@@ -28,7 +28,7 @@ Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
         if (!s->adaptive)
             fixed.push_back(s);
         else if (!options.integrators.empty())
-            throw UsageError(
+            throw io::UsageError(
                 "study " + kind + ": " + s->name +
                 " chooses its own steps by --rtol and --atol; hilda study work-precision compares "
                 "it with the others");
@@ -46,8 +46,8 @@ std::vector<double> steps_or(const StudyOptions& options, const std::vector<doub
 double one_step(const std::string& kind, const StudyOptions& options, double defaults)
 {
     if (options.steps.size() > 1)
-        throw UsageError("study " + kind + ": --steps takes one step, got " +
-                         std::to_string(options.steps.size()));
+        throw io::UsageError("study " + kind + ": --steps takes one step, got " +
+                             std::to_string(options.steps.size()));
     return options.steps.empty() ? defaults : options.steps.front();
 }
 
@@ -55,8 +55,8 @@ void refuse_schemes(const std::string& kind, const StudyOptions& options)
 {
     const auto reject_if = [&](bool given, const std::string& option) {
         if (given)
-            throw UsageError("study " + kind + ": " + option +
-                             " is for studies of models; this study defines its own bodies");
+            throw io::UsageError("study " + kind + ": " + option +
+                                 " is for studies of models; this study defines its own bodies");
     };
     reject_if(!options.integrators.empty(), "--integrator");
     reject_if(!options.set.empty(), "--set");
@@ -65,14 +65,14 @@ void refuse_schemes(const std::string& kind, const StudyOptions& options)
 void check_vtk(const std::string& kind, const StudyOptions& options)
 {
     if (options.vtk > 0 && options.output.empty())
-        throw UsageError("study " + kind + ": --vtk writes files: with --json it needs --output");
+        throw io::UsageError("study " + kind + ": --vtk writes files: with --json it needs --output");
 }
 
 void refuse_models(const std::string& kind, const StudyOptions& options)
 {
     if (!options.problems.empty())
-        throw UsageError("study " + kind +
-                         ": --problem is for studies of models; this study defines its own bodies");
+        throw io::UsageError("study " + kind +
+                             ": --problem is for studies of models; this study defines its own bodies");
     refuse_schemes(kind, options);
 }
 

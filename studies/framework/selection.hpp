@@ -14,22 +14,22 @@ using Schemes = std::vector<const lie::Scheme*>;
 /// if `defaults` is empty
 Schemes any_schemes(const StudyOptions& options, const std::vector<std::string>& defaults = {});
 
-/// The same, restricted to schemes with a fixed step. UsageError if --integrator names an adaptive scheme.
+/// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive scheme.
 Schemes fixed_step_schemes(const std::string& kind, const StudyOptions& options,
                            const std::vector<std::string>& defaults = {});
 
 /// The steps of --steps, or `defaults`, in descending order [s]
 std::vector<double> steps_or(const StudyOptions& options, const std::vector<double>& defaults);
 
-/// The step of --steps, or the default [s]. UsageError for more than one step.
+/// The step of --steps, or the default [s]. io::UsageError for more than one step.
 double one_step(const std::string& kind, const StudyOptions& options, double defaults);
 
-/// UsageError if --vtk is given and no output directory
+/// io::UsageError if --vtk is given and no output directory
 void check_vtk(const std::string& kind, const StudyOptions& options);
 
-/// UsageError if --problem, --integrator or --set is given, for studies that define their own bodies
+/// io::UsageError if --problem, --integrator or --set is given, for studies that define their own bodies
 void refuse_models(const std::string& kind, const StudyOptions& options);
-/// UsageError if --integrator or --set is given, for studies in which --problem selects a case of the study
+/// io::UsageError if --integrator or --set is given, for studies in which --problem selects a case of the study
 void refuse_schemes(const std::string& kind, const StudyOptions& options);
 
 }  // namespace hilda::studies

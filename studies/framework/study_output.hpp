@@ -3,10 +3,10 @@
 
 #pragma once
 
+#include "io/json.hpp"
 #include "studies/framework/expectations.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/json.hpp"
 
 #include <sstream>
 #include <utility>
@@ -15,9 +15,9 @@ namespace hilda::studies {
 
 struct StudyOutput {
     std::string kind = {};
-    std::ostringstream text = {};  ///< text for stdout
-    std::string table = {};        ///< contents of study.csv
-    Json json = Json::object();    ///< contents of study.json after the common keys
+    std::ostringstream text = {};        ///< text for stdout
+    std::string table = {};              ///< contents of study.csv
+    io::Json json = io::Json::object();  ///< contents of study.json after the common keys
     std::vector<std::pair<std::string, std::string>> files = {};  ///< further files: name and contents
     std::vector<std::string> figures = {};                        ///< files that plots/KIND.py draws
 };

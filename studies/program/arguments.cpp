@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/arguments.hpp"
 
-#include "dae/nearest.hpp"
+#include "io/error.hpp"
+#include "io/nearest.hpp"
 #include "lie/schemes.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/problems/n_pendulum.hpp"
 #include "studies/running/vtk.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& text)
 {
-    throw UsageError(option + ": " + what + ", got '" + text + "'");
+    throw io::UsageError(option + ": " + what + ", got '" + text + "'");
 }
 
 /// The finite number that the whole text represents; NaN if it represents none
@@ -201,7 +201,7 @@ Expectation expectation(const std::string& option, const std::string& text)
 
 std::string with_nearest(const std::string& word, std::span<const std::string> known)
 {
-    const std::string near = dae::nearest(word, known);
+    const std::string near = io::nearest(word, known);
     return " '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
@@ -212,8 +212,8 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
     std::vector<std::string> selected = list(option, text);
     for (size_t k = 0; k < selected.size(); ++k) {
         if (std::find(known.begin(), known.end(), selected[k]) == known.end())
-            throw UsageError(option + ": unknown integrator" + with_nearest(selected[k], known) +
-                             " (hilda integrators lists them)");
+            throw io::UsageError(option + ": unknown integrator" + with_nearest(selected[k], known) +
+                                 " (hilda integrators lists them)");
         if (std::find(selected.begin(), selected.begin() + static_cast<std::ptrdiff_t>(k), selected[k]) !=
             selected.begin() + static_cast<std::ptrdiff_t>(k))
             refuse(option, "must contain each integrator once", text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Conversion of option values of the command line to numbers, lists and names. Each function takes the name
-/// of the option and its text. An invalid text is a UsageError that states the option, the valid range and
+/// of the option and its text. An invalid text is a io::UsageError that states the option, the valid range and
 /// the text.
 
 #pragma once
@@ -61,7 +61,7 @@ Expectation expectation(const std::string& option, const std::string& text);
 /// known word is near.
 std::string with_nearest(const std::string& word, std::span<const std::string> known);
 
-/// The integrators of a list NAME,NAME,...; UsageError for an unknown name or for a name given twice.
+/// The integrators of a list NAME,NAME,...; io::UsageError for an unknown name or for a name given twice.
 std::vector<std::string> integrators(const std::string& option, const std::string& text);
 /// One integrator
 std::string integrator(const std::string& option, const std::string& text);

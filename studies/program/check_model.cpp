@@ -4,9 +4,10 @@
 #include "contact/compliant/contact_force.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "io/files.hpp"
+#include "io/json.hpp"
+#include "io/message.hpp"
 #include "lie/solver/saddle.hpp"
-#include "studies/message.hpp"
-#include "studies/output.hpp"
 #include "studies/program/named_model.hpp"
 #include "studies/running/contact_rows.hpp"
 
@@ -91,14 +92,17 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
 }
 
 /// null if there is no limit (infinite) or no value (NaN)
-Json finite_or_null(double stable_step) { return std::isfinite(stable_step) ? Json(stable_step) : nullptr; }
+io::Json finite_or_null(double stable_step)
+{
+    return std::isfinite(stable_step) ? io::Json(stable_step) : nullptr;
+}
 
 std::string stability_text(double step)
 {
     return std::isfinite(step) ? fmt::format("stable up to {:.3g} s", step) : "stable with any step";
 }
 
-Json as_json(const CompliantContactInfo& c)
+io::Json as_json(const CompliantContactInfo& c)
 {
     return {{"name", c.name},
             {"gap", c.gap},
@@ -171,9 +175,9 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
     return all;
 }
 
-Json as_json(const lie::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+io::Json as_json(const lie::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json as_json(const ContactConstraintInfo& c)
+io::Json as_json(const ContactConstraintInfo& c)
 {
     return {{"name", c.name},
             {"rows", c.rows},
@@ -224,7 +228,7 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
     return all;
 }
 
-Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
+io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
 }  // namespace
 
@@ -252,14 +256,14 @@ int check_model(const CheckOptions& options)
     const Change change_of_start = change(model, given, d.x);
 
     if (options.json) {
-        Json out = {
+        io::Json out = {
             {"status", "ok"},
             {"model", d.name},
             {"bodies", model.bodies()},
             {"constraints", model.constraints()},
             {"forces", other_forces},
-            {"contacts", Json::array()},
-            {"evolving_contacts", Json::array()},
+            {"contacts", io::Json::array()},
+            {"evolving_contacts", io::Json::array()},
             {"rows", start.rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
@@ -282,11 +286,11 @@ int check_model(const CheckOptions& options)
                                   {"rdot", as_json(change_of_start.rdot)},
                                   {"omega_bar", as_json(change_of_start.omega_bar)}};
         std::cout << out.text();
-        return exit_code::done;
+        return io::exit_code::done;
     }
 
-    for (const std::string& w : d.warnings) warning(w);
-    if (options.quiet) return exit_code::done;
+    for (const std::string& w : d.warnings) io::warning(w);
+    if (options.quiet) return io::exit_code::done;
     const auto line = [](const char* what, const std::string& text) {
         std::cout << fmt::format("{:<20}{}\n", what, text);
     };
@@ -332,7 +336,7 @@ int check_model(const CheckOptions& options)
         line("  r_dot", at(change_of_start.rdot, "m/s"));
         line("  omega", at(change_of_start.omega_bar, "rad/s"));
     }
-    return exit_code::done;
+    return io::exit_code::done;
 }
 
 }  // namespace hilda::studies

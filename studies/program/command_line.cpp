@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/command_line.hpp"
 
-#include "studies/exit_codes.hpp"
-#include "studies/message.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/check_model.hpp"
 #include "studies/program/granular_program.hpp"
@@ -12,7 +12,8 @@
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
 
-#include "dae/nearest.hpp"
+#include "io/nearest.hpp"
+#include "io/provenance.hpp"
 #include "lie/settings.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,27 +26,6 @@
 namespace hilda::studies {
 
 namespace {
-
-/// The command line, quoted for a shell
-std::string shell_quoted(int argc, char** argv)
-{
-    std::string line;
-    for (int k = 0; k < argc; ++k) {
-        const std::string word = argv[k];
-        const bool plain = !word.empty() && word.find_first_not_of(
-                                                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                "0123456789_-+=/.,:@%") == std::string::npos;
-        line += k > 0 ? " " : "";
-        if (plain) {
-            line += word;
-            continue;
-        }
-        line += '\'';
-        for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        line += '\'';
-    }
-    return line;
-}
 
 /// The commands of the program, with their options and actions
 class Commands {
@@ -78,19 +58,20 @@ public:
             app.parse(argc, argv);
         } catch (const CLI::CallForHelp&) {
             std::cout << app.help();
-            return exit_code::done;
+            return io::exit_code::done;
         } catch (const CLI::CallForVersion&) {
             std::cout << version_line() << '\n';
-            return exit_code::done;
+            return io::exit_code::done;
         } catch (const CLI::ExtrasError&) {
             refuse_extras();
         } catch (const CLI::ParseError& error) {
             const std::vector<CLI::App*> selected = app.get_subcommands();
-            throw UsageError((selected.empty() ? "" : selected.front()->get_name() + ": ") + error.what());
+            throw io::UsageError((selected.empty() ? "" : selected.front()->get_name() + ": ") +
+                                 error.what());
         }
         for (const auto& [command, action] : actions)
             if (command->parsed()) return action();
-        throw UsageError("no command given; hilda help lists them");
+        throw io::UsageError("no command given; hilda help lists them");
     }
 
 private:
@@ -149,7 +130,7 @@ private:
     }
     static std::string path(const std::string& option, const std::string& text)
     {
-        if (text.empty()) throw UsageError(option + ": must not be empty");
+        if (text.empty()) throw io::UsageError(option + ": must not be empty");
         return text;
     }
 
@@ -179,11 +160,12 @@ private:
     {
         RunOptions& o = run;
         CLI::App* c = add("run", "simulate a model", [this] {
-            if (run.force && run.resume) throw UsageError("run: --force and --resume exclude each other");
+            if (run.force && run.resume) throw io::UsageError("run: --force and --resume exclude each other");
             if (every && run.interval)
-                throw UsageError("run: --every is the old name of --interval; give only one of them");
+                throw io::UsageError("run: --every is the old name of --interval; give only one of them");
             if (every) run.interval = every;
-            if (every && !run.quiet) warning("--every was renamed to --interval; the old name is still read");
+            if (every && !run.quiet)
+                io::warning("--every was renamed to --interval; the old name is still read");
             if (!selected_integrators.empty()) run.integrators = selected_integrators;
             run.command_line = command_line_text;
             return run_model(run);
@@ -359,7 +341,8 @@ private:
     void add_plot()
     {
         CLI::App* c = add("plot", "draw the figures of a run or study from its CSV files", [this] {
-            return plot(script_for(directory), directory) ? exit_code::done : exit_code::not_available;
+            return plot(script_for(directory), directory) ? io::exit_code::done
+                                                          : io::exit_code::not_available;
         });
         c->add_option("DIR", directory, "output directory of a run or a study")->required()->type_name("");
     }
@@ -378,11 +361,11 @@ private:
             for (const auto& known : actions)
                 if (known.first->get_name() == name) command = known.first;
             if (!name.empty() && command == nullptr)
-                throw UsageError("help: unknown command" + with_nearest(name, names()));
+                throw io::UsageError("help: unknown command" + with_nearest(name, names()));
             // app.help() would print the help of the command "help", because that command has been parsed
             std::cout << (command != nullptr ? command->help("hilda")
                                              : Commands(command_line_text).app.help());
-            return exit_code::done;
+            return io::exit_code::done;
         });
         c->add_option("COMMAND", name, "name of a command")->type_name("");
     }
@@ -394,14 +377,14 @@ private:
         return all;
     }
 
-    /// UsageError with the nearest known command. CLI11 would only report an unexpected argument.
+    /// io::UsageError with the nearest known command. CLI11 would only report an unexpected argument.
     void refuse_unknown_command(int argc, char** argv) const
     {
-        if (argc < 2) throw UsageError("no command given; hilda help lists them");
+        if (argc < 2) throw io::UsageError("no command given; hilda help lists them");
         const std::string word = argv[1];
         const std::vector<std::string> known = names();
         if (!word.starts_with('-') && std::find(known.begin(), known.end(), word) == known.end())
-            throw UsageError("unknown command" + with_nearest(word, known) + " (hilda help lists them)");
+            throw io::UsageError("unknown command" + with_nearest(word, known) + " (hilda help lists them)");
     }
 
     [[noreturn]] void refuse_extras() const
@@ -415,8 +398,9 @@ private:
         for (const CLI::Option* o : command->get_options())
             for (const std::string& long_name : o->get_lnames()) known.push_back("--" + long_name);
         const std::string where = selected.empty() ? "" : command->get_name() + ": ";
-        if (word.starts_with('-')) throw UsageError(where + "unknown option" + with_nearest(option, known));
-        throw UsageError(where + "one argument too many: '" + word + "'");
+        if (word.starts_with('-'))
+            throw io::UsageError(where + "unknown option" + with_nearest(option, known));
+        throw io::UsageError(where + "one argument too many: '" + word + "'");
     }
 
     const std::string command_line_text;
@@ -437,7 +421,7 @@ private:
 
 int command_line(int argc, char** argv)
 {
-    return Commands(shell_quoted(argc, argv)).parse_and_run(argc, argv);
+    return Commands(io::shell_quoted(argc, argv)).parse_and_run(argc, argv);
 }
 
 }  // namespace hilda::studies

@@ -5,7 +5,7 @@
 
 namespace hilda::studies {
 
-/// Executes the command of the command line and returns the exit code. UsageError for an invalid command
+/// Executes the command of the command line and returns the exit code. io::UsageError for an invalid command
 /// line.
 int command_line(int argc, char** argv);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/granular_program.hpp"
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -20,7 +20,7 @@ int start_granular(const std::vector<std::string>& arguments)
     for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
     words.push_back(nullptr);
     if (!error) execv(program.c_str(), words.data());
-    throw NotAvailable("granular: " + program + " cannot be started: " + std::strerror(errno));
+    throw io::NotAvailable("granular: " + program + " cannot be started: " + std::strerror(errno));
 }
 
 }  // namespace hilda::studies

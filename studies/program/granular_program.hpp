@@ -11,7 +11,7 @@
 namespace hilda::studies {
 
 /// Replaces this process by hilda-granular, which must be in the same directory. Returns only by the
-/// exception NotAvailable, if the program cannot be started.
+/// exception io::NotAvailable, if the program cannot be started.
 int start_granular(const std::vector<std::string>& arguments);
 
 }  // namespace hilda::studies

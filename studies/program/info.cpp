@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/info.hpp"
 
+#include "io/files.hpp"
+#include "io/json.hpp"
+#include "io/provenance.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/output.hpp"
 #include "studies/program/plot.hpp"
+#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 #include <hilda/version.hpp>
@@ -35,14 +38,14 @@ std::string version_line() { return fmt::format("hilda {} ({})", version::number
 int info(bool json, const std::string& command_line)
 {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    Json all = provenance(command_line, cores);
+    io::Json all = provenance(command_line, cores);
     all["system"] = system_name();
     all["devices"] = devices;
     const std::string figures = python_and_matplotlib();
     all["figures"] = figures;
     if (json) {
         std::cout << all.text();
-        return exit_code::done;
+        return io::exit_code::done;
     }
     const auto line = [](const char* what, const std::string& text) {
         std::cout << fmt::format("{:<14}{}\n", what, text);
@@ -54,12 +57,12 @@ int info(bool json, const std::string& command_line)
         versions += (versions.empty() ? "" : ", ") + name + ' ' + number;
     line("libraries", versions);
     line("system", system_name());
-    line("processor", fmt::format("{}, {} threads", processor(), cores));
+    line("processor", fmt::format("{}, {} threads", io::processor(), cores));
     line("devices", devices);
     line("figures", figures);
     line("registered", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),
                                    problems().size(), studies().size()));
-    return exit_code::done;
+    return io::exit_code::done;
 }
 
 }  // namespace hilda::studies

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/lists.hpp"
 
+#include "io/files.hpp"
+#include "io/json.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/output.hpp"
 
 #include <fmt/format.h>
 
@@ -36,9 +37,9 @@ void print_aligned(const std::vector<Line>& lines)
 void show(bool json, const Line& keys, const std::vector<Line>& lines)
 {
     if (!json) return print_aligned(lines);
-    Json all = Json::array();
+    io::Json all = io::Json::array();
     for (const Line& line : lines) {
-        Json one;
+        io::Json one;
         for (size_t c = 0; c < keys.size(); ++c) one[keys[c]] = line[c];
         all.push_back(one);
     }
@@ -52,7 +53,7 @@ int list_models(bool json)
     std::vector<Line> lines;
     for (const Problem& p : problems()) lines.push_back({p.name, p.what});
     show(json, {"name", "what"}, lines);
-    return exit_code::done;
+    return io::exit_code::done;
 }
 
 int write_model(const std::string& name, const std::string& file)
@@ -62,8 +63,8 @@ int write_model(const std::string& name, const std::string& file)
     if (file.empty())
         std::cout << text;
     else
-        write_file(file, text);
-    return exit_code::done;
+        io::write_file(file, text);
+    return io::exit_code::done;
 }
 
 namespace {
@@ -79,12 +80,12 @@ std::string contacts_of(const lie::Scheme& s)
 int list_integrators(bool json)
 {
     if (json) {
-        Json all = Json::array();
+        io::Json all = io::Json::array();
         for (const lie::Scheme& s : lie::schemes())
             all.push_back({{"name", s.name},
                            {"description", s.description},
-                           {"order", s.adaptive ? Json() : Json(s.order)},
-                           {"order_lambda", s.adaptive ? Json() : Json(s.order_lambda)},
+                           {"order", s.adaptive ? io::Json() : io::Json(s.order)},
+                           {"order_lambda", s.adaptive ? io::Json() : io::Json(s.order_lambda)},
                            {"adaptive", s.adaptive},
                            {"evolving_contacts", s.algebraic},
                            {"rolling_contacts", s.algebraic && s.nonholonomic},
@@ -92,7 +93,7 @@ int list_integrators(bool json)
                            {"unknowns", s.unknowns},
                            {"source", s.source}});
         std::cout << all.text();
-        return exit_code::done;
+        return io::exit_code::done;
     }
     std::vector<Line> lines = {
         {"name", "order", "of lambda", "contacts", "formulation", "description", "unknowns", "source"}};
@@ -105,7 +106,7 @@ int list_integrators(bool json)
         << "\ncontacts: supported contact constraints. constraint: without friction, or with friction as a "
            "force; rolling: also rolling without slip.\nFor contact constraints rA-half-1-momentum is "
            "recommended; rA-half-1 is the scheme of the dissertation.\n";
-    return exit_code::done;
+    return io::exit_code::done;
 }
 
 int list_studies(bool json)
@@ -113,7 +114,7 @@ int list_studies(bool json)
     std::vector<Line> lines;
     for (const Study& s : studies()) lines.push_back({s.kind, s.answers});
     show(json, {"kind", "answers"}, lines);
-    return exit_code::done;
+    return io::exit_code::done;
 }
 
 }  // namespace hilda::studies

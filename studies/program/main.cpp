@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The program hilda.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
 #include "studies/program/command_line.hpp"
 
 #include <csignal>
@@ -28,10 +29,10 @@ int main(int argc, char** argv)
         if (!keeps_denormals())
             throw std::runtime_error("a library of this process flushes denormal numbers to zero");
         const int code = command_line(argc, argv);
-        if (!std::cout.flush()) throw IoError("standard output: cannot be written");
+        if (!std::cout.flush()) throw hilda::io::IoError("standard output: cannot be written");
         return code;
     } catch (const std::exception& error) {
         std::cout.flush();
-        return report(error);
+        return hilda::io::report(error);
     }
 }

@@ -3,7 +3,7 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 #include "studies/framework/problem.hpp"
 
 #include <nlohmann/json.hpp>
@@ -51,8 +51,8 @@ std::vector<std::string> normal_rows(const std::string& name_or_path, const std:
         if ((*contacts)[k]["normal"]["type"] == "constraint")
             with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
     if (with.size() == set.size())
-        throw UsageError("--normal-rows applies to contacts whose normal is a constraint; model " + d.name +
-                         " has none");
+        throw io::UsageError("--normal-rows applies to contacts whose normal is a constraint; model " +
+                             d.name + " has none");
     return with;
 }
 

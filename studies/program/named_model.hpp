@@ -24,7 +24,7 @@ bool is_model_path(const std::string& name_or_path);
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set);
 
 /// The changes `set`, followed by /contacts/K/normal/rows=ROWS for each contact constraint K of the model,
-/// where `rows` is tangent or fixed-xy. Returns `set` if `rows` is "". UsageError if the model has no contact
+/// where `rows` is tangent or fixed-xy. Returns `set` if `rows` is "". io::UsageError if the model has no contact
 /// constraint.
 std::vector<std::string> normal_rows(const std::string& name_or_path, const std::vector<std::string>& set,
                                      const std::string& rows);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/plot.hpp"
 
+#include "io/files.hpp"
+#include "io/message.hpp"
 #include "lie/check.hpp"
-#include "studies/message.hpp"
-#include "studies/output.hpp"
 
 #include <hilda/version.hpp>
 #include <nlohmann/json.hpp>
@@ -108,7 +108,7 @@ bool plot(const std::string& script, const std::string& directory)
     const std::string path = find_script(script);
     const std::string why = path.empty() ? "the script " + script + " was not found"
                                          : failure_reason(run({python(), path, directory}));
-    if (!why.empty()) warning("no figures: " + why);
+    if (!why.empty()) io::warning("no figures: " + why);
     return why.empty();
 }
 
@@ -117,7 +117,7 @@ std::string script_for(const std::string& directory)
     std::error_code error;
     if (fs::is_regular_file(fs::path(directory) / "study.csv", error)) {
         const std::string record = directory + "/study.json";
-        const auto study = nlohmann::json::parse(read_file(record, 64 << 20), nullptr, false);
+        const auto study = nlohmann::json::parse(io::read_file(record, 64 << 20), nullptr, false);
         const auto kind = study.is_object() ? study.find("study") : study.end();
         if (kind == study.end() || !kind->is_string() ||
             kind->get<std::string>().find('/') != std::string::npos)

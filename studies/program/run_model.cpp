@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/run_model.hpp"
 
+#include "io/files.hpp"
+#include "io/interrupt.hpp"
+#include "io/json.hpp"
+#include "io/message.hpp"
 #include "lie/schemes.hpp"
-#include "studies/interrupt.hpp"
-#include "studies/message.hpp"
-#include "studies/output.hpp"
 #include "studies/program/named_model.hpp"
 #include "studies/running/single_run.hpp"
 
@@ -22,9 +23,9 @@ std::vector<std::string> directories(const RunOptions& options)
     std::vector<std::string> all;
     for (const std::string& name : options.integrators) {
         all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
-        if (!is_missing_or_empty(all.back()) && !options.force && !options.resume)
-            throw UsageError(all.back() +
-                             ": is not empty; --force overwrites it, --resume continues its run");
+        if (!io::is_missing_or_empty(all.back()) && !options.force && !options.resume)
+            throw io::UsageError(all.back() +
+                                 ": is not empty; --force overwrites it, --resume continues its run");
     }
     return all;
 }
@@ -34,7 +35,7 @@ void refuse_for_adaptive(const RunOptions& options)
 {
     for (const std::string& name : options.integrators) {
         if (!lie::scheme(name).adaptive) continue;
-        const auto refuse = [&](const std::string& why) { throw UsageError("run: " + name + " " + why); };
+        const auto refuse = [&](const std::string& why) { throw io::UsageError("run: " + name + " " + why); };
         if (options.step)
             refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
         if (options.resume || options.checkpoint > 0)
@@ -50,31 +51,31 @@ void refuse_for_adaptive(const RunOptions& options)
 int run_model(const RunOptions& options)
 {
     if (options.vtk && (options.resume || options.checkpoint > 0))
-        throw UsageError(
+        throw io::UsageError(
             "run: --vtk writes its frames at the end of the run; --checkpoint and --resume exclude it");
     refuse_for_adaptive(options);
     const std::vector<std::string> directory = directories(options);
-    const Interrupt interrupt;
-    int code = exit_code::done;
-    Json all = Json::array();
+    const io::Interrupt interrupt;
+    int code = io::exit_code::done;
+    io::Json all = io::Json::array();
     for (size_t k = 0; k < directory.size(); ++k) {
-        if (Interrupt::caught() != 0) {
-            code = exit_code::signal + Interrupt::caught();
+        if (io::Interrupt::caught() != 0) {
+            code = io::exit_code::signal + io::Interrupt::caught();
             break;
         }
         if (options.resume && directory.size() > 1 && SingleRun::has_ended(directory[k])) {
-            if (!options.quiet) warning(directory[k] + ": its run is complete; skipped");
+            if (!options.quiet) io::warning(directory[k] + ": its run is complete; skipped");
             continue;
         }
         const RunResult result =
             SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).execute();
-        if (code == exit_code::done) code = result.exit_code;
+        if (code == io::exit_code::done) code = result.exit_code;
         if (options.json) all.push_back(summary(result));
         if (options.json || options.quiet) continue;
         if (k > 0) std::cout << '\n';
         print(result, std::cout);
     }
-    if (options.json) std::cout << (directory.size() == 1 ? all.at(0) : Json{{"runs", all}}).text();
+    if (options.json) std::cout << (directory.size() == 1 ? all.at(0) : io::Json{{"runs", all}}).text();
     return code;
 }
 

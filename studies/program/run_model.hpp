@@ -34,7 +34,7 @@ struct RunOptions {
 
 /// Simulates the model with each integrator, writes the results and prints a summary. Returns the exit code
 /// of the first run that did not succeed. With more than one integrator the results are in subdirectories
-/// named by integrator. UsageError for options that do not apply, before the first run starts.
+/// named by integrator. io::UsageError for options that do not apply, before the first run starts.
 int run_model(const RunOptions& options);
 
 }  // namespace hilda::studies

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/run_study.hpp"
 
-#include "studies/output.hpp"
+#include "io/files.hpp"
 #include "studies/program/arguments.hpp"
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ const Study& find(const std::string& kind)
         if (study.kind == kind) return study;
         known.push_back(study.kind);
     }
-    throw UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
+    throw io::UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
 
 /// Rejects options that the study does not use; the message names the studies that use them.
@@ -31,8 +31,8 @@ void reject_unused_options(const Study& study, const StudyOptions& options)
         std::string those;
         for (const Study& other : studies())
             if ((other.accepted & option) != 0) those += (those.empty() ? "" : ", ") + other.kind;
-        throw UsageError("study " + study.kind + ": " + name + " is for " +
-                         (those.empty() ? "other studies" : those));
+        throw io::UsageError("study " + study.kind + ": " + name + " is for " +
+                             (those.empty() ? "other studies" : those));
     };
     reject_if(!options.reference.empty(), takes::reference, "--reference");
     reject_if(options.reference_step.has_value(), takes::reference, "--reference-step");
@@ -62,9 +62,9 @@ int run_study(const std::string& kind, StudyOptions options)
         options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json) options.output = "out/" + kind;
     if (!options.output.empty()) {
-        if (!is_missing_or_empty(options.output) && !options.force)
-            throw UsageError(options.output + ": is not empty; --force overwrites it");
-        make_directory(options.output);
+        if (!io::is_missing_or_empty(options.output) && !options.force)
+            throw io::UsageError(options.output + ": is not empty; --force overwrites it");
+        io::make_directory(options.output);
     }
     try {
         return study.run(options);

@@ -11,7 +11,7 @@ namespace hilda::studies {
 
 /// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
 /// it must be new or empty unless options.force is set. With options.json and without options.output no files
-/// are written. UsageError for an unknown study or for an option that the study does not use.
+/// are written. io::UsageError for an unknown study or for an option that the study does not use.
 int run_study(const std::string& kind, StudyOptions options);
 
 }  // namespace hilda::studies

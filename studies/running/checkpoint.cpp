@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/checkpoint.hpp"
 
-#include "studies/message.hpp"
-#include "studies/output.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ struct OutputArchive {
     }
 };
 
-/// Reads values from a byte string. IoError if the bytes end too early.
+/// Reads values from a byte string. io::IoError if the bytes end too early.
 struct InputArchive {
     const char* at;
     const char* end;
@@ -63,7 +63,7 @@ struct InputArchive {
     void raw(void* to, size_t count)
     {
         if (static_cast<size_t>(end - at) < count)
-            throw IoError(file + ": the checkpoint is damaged: unexpected end of data");
+            throw io::IoError(file + ": the checkpoint is damaged: unexpected end of data");
         if (count > 0) std::memcpy(to, at, count);
         at += count;
     }
@@ -72,7 +72,7 @@ struct InputArchive {
         std::uint64_t n = 0;
         raw(&n, sizeof n);
         if (n > static_cast<size_t>(end - at) / each)
-            throw IoError(file + ": the checkpoint is damaged: invalid length of a list");
+            throw io::IoError(file + ": the checkpoint is damaged: invalid length of a list");
         return n;
     }
 };
@@ -161,7 +161,7 @@ std::string to_bytes(const Checkpoint& checkpoint)
 Checkpoint from_bytes(const std::string& bytes, const std::string& file)
 {
     const auto damaged = [&](const std::string& how) {
-        return IoError(file + ": the checkpoint is damaged: " + how);
+        return io::IoError(file + ": the checkpoint is damaged: " + how);
     };
     if (bytes.size() < header_bytes + checksum_bytes || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
         throw damaged("the header is not that of a checkpoint");
@@ -175,8 +175,8 @@ Checkpoint from_bytes(const std::string& bytes, const std::string& file)
         throw damaged(fmt::format("its length must be {} bytes, got {}", length, bytes.size()));
     if (crc != crc32(bytes.data(), bytes.size() - checksum_bytes)) throw damaged("wrong checksum");
     if (version != format_version)
-        throw IoError(fmt::format("{}: the checkpoint has format {}; this program reads format {}", file,
-                                  version, format_version));
+        throw io::IoError(fmt::format("{}: the checkpoint has format {}; this program reads format {}", file,
+                                      version, format_version));
 
     a.end -= checksum_bytes;
     Checkpoint c;
@@ -208,9 +208,9 @@ bool exists(const std::string& file)
 void save(const Checkpoint& checkpoint, const std::string& directory)
 {
     const FileNames names(directory);
-    write_file(names.next, to_bytes(checkpoint));
-    if (exists(names.last)) rename_file(names.last, names.before);
-    rename_file(names.next, names.last);
+    io::write_file(names.next, to_bytes(checkpoint));
+    if (exists(names.last)) io::rename_file(names.last, names.before);
+    io::rename_file(names.next, names.last);
 }
 
 std::optional<Checkpoint> load(const std::string& directory)
@@ -218,12 +218,12 @@ std::optional<Checkpoint> load(const std::string& directory)
     const FileNames names(directory);
     if (!exists(names.last) && !exists(names.before)) return {};
     try {
-        return from_bytes(read_file(names.last, largest_file), names.last);
-    } catch (const IoError& error) {
+        return from_bytes(io::read_file(names.last, largest_file), names.last);
+    } catch (const io::IoError& error) {
         if (!exists(names.before)) throw;
-        warning(std::string(error.what()) + "; resuming from the previous checkpoint");
+        io::warning(std::string(error.what()) + "; resuming from the previous checkpoint");
     }
-    return from_bytes(read_file(names.before, largest_file), names.before);
+    return from_bytes(io::read_file(names.before, largest_file), names.before);
 }
 
 void remove_checkpoints(const std::string& directory)

@@ -33,15 +33,15 @@ struct Checkpoint {
 /// Serialises a checkpoint, little endian: magic, format version, total length [byte], content, CRC-32 of all
 /// preceding bytes.
 std::string to_bytes(const Checkpoint& checkpoint);
-/// Inverse of to_bytes(). `file` is for the message. IoError if length, checksum or format version is wrong.
+/// Inverse of to_bytes(). `file` is for the message. io::IoError if length, checksum or format version is wrong.
 Checkpoint from_bytes(const std::string& bytes, const std::string& file);
 
 /// Writes DIRECTORY/checkpoint; the previous checkpoint becomes checkpoint.1. At any time at least one of the
-/// two files is complete. IoError.
+/// two files is complete. io::IoError.
 void save(const Checkpoint& checkpoint, const std::string& directory);
 
 /// Reads the last checkpoint; if it is damaged, the previous one, with a warning on stderr. Empty if there is
-/// no checkpoint. IoError if none can be read.
+/// no checkpoint. io::IoError if none can be read.
 std::optional<Checkpoint> load(const std::string& directory);
 
 /// Removes all checkpoint files of a directory.

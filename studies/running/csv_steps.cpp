@@ -2,8 +2,8 @@
 #include "studies/running/csv_steps.hpp"
 
 #include "dae/model.hpp"
+#include "io/csv.hpp"
 #include "lie/integrator.hpp"
-#include "studies/csv.hpp"
 
 namespace hilda::studies {
 
@@ -24,7 +24,7 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
     if (n > 0) {
         std::string& row = file.buffer;
         const auto field = [&](auto value) {
-            append_number(row, value);
+            io::append_number(row, value);
             row += ',';
         };
         field(x.t);
@@ -34,7 +34,7 @@ void StepsCsv::accepted(const lie::State& x, long n, int iterations)
         field(model.largest_residual(x).value);
         field(lie::energy(model, x));
         field(last.factorizations);
-        append_number(row, last.wall_ns);
+        io::append_number(row, last.wall_ns);
         row += '\n';
         file.flush_when_full();
     }

@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "io/output_file.hpp"
 #include "lie/trajectory.hpp"
-#include "studies/output_file.hpp"
 
 #include <chrono>
 
@@ -22,7 +22,7 @@ class StepsCsv final : public lie::Observer {
 public:
     using Clock = std::chrono::steady_clock;
 
-    StepsCsv(const dae::Model& model, const lie::Integrator& integrator, double h, OutputFile& file)
+    StepsCsv(const dae::Model& model, const lie::Integrator& integrator, double h, io::OutputFile& file)
         : model(model), integrator(integrator), h(h), file(file)
     {}
 
@@ -43,7 +43,7 @@ private:
     const dae::Model& model;
     const lie::Integrator& integrator;
     const double h;
-    OutputFile& file;
+    io::OutputFile& file;
     long factorizations = 0;
     Clock::time_point since;
 };

@@ -2,7 +2,7 @@
 #include "studies/running/csv_trajectory.hpp"
 
 #include "dae/model.hpp"
-#include "studies/csv.hpp"
+#include "io/csv.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 namespace hilda::studies {
 
-TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, OutputFile& file,
+TrajectoryCsv::TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, io::OutputFile& file,
                              bool with_reactions)
     : model(model), grid(grid), file(file), with_reactions(with_reactions),
       contacts(evolving_contacts(model)), C(model.pattern())
@@ -24,7 +24,7 @@ void TrajectoryCsv::write_header()
 {
     std::string& row = file.buffer;
     const auto columns = [&](const std::string& name, std::initializer_list<const char*> of) {
-        for (const char* column : of) row += ',' + csv_field(name + '.' + column);
+        for (const char* column : of) row += ',' + io::csv_field(name + '.' + column);
     };
     row += "t";
     for (const dae::Body& body : model.all_bodies())
@@ -40,7 +40,7 @@ void TrajectoryCsv::write_header()
         for (const int k : model.active_rows()) {
             const dae::Model::Row& r = model.all_rows()[k];
             const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
-            row += ',' + csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
+            row += ',' + io::csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
         }
         for (size_t k = 0; k < contacts.size(); ++k) {
             const contact::EvolvingContact* c = contacts[k];
@@ -60,26 +60,26 @@ void TrajectoryCsv::accepted(const lie::State& x, long n, int)
     if (!grid.is_row(n)) return dae::check_dropped_rows(model, x);
     ++invariants.rows;
     std::string& row = file.buffer;
-    append_number(row, x.t);
+    io::append_number(row, x.t);
     for (const lie::Motion& body : x.body) {
-        append_vector(row, body.r);
-        for (int i = 0; i < 3; ++i) append_vector(row, body.A.row(i));
-        append_vector(row, body.rdot);
-        append_vector(row, body.omega_bar);
-        append_vector(row, body.rddot);
-        append_vector(row, body.omegadot_bar);
+        io::append_vector(row, body.r);
+        for (int i = 0; i < 3; ++i) io::append_vector(row, body.A.row(i));
+        io::append_vector(row, body.rdot);
+        io::append_vector(row, body.omega_bar);
+        io::append_vector(row, body.rddot);
+        io::append_vector(row, body.omegadot_bar);
     }
     row += ',';
-    append_number(row, energy);
+    io::append_number(row, energy);
     row += ',';
-    append_number(row, constraint_norm);
+    io::append_number(row, constraint_norm);
     if (with_reactions) {
         dae::reactions(model, x, C, reactions);
         for (const dae::Reaction& on : reactions) {
-            append_vector(row, on.F);
-            append_vector(row, on.T);
+            io::append_vector(row, on.F);
+            io::append_vector(row, on.T);
         }
-        append_vector(row, x.lambda.head(static_cast<Eigen::Index>(model.active_rows().size())));
+        io::append_vector(row, x.lambda.head(static_cast<Eigen::Index>(model.active_rows().size())));
         write_contacts(x);
     }
     row += '\n';
@@ -104,16 +104,16 @@ void TrajectoryCsv::write_contacts(const lie::State& x)
         const dae::Constraint::Arguments at = model.arguments(*c, x);
         const ContactLoads loads = contact_loads(model, *c, force_elements[k], x);
         row += ',';
-        append_number(row, loads.F_N);
-        append_vector(row, c->contact_point(at).C());
-        append_vector(row, lie::Vec3::Map(at.alpha));
-        append_vector(row, lie::Vec3::Map(at.alpha + 3));
+        io::append_number(row, loads.F_N);
+        io::append_vector(row, c->contact_point(at).C());
+        io::append_vector(row, lie::Vec3::Map(at.alpha));
+        io::append_vector(row, lie::Vec3::Map(at.alpha + 3));
         row += ',';
-        append_number(row, forces(model, *c, x).N.norm());
-        if (has_friction(k)) append_vector(row, loads.friction);
+        io::append_number(row, forces(model, *c, x).N.norm());
+        if (has_friction(k)) io::append_vector(row, loads.friction);
         if (!c->may_be_inactive()) continue;
         row += ',';
-        append_number(row, c->contact_point(at).gap);
+        io::append_number(row, c->contact_point(at).gap);
     }
 }
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "dae/start.hpp"
+#include "io/output_file.hpp"
 #include "lie/trajectory.hpp"
-#include "studies/output_file.hpp"
 #include "studies/running/contact_rows.hpp"
 
 #include <limits>
@@ -49,7 +49,8 @@ struct Invariants {
 /// redundant is violated.
 class TrajectoryCsv final : public lie::Observer {
 public:
-    TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, OutputFile& file, bool with_reactions);
+    TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, io::OutputFile& file,
+                  bool with_reactions);
 
     void write_header();
     void accepted(const lie::State& x, long n, int iterations) override;
@@ -63,7 +64,7 @@ private:
 
     const dae::Model& model;
     const lie::TimeGrid& grid;
-    OutputFile& file;
+    io::OutputFile& file;
     const bool with_reactions;
     std::vector<const contact::EvolvingContact*> contacts;
     std::vector<ContactForceElements> force_elements;  ///< of these contacts

@@ -9,10 +9,13 @@ namespace hilda::dae {
 class Model;
 }
 
-namespace hilda::lie {
+namespace hilda::io {
 class NumericalFailure;
+}
+
+namespace hilda::lie {
 struct State;
-}  // namespace hilda::lie
+}
 
 namespace hilda::studies {
 
@@ -26,7 +29,7 @@ struct Diagnosis {
 
 /// Diagnosis of the step of size h [s] that starts at `node`, the node with this number. Evaluates the model
 /// at the node and at the node shifted in time by h.
-Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
+Diagnosis diagnose(const io::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
                    long number, double h, const std::string& scheme);
 
 }  // namespace hilda::studies

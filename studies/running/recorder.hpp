@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/output_file.hpp"
 #include "lie/statistics.hpp"
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/csv_steps.hpp"
@@ -47,7 +48,7 @@ public:
     };
 
     /// Creates the files in the directory. With a checkpoint, truncates them to the lengths stated there and
-    /// restores the counters and the pivots of the integrator. IoError.
+    /// restores the counters and the pivots of the integrator. io::IoError.
     Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
              const std::string& directory, const Options& options, const std::optional<Checkpoint>& from);
     Recorder(const Recorder&) = delete;
@@ -62,13 +63,13 @@ public:
     /// Synchronises the files with the disk and returns a checkpoint of the current node. The caller sets the
     /// members `settings` and `wall_seconds`.
     Checkpoint checkpoint(const lie::March& march);
-    /// Writes all buffered rows. IoError.
+    /// Writes all buffered rows. io::IoError.
     void flush();
 
 private:
     lie::Integrator& integrator;
-    OutputFile trajectory_file;
-    std::optional<OutputFile> steps_file;
+    io::OutputFile trajectory_file;
+    std::optional<io::OutputFile> steps_file;
     TrajectoryCsv trajectory;
     std::optional<StepsCsv> steps;
     PivotNode pivots;

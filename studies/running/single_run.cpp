@@ -2,12 +2,12 @@
 #include "studies/running/single_run.hpp"
 
 #include "contact/evolving/unilateral.hpp"
+#include "io/files.hpp"
+#include "io/interrupt.hpp"
+#include "io/message.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
-#include "studies/interrupt.hpp"
-#include "studies/message.hpp"
-#include "studies/output.hpp"
 #include "studies/program/named_model.hpp"
 #include "studies/program/plot.hpp"
 #include "studies/running/contact_rows.hpp"
@@ -36,7 +36,7 @@ lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive)
         if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : default_step);
         return lie::TimeGrid::over(end, options.step.value_or(default_step), interval);
     } catch (const lie::InvalidInput& error) {
-        throw UsageError(error.what());
+        throw io::UsageError(error.what());
     }
 }
 
@@ -76,7 +76,7 @@ RunResult SingleRun::execute()
     begin = Clock::now();
     read();
     lie::Settings integrator_settings = options.settings;
-    integrator_settings.stop = [] { return Interrupt::caught() != 0; };
+    integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
     const std::unique_ptr<lie::Integrator> integrator =
         contact::make_integrator(*description.model, scheme, integrator_settings);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
@@ -151,15 +151,15 @@ void SingleRun::prepare_frames()
 {
     const lie::TimeGrid at = lie::TimeGrid::over(result.end, grid.h, *options.vtk);
     if (at.steps / at.interval + 2 > Snapshots::max_frames)
-        throw UsageError(fmt::format("run: --vtk {} gives {} frames, more than {}", *options.vtk,
-                                     at.steps / at.interval + 1, Snapshots::max_frames));
+        throw io::UsageError(fmt::format("run: --vtk {} gives {} frames, more than {}", *options.vtk,
+                                         at.steps / at.interval + 1, Snapshots::max_frames));
     const double spacing = static_cast<double>(at.interval) * at.h;
     if (spacing > *options.vtk * (1 + 1e-9))
         warn(fmt::format("--vtk {} is not a multiple of the step: frames are {:.12g} s apart", *options.vtk,
                          spacing));
     frames.emplace(*description.model, at);
     if (!frames->has_contacts())
-        throw UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
+        throw io::UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
 }
 
 // A resumed run was checked when it started: it only gives a warning.
@@ -169,7 +169,7 @@ void SingleRun::check_step(bool resumed) const
     if (scheme.adaptive) {
         for (const auto& force : model.forces())
             if (force->internal_states() > 0)
-                throw UsageError(fmt::format(
+                throw io::UsageError(fmt::format(
                     "run: {} chooses its own steps; {} has internal state variables and needs a fixed-step "
                     "scheme",
                     scheme.name, force->label()));
@@ -180,18 +180,19 @@ void SingleRun::check_step(bool resumed) const
     const std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
                     rounded_down(stable.h), model.forces()[static_cast<size_t>(stable.force)]->label());
-    if (!options.force && !resumed) throw UsageError("run: " + what + "; --force accepts it");
+    if (!options.force && !resumed) throw io::UsageError("run: " + what + "; --force accepts it");
     warn(what);
 }
 
 std::optional<Checkpoint> SingleRun::load_checkpoint() const
 {
     if (has_ended(directory))
-        throw UsageError(directory + ": has no checkpoint, and its run is complete; --force starts it again");
+        throw io::UsageError(directory +
+                             ": has no checkpoint, and its run is complete; --force starts it again");
     std::optional<Checkpoint> found = load(directory);
     if (!found) warn(directory + ": has no checkpoint; starting from the initial state");
     if (found && found->settings != settings)
-        throw UsageError(
+        throw io::UsageError(
             fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})", directory,
                         found->settings, settings));
     return found;
@@ -200,13 +201,13 @@ std::optional<Checkpoint> SingleRun::load_checkpoint() const
 // Removes the files of an earlier run, so that they cannot be taken for those of this run.
 void SingleRun::clear_directory() const
 {
-    make_directory(directory);
+    io::make_directory(directory);
     remove_checkpoints(directory);
     Snapshots::remove(directory, "run");
     for (const char* file : {"summary.json", "trajectory.csv", "steps.csv", "trajectory.png"})
         std::remove(path(file).c_str());
-    write_file(path("model.json"),
-               description.text.ends_with('\n') ? description.text : description.text + '\n');
+    io::write_file(path("model.json"),
+                   description.text.ends_with('\n') ? description.text : description.text + '\n');
 }
 
 void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoint>& from)
@@ -272,7 +273,7 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         }
     };
     try {
-        while (march.number() < grid.steps && Interrupt::caught() == 0 && advance_once()) {
+        while (march.number() < grid.steps && io::Interrupt::caught() == 0 && advance_once()) {
             if (!watch_clock) continue;
             const Clock::time_point now = Clock::now();
             line.update(now, march.node().t, march.number(), integrator.statistics());
@@ -285,12 +286,12 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         line.clear();
         if (march.number() == grid.steps) return march.finish(observers);
         result.status = "interrupted";
-        result.exit_code = exit_code::signal + Interrupt::caught();
+        result.exit_code = io::exit_code::signal + io::Interrupt::caught();
         if (!scheme.adaptive) save_checkpoint(march, recorder);
         if (!options.quiet)
-            message(scheme.adaptive ? "hilda: interrupted\n"
-                                    : "hilda: interrupted; --resume continues from the checkpoint in " +
-                                          directory + '\n');
+            io::message(scheme.adaptive ? "hilda: interrupted\n"
+                                        : "hilda: interrupted; --resume continues from the checkpoint in " +
+                                              directory + '\n');
     } catch (const lie::NumericalFailure& failure) {
         count(march, recorder);
         line.clear();
@@ -321,10 +322,10 @@ void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& m
     const Diagnosis d =
         diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme.name);
     result.status = failure.status;
-    result.exit_code = exit_code::numerical_failure;
+    result.exit_code = io::exit_code::numerical_failure;
     result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
-    message("hilda: error[" + failure.status + "]: " + d.what + '\n');
-    if (!d.detail.empty()) message("  " + d.detail + '\n');
+    io::message("hilda: error[" + failure.status + "]: " + d.what + '\n');
+    if (!d.detail.empty()) io::message("  " + d.detail + '\n');
 }
 
 void SingleRun::finish()
@@ -337,17 +338,17 @@ void SingleRun::finish()
         result.files.emplace_back("run.pvd");
     }
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
-    write_file(path("summary.json"), summary(result).text());
+    io::write_file(path("summary.json"), summary(result).text());
 }
 
 void SingleRun::log(const std::string& what) const
 {
-    if (options.verbose && !options.quiet) message("hilda: " + what + '\n');
+    if (options.verbose && !options.quiet) io::message("hilda: " + what + '\n');
 }
 
 void SingleRun::warn(const std::string& what) const
 {
-    if (!options.quiet) warning(what);
+    if (!options.quiet) io::warning(what);
 }
 
 }  // namespace hilda::studies

@@ -7,9 +7,9 @@
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/program/run_model.hpp"
-#include "studies/progress.hpp"
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/model_frames.hpp"
+#include "studies/running/progress.hpp"
 #include "studies/running/recorder.hpp"
 #include "studies/running/summary.hpp"
 
@@ -28,8 +28,8 @@ public:
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
 
     /// Reads the model, integrates, writes the files and returns the result. A numerical failure or an
-    /// interruption is reported in the result. All other errors are thrown: lie::InvalidInput and UsageError
-    /// before any file is written, IoError.
+    /// interruption is reported in the result. All other errors are thrown: lie::InvalidInput and io::UsageError
+    /// before any file is written, io::IoError.
     RunResult execute();
 
     /// True if the directory contains the summary of a run and no checkpoint.
@@ -40,7 +40,7 @@ private:
 
     void read();
     void prepare_frames();
-    /// UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
+    /// io::UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
     /// force has internal state variables.
     void check_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/summary.hpp"
 
+#include "io/files.hpp"
 #include "lie/integrator.hpp"
-#include "studies/output.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 
@@ -23,9 +24,9 @@ std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, 
 
 }  // namespace
 
-Json summary(const RunResult& r)
+io::Json summary(const RunResult& r)
 {
-    Json out = {{"status", r.status}, {"exit_code", r.exit_code}};
+    io::Json out = {{"status", r.status}, {"exit_code", r.exit_code}};
     if (!r.message.empty()) out["message"] = r.message;
     out["model"] = {{"name", r.model},
                     {"bodies", r.bodies},
@@ -59,7 +60,7 @@ Json summary(const RunResult& r)
                          {"energy_drift", r.invariants.energy_drift},
                          {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
     if (!r.contacts.empty()) {
-        out["contacts"] = Json::array();
+        out["contacts"] = io::Json::array();
         for (size_t k = 0; k < r.invariants.contact.size(); ++k) {
             const ContactExtremes& c = r.invariants.contact[k];
             out["contacts"].push_back({{"name", r.contacts[k]},
@@ -70,7 +71,7 @@ Json summary(const RunResult& r)
     }
     if (!r.events.empty()) {
         constexpr size_t most = 1000;  // a bouncing ball that comes to rest causes many events
-        out["contact_events"] = {{"count", r.events.size()}, {"first", Json::array()}};
+        out["contact_events"] = {{"count", r.events.size()}, {"first", io::Json::array()}};
         for (size_t k = 0; k < std::min(most, r.events.size()); ++k) {
             const RunResult::Event& e = r.events[k];
             out["contact_events"]["first"].push_back(

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "dae/start.hpp"
+#include "io/json.hpp"
 #include "lie/statistics.hpp"
-#include "studies/json.hpp"
 #include "studies/running/csv_trajectory.hpp"
 
 #include <iosfwd>
@@ -48,7 +48,7 @@ struct RunResult {
 };
 
 /// The contents of summary.json
-Json summary(const RunResult& result);
+io::Json summary(const RunResult& result);
 
 /// Prints the result as a short table.
 void print(const RunResult& result, std::ostream& out);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/vtk.hpp"
 
-#include "studies/csv.hpp"
-#include "studies/output.hpp"
+#include "io/csv.hpp"
+#include "io/files.hpp"
 
 #include <fmt/format.h>
 
@@ -219,19 +219,19 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
 
 void Snapshots::write(const std::string& directory, const std::string& name) const
 {
-    make_directory(directory + "/vtk");
+    io::make_directory(directory + "/vtk");
     const std::vector<BodyMesh> all = body_meshes();
     std::string list =
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
     for (size_t k = 0; k < frames.size(); ++k) {
         const std::string file = frame_file(name, k);
-        write_file(directory + '/' + file, poly_data(frames[k], all));
+        io::write_file(directory + '/' + file, poly_data(frames[k], all));
         list += "<DataSet timestep=\"";
-        append_number(list, frames[k].t);
+        io::append_number(list, frames[k].t);
         list += "\" part=\"0\" file=\"" + escaped(file) + "\"/>\n";
     }
-    write_file(directory + '/' + name + ".pvd", list + "</Collection>\n</VTKFile>\n");
+    io::write_file(directory + '/' + name + ".pvd", list + "</Collection>\n</VTKFile>\n");
 }
 
 void Snapshots::remove(const std::string& directory, const std::string& name)

@@ -54,7 +54,7 @@ public:
     void add(double t, std::vector<lie::Motion> bodies, std::vector<ContactData> contacts);
 
     /// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., then DIR/NAME.pvd with the list of files and times.
-    /// IoError.
+    /// io::IoError.
     void write(const std::string& directory, const std::string& name) const;
     /// Removes the files of an earlier write() with this name.
     static void remove(const std::string& directory, const std::string& name);

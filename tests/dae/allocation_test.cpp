@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Memory allocation of the steps of all integrators.
-#include "dae/expression.hpp"
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/start.hpp"
+#include "io/expression.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
@@ -30,11 +30,11 @@ TEST_CASE("a step of a mechanism with drivers, springs, internal states and expr
         lie::State x;
         tests::slider_crank(model, x);
         model.load(dae::SpringDamper(0, Vec3(0.01, 0, 0), 2, Vec3(0, 0.02, 0), 10, 0.1, 0.05,
-                                     dae::Expression("2*sin(t)*l - 0.1*ldot", {"l", "ldot", "t"})));
+                                     io::Expression("2*sin(t)*l - 0.1*ldot", {"l", "ldot", "t"})));
         model.load(dae::TorsionSpring(dae::ground, Vec3::UnitX(), 0, Vec3::UnitX(), 0.01, 1e-3, 0.2, x));
         model.load(
             dae::PrescribedForce(1, Vec3(0, 0.1, 0), dae::Frame::body,
-                                 {dae::Expression("t"), dae::Expression("0"), dae::Expression("cos(3*t)")}));
+                                 {io::Expression("t"), io::Expression("0"), io::Expression("cos(3*t)")}));
         model.load(tests::Bristle(0, 2, 0.1, 1e-3));
         dae::start(model, x, {.fix_initial = true});
         const auto integrator = s.make(model, {});

@@ -82,8 +82,9 @@ TEST_CASE("the variation of the loads is their derivative", "[dae][variations]")
     State aligned = x;
     aligned.body[1].A = aligned.body[0].A;
     model.load(TorsionSpring(0, axis, 1, axis, 7, 0.3, 0.1, aligned));
-    model.load(PrescribedForce(2, random.vector(), Frame::body,
-                               {Expression("2", {"t"}), Expression("t", {"t"}), Expression("1", {"t"})}));
+    model.load(PrescribedForce(
+        2, random.vector(), Frame::body,
+        {io::Expression("2", {"t"}), io::Expression("t", {"t"}), io::Expression("1", {"t"})}));
     model.prepare(x);
 
     lie::LoadVariation change = model.load_pattern();

@@ -113,7 +113,7 @@ def main():
                                  capture_output=True, text=True, env=runs.environment,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000)))
         expect(process.returncode == 5 and "File too large" in process.stderr, f"{process.returncode}: {process.stderr}")
-        expect(not list((here / "full").rglob("*.new")), "incomplete files are deleted")
+        expect(not list((here / "full").rglob("*.tmp")), "incomplete files are deleted")
 
         # a step above the stability limit is rejected, and accepted with --force
         coarse = runs.case("coarse", step=3e-5, end=3e-5)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Models with contacts in the program.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 #include "tests/studies/program.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,15 +36,15 @@ TEST_CASE("run and check accept a valid model file with contacts and reject an i
     const tests::Scratch in;
     tests::write(in / "good.json", in_bowl("0.25"));
     tests::write(in / "bad.json", in_bowl("0.25", "-1"));
-    CHECK(call(in, {"check", "good.json"}).code == studies::exit_code::done);
-    CHECK(call(in, {"run", "good.json", "--no-plot"}).code == studies::exit_code::done);
+    CHECK(call(in, {"check", "good.json"}).code == io::exit_code::done);
+    CHECK(call(in, {"run", "good.json", "--no-plot"}).code == io::exit_code::done);
     const Ended bad = call(in, {"run", "bad.json", "--no-plot"});
-    CHECK(bad.code == studies::exit_code::invalid_input);
+    CHECK(bad.code == io::exit_code::invalid_input);
     CHECK_THAT(bad.err, Catch::Contains("bad.json:4:46 (/contacts/0/surface_i/radius): radius must be "
                                         "positive, got -1"));
     const Ended stiff =
         call(in, {"run", "good.json", "--no-plot", "--force", "--set", "/contacts/0/normal/stiffness=1e8"});
-    CHECK(stiff.code == studies::exit_code::done);
+    CHECK(stiff.code == io::exit_code::done);
     CHECK_THAT(stiff.err, Catch::Contains("the stability limit of contact 'ball-bowl'"));
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("a contact point that is not found ends the run with the contact, the 
     const tests::Scratch in;
     tests::write(in / "start.json", in_bowl("0"));
     const Ended start = call(in, {"run", "start.json", "--no-plot"});
-    CHECK(start.code == studies::exit_code::invalid_input);
+    CHECK(start.code == io::exit_code::invalid_input);
     CHECK_THAT(
         start.err,
         Catch::Contains("start.json:3:15 (/contacts/0): contact 'ball-bowl': the centres of two spheres"));
@@ -80,7 +80,7 @@ TEST_CASE("a contact point that is not found ends the run with the contact, the 
     tests::write(in / "on.json", in_bowl("-0.0078125"));
     const Ended on =
         call(in, {"run", "on.json", "--no-plot", "--step", "0.0009765625", "--interval", "0.0009765625"});
-    CHECK(on.code == studies::exit_code::numerical_failure);
+    CHECK(on.code == io::exit_code::numerical_failure);
     CHECK_THAT(on.err, Catch::Contains("error[contact_not_converged]: t=0.0078") &&
                            Catch::Contains("contact 'ball-bowl': the centres of two spheres coincide") &&
                            Catch::Contains("bodies 'ball', 'ground', t = 0.0078125 s"));
@@ -97,9 +97,9 @@ TEST_CASE("a study of a model file with contacts needs --reference", "[studies][
         "study",   "convergence",          "--problem", "m.json",   "--integrator", "rA-half-1",
         "--steps", "7.8125e-4,3.90625e-4", "--no-plot", "--output", "out",          "--force"};
     const Ended refused = call(in, study);
-    CHECK(refused.code == studies::exit_code::invalid_input);
+    CHECK(refused.code == io::exit_code::invalid_input);
     CHECK_THAT(refused.err, Catch::Contains("select an integrator as the reference (--reference NAME)"));
     std::vector<std::string> evaluated = study;
     evaluated.insert(evaluated.end(), {"--reference", "rA-rattle"});
-    CHECK(call(in, evaluated).code == studies::exit_code::done);
+    CHECK(call(in, evaluated).code == io::exit_code::done);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Reference solutions of studies by an integrator.
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
 #include "tests/studies/adaptive_scheme.hpp"
@@ -122,9 +122,9 @@ TEST_CASE("adaptive schemes are references and evaluated runs by their tolerance
         options.reference = name;
         CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 1e-11}));
         CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 9e-12}),
-                        studies::UsageError);
+                        io::UsageError);
         options.reference_rtol = 1e-8;
-        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_rtol = 5e-8}), studies::UsageError);
+        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_rtol = 5e-8}), io::UsageError);
         CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4}));
         options.reference_rtol.reset();
     }

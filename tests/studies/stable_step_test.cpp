@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Stability limits of forces: steps above them are rejected by hilda run and by studies.
 
+#include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/running/single_run.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/support/bristle_contacts.hpp"
@@ -43,7 +43,7 @@ TEST_CASE("a step above the stability limit of a force is rejected with its name
 {
     BristleModel m;
     m.options.step = 0.015;
-    CHECK_THROWS_AS(m.run(), studies::UsageError);
+    CHECK_THROWS_AS(m.run(), io::UsageError);
     CHECK_THROWS_WITH(m.run(),
                       "run: the step 0.015 s is above 0.0147 s, the stability limit of bristle 'brush' in an "
                       "explicit step; --force accepts it");

@@ -7,9 +7,10 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "io/csv.hpp"
+#include "io/error.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
-#include "studies/csv.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/reference_solution.hpp"
@@ -114,8 +115,8 @@ void print(const std::vector<ComparedRun>& runs, const Benchmark& c, std::ostrea
 void append(std::string& csv, const lie::State& x, const Observable& observable, int body)
 {
     csv += ',';
-    append_number(csv, component(x, body, observable.component));
-    append_vector(csv, x.body[body].r);
+    io::append_number(csv, component(x, body, observable.component));
+    io::append_vector(csv, x.body[body].r);
 }
 
 std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>& runs)
@@ -126,10 +127,10 @@ std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>&
     for (const ComparedRun& run : runs)
         for (const char* column :
              {"observable", "rx", "ry", "rz", "diff_r", "diff_A", "diff_v", "diff_omega"})
-            csv += ',' + csv_field(run.scheme->name + '.' + column);
+            csv += ',' + io::csv_field(run.scheme->name + '.' + column);
     csv += '\n';
     for (long k = 0; k <= c.instants.count; ++k) {
-        append_number(csv, static_cast<double>(k) * c.instants.dt);
+        io::append_number(csv, static_cast<double>(k) * c.instants.dt);
         append(csv, c.reference_solution.row[k], c.observable, body);
         for (const ComparedRun& run : runs) {
             if (k >= static_cast<long>(run.row.size())) {  // the run failed before this instant
@@ -138,21 +139,22 @@ std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>&
             }
             append(csv, run.row[k], c.observable, body);
             const Difference& d = run.difference[k];
-            append_vector(csv, Eigen::Vector4d(d.r, d.A, d.v, d.omega));
+            io::append_vector(csv, Eigen::Vector4d(d.r, d.A, d.v, d.omega));
         }
         csv += '\n';
     }
     return csv;
 }
 
-Json as_json(const std::vector<ComparedRun>& runs)
+io::Json as_json(const std::vector<ComparedRun>& runs)
 {
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     for (const ComparedRun& run : runs) {
-        Json row = as_json(static_cast<const Run&>(run));
+        io::Json row = as_json(static_cast<const Run&>(run));
         for (size_t q = 0; q < 4; ++q)
-            row[std::string("max_") + quantities[q]] = number_or_null(run.largest[q]);
-        for (size_t q = 0; q < 4; ++q) row[std::string("end_") + quantities[q]] = number_or_null(run.last[q]);
+            row[std::string("max_") + quantities[q]] = io::number_or_null(run.largest[q]);
+        for (size_t q = 0; q < 4; ++q)
+            row[std::string("end_") + quantities[q]] = io::number_or_null(run.last[q]);
         row["steps"] = run.statistics.steps;
         row["iterations_per_step"] = run.statistics.iterations_per_step();
         rows.push_back(row);
@@ -181,7 +183,7 @@ int compare(const StudyOptions& options)
             evaluated.smallest_step = h,
             evaluated.highest_order = std::max(evaluated.highest_order, s->order);
     const Reference reference(kind, options, evaluated);
-    if (options.problems.size() > 1) throw UsageError("study compare: takes one problem, --problem NAME");
+    if (options.problems.size() > 1) throw io::UsageError("study compare: takes one problem, --problem NAME");
     std::vector<Benchmark> all = benchmarks(kind, options, {"double_pendulum"});
     Benchmark& c = all.front();
     check_steps(kind, c, {h});

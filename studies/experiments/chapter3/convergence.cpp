@@ -12,6 +12,7 @@
 
 #include "studies/experiments/chapter3/convergence.hpp"
 
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "studies/framework/evaluated_run.hpp"
@@ -225,17 +226,18 @@ Table as_table(const std::vector<ConvergenceRun>& runs)
 }
 
 /// The series of study.json
-Json as_json(const std::vector<Series>& all)
+io::Json as_json(const std::vector<Series>& all)
 {
-    Json out = Json::array();
+    io::Json out = io::Json::array();
     for (const Series& series : all) {
         const ConvergenceRun& first = *series.front();
-        Json fits = Json::object(), rows = Json::array();
-        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
+        io::Json fits = io::Json::object(), rows = io::Json::array();
+        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = io::number_or_null(fit(series, n));
         for (const ConvergenceRun* run : series) {
-            Json row = {{"h", run->h}, {"status", run->status}};
+            io::Json row = {{"h", run->h}, {"status", run->status}};
             if (!run->message.empty()) row["message"] = run->message;
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
+            for (int n = 0; n < norm::count; ++n)
+                row[norm::names[n]] = io::number_or_null(run->errors.value[n]);
             row["iterations_per_step"] = run->statistics.iterations_per_step();
             row["factorizations"] = run->statistics.factorizations;
             row["cpu_seconds"] = run->seconds;

@@ -8,8 +8,9 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "io/csv.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
-#include "studies/csv.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
 #include "studies/framework/study_output.hpp"
@@ -116,24 +117,24 @@ std::string curves(const std::vector<EnergyRun>& runs)
     std::string csv = "problem,integrator,h,t,energy,drift\n";
     for (const EnergyRun& run : runs)
         for (const auto& [t, E] : run.curve) {
-            csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
+            csv += io::csv_field(run.c->problem.name) + ',' + io::csv_field(run.scheme->name);
             for (const double value : {run.h, t, E, E - run.start}) {
                 csv += ',';
-                append_number(csv, value);
+                io::append_number(csv, value);
             }
             csv += '\n';
         }
     return csv;
 }
 
-Json as_json(const std::vector<EnergyRun>& runs)
+io::Json as_json(const std::vector<EnergyRun>& runs)
 {
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     for (const EnergyRun& run : runs) {
-        Json row = as_json(static_cast<const Run&>(run));
+        io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"energy_start", run.start},
-                    {"end_drift", number_or_null(run.drift)},
-                    {"max_drift", number_or_null(run.largest)},
+                    {"end_drift", io::number_or_null(run.drift)},
+                    {"max_drift", io::number_or_null(run.largest)},
                     {"max_kinetic", run.kinetic}});
         rows.push_back(row);
     }

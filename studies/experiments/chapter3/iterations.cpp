@@ -5,8 +5,9 @@
 /// have the same Newton tolerance, in the same units. iterations.csv contains mean and maximum over short
 /// time intervals. Schemes without Newton iterations count zero.
 
+#include "io/csv.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
-#include "studies/csv.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
 #include "studies/framework/study_output.hpp"
@@ -116,12 +117,12 @@ std::string over_time(const std::vector<IterationsRun>& runs)
     std::string csv = "problem,integrator,h,t,mean,max\n";
     for (const IterationsRun& run : runs) {
         for (const IterationBin& bin : run.bins) {
-            csv += csv_field(run.c->problem.name) + ',' + csv_field(run.scheme->name);
+            csv += io::csv_field(run.c->problem.name) + ',' + io::csv_field(run.scheme->name);
             for (const double value :
                  {run.h, bin.end, static_cast<double>(bin.sum) / static_cast<double>(bin.steps),
                   static_cast<double>(bin.max_iterations)}) {
                 csv += ',';
-                append_number(csv, value);
+                io::append_number(csv, value);
             }
             csv += '\n';
         }
@@ -129,13 +130,13 @@ std::string over_time(const std::vector<IterationsRun>& runs)
     return csv;
 }
 
-Json as_json(const std::vector<IterationsRun>& runs)
+io::Json as_json(const std::vector<IterationsRun>& runs)
 {
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     for (const IterationsRun& run : runs) {
-        Json row = as_json(static_cast<const Run&>(run));
+        io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"steps", run.statistics.steps},
-                    {"iterations_per_step", number_or_null(run.mean())},
+                    {"iterations_per_step", io::number_or_null(run.mean())},
                     {"max_iterations", run.max_iterations},
                     {"factorizations", run.statistics.factorizations}});
         rows.push_back(row);

@@ -7,8 +7,9 @@
 /// time ~ N^p, fitted for N >= 64.
 
 #include "dae/model_file.hpp"
+#include "io/error.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
 #include "studies/framework/stopwatch.hpp"
@@ -135,16 +136,16 @@ void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std
     table.print(out);
 }
 
-Json as_json(const std::vector<ScalingRun>& runs)
+io::Json as_json(const std::vector<ScalingRun>& runs)
 {
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     for (const ScalingRun& run : runs) {
-        Json row = as_json(static_cast<const Run&>(run));
+        io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"bars", run.N},
-                    {"us_per_step", number_or_null(run.microseconds().median)},
-                    {"us_per_step_min", number_or_null(run.microseconds().least)},
-                    {"us_per_step_max", number_or_null(run.microseconds().most)},
-                    {"ratio_to_full", number_or_null(run.ratio)},
+                    {"us_per_step", io::number_or_null(run.microseconds().median)},
+                    {"us_per_step_min", io::number_or_null(run.microseconds().least)},
+                    {"us_per_step_max", io::number_or_null(run.microseconds().most)},
+                    {"ratio_to_full", io::number_or_null(run.ratio)},
                     {"iterations_per_step", run.statistics.iterations_per_step()},
                     {"start_seconds", run.start_seconds}});
         rows.push_back(row);
@@ -156,7 +157,7 @@ int scaling(const StudyOptions& options)
 {
     check_keys(kind, options, std::vector<std::string>{"exponent", "largest_exponent", "ratio_to_full"});
     if (!options.problems.empty())
-        throw UsageError(
+        throw io::UsageError(
             "study scaling: the model is the N-bar pendulum and --problem is not accepted; set N by --bars "
             "N1,N2,...");
     const double h = one_step(kind, options, 1e-3);
@@ -192,13 +193,13 @@ int scaling(const StudyOptions& options)
         options.repeats, options.jobs,
         *std::max_element(chain.start_seconds.begin(), chain.start_seconds.end()));
     std::vector<Measured> measurements;
-    Json exponents = Json::object();
+    io::Json exponents = io::Json::object();
     for (const lie::Scheme* s : schemes) {
         const Exponent p = exponent_of(runs, s);
         measurements.push_back(
             {.of = s->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
-        exponents[s->name] = {{"fitted", number_or_null(p.fitted)},
-                              {"largest_local", number_or_null(p.largest_local)}};
+        exponents[s->name] = {{"fitted", io::number_or_null(p.fitted)},
+                              {"largest_local", io::number_or_null(p.largest_local)}};
     }
     output.json["exponents"] = exponents;
     for (const ScalingRun& run : runs)

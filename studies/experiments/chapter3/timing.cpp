@@ -6,6 +6,7 @@
 /// nothing is written during the measurement. The ratio is relative to rA-full-1 on the same problem with the
 /// same step; a ratio below 1 means faster.
 
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
@@ -107,15 +108,15 @@ void print_half_over_full(const std::vector<StepTimeRun>& runs, std::ostream& ou
     out << fmt::format("mean {:.3f}\n", sum / static_cast<double>(count));
 }
 
-Json as_json(const std::vector<StepTimeRun>& runs)
+io::Json as_json(const std::vector<StepTimeRun>& runs)
 {
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     for (const StepTimeRun& run : runs) {
-        Json row = as_json(static_cast<const Run&>(run));
-        row.update({{"us_per_step", number_or_null(run.microseconds().median)},
-                    {"us_per_step_min", number_or_null(run.microseconds().least)},
-                    {"us_per_step_max", number_or_null(run.microseconds().most)},
-                    {"ratio_to_full", number_or_null(run.ratio)},
+        io::Json row = as_json(static_cast<const Run&>(run));
+        row.update({{"us_per_step", io::number_or_null(run.microseconds().median)},
+                    {"us_per_step_min", io::number_or_null(run.microseconds().least)},
+                    {"us_per_step_max", io::number_or_null(run.microseconds().most)},
+                    {"ratio_to_full", io::number_or_null(run.ratio)},
                     {"iterations_per_step", run.statistics.iterations_per_step()}});
         rows.push_back(row);
     }

@@ -8,6 +8,7 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/pool.hpp"
@@ -150,26 +151,27 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ost
                 : fmt::format("no integrator reaches an rms error of {:.0e} m\n", target_error));
 }
 
-Json as_json(const std::vector<WorkSeries>& all)
+io::Json as_json(const std::vector<WorkSeries>& all)
 {
-    Json out = Json::array();
+    io::Json out = io::Json::array();
     for (const WorkSeries& series : all) {
         const WorkNeeded w = work_to_target(series);
-        Json rows = Json::array();
+        io::Json rows = io::Json::array();
         for (const WorkRun* run : series) {
-            Json row = as_json(static_cast<const Run&>(*run));
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->errors.value[n]);
+            io::Json row = as_json(static_cast<const Run&>(*run));
+            for (int n = 0; n < norm::count; ++n)
+                row[norm::names[n]] = io::number_or_null(run->errors.value[n]);
             row["steps"] = run->statistics.steps;
             row["iterations_per_step"] = run->statistics.iterations_per_step();
             row["factorizations"] = run->statistics.factorizations;
-            row["cpu_seconds"] = number_or_null(run->seconds_of_repeats().median);
+            row["cpu_seconds"] = io::number_or_null(run->seconds_of_repeats().median);
             rows.push_back(row);
         }
         out.push_back({{"problem", series.front()->c->problem.name},
                        {"integrator", series.front()->scheme->name},
                        {"reference", series.front()->c->reference_name},
                        {"asked_r", target_error},
-                       {"cpu_seconds_needed", number_or_null(w.seconds)},
+                       {"cpu_seconds_needed", io::number_or_null(w.seconds)},
                        {"at_most", w.at_most},
                        {"rows", rows}});
     }

@@ -10,10 +10,11 @@
 /// run with the smallest difference is marked. --check adds the runs that only the criteria need, and returns
 /// exit code 6 if a criterion fails.
 
+#include "io/json.hpp"
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
-#include "studies/csv.hpp"
-#include "studies/exit_codes.hpp"
+#include "io/csv.hpp"
+#include "io/error.hpp"
 #include "studies/framework/csv_table.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/selection.hpp"
@@ -48,7 +49,7 @@ std::vector<SelectedExperiment> selected(const StudyOptions& options)
     for (const Experiment& e : experiments()) known.push_back(e.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UsageError("study friction: unknown experiment" + with_nearest(name, known));
+            throw io::UsageError("study friction: unknown experiment" + with_nearest(name, known));
     std::vector<SelectedExperiment> all;
     for (const Experiment& e : experiments()) {
         const auto& names = options.problems;
@@ -63,7 +64,7 @@ std::vector<SelectedExperiment> selected(const StudyOptions& options)
     return all;
 }
 
-/// UsageError if --vtk is given and no selected experiment writes frames
+/// io::UsageError if --vtk is given and no selected experiment writes frames
 void check_vtk(const StudyOptions& options, const std::vector<SelectedExperiment>& all)
 {
     if (options.vtk == 0) return;
@@ -74,7 +75,7 @@ void check_vtk(const StudyOptions& options, const std::vector<SelectedExperiment
     std::string names;
     for (const Experiment& e : experiments())
         if (e.has_frames) names += (names.empty() ? "" : ", ") + e.name;
-    throw UsageError("study friction: --vtk is available for " + names);
+    throw io::UsageError("study friction: --vtk is available for " + names);
 }
 
 std::string curves(const SelectedExperiment& c)
@@ -82,7 +83,7 @@ std::string curves(const SelectedExperiment& c)
     std::string csv = "run";
     for (const Series& s : c.series)
         if (s.rows() > 0) {
-            for (const std::string& column : s.columns) csv += ',' + csv_field(column);
+            for (const std::string& column : s.columns) csv += ',' + io::csv_field(column);
             break;
         }
     csv += '\n';
@@ -90,10 +91,10 @@ std::string curves(const SelectedExperiment& c)
         const Series& s = c.series[r];
         const size_t stride = std::max<size_t>(1, (s.rows() + max_rows - 1) / max_rows);
         for (size_t k = 0; k < s.rows(); k += stride) {
-            csv += csv_field(c.runs[r].name);
+            csv += io::csv_field(c.runs[r].name);
             for (size_t column = 0; column < s.columns.size(); ++column) {
                 csv += ',';
-                append_number(csv, s.at(k, column));
+                io::append_number(csv, s.at(k, column));
             }
             csv += '\n';
         }
@@ -223,10 +224,11 @@ int study(const StudyOptions& options)
     const std::vector<std::string> keys = {"difference"};
     check_keys(kind, options, keys);
     if (!options.expect.empty() && options.against.empty())
-        throw UsageError("study friction: --expect difference needs --against FILE");
+        throw io::UsageError("study friction: --expect difference needs --against FILE");
     refuse_schemes(kind, options);
     if (!options.steps.empty() || options.end)
-        throw UsageError("study friction: --steps and --end are not accepted, each experiment sets its own");
+        throw io::UsageError(
+            "study friction: --steps and --end are not accepted, each experiment sets its own");
     std::vector<SelectedExperiment> all = selected(options);
     check_vtk(options, all);
     struct Job {
@@ -261,7 +263,7 @@ int study(const StudyOptions& options)
                  {"tolerance", "{:.1e}"},
                  {"by"},
                  {"passed"}});
-    Json rows = Json::array();
+    io::Json rows = io::Json::array();
     size_t criteria = 0, failed = 0;
     for (SelectedExperiment& c : all) {
         if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), c.checks);
@@ -281,7 +283,7 @@ int study(const StudyOptions& options)
             printed.add({k.measured, k.required, k.tolerance, passed, k.source, k.what});
             rows.push_back({{"experiment", c.experiment->name},
                             {"what", k.what},
-                            {"measured", number_or_null(k.measured)},
+                            {"measured", io::number_or_null(k.measured)},
                             {"required", k.required},
                             {"tolerance", k.tolerance},
                             {"by", k.source},
@@ -319,7 +321,7 @@ int study(const StudyOptions& options)
     output.table = table.csv();
     output.json = {{"criteria", criteria}, {"passed", criteria - failed}, {"checks", rows}};
     const int code = finish(options, output, {}, measurements);
-    if (options.check && failed > 0) return exit_code::expectation_failed;
+    if (options.check && failed > 0) return io::exit_code::expectation_failed;
     return code;
 }
 

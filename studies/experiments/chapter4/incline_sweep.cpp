@@ -7,7 +7,8 @@
 /// The default preset is `dissertation`, which reproduces the published figure. --check evaluates the
 /// differences and returns exit code 6 if a criterion fails.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
+#include "io/json.hpp"
 #include "studies/experiments/chapter4/incline.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/csv_table.hpp"
@@ -309,10 +310,11 @@ int incline_sweep(const StudyOptions& options)
         {"end", end},
         {"grid", g.name},
         {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
-        {"rest_limit", {{"least", number_or_null(b.rest.least)}, {"most", number_or_null(b.rest.most)}}},
+        {"rest_limit",
+         {{"least", io::number_or_null(b.rest.least)}, {"most", io::number_or_null(b.rest.most)}}},
         {"rolling_limit",
-         {{"least", number_or_null(b.rolling.least)}, {"most", number_or_null(b.rolling.most)}}},
-        {"slip_from", number_or_null(b.slip_from)}};
+         {{"least", io::number_or_null(b.rolling.least)}, {"most", io::number_or_null(b.rolling.most)}}},
+        {"slip_from", io::number_or_null(b.slip_from)}};
     std::vector<Measured> measurements = {{.of = kind,
                                            .value = {{"rest_limit", b.rest.largest()},
                                                      {"rolling_limit_least", b.rolling.least},
@@ -334,7 +336,7 @@ int incline_sweep(const StudyOptions& options)
     }
     const bool passed = !options.check || evaluate(checks, output.text, output.json);
     const int code = finish(options, output, {}, measurements);
-    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && !passed ? io::exit_code::expectation_failed : code;
 }
 
 const bool registered =

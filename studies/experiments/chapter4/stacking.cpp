@@ -8,7 +8,8 @@
 /// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
 /// fails.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
+#include "io/json.hpp"
 #include "studies/experiments/chapter4/stack.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/csv_table.hpp"
@@ -285,7 +286,7 @@ int stacking(const StudyOptions& options)
     if (options.check) checks = criteria(cells, g, refined, h);
     int undecided = 0;
     for (const StackCell& c : cells) undecided += c.undecided;
-    Json curves = Json::array();
+    io::Json curves = io::Json::array();
     output.text << '\n';
     for (const double gap : g.gaps) {
         const MassCurve c = curve(cells, gap);
@@ -297,9 +298,9 @@ int stacking(const StudyOptions& options)
                                           {"peak_mass_" + gap_text(gap), c.peak_mass},
                                           {"plateau_" + gap_text(gap), c.plateau}}});
         curves.push_back({{"gap", gap},
-                          {"peak_eta", number_or_null(c.peak_eta)},
+                          {"peak_eta", io::number_or_null(c.peak_eta)},
                           {"peak_mass", c.peak_mass},
-                          {"plateau", number_or_null(c.plateau)}});
+                          {"plateau", io::number_or_null(c.plateau)}});
     }
     if (undecided > 0)
         output.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,
@@ -321,7 +322,7 @@ int stacking(const StudyOptions& options)
     output.table = as_table(cells).csv();
     output.figures = {"stacking.png"};
     const int code = finish(options, output, {}, measurements);
-    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && !passed ? io::exit_code::expectation_failed : code;
 }
 
 const bool registered = register_study(Study{

@@ -13,8 +13,8 @@
 /// The results are compared with closed forms. --vtk N writes frames for ParaView. --check adds runs with
 /// half of the step and returns exit code 6 if an acceptance criterion fails.
 
-#include "studies/csv.hpp"
-#include "studies/exit_codes.hpp"
+#include "io/csv.hpp"
+#include "io/error.hpp"
 #include "studies/experiments/chapter5/evolving_errors.hpp"
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/framework/acceptance.hpp"
@@ -329,11 +329,11 @@ std::string curves(const std::vector<const BowlRun*>& runs)
     for (const BowlRun* run : runs) {
         const size_t stride = std::max<size_t>(1, (run->sample.size() + max_rows - 1) / max_rows);
         for (size_t k = 0; k < run->sample.size(); k += stride) {
-            csv += csv_field(run->label()) + ',';
-            append_number(csv, run->h);
+            csv += io::csv_field(run->label()) + ',';
+            io::append_number(csv, run->h);
             for (const double value : run->sample[k]) {
                 csv += ',';
-                if (!std::isnan(value)) append_number(csv, value);
+                if (!std::isnan(value)) io::append_number(csv, value);
             }
             csv += '\n';
         }
@@ -396,7 +396,7 @@ std::vector<const BowlVariant*> selected_variants(const StudyOptions& options)
     for (const BowlVariant& s : variants) known.push_back(s.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
+            throw io::UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
     std::vector<const BowlVariant*> selected;
     for (const BowlVariant& s : variants)
         if (options.problems.empty() ||
@@ -490,7 +490,7 @@ int study(const StudyOptions& options)
     if (!options.check)
         output.text << "--check adds runs with half of the step and evaluates all acceptance criteria\n";
     const int code = finish(options, output, expected_to_finish, measurements);
-    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && options.check && !passed ? io::exit_code::expectation_failed : code;
 }
 
 const bool registered =

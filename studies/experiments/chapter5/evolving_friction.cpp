@@ -12,8 +12,8 @@
 /// The step of the dissertation, 5e-3 s, is above 4.64e-3 s, the stability limit of the friction springs of a
 /// homogeneous ball. The default step is therefore 2.5e-3 s.
 
-#include "studies/csv.hpp"
-#include "studies/exit_codes.hpp"
+#include "io/csv.hpp"
+#include "io/error.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/run.hpp"
@@ -220,12 +220,12 @@ void check_run(const BrakedRun& run, const BrakedRun* half, std::vector<Criterio
 
 void add_row(std::string& csv, double eta_r, const std::string& run, double h, const BrakedSample& s)
 {
-    append_number(csv, eta_r);
-    csv += ',' + csv_field(run) + ',';
-    if (h > 0) append_number(csv, h);
+    io::append_number(csv, eta_r);
+    csv += ',' + io::csv_field(run) + ',';
+    if (h > 0) io::append_number(csv, h);
     for (const double value : s) {
         csv += ',';
-        append_number(csv, value);
+        io::append_number(csv, value);
     }
     csv += '\n';
 }
@@ -309,7 +309,7 @@ std::vector<const BrakedVariant*> selected_variants(const StudyOptions& options)
     for (const BrakedVariant& s : variants) known.push_back(s.name);
     for (const std::string& name : options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
+            throw io::UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
     std::vector<const BrakedVariant*> selected;
     for (const BrakedVariant& s : variants)
         if (options.problems.empty() ||
@@ -385,7 +385,7 @@ int study(const StudyOptions& options)
     output.files.emplace_back("curves.csv", curves(runs, selected, end, options.set.empty()));
     output.figures = {kind + "-point.png", kind + "-forces.png"};
     const int code = finish(options, output, run_pointers(runs), measurements);
-    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && options.check && !passed ? io::exit_code::expectation_failed : code;
 }
 
 const bool registered =

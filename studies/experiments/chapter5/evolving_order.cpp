@@ -12,9 +12,10 @@
 /// fitted orders with the declared ones and returns exit code 6 if an acceptance criterion fails.
 
 #include "dae/model_file.hpp"
+#include "io/error.hpp"
+#include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter5/evolving_errors.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/pool.hpp"
@@ -126,16 +127,16 @@ Table as_table(const std::vector<OrderRun>& runs)
     return table;
 }
 
-Json as_json(const std::vector<OrderSeries>& all)
+io::Json as_json(const std::vector<OrderSeries>& all)
 {
-    Json out = Json::array();
+    io::Json out = io::Json::array();
     for (const OrderSeries& series : all) {
         const OrderRun& first = *series.front();
-        Json fits = Json::object(), rows = Json::array();
-        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = number_or_null(fit(series, n));
+        io::Json fits = io::Json::object(), rows = io::Json::array();
+        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = io::number_or_null(fit(series, n));
         for (const OrderRun* run : series) {
-            Json row = {{"h", run->h}, {"status", run->status}};
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = number_or_null(run->error[n]);
+            io::Json row = {{"h", run->h}, {"status", run->status}};
+            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = io::number_or_null(run->error[n]);
             rows.push_back(row);
         }
         out.push_back({{"problem", first.c->problem.name},
@@ -195,8 +196,8 @@ std::vector<Benchmark> selected_benchmarks(const StudyOptions& options)
                 dae::read_model(p.model, p.name, normal_rows(name, options.set, options.normal_rows)).text;
         all.push_back(make_benchmark(std::move(p), options));
         if (evolving_contacts(*all.back().started->model).empty())
-            throw UsageError("study " + kind + ": " + name +
-                             " has no evolving contact, which this study needs");
+            throw io::UsageError("study " + kind + ": " + name +
+                                 " has no evolving contact, which this study needs");
     }
     return all;
 }
@@ -248,7 +249,7 @@ int study(const StudyOptions& options)
     for (const OrderSeries& series : all) measurements.push_back(measured(series));
     const bool passed = !options.check || evaluate(criteria(all), output.text, output.json);
     const int code = finish(options, output, run_pointers(runs), measurements);
-    return code == exit_code::done && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && !passed ? io::exit_code::expectation_failed : code;
 }
 
 const bool registered =

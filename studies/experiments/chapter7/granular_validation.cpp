@@ -3,20 +3,15 @@
 ///
 /// The tables of a validation become files, its checks become acceptance criteria.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
+#include "io/progress.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/study_output.hpp"
-#include "studies/message.hpp"
 #include "studies/program/arguments.hpp"
 
 #include "granular/validations/validation.hpp"
-#include "lie/check.hpp"
 
 #include <fmt/format.h>
-
-#include <unistd.h>
-
-#include <chrono>
 
 namespace hilda::studies {
 
@@ -36,11 +31,11 @@ Table as_table(const ValidationTable& validation_table)
     return table;
 }
 
-/// UsageError for options that a validation does not have.
+/// io::UsageError for options that a validation does not have.
 void reject_unused_options(const std::string& kind, const StudyOptions& options)
 {
     const auto reject_if = [&](bool given, const std::string& name) {
-        if (given) throw UsageError("study " + kind + ": " + name + " is not an option of this study");
+        if (given) throw io::UsageError("study " + kind + ": " + name + " is not an option of this study");
     };
     reject_if(!options.problems.empty(), "--problem");
     reject_if(!options.integrators.empty(), "--integrator");
@@ -51,36 +46,19 @@ void reject_unused_options(const std::string& kind, const StudyOptions& options)
     if (!options.grid.empty()) one_of("--grid", options.grid, std::vector<std::string>{"full"});
 }
 
-/// Progress line on a terminal, updated at most five times per second
-std::function<void(double)> progress(const std::string& kind, bool quiet)
-{
-    using Clock = std::chrono::steady_clock;
-    if (quiet || isatty(STDERR_FILENO) == 0) return [](double) {};
-    return [kind, begin = Clock::now(), last = Clock::time_point()](double share) mutable {
-        const auto now = Clock::now();
-        if (now - last < std::chrono::milliseconds(200)) return;
-        last = now;
-        message(fmt::format("\r{} {:.0f} %, {:.1f} s\033[K", kind, 100 * share,
-                            std::chrono::duration<double>(now - begin).count()));
-    };
-}
-
 granular::ValidationResult result_of(const Validation& validation, const std::string& kind,
                                      const StudyOptions& options)
 {
     granular::ValidationOptions validation_options;
     validation_options.full = options.grid == "full";
-    validation_options.progress = progress(kind, options.quiet);
-    const auto clear = [&] {
-        if (!options.quiet && isatty(STDERR_FILENO) != 0) message("\r\033[K");
+    io::ProgressLine line(options.quiet);
+    validation_options.progress = [&](double share) {
+        if (line.is_due()) line.show(fmt::format("{} {:.0f} %, {:.1f} s", kind, 100 * share, line.seconds()));
     };
     try {
-        auto result = validation.run(validation_options);
-        clear();
-        return result;
-    } catch (const granular::ParticleLost& e) {
-        clear();
-        throw lie::NumericalFailure("particle_lost", "study " + kind + ": " + e.what());
+        return validation.run(validation_options);
+    } catch (const io::NumericalFailure& e) {
+        throw io::NumericalFailure(e.status, "study " + kind + ": " + e.what());
     }
 }
 
@@ -110,7 +88,7 @@ int study(const Validation& validation, const StudyOptions& options)
     const bool passed = evaluate(criteria, output.text, output.json);
     output.figures = {output.kind + ".png"};
     const int code = finish(options, output, {}, {});
-    return code == exit_code::done && options.check && !passed ? exit_code::expectation_failed : code;
+    return code == io::exit_code::done && options.check && !passed ? io::exit_code::expectation_failed : code;
 }
 
 std::vector<Study> all()

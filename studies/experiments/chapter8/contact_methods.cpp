@@ -13,7 +13,7 @@
 /// pile    Balls fall into a bowl without friction: contacts close and lift off, and the number of contacts
 ///         may exceed the number of degrees of freedom.
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 #include "studies/experiments/chapter8/method.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/pool.hpp"
@@ -309,7 +309,7 @@ int contact_methods(const StudyOptions& options)
     check_keys(kind, options, std::vector<std::string>{"error"});
     for (const std::string& name : options.problems)
         if (std::find(parts.begin(), parts.end(), name) == parts.end())
-            throw UsageError("study contact-methods: unknown part" + with_nearest(name, parts));
+            throw io::UsageError("study contact-methods: unknown part" + with_nearest(name, parts));
     const auto is_selected = [&](const std::string& part) {
         return options.problems.empty() ||
                std::find(options.problems.begin(), options.problems.end(), part) != options.problems.end();

@@ -137,7 +137,7 @@ TEST_CASE("springs between two bodies satisfy Newton's third law", "[dae][forces
     Random random(GENERATE(range(11u, 21u)));
     const State x = random.state(2);
     const SpringDamper spring(0, random.vector(), 1, random.vector(), 40, 3, 0.5,
-                              Expression("2*l^2 + ldot*abs(ldot) + sin(t)", {"l", "ldot", "t"}));
+                              io::Expression("2*l^2 + ldot*abs(ldot) + sin(t)", {"l", "ldot", "t"}));
     const lie::Loads of_spring = loads(spring, x);
     CHECK(of_spring.F[0].norm() > 0.1);
     CHECK(total_force(of_spring).norm() < 1e-13);
@@ -184,7 +184,7 @@ TEST_CASE("the force of a spring is k (l - l0) + c ldot + F(l, ldot, t)", "[dae]
     x.body[0].rdot = {0.25, 3, 0};
     x.body[1].rdot = {0.75, 0, -5};
     const SpringDamper spring(0, Vec3::Zero(), 1, Vec3::Zero(), 10, 4, 1.5,
-                              Expression("3*l^2 - ldot + 100*t", {"l", "ldot", "t"}));
+                              io::Expression("3*l^2 - ldot + 100*t", {"l", "ldot", "t"}));
     const lie::Loads l = loads(spring, x);
     CHECK(l.F[0].isApprox(Vec3(43.5, 0, 0), 1e-14));  // positive: body i is pulled towards body j
     CHECK(l.F[1].isApprox(Vec3(-43.5, 0, 0), 1e-14));
@@ -249,7 +249,8 @@ TEST_CASE("prescribed loads act in their frame", "[dae][forces]")
     const State x = random.state(2);
     const Motion& b = x.body[1];
     const Vec3 s_bar = random.vector();
-    const std::array<Expression, 3> formulas{Expression("2*t"), Expression("cos(t)"), Expression("-1")};
+    const std::array<io::Expression, 3> formulas{io::Expression("2*t"), io::Expression("cos(t)"),
+                                                 io::Expression("-1")};
     const Vec3 F(2 * x.t, std::cos(x.t), -1);
 
     const lie::Loads global = loads(PrescribedForce(1, s_bar, Frame::global, formulas), x);
@@ -269,7 +270,7 @@ TEST_CASE("prescribed loads act in their frame", "[dae][forces]")
 
 TEST_CASE("a load on the ground or on a missing body is rejected", "[dae][forces]")
 {
-    const std::array<Expression, 3> one{Expression("1"), Expression("1"), Expression("1")};
+    const std::array<io::Expression, 3> one{io::Expression("1"), io::Expression("1"), io::Expression("1")};
     const Vec3 O = Vec3::Zero();
     CHECK_THROWS_WITH(PrescribedForce(ground, O, Frame::body, one), Catch::Contains("ground"));
     CHECK_THROWS_WITH(PrescribedTorque(ground, Frame::global, one), Catch::Contains("ground"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Changes of a world during a run: added particles, added laws, rejected input; and contacts of rotating
 // bodies.
-#include "granular/files.hpp"
+#include "io/error.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 using namespace hilda;
 using namespace hilda::tests;
 using granular::Boundary;
-using granular::InvalidCase;
+using io::InvalidInput;
 
 namespace {
 
@@ -135,14 +135,14 @@ TEST_CASE("rejected input leaves a running world unchanged", "[granular][errors]
     lawless.add(Particle{.r = {0, 0, R}, .radius = R});
     lawless.step(10);
     lawless.add(Boundary{.material = 1});
-    CHECK_THROWS_AS(lawless.step(), InvalidCase);
-    CHECK_THROWS_AS(lawless.contacts(), InvalidCase);
+    CHECK_THROWS_AS(lawless.step(), io::InvalidInput);
+    CHECK_THROWS_AS(lawless.contacts(), io::InvalidInput);
     lawless.set_law(0, 1, hertz_mindlin(glass(), 0.5, 0.3));
     lawless.step();
     CHECK(lawless.contacts().size() == 2);
 
     world.add(Particle{.r = {0, 0, 50 * R}, .radius = 5 * R});
-    CHECK_THROWS_AS(world.step(), InvalidCase);
+    CHECK_THROWS_AS(world.step(), io::InvalidInput);
     CHECK(world.particles()[0].r == before);
     CHECK(world.contacts().size() == 1);
 
@@ -151,11 +151,11 @@ TEST_CASE("rejected input leaves a running world unchanged", "[granular][errors]
     crowded.step(10);
     crowded.add(Particle{.r = {0.5 * R, 0, R}, .radius = R});
     CHECK_THROWS_WITH(crowded.step(), Catch::Contains("particle 0 and particle 1: must not overlap"));
-    CHECK_THROWS_AS(crowded.step(), InvalidCase);
+    CHECK_THROWS_AS(crowded.step(), io::InvalidInput);
 
-    CHECK_THROWS_AS(world.add(Boundary{.axis = {0, 0, 2}}), InvalidCase);
-    CHECK_THROWS_AS(world.add(Boundary{.r = {0, 0, std::nan("")}}), InvalidCase);
-    CHECK_THROWS_AS(world.set_velocity(9, {0, 0, 0}, {0, 0, 0}), InvalidCase);
+    CHECK_THROWS_AS(world.add(Boundary{.axis = {0, 0, 2}}), io::InvalidInput);
+    CHECK_THROWS_AS(world.add(Boundary{.r = {0, 0, std::nan("")}}), io::InvalidInput);
+    CHECK_THROWS_AS(world.set_velocity(9, {0, 0, 0}, {0, 0, 0}), io::InvalidInput);
 }
 
 TEST_CASE("a rolling law can be set while contacts exist", "[granular]")

@@ -4,7 +4,7 @@
 #include "tests/support/grains.hpp"
 
 #include "granular/case/case_file.hpp"
-#include "granular/files.hpp"
+#include "io/error.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -70,9 +70,9 @@ TEST_CASE("a checkpoint with a wrong bit or a wrong length is rejected", "[granu
         std::string wrong = bytes;
         const std::size_t at = k < 40 ? k : random() % bytes.size();
         wrong[at] = static_cast<char>(wrong[at] ^ (1 << (random() >> 20) % 8));
-        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), granular::FileError);
+        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), io::IoError);
         wrong.resize(random() % bytes.size());
-        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), granular::FileError);
+        CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), io::IoError);
     }
     CHECK_NOTHROW(c.world->from_bytes(bytes, "run", "checkpoint"));
 }

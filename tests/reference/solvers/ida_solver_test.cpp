@@ -124,7 +124,7 @@ void pushed(const char* force, dae::Model& model, lie::State& x)
     tests::add_body(model, x, "block", 1, {1, 1, 1}, Vec3::Zero(), lie::Mat3::Identity());
     model.load(dae::PrescribedForce(
         0, Vec3::Zero(), dae::Frame::global,
-        {dae::Expression(force, {"t"}), dae::Expression("0", {"t"}), dae::Expression("0", {"t"})}));
+        {io::Expression(force, {"t"}), io::Expression("0", {"t"}), io::Expression("0", {"t"})}));
     dae::start(model, x);
 }
 

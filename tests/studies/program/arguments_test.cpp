@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/arguments.hpp"
-#include "studies/csv.hpp"
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 #include "studies/running/diagnosis.hpp"
 
 #include <catch2/catch.hpp>
 
+using namespace hilda;
 using namespace hilda::studies;
 
 TEST_CASE("an option value must be a number as a whole", "[studies][arguments]")
@@ -15,20 +15,20 @@ TEST_CASE("an option value must be a number as a whole", "[studies][arguments]")
     CHECK(number("--x", "-2.5") == -2.5);
     for (const char* text : {"", " 1", "1 ", "1,5", "0x10", "nan", "inf", "1e999", "one"}) {
         CAPTURE(text);
-        CHECK_THROWS_AS(number("--x", text), UsageError);
+        CHECK_THROWS_AS(number("--x", text), io::UsageError);
     }
-    CHECK_THROWS_AS(positive_number("--step", "0"), UsageError);
-    CHECK_THROWS_AS(positive_count("--jobs", "1.5"), UsageError);
+    CHECK_THROWS_AS(positive_number("--step", "0"), io::UsageError);
+    CHECK_THROWS_AS(positive_count("--jobs", "1.5"), io::UsageError);
     CHECK(steps("--steps", "1e-4,1e-3") == std::vector<double>{1e-3, 1e-4});
     CHECK(list("--problem", "a,b") == std::vector<std::string>{"a", "b"});
     for (const char* text : {"", ",", "a,", ",a", "a,,b"})
-        CHECK_THROWS_AS(list("--problem", text), UsageError);
+        CHECK_THROWS_AS(list("--problem", text), io::UsageError);
 }
 
 TEST_CASE("a word that is not allowed is rejected with the list of allowed words", "[studies][arguments]")
 {
     CHECK(preset("--preset", "balanced") == "balanced");
-    CHECK_THROWS_AS(preset("--preset", "Balanced"), UsageError);
+    CHECK_THROWS_AS(preset("--preset", "Balanced"), io::UsageError);
     CHECK_THROWS_WITH(preset("--preset", "thesis"),
                       "--preset: must be balanced or dissertation, got 'thesis'");
     CHECK_THROWS_WITH(one_of("--grid", "", std::vector<std::string>{"a", "b", "c"}),
@@ -46,7 +46,7 @@ TEST_CASE("an expectation has a key, a value and a tolerance", "[studies][argume
     CHECK(expectation("--expect", "r_end=1").tolerance == 0);
     for (const char* text : {"", "order", "=2", "order=", "order=2+-", "order=2+--1", "a+-1=2"}) {
         CAPTURE(text);
-        CHECK_THROWS_AS(expectation("--expect", text), UsageError);
+        CHECK_THROWS_AS(expectation("--expect", text), io::UsageError);
     }
 }
 
@@ -58,11 +58,4 @@ TEST_CASE("a step is written with the least digits, in scientific notation below
     CHECK(step_text(1e-10) == "1e-10");
     CHECK(step_text(0.02) == "0.02");
     CHECK(step_text(1) == "1");
-}
-
-TEST_CASE("a name with a comma or a quote is quoted as one CSV field", "[studies][arguments]")
-{
-    CHECK(csv_field("crank.rx") == "crank.rx");
-    CHECK(csv_field("a,b") == "\"a,b\"");
-    CHECK(csv_field("a\"b") == "\"a\"\"b\"");
 }

@@ -64,17 +64,17 @@ TEST_CASE("each flipped bit and each truncation of a checkpoint is detected", "[
     for (size_t k = 0; k < 8 * good.size(); ++k) {
         std::string bad = good;
         bad[k / 8] = static_cast<char>(bad[k / 8] ^ (1 << k % 8));
-        REQUIRE_THROWS_AS(from_bytes(bad, "file"), IoError);
+        REQUIRE_THROWS_AS(from_bytes(bad, "file"), io::IoError);
     }
     for (size_t length = 0; length < good.size(); ++length)
-        REQUIRE_THROWS_AS(from_bytes(good.substr(0, length), "file"), IoError);
-    REQUIRE_THROWS_AS(from_bytes(good + "x", "file"), IoError);
+        REQUIRE_THROWS_AS(from_bytes(good.substr(0, length), "file"), io::IoError);
+    REQUIRE_THROWS_AS(from_bytes(good + "x", "file"), io::IoError);
 
     std::mt19937 random(1);
     for (int k = 0; k < 1000; ++k) {
         std::string noise(random() % 500, '\0');
         for (char& c : noise) c = static_cast<char>(random());
-        REQUIRE_THROWS_AS(from_bytes(noise, "file"), IoError);
+        REQUIRE_THROWS_AS(from_bytes(noise, "file"), io::IoError);
     }
 }
 

@@ -3,8 +3,8 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "studies/exit_codes.hpp"
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/csv_trajectory.hpp"
@@ -130,7 +130,7 @@ TEST_CASE("normal rows along x and y fail on the loop and tangent rows do not", 
     const Ended tangent = loop("tangent", "a"), fixed = loop("fixed-xy", "b");
     CAPTURE(tangent.err, fixed.err);
     CHECK(tangent.code == 0);
-    CHECK(fixed.code == studies::exit_code::numerical_failure);
+    CHECK(fixed.code == io::exit_code::numerical_failure);
     const ordered_json summary = ordered_json::parse(read(in / "b/summary.json"));
     CHECK(summary["exit_code"] == 4);
     CHECK(summary["status"] != "ok");
@@ -325,7 +325,7 @@ TEST_CASE("a contact that switches to its fallback is an event and the run conti
     };
     const Ended alone = run(model(rolls, R"(, "unilateral": true)"));
     CAPTURE(alone.err);
-    CHECK(alone.code == studies::exit_code::numerical_failure);
+    CHECK(alone.code == io::exit_code::numerical_failure);
     const Ended ended = run(model(rolls, fallback));
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
@@ -362,7 +362,7 @@ TEST_CASE("the evolving-order study distinguishes first from second order", "[st
     };
     CHECK(study("rA-half-1", "1").code == 0);
     CHECK(study("rA-half-1-momentum", "2").code == 0);
-    CHECK(study("rA-half-1-momentum", "1").code == studies::exit_code::expectation_failed);
+    CHECK(study("rA-half-1-momentum", "1").code == io::exit_code::expectation_failed);
     CHECK(call(in, {"study", "evolving-order", "--problem", "double_pendulum"}).code == 2);
 }
 

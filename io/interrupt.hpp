@@ -4,7 +4,7 @@
 
 #pragma once
 
-namespace hilda::studies {
+namespace hilda::io {
 
 /// During the lifetime of an object of this class, the first SIGINT or SIGTERM is recorded and does not end
 /// the program.
@@ -19,4 +19,4 @@ public:
     static int caught();
 };
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

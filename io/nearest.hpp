@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hilda::dae {
+namespace hilda::io {
 
 /// Edit distance of two words (optimal string alignment): the number of insertions, deletions, replacements
 /// and transpositions of adjacent letters that turn a into b. Case is ignored.
@@ -53,4 +53,4 @@ inline std::string nearest(std::string_view word, std::span<const std::string> k
     return best;
 }
 
-}  // namespace hilda::dae
+}  // namespace hilda::io

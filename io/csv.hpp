@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 /// Appends the shortest decimal text that reads back as the same double
 inline void append_number(std::string& row, double value)
@@ -40,4 +40,4 @@ inline std::string csv_field(const std::string& name)
     return quoted + '"';
 }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/json.hpp"
+#include "io/json.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -9,7 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
-using hilda::studies::Json;
+using namespace hilda;
+using io::Json;
 using nlohmann::ordered_json;
 
 namespace {
@@ -23,37 +24,37 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("studies: Json writes the text of nlohmann::ordered_json")
+TEST_CASE("io::Json writes the text of nlohmann::ordered_json")
 {
     SECTION("numbers, texts and truth values")
     {
-        CHECK(Json().text() == "null\n");
-        CHECK(Json(nullptr).text() == "null\n");
-        CHECK(Json(true).text() == "true\n");
-        CHECK(Json("a \"b\"\n").text() == text("a \"b\"\n"));
+        CHECK(io::Json().text() == "null\n");
+        CHECK(io::Json(nullptr).text() == "null\n");
+        CHECK(io::Json(true).text() == "true\n");
+        CHECK(io::Json("a \"b\"\n").text() == text("a \"b\"\n"));
         for (const double x : {0.0, -0.0, 1.0, 0.1, 1e-300, 1e22, 1.0 / 3, -2.5e-7})
-            CHECK(Json(x).text() == text(x));
+            CHECK(io::Json(x).text() == text(x));
         for (const double x : {infinity, -infinity, std::nan("")}) {
-            CHECK(Json(x).text() == "null\n");
-            CHECK(hilda::studies::number_or_null(x).text() == "null\n");
+            CHECK(io::Json(x).text() == "null\n");
+            CHECK(io::number_or_null(x).text() == "null\n");
         }
-        CHECK(Json(-3).text() == "-3\n");
-        CHECK(Json(std::uint32_t{4294967295}).text() == "4294967295\n");
-        CHECK(Json(std::size_t{1} << 53).text() == "9007199254740992\n");
-        CHECK(Json("\xff").text() == text("\xff"));  // not UTF-8
+        CHECK(io::Json(-3).text() == "-3\n");
+        CHECK(io::Json(std::uint32_t{4294967295}).text() == "4294967295\n");
+        CHECK(io::Json(std::size_t{1} << 53).text() == "9007199254740992\n");
+        CHECK(io::Json("\xff").text() == text("\xff"));  // not UTF-8
     }
     SECTION("the initializer list of a value")
     {
         const std::string name = "n";
         const std::vector<std::string> words = {"a", "b"};
-        const Json ours = {{"name", name},
-                           {"two", {"x", "y"}},
-                           {"pairs", {{"k", 1}, {"l", {{"m", nullptr}}}}},
-                           {"mixed", {{"k", 1}, 2.5}},
-                           {"point", {0.5, 1.5, 2.5}},
-                           {"words", words},
-                           {"none", std::vector<int>{}},
-                           {"empty", Json::object()}};
+        const io::Json ours = {{"name", name},
+                               {"two", {"x", "y"}},
+                               {"pairs", {{"k", 1}, {"l", {{"m", nullptr}}}}},
+                               {"mixed", {{"k", 1}, 2.5}},
+                               {"point", {0.5, 1.5, 2.5}},
+                               {"words", words},
+                               {"none", std::vector<int>{}},
+                               {"empty", io::Json::object()}};
         const ordered_json theirs = {{"name", name},
                                      {"two", {"x", "y"}},
                                      {"pairs", {{"k", 1}, {"l", {{"m", nullptr}}}}},
@@ -66,7 +67,7 @@ TEST_CASE("studies: Json writes the text of nlohmann::ordered_json")
     }
     SECTION("changes")
     {
-        Json ours;
+        io::Json ours;
         ordered_json theirs;
         ours["b"] = 1;
         theirs["b"] = 1;
@@ -74,7 +75,7 @@ TEST_CASE("studies: Json writes the text of nlohmann::ordered_json")
         theirs["a"]["c"].push_back("d");
         ours.update({{"b", 2}, {"e", false}});
         theirs.update({{"b", 2}, {"e", false}});
-        const Json copy = ours;
+        const io::Json copy = ours;
         ours["b"] = 3;
         CHECK(copy.text() == text(theirs));
         CHECK(copy.size() == 3);
@@ -82,9 +83,9 @@ TEST_CASE("studies: Json writes the text of nlohmann::ordered_json")
     }
 }
 
-TEST_CASE("studies: Json refuses operations of another kind of value")
+TEST_CASE("io::Json refuses operations of another kind of value")
 {
-    Json number = 1, array = Json::array();
+    io::Json number = 1, array = io::Json::array();
     CHECK_THROWS_AS(number["a"], std::logic_error);
     CHECK_THROWS_AS(array["a"], std::logic_error);
     CHECK_THROWS_AS(number.push_back(1), std::logic_error);

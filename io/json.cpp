@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/json.hpp"
+#include "io/json.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace {
 
@@ -139,6 +139,12 @@ std::string Json::text() const
            '\n';
 }
 
+std::string json_library_version()
+{
+    return std::to_string(NLOHMANN_JSON_VERSION_MAJOR) + '.' + std::to_string(NLOHMANN_JSON_VERSION_MINOR) +
+           '.' + std::to_string(NLOHMANN_JSON_VERSION_PATCH);
+}
+
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

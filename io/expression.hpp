@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "dae/jet.hpp"
+#include "io/jet.hpp"
 
-namespace hilda::dae {
+namespace hilda::io {
 
 /// An invalid expression. The message quotes its text, for example
 ///     unknown function 'sine' in "sine(2*t)" at column 1; did you mean 'sin'?
@@ -85,4 +85,4 @@ private:
     std::vector<Instruction> program;
 };
 
-}  // namespace hilda::dae
+}  // namespace hilda::io

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstdio>
+#include <exception>
 #include <string>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 /// Writes a text to stderr. Errors of stderr (closed, or redirected to a full disk) are ignored; fmt::print
 /// would throw.
@@ -19,4 +20,7 @@ inline void message(const std::string& text) noexcept
 /// Writes the line "hilda: warning: WHAT".
 inline void warning(const std::string& what) { message("hilda: warning: " + what + '\n'); }
 
-}  // namespace hilda::studies
+/// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their errors here.
+int report(const std::exception& error);
+
+}  // namespace hilda::io

@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include "dae/elementary.hpp"
+#include "io/elementary.hpp"
 
-namespace hilda::dae {
+namespace hilda::io {
 
 /// A function of time at one instant: f, df/dt, d²f/dt².
 struct Jet {
@@ -58,4 +58,4 @@ inline Jet select(const Jet& c, const Jet& a, const Jet& b)
     return {select(c.f, a.f, b.f), next.fdot, next.fddot};
 }
 
-}  // namespace hilda::dae
+}  // namespace hilda::io

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/output.hpp"
-
-#include <fmt/format.h>
-#include <CLI/Version.hpp>
-#include <hilda/version.hpp>
+#include "io/files.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace fs = std::filesystem;
 
@@ -104,10 +100,14 @@ void rename_file(const std::string& from, const std::string& to)
 std::string read_file(const std::string& path, size_t most)
 {
     struct stat s {};
-    if (stat(path.c_str(), &s) != 0) fail(path, "cannot be read");
+    if (stat(path.c_str(), &s) != 0) {
+        if (errno == ENOENT) throw IoError(path + ": does not exist");
+        fail(path, "cannot be read");
+    }
     if (!S_ISREG(s.st_mode)) throw IoError(path + ": is not a regular file");
     if (static_cast<size_t>(s.st_size) > most)
-        throw IoError(fmt::format("{}: is larger than {} bytes, got {}", path, most, s.st_size));
+        throw IoError(path + ": is larger than " + std::to_string(most) + " bytes, got " +
+                      std::to_string(s.st_size));
     std::string content(static_cast<size_t>(s.st_size), '\0');
     std::ifstream in(path, std::ios::binary);
     if (!in.read(content.data(), s.st_size)) fail(path, "cannot be read");
@@ -133,40 +133,4 @@ void make_directory(const std::string& directory)
     if (error) throw IoError(directory + ": cannot be created: " + error.message());
 }
 
-std::string processor()
-{
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name"))
-            if (const size_t at = line.find(": "); at != std::string::npos) return line.substr(at + 2);
-    return "unknown";
-}
-
-std::vector<std::pair<std::string, std::string>> libraries()
-{
-    return {{"Eigen", version::eigen},
-            {"KLU", version::klu},
-            {"SPQR", version::spqr},
-            {"GSL", version::gsl},
-            {"SUNDIALS", version::sundials},
-            {"CLI11", CLI11_VERSION},
-            {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-            {"nlohmann_json", version::nlohmann_json}};
-}
-
-Json provenance(const std::string& command_line, int threads)
-{
-    Json all = Json::object();
-    for (const auto& [library, number] : libraries()) all[library] = number;
-    return {{"version", version::number},
-            {"git", version::git},
-            {"build_type", version::build_type},
-            {"flags", version::flags},
-            {"compiler", version::compiler},
-            {"libraries", all},
-            {"command_line", command_line},
-            {"cpu", processor()},
-            {"threads", threads}};
-}
-
-}  // namespace hilda::studies
+}  // namespace hilda::io

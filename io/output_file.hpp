@@ -3,12 +3,12 @@
 
 #pragma once
 
-#include "studies/exit_codes.hpp"
+#include "io/error.hpp"
 
 #include <cstdint>
 #include <string>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 class OutputFile {
 public:
@@ -45,4 +45,4 @@ private:
     std::uint64_t written = 0;
 };
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

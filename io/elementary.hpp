@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace hilda::dae {
+namespace hilda::io {
 
 /// A type with a value f, and with a function chain(x, g, g', g'') that returns g(x) and its derivatives by
 /// the chain rule
@@ -104,4 +104,4 @@ D pow(const D& x, double p)
     return chain(x, std::pow(x.f, p), g1, g2);
 }
 
-}  // namespace hilda::dae
+}  // namespace hilda::io

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/interrupt.hpp"
+#include "io/interrupt.hpp"
 
 #include <unistd.h>
 
 #include <csignal>
 #include <initializer_list>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace {
 
@@ -32,4 +32,4 @@ Interrupt::Interrupt() { handle(record_signal); }
 Interrupt::~Interrupt() { handle(SIG_DFL); }
 int Interrupt::caught() { return signal_caught; }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/exit_codes.hpp"
+#include "io/message.hpp"
 
-#include "lie/check.hpp"
-#include "studies/message.hpp"
+#include "io/error.hpp"
 
 #include <new>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 int report(const std::exception& error)
 {
@@ -15,9 +14,8 @@ int report(const std::exception& error)
         return code;
     };
     if (const auto* failure = dynamic_cast<const Failure*>(&error)) return say("error", failure->code);
-    if (dynamic_cast<const lie::InvalidInput*>(&error) != nullptr)
-        return say("error", exit_code::invalid_input);
-    if (const auto* failure = dynamic_cast<const lie::NumericalFailure*>(&error))
+    if (dynamic_cast<const InvalidInput*>(&error) != nullptr) return say("error", exit_code::invalid_input);
+    if (const auto* failure = dynamic_cast<const NumericalFailure*>(&error))
         return say("error[" + failure->status + "]", exit_code::numerical_failure);
     if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
         message("hilda: internal error: out of memory\n");
@@ -26,4 +24,4 @@ int report(const std::exception& error)
     return say("internal error", exit_code::internal_error);
 }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Directories, small files and provenance of runs and studies.
+/// Files that are written at once or read at once, and directories.
 
 #pragma once
 
-#include "studies/exit_codes.hpp"
-#include "studies/json.hpp"
+#include "io/error.hpp"
 
 #include <string>
-#include <utility>
-#include <vector>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 /// Writes a file atomically: to FILE.tmp, fsync, rename, fsync of the directory. After a crash the file has
 /// its old or its new contents. A symbolic link is followed; a device or pipe is written to directly.
@@ -29,12 +26,4 @@ bool is_missing_or_empty(const std::string& directory);
 /// Creates the directory and its parents. IoError.
 void make_directory(const std::string& directory);
 
-/// Name and version of each library
-std::vector<std::pair<std::string, std::string>> libraries();
-/// Model name of the processor, "unknown" if the system does not tell it
-std::string processor();
-
-/// Version, git state, compiler and flags, libraries, command line, processor and number of threads, as JSON
-Json provenance(const std::string& command_line, int threads);
-
-}  // namespace hilda::studies
+}  // namespace hilda::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/output_file.hpp"
+#include "io/output_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace {
 
@@ -65,4 +65,4 @@ void OutputFile::sync()
     if (fdatasync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(path);
 }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

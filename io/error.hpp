@@ -1,25 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Exit codes of the program, and the exceptions that cause them.
+/// Exceptions of all rooms, and the exit codes of the programs.
 
 #pragma once
 
-#include <exception>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace exit_code {
 inline constexpr int done = 0;
 inline constexpr int internal_error = 1;
 inline constexpr int wrong_command_line = 2;
-inline constexpr int invalid_input = 3;      ///< lie::InvalidInput
-inline constexpr int numerical_failure = 4;  ///< lie::NumericalFailure
+inline constexpr int invalid_input = 3;      ///< InvalidInput
+inline constexpr int numerical_failure = 4;  ///< NumericalFailure
 inline constexpr int input_output = 5;
 inline constexpr int expectation_failed = 6;
 inline constexpr int not_available = 7;
 inline constexpr int signal = 128;  ///< plus the number of the signal
 }  // namespace exit_code
+
+/// Invalid input. what() contains the place, the error and the value.
+class InvalidInput : public std::invalid_argument {
+public:
+    using std::invalid_argument::invalid_argument;
+};
+
+/// Throws InvalidInput "where: what, got value".
+template <class Value>
+[[noreturn]] void reject(const std::string& where, const std::string& what, const Value& value)
+{
+    std::ostringstream text;
+    text.precision(17);
+    text << where << ": " << what << ", got " << value;
+    throw InvalidInput(text.str());
+}
+
+/// A computation that failed. If a step of an integrator throws it, the state remains that of t_n.
+class NumericalFailure : public std::runtime_error {
+public:
+    NumericalFailure(std::string status, const std::string& what)
+        : std::runtime_error(what), status(std::move(status))
+    {}
+
+    /// newton_diverged, singular_matrix, nonfinite, constraint_drift, singular_parametrisation, ida_failed,
+    /// ...
+    std::string status;
+};
 
 /// An error outside the numerics and the model, with its exit code
 class Failure : public std::runtime_error {
@@ -47,8 +76,4 @@ public:
     explicit NotAvailable(const std::string& what) : Failure(exit_code::not_available, what) {}
 };
 
-/// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their
-/// errors here.
-int report(const std::exception& error);
-
-}  // namespace hilda::studies
+}  // namespace hilda::io

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 /// A JSON value that is built in memory and then written. The members of an object keep the order of their
 /// insertion.
@@ -73,7 +73,10 @@ private:
     std::unique_ptr<Value> value;  ///< empty: null
 };
 
+/// Version of nlohmann-json, which writes the text
+std::string json_library_version();
+
 /// The number, or null if it is not finite
 Json number_or_null(double value);
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

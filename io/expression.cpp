@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Parser of expressions (recursive descent) and evaluation of the postfix program for numbers and jets.
 
-#include "dae/expression.hpp"
+#include "io/expression.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -11,9 +11,9 @@
 #include <system_error>
 #include <type_traits>
 
-#include "dae/nearest.hpp"
+#include "io/nearest.hpp"
 
-namespace hilda::dae {
+namespace hilda::io {
 namespace {
 
 using Op = Expression::Op;
@@ -428,4 +428,4 @@ std::string_view Expression::outermost() const
     return "";
 }
 
-}  // namespace hilda::dae
+}  // namespace hilda::io

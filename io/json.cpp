@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -19,7 +18,7 @@ using Members = std::vector<std::pair<std::string, Json>>;
 }  // namespace
 
 struct Json::Value {
-    std::variant<bool, long long, double, std::string, Elements, Members> is;
+    std::variant<bool, long long, unsigned long long, double, std::string, Elements, Members> is;
 
     static nlohmann::ordered_json converted(const Json& json);
 };
@@ -51,6 +50,7 @@ Json::Json(const std::string& text) : value(new Value{text}) {}
 Json::Json(double number) : value(new Value{number}) {}
 Json::Json(Truth truth) : value(new Value{truth.is}) {}
 Json::Json(Integer number) : value(new Value{number.is}) {}
+Json::Json(Natural number) : value(new Value{number.is}) {}
 
 Json::Json(std::initializer_list<Json> elements)
 {
@@ -144,7 +144,5 @@ std::string json_library_version()
     return std::to_string(NLOHMANN_JSON_VERSION_MAJOR) + '.' + std::to_string(NLOHMANN_JSON_VERSION_MINOR) +
            '.' + std::to_string(NLOHMANN_JSON_VERSION_PATCH);
 }
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 }  // namespace hilda::io

@@ -25,8 +25,9 @@ public:
     /// A number. One that is not finite is written as null.
     Json(double number);
     Json(std::same_as<bool> auto truth) : Json(Truth{truth}) {}
-    Json(std::integral auto number) requires(!std::same_as<decltype(number), bool>)
-        : Json(Integer{static_cast<long long>(number)})
+    Json(std::signed_integral auto number) : Json(Integer{number}) {}
+    Json(std::unsigned_integral auto number) requires(!std::same_as<decltype(number), bool>)
+        : Json(Natural{number})
     {}
     /// An array
     template <class Element>
@@ -66,8 +67,12 @@ private:
     struct Integer {
         long long is;
     };
+    struct Natural {
+        unsigned long long is;
+    };
     explicit Json(Truth truth);
     explicit Json(Integer number);
+    explicit Json(Natural number);
 
     struct Value;
     std::unique_ptr<Value> value;  ///< empty: null
@@ -75,8 +80,5 @@ private:
 
 /// Version of nlohmann-json, which writes the text
 std::string json_library_version();
-
-/// The number, or null if it is not finite
-Json number_or_null(double value);
 
 }  // namespace hilda::io

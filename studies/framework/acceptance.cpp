@@ -28,7 +28,7 @@ bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Jso
     for (const Criterion& d : criteria) {
         table.add({d.measured, d.least, d.most, d.passed() ? "yes" : "NO", d.what});
         json["checks"].push_back({{"what", d.what},
-                                  {"measured", io::number_or_null(d.measured)},
+                                  {"measured", d.measured},
                                   {"least", d.least},
                                   {"most", d.most},
                                   {"passed", d.passed()}});

@@ -151,10 +151,8 @@ io::Json as_json(const std::vector<ComparedRun>& runs)
     io::Json rows = io::Json::array();
     for (const ComparedRun& run : runs) {
         io::Json row = as_json(static_cast<const Run&>(run));
-        for (size_t q = 0; q < 4; ++q)
-            row[std::string("max_") + quantities[q]] = io::number_or_null(run.largest[q]);
-        for (size_t q = 0; q < 4; ++q)
-            row[std::string("end_") + quantities[q]] = io::number_or_null(run.last[q]);
+        for (size_t q = 0; q < 4; ++q) row[std::string("max_") + quantities[q]] = run.largest[q];
+        for (size_t q = 0; q < 4; ++q) row[std::string("end_") + quantities[q]] = run.last[q];
         row["steps"] = run.statistics.steps;
         row["iterations_per_step"] = run.statistics.iterations_per_step();
         rows.push_back(row);

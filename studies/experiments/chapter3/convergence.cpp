@@ -232,12 +232,11 @@ io::Json as_json(const std::vector<Series>& all)
     for (const Series& series : all) {
         const ConvergenceRun& first = *series.front();
         io::Json fits = io::Json::object(), rows = io::Json::array();
-        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = io::number_or_null(fit(series, n));
+        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = fit(series, n);
         for (const ConvergenceRun* run : series) {
             io::Json row = {{"h", run->h}, {"status", run->status}};
             if (!run->message.empty()) row["message"] = run->message;
-            for (int n = 0; n < norm::count; ++n)
-                row[norm::names[n]] = io::number_or_null(run->errors.value[n]);
+            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = run->errors.value[n];
             row["iterations_per_step"] = run->statistics.iterations_per_step();
             row["factorizations"] = run->statistics.factorizations;
             row["cpu_seconds"] = run->seconds;

@@ -133,8 +133,8 @@ io::Json as_json(const std::vector<EnergyRun>& runs)
     for (const EnergyRun& run : runs) {
         io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"energy_start", run.start},
-                    {"end_drift", io::number_or_null(run.drift)},
-                    {"max_drift", io::number_or_null(run.largest)},
+                    {"end_drift", run.drift},
+                    {"max_drift", run.largest},
                     {"max_kinetic", run.kinetic}});
         rows.push_back(row);
     }

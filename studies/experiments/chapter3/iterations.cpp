@@ -136,7 +136,7 @@ io::Json as_json(const std::vector<IterationsRun>& runs)
     for (const IterationsRun& run : runs) {
         io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"steps", run.statistics.steps},
-                    {"iterations_per_step", io::number_or_null(run.mean())},
+                    {"iterations_per_step", run.mean()},
                     {"max_iterations", run.max_iterations},
                     {"factorizations", run.statistics.factorizations}});
         rows.push_back(row);

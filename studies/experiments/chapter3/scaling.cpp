@@ -142,10 +142,10 @@ io::Json as_json(const std::vector<ScalingRun>& runs)
     for (const ScalingRun& run : runs) {
         io::Json row = as_json(static_cast<const Run&>(run));
         row.update({{"bars", run.N},
-                    {"us_per_step", io::number_or_null(run.microseconds().median)},
-                    {"us_per_step_min", io::number_or_null(run.microseconds().least)},
-                    {"us_per_step_max", io::number_or_null(run.microseconds().most)},
-                    {"ratio_to_full", io::number_or_null(run.ratio)},
+                    {"us_per_step", run.microseconds().median},
+                    {"us_per_step_min", run.microseconds().least},
+                    {"us_per_step_max", run.microseconds().most},
+                    {"ratio_to_full", run.ratio},
                     {"iterations_per_step", run.statistics.iterations_per_step()},
                     {"start_seconds", run.start_seconds}});
         rows.push_back(row);
@@ -198,8 +198,7 @@ int scaling(const StudyOptions& options)
         const Exponent p = exponent_of(runs, s);
         measurements.push_back(
             {.of = s->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
-        exponents[s->name] = {{"fitted", io::number_or_null(p.fitted)},
-                              {"largest_local", io::number_or_null(p.largest_local)}};
+        exponents[s->name] = {{"fitted", p.fitted}, {"largest_local", p.largest_local}};
     }
     output.json["exponents"] = exponents;
     for (const ScalingRun& run : runs)

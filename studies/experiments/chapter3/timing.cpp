@@ -113,10 +113,10 @@ io::Json as_json(const std::vector<StepTimeRun>& runs)
     io::Json rows = io::Json::array();
     for (const StepTimeRun& run : runs) {
         io::Json row = as_json(static_cast<const Run&>(run));
-        row.update({{"us_per_step", io::number_or_null(run.microseconds().median)},
-                    {"us_per_step_min", io::number_or_null(run.microseconds().least)},
-                    {"us_per_step_max", io::number_or_null(run.microseconds().most)},
-                    {"ratio_to_full", io::number_or_null(run.ratio)},
+        row.update({{"us_per_step", run.microseconds().median},
+                    {"us_per_step_min", run.microseconds().least},
+                    {"us_per_step_max", run.microseconds().most},
+                    {"ratio_to_full", run.ratio},
                     {"iterations_per_step", run.statistics.iterations_per_step()}});
         rows.push_back(row);
     }

@@ -159,19 +159,18 @@ io::Json as_json(const std::vector<WorkSeries>& all)
         io::Json rows = io::Json::array();
         for (const WorkRun* run : series) {
             io::Json row = as_json(static_cast<const Run&>(*run));
-            for (int n = 0; n < norm::count; ++n)
-                row[norm::names[n]] = io::number_or_null(run->errors.value[n]);
+            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = run->errors.value[n];
             row["steps"] = run->statistics.steps;
             row["iterations_per_step"] = run->statistics.iterations_per_step();
             row["factorizations"] = run->statistics.factorizations;
-            row["cpu_seconds"] = io::number_or_null(run->seconds_of_repeats().median);
+            row["cpu_seconds"] = run->seconds_of_repeats().median;
             rows.push_back(row);
         }
         out.push_back({{"problem", series.front()->c->problem.name},
                        {"integrator", series.front()->scheme->name},
                        {"reference", series.front()->c->reference_name},
                        {"asked_r", target_error},
-                       {"cpu_seconds_needed", io::number_or_null(w.seconds)},
+                       {"cpu_seconds_needed", w.seconds},
                        {"at_most", w.at_most},
                        {"rows", rows}});
     }

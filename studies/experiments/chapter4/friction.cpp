@@ -283,7 +283,7 @@ int study(const StudyOptions& options)
             printed.add({k.measured, k.required, k.tolerance, passed, k.source, k.what});
             rows.push_back({{"experiment", c.experiment->name},
                             {"what", k.what},
-                            {"measured", io::number_or_null(k.measured)},
+                            {"measured", k.measured},
                             {"required", k.required},
                             {"tolerance", k.tolerance},
                             {"by", k.source},

@@ -304,17 +304,14 @@ int incline_sweep(const StudyOptions& options)
         "{}\n",
         b.rest.least, b.rest.most, b.rolling.least, b.rolling.most,
         std::isfinite(b.slip_from) ? fmt::format("from eta_r = {:.3f}", b.slip_from) : "does not occur");
-    output.json = {
-        {"preset", preset},
-        {"h", h},
-        {"end", end},
-        {"grid", g.name},
-        {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
-        {"rest_limit",
-         {{"least", io::number_or_null(b.rest.least)}, {"most", io::number_or_null(b.rest.most)}}},
-        {"rolling_limit",
-         {{"least", io::number_or_null(b.rolling.least)}, {"most", io::number_or_null(b.rolling.most)}}},
-        {"slip_from", io::number_or_null(b.slip_from)}};
+    output.json = {{"preset", preset},
+                   {"h", h},
+                   {"end", end},
+                   {"grid", g.name},
+                   {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
+                   {"rest_limit", {{"least", b.rest.least}, {"most", b.rest.most}}},
+                   {"rolling_limit", {{"least", b.rolling.least}, {"most", b.rolling.most}}},
+                   {"slip_from", b.slip_from}};
     std::vector<Measured> measurements = {{.of = kind,
                                            .value = {{"rest_limit", b.rest.largest()},
                                                      {"rolling_limit_least", b.rolling.least},

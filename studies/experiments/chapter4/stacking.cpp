@@ -297,10 +297,8 @@ int stacking(const StudyOptions& options)
                                 .value = {{"peak_eta_" + gap_text(gap), c.peak_eta},
                                           {"peak_mass_" + gap_text(gap), c.peak_mass},
                                           {"plateau_" + gap_text(gap), c.plateau}}});
-        curves.push_back({{"gap", gap},
-                          {"peak_eta", io::number_or_null(c.peak_eta)},
-                          {"peak_mass", c.peak_mass},
-                          {"plateau", io::number_or_null(c.plateau)}});
+        curves.push_back(
+            {{"gap", gap}, {"peak_eta", c.peak_eta}, {"peak_mass", c.peak_mass}, {"plateau", c.plateau}});
     }
     if (undecided > 0)
         output.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,

@@ -133,10 +133,10 @@ io::Json as_json(const std::vector<OrderSeries>& all)
     for (const OrderSeries& series : all) {
         const OrderRun& first = *series.front();
         io::Json fits = io::Json::object(), rows = io::Json::array();
-        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = io::number_or_null(fit(series, n));
+        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = fit(series, n);
         for (const OrderRun* run : series) {
             io::Json row = {{"h", run->h}, {"status", run->status}};
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = io::number_or_null(run->error[n]);
+            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = run->error[n];
             rows.push_back(row);
         }
         out.push_back({{"problem", first.c->problem.name},

@@ -6,19 +6,40 @@
 #include "dae/body.hpp"
 #include "lie/rows.hpp"
 
+#include <string>
+
 namespace hilda::dae {
 
-/// Position rows Φ(r, A, α) = 0 of two bodies with algebraic variables α, and velocity rows C_v v = 0.
+/// First variation of a row: δΦ = r_i · δr_i + pi_i · δπ̄_i + r_j · δr_j + pi_j · δπ̄_j           Eq. 3.6
 ///
-///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α) = 0,    C_v v = 0        Fang (2022), Eqs. 5.31 to 5.36
+/// r_i = Φ_riᵀ (global frame) and pi_i = Π̄_iᵀ (body frame of i); the same for body j. A virtual rotation δπ̄
+/// changes the orientation by δA = A δπ̄~.
+struct Variation {
+    Vec3 r_i, pi_i, r_j, pi_j;
+
+    static Variation zero() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
+};
+
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+
+/// Derivatives of γ: δγ = r · δr + theta · δθ + rdot · δṙ + omega · δω̄, summed over the bodies i and j
+struct GammaDerivatives {
+    struct OfBody {
+        Vec3 r = Vec3::Zero(), theta = Vec3::Zero(), rdot = Vec3::Zero(), omega = Vec3::Zero();
+    } i, j;
+};
+
+/// Position rows Φ(r, A, α, t) = 0 of two bodies with algebraic variables α, and velocity rows C_v v = 0.
+///
+///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α, t) = 0,    C_v v = 0     Fang (2022), Eqs. 5.31 to 5.36
 ///
 /// v = (ṙ, ω̄) are the velocities. C = (Φ_r, Π̄) holds the derivatives of all rows, and C_v is its part for
 /// the velocity rows. The constraint has fewer algebraic variables than position rows. Its velocity rows
 /// are nonholonomic constraints such as rolling. They have no Φ. They may be regularised, as friction rows
-/// are. No row depends explicitly on time: ν = 0.
+/// are.
 ///
-/// Use this class for a constraint that needs variables of its own, such as the contact points of two bodies
-/// in contact. A single scalar row without such variables is a Block.
+/// Use this class for a constraint of several rows that share a computation, or that needs variables of its
+/// own, such as the contact points of two bodies in contact. A single scalar row is a Block.
 ///
 /// A constraint is constant during a run. Everything that changes is in State: the algebraic variables, the
 /// internal states, the mode and the multipliers.
@@ -39,7 +60,10 @@ public:
     /// Number of velocity rows, at most max_velocity_rows
     virtual int velocity_rows() const { return 0; }
     /// Number of algebraic variables α, smaller than position_rows()
-    virtual int algebraic_variables() const = 0;
+    virtual int algebraic_variables() const { return 0; }
+    /// Number of internal states in State::internal_state, such as the revolutions counted by a gear. Φ may
+    /// also use them to select one of several equivalent forms of its equations, such as a tangent basis.
+    virtual int internal_states() const { return 0; }
 
     /// Whether the velocity rows are regularised in pairs, see lie::Rows::Regularised. The normal force of
     /// each pair is N = n · λ, where λ are the multipliers of the first three position rows.
@@ -49,29 +73,19 @@ public:
     /// function returns false; see lie::BoundedRows
     virtual bool solved_first(int /*pair*/) const { return false; }
 
-    /// Number of internal states in State::internal_state. Φ may use them to select one of several equivalent
-    /// forms of its equations, such as a tangent basis. The solutions of Φ = 0 must not depend on them.
-    virtual int internal_states() const { return 0; }
-
-    /// Mode of the constraint, stored in State::discrete_state. If the constraint is not active its rows and
-    /// multipliers are zero, and a step does not change its algebraic variables.
-    enum Mode {
-        active = 0,          ///< its rows are part of the equations
-        inactive = 1,        ///< an open unilateral constraint; it may become active again
-        fallback_active = 2  ///< replaced by a force until the end of the run
-    };
-    /// Whether the mode can differ from `active`. If it cannot, no mode is stored.
+    /// Whether the constraint can be switched off. It then has a mode in State::discrete_state: `active` if
+    /// its rows are part of the equations, else a number defined by the derived class. If it is not active its
+    /// rows and multipliers are zero, and a step does not change its algebraic variables.
     virtual bool may_be_inactive() const { return false; }
-    /// Whether a force can replace the constraint (fallback). Without a fallback the constraint throws
-    /// lie::NumericalFailure if it fails.
-    virtual bool has_fallback() const { return false; }
+    static constexpr int active = 0;
 
     /// Arguments of an evaluation: the motions of the two bodies, and the constraint's own part of the state
     struct Arguments {
         const Motion &bi, &bj;
-        double t;                                 ///< [s]
-        const double *alpha, *internal_state;     ///< algebraic_variables() and internal_states() numbers
-        bool inactive;                            ///< whether the mode differs from `active`
+        double t = 0;                             ///< [s]
+        const double* alpha = nullptr;            ///< algebraic_variables() numbers
+        const double* internal_state = nullptr;   ///< internal_states() numbers
+        int mode = active;                        ///< `active` for a constraint without modes
         const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or nullptr
     };
 
@@ -85,10 +99,20 @@ public:
 
         BodyRows C_i, C_j;           ///< (Φ_r, Π̄) of all rows for each body
         AlgebraicColumns Phi_alpha;  ///< Φ_α, position_rows() × algebraic_variables()
+
+        void set_zero(const Constraint& c)  ///< sizes for the constraint c, and zeros
+        {
+            C_i.setZero(c.position_rows() + c.velocity_rows(), 6);
+            C_j.setZero(c.position_rows() + c.velocity_rows(), 6);
+            Phi_alpha.setZero(c.position_rows(), c.algebraic_variables());
+        }
     };
     /// Derivatives of all rows. On entry the matrices have their full size and every entry is zero, or is the
     /// result of an earlier call; entries that are always zero need not be written.
     virtual void variation(const Arguments& x, Derivatives& out) const = 0;
+    /// ν = -∂Φ/∂t of all rows: Φ_r ṙ + Π̄ ω̄ + Φ_α α̇ = ν. The default, zero, is for rows that do not depend
+    /// explicitly on time.
+    virtual void nu(const Arguments& x, double* out) const;
     /// γ of all rows: C v̇ + Φ_α α̈ = γ for a position row, C v̇ = γ for a velocity row
     virtual void gamma(const Arguments& x, double* out) const = 0;
     /// K, D, mu, S and n of the regularised pairs, in the order of their rows
@@ -97,30 +121,50 @@ public:
     /// (r_i, π̄_i, r_j, π̄_j) is zero in every state.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
 
+    // Derivatives of one row for exact Newton matrices. The defaults are central differences with a relative
+    // error of about 1e-9. They are not used for constraints with algebraic variables.
+
+    /// ∂(r_i, pi_i, r_j, pi_j)/∂(δr_i, δθ_i, δr_j, δθ_j) with A ← A exp(δθ~)
+    virtual Mat12 second_variation(const Arguments& x, int row) const;
+    /// ∂ν/∂(δr_i, δθ_i, δr_j, δθ_j)
+    virtual Variation nu_variation(const Arguments& x, int row) const;
+    /// Derivatives of γ by the positions and velocities of both bodies
+    virtual GammaDerivatives gamma_variation(const Arguments& x, int row) const;
+
+    /// Reason why a run cannot start from x, in the form "what is wrong, got value". An empty string if it
+    /// can.
+    virtual std::string start_error(const Arguments& /*x*/) const { return {}; }
+    /// Computes α at a start and returns the mode of the constraint. `alpha` is the array x.alpha. Throws
+    /// lie::InvalidInput or lie::NumericalFailure if a run cannot start from x.
+    virtual int start(const Arguments& x, double* alpha) const;
     /// Computes α for the poses of the bodies: algebraic_variables() numbers. `alpha` may be the array
     /// x.alpha.
     ///
     /// With global_search = false the search starts from x.alpha. With global_search = true x.alpha is not
     /// used, and α depends on the poses alone. Throws lie::NumericalFailure if no α is found.
-    virtual void update_alpha(const Arguments& x, bool global_search, double* alpha) const = 0;
-    /// Updates the internal states, at a start and once per accepted step. Returns true if the constraint can
-    /// continue from x. If it cannot, returns false with a fallback, and throws lie::NumericalFailure without
-    /// one.
-    virtual bool update_internal_state(const Arguments& x, bool start, double* internal_state) const = 0;
+    virtual void update_alpha(const Arguments& /*x*/, bool /*global_search*/, double* /*alpha*/) const {}
+    /// Updates the internal states, at a start, where all are zero, and once per accepted step. Returns the
+    /// mode with which the run continues. Throws lie::NumericalFailure if it cannot continue.
+    virtual int update_internal_state(const Arguments& x, bool /*start*/, double* /*internal_state*/) const
+    {
+        return x.mode;
+    }
+    /// Mode of the constraint if its rows depend linearly on those of other constraints at the start; `active`
+    /// if the start then fails
+    virtual int mode_if_redundant() const { return active; }
 
-    /// Signed distance of the two bodies at the points α [m], negative for an overlap
-    virtual double gap(const Arguments& x) const = 0;
-    /// Time derivative of the gap [m/s]
-    virtual double separation_speed(const Arguments& x) const = 0;
-    /// Whether the constraint can open. A unilateral constraint may start with a positive gap.
-    virtual bool is_unilateral() const { return false; }
-    /// Magnitude of the velocity that violates the active constraint [m/s]
-    virtual double velocity_error(const Arguments& x) const = 0;
-    /// Largest |gap| of an active constraint at a start [m]
-    virtual double position_tolerance() const = 0;
-    /// Reason why a run cannot start from x, in the form "what is wrong, got value". An empty string if it
-    /// can.
-    virtual std::string start_error(const Arguments& /*x*/) const { return {}; }
+    /// Violation of an active constraint by the positions or velocities of a start
+    struct Violation {
+        double value = 0, most = 0;  ///< measured and largest accepted value
+        std::string text, unit;      ///< for the message "TEXT VALUE UNIT, at most MOST UNIT is allowed"
+    };
+    /// The default is the largest |Φ|, and `tolerance` for the largest accepted value.
+    virtual Violation position_violation(const Arguments& x, double tolerance) const;
+    /// The default is the largest |C v - ν| of the position rows.
+    virtual Violation velocity_violation(const Arguments& x, double tolerance) const;
+
+    /// Kind and name for messages
+    virtual std::string label() const { return "constraint '" + name + "'"; }
     /// Name of a row for messages
     virtual std::string row_name(int row) const { return "row " + std::to_string(row + 1); }
 

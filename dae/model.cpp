@@ -114,13 +114,15 @@ void Model::prepare(State& x)
             throw ForceError(force[k]->label() + ": " + reason, static_cast<int>(k));
     discrete_states = internal_states = 0;
     for (Row& r : row) {
-        const Motion &bi = motion(x, r.block->i), &bj = motion(x, r.block->j);
-        if (const std::string reason = r.block->start_error(bi, bj, x.t); !reason.empty())
-            throw ConstraintError(name_of(r) + ": " + reason, r.constraint);
+        r.block->first_internal_state = internal_states;
+        internal_states += r.block->internal_states();
         r.complement.reset();
         r.branch = -1;
+        const Constraint::Arguments at{motion(x, r.block->i), motion(x, r.block->j), x.t};
+        if (const std::string reason = r.block->start_error(at); !reason.empty())
+            throw ConstraintError(name_of(r) + ": " + reason, r.constraint);
         if (const auto* dp1 = dynamic_cast<const DP1*>(r.block.get()); dp1 != nullptr)
-            r.complement = dp1->complement(bi, bj, x.t);
+            r.complement = dp1->complement(at);
         if (r.complement) r.branch = discrete_states++;
     }
     dropped.clear();
@@ -141,31 +143,17 @@ void Model::prepare(State& x)
     x.internal_state.assign(internal_states, 0);
     for (size_t k = 0; k < general_constraint.size(); ++k) {
         const Constraint& c = *general_constraint[k];
-        const auto fail = [&](const std::string& reason) {
-            throw ContactError(name_of(c) + ": " + reason, static_cast<int>(k));
+        const auto fail = [&](const std::exception& e) {
+            throw ConstraintError(name_of(c) + ": " + e.what(), static_cast<int>(k), true);
         };
         try {
-            if (const std::string reason = c.start_error(arguments(c, x)); !reason.empty()) {
-                if (!c.has_fallback()) fail(reason);
-                x.discrete_state[c.first_discrete_state] = Constraint::fallback_active;
-                try {
-                    c.update_alpha(arguments(c, x), true, x.alpha.data() + c.first_alpha);  // for output only
-                } catch (const lie::NumericalFailure&) {
-                }
-                continue;
-            }
-            c.update_alpha(arguments(c, x), true, x.alpha.data() + c.first_alpha);
+            const int mode = c.start(arguments(c, x), x.alpha.data() + c.first_alpha);
+            if (c.may_be_inactive()) x.discrete_state[c.first_discrete_state] = mode;
+        } catch (const lie::InvalidInput& e) {
+            fail(e);
         } catch (const lie::NumericalFailure& e) {  // at a start this is invalid input
-            fail(e.what());
+            fail(e);
         }
-        // A unilateral constraint starts inactive if it has a gap, or if its gap is zero and changes.
-        constexpr double max_rest_speed = 1e-9;  // [m/s], above the rounding error of a speed of zero
-        const Constraint::Arguments x_c = arguments(c, x);
-        const double gap = c.gap(x_c);
-        if (c.is_unilateral() &&
-            (gap > c.position_tolerance() ||
-             (gap > -c.position_tolerance() && std::abs(c.separation_speed(x_c)) > max_rest_speed)))
-            x.discrete_state[c.first_discrete_state] = Constraint::inactive;
     }
     for (const auto& f : force) {
         f->first_discrete_state = discrete_states;
@@ -184,7 +172,7 @@ void Model::set_internal_state_at_start(State& x) const
     for (const auto& f : force)
         std::fill_n(x.discrete_state.begin() + f->first_discrete_state, f->discrete_states(), 0);
     x.internal_state.assign(internal_states, 0);
-    update_contact_states(x, true);
+    update_constraint_states(x, true);
     for (const auto& f : force) f->update_internal_state(x);
 }
 
@@ -211,13 +199,12 @@ std::string Model::name_of(const Row& r) const
 
 std::string Model::name_of(const Constraint& c) const
 {
-    return "contact '" + c.name + "'; bodies '" + body_name(c.i) + "', '" + body_name(c.j) + "'";
+    return c.label() + "; bodies '" + body_name(c.i) + "', '" + body_name(c.j) + "'";
 }
 
 std::string Model::name_of(const Constraint& c, int k) const
 {
-    return "contact '" + c.name + "' " + c.row_name(k) + "; bodies '" + body_name(c.i) + "', '" +
-           body_name(c.j) + "'";
+    return c.label() + " " + c.row_name(k) + "; bodies '" + body_name(c.i) + "', '" + body_name(c.j) + "'";
 }
 
 std::string Model::name_of(const Residual& residual) const
@@ -297,9 +284,8 @@ void Model::add_to_pattern(const Row& r)
 double Model::scaled_residual(const Row& r, const State& x) const
 {
     const Block& block = r.active_block(x);
-    const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
-    const double length = row_length(block.variation(bi, bj, x.t), block);
-    return block.phi(bi, bj, x.t) / (length > 0 ? length : 1);
+    const double length = row_length(block.variation(arguments(block, x)), block);
+    return block.phi(arguments(block, x)) / (length > 0 ? length : 1);
 }
 
 void Model::Residual::include(double error, int in_row, const Constraint* in_constraint)
@@ -329,10 +315,10 @@ double Model::scaled_velocity_residual(const Row& r, const State& x) const
 {
     const Block& block = r.active_block(x);
     const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
-    const Variation v = block.variation(bi, bj, x.t);
+    const Variation v = block.variation(arguments(block, x));
     const double length = row_length(v, block);
     return (v.r_i.dot(bi.rdot) + v.pi_i.dot(bi.omega_bar) + v.r_j.dot(bj.rdot) + v.pi_j.dot(bj.omega_bar) -
-            block.nu(bi, bj, x.t)) /
+            block.nu(arguments(block, x))) /
            (length > 0 ? length : 1);
 }
 
@@ -340,10 +326,10 @@ double Model::scaled_acceleration_residual(const Row& r, const State& x) const
 {
     const Block& block = r.active_block(x);
     const Motion &bi = motion(x, block.i), &bj = motion(x, block.j);
-    const Variation v = block.variation(bi, bj, x.t);
+    const Variation v = block.variation(arguments(block, x));
     const double length = row_length(v, block);
     return (v.r_i.dot(bi.rddot) + v.pi_i.dot(bi.omegadot_bar) + v.r_j.dot(bj.rddot) +
-            v.pi_j.dot(bj.omegadot_bar) - block.gamma(bi, bj, x.t)) /
+            v.pi_j.dot(bj.omegadot_bar) - block.gamma(arguments(block, x))) /
            (length > 0 ? length : 1);
 }
 

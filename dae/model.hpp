@@ -18,9 +18,12 @@ namespace hilda::dae {
 /// Invalid input of one constraint. what() gives the name of the row and of its bodies.
 class ConstraintError : public lie::InvalidInput {
 public:
-    ConstraintError(const std::string& what, int constraint) : InvalidInput(what), constraint(constraint) {}
+    ConstraintError(const std::string& what, int constraint, bool general = false)
+        : InvalidInput(what), constraint(constraint), general(general)
+    {}
 
-    int constraint;  ///< its number in the model, counted from 0
+    int constraint;  ///< its number in the model, counted from 0, or its index in Model::general_constraints()
+    bool general;    ///< whether it is a general constraint, such as an evolving contact
 };
 
 /// Invalid input of one force. what() gives its name.
@@ -29,14 +32,6 @@ public:
     ForceError(const std::string& what, int force) : InvalidInput(what), force(force) {}
 
     int force;  ///< its index in Model::forces()
-};
-
-/// Invalid input of one general constraint, such as an evolving contact. what() gives its name.
-class ContactError : public lie::InvalidInput {
-public:
-    ContactError(const std::string& what, int contact) : InvalidInput(what), contact(contact) {}
-
-    int contact;  ///< its index in Model::general_constraints()
 };
 
 /// A multibody model.
@@ -71,7 +66,7 @@ public:
     /// Adds a general constraint. Its rows follow those of all blocks. Throws as for blocks.
     void constrain(const std::string& name, std::unique_ptr<Constraint> constraint);
     const std::vector<std::unique_ptr<Constraint>>& general_constraints() const { return general_constraint; }
-    /// Arguments of a general constraint in the state x. They refer to x.
+    /// Arguments of a constraint in the state x. They refer to x.
     Constraint::Arguments arguments(const Constraint& c, const State& x) const
     {
         return {motion(x, c.i),
@@ -79,18 +74,18 @@ public:
                 x.t,
                 x.alpha.data() + c.first_alpha,
                 x.internal_state.data() + c.first_internal_state,
-                inactive(c, x),
+                mode(c, x),
                 &x.lambda};
     }
-    /// Whether a general constraint is inactive or replaced by its fallback. Its rows are then zero.
+    /// Whether a constraint is switched off. Its rows are then zero.
     static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
-    /// Constraint::Mode of a general constraint
+    /// Mode of a constraint, see Constraint::may_be_inactive()
     static int mode(const Constraint& c, const State& x)
     {
         return c.may_be_inactive() ? x.discrete_state[c.first_discrete_state] : Constraint::active;
     }
     /// Sets the mode in x, and the multipliers of the constraint to zero.
-    static void set_mode(const Constraint& c, State& x, Constraint::Mode mode);
+    static void set_mode(const Constraint& c, State& x, int mode);
     std::string name_of(const Constraint& c) const;
 
     /// Adds a force. Throws lie::InvalidInput for an unknown body number.
@@ -104,7 +99,7 @@ public:
     ///
     /// - All rows become part of the equations again, also those removed by drop().
     /// - Orientations, blocks, forces and general constraints are checked. Throws lie::InvalidInput,
-    ///   ConstraintError, ForceError or ContactError.
+    ///   ConstraintError or ForceError.
     /// - DP1 drivers receive their complement.
     /// - x.discrete_state, x.internal_state and x.alpha are set, and x.lambda is resized and set to zero.
     void prepare(State& x);
@@ -186,8 +181,10 @@ public:
     std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
 
 private:
+    template <class F>
+    void for_rows_without_alpha(const State& x, F f) const;
     void swap_drivers(State& x) const;
-    void update_contact_states(State& x, bool start) const;
+    void update_constraint_states(State& x, bool start) const;
     void set_pattern();
     void add_to_pattern(const Row& row);
     void add_to_pattern(const Constraint& c, int first, int rows);

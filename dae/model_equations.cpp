@@ -31,7 +31,7 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     Eigen::Index n = 0;
     for (const int k : active) {
         const Block& block = row[k].active_block(x);
-        out[n++] = block.phi(motion(x, block.i), motion(x, block.j), x.t);
+        out[n++] = block.phi(arguments(block, x));
     }
     for (const auto& c : general_constraint)
         if (inactive(*c, x))
@@ -46,7 +46,7 @@ void Model::variation(const State& x, lie::Rows& out) const
     lie::Rows::Entry* entry = out.entry.data();
     for (const int k : active) {
         const Block& block = row[k].active_block(x);
-        const Variation v = block.variation(motion(x, block.i), motion(x, block.j), x.t);
+        const Variation v = block.variation(arguments(block, x));
         if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
         if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
     }
@@ -65,9 +65,7 @@ void Model::variation(const State& x, lie::Rows& out) const
         for (int p = 0; p < c.regularised_pairs(); ++p) pair[p].K = 0;
         if (!inactive(c, x)) c.regularisation(arguments(c, x), pair);
         pair += c.regularised_pairs();
-        d.C_i.setZero(c.position_rows() + c.velocity_rows(), 6);
-        d.C_j.setZero(c.position_rows() + c.velocity_rows(), 6);
-        d.Phi_alpha.setZero(c.position_rows(), c.algebraic_variables());
+        d.set_zero(c);
         if (inactive(c, x))
             d.Phi_alpha.setIdentity();  // regular, so that the corrections of α are zero
         else
@@ -83,9 +81,16 @@ void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     Eigen::Index n = 0;
     for (const int k : active) {
         const Block& block = row[k].active_block(x);
-        out[n++] = block.nu(motion(x, block.i), motion(x, block.j), x.t);
+        out[n++] = block.nu(arguments(block, x));
     }
     out.tail(out.size() - n).setZero();
+    double nu_c[Constraint::max_rows];
+    for (const auto& c : general_constraint) {
+        if (inactive(*c, x)) continue;
+        c->nu(arguments(*c, x), nu_c);
+        std::copy_n(nu_c, c->position_rows(), out.data() + c->first_row);
+        std::copy_n(nu_c + c->position_rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
+    }
 }
 
 void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
@@ -93,7 +98,7 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     Eigen::Index n = 0;
     for (const int k : active) {
         const Block& block = row[k].active_block(x);
-        out[n++] = block.gamma(motion(x, block.i), motion(x, block.j), x.t);
+        out[n++] = block.gamma(arguments(block, x));
     }
     double gamma_c[Constraint::max_rows];
     for (const auto& c : general_constraint) {
@@ -110,40 +115,51 @@ void Model::update_alpha(State& x) const
         if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
+/// Calls f(constraint, row, k) for all rows k of the equations without algebraic variables; `row` is the number
+/// of the row within its constraint.
+template <class F>
+void Model::for_rows_without_alpha(const State& x, F f) const
+{
+    int k = 0;
+    for (const int n : active) f(row[n].active_block(x), 0, k++);
+    for (const auto& c : general_constraint) {
+        if (c->algebraic_variables() > 0 || inactive(*c, x)) continue;
+        for (int n = 0; n < c->position_rows(); ++n) f(*c, n, c->first_row + n);
+        for (int n = 0; n < c->velocity_rows(); ++n) f(*c, c->position_rows() + n, c->first_velocity_row + n);
+    }
+}
+
 void Model::second_variation(const State& x, lie::SecondVariation& out) const
 {
-    for (size_t n = 0; n < active.size(); ++n) {
-        const Block& block = row[active[n]].active_block(x);
-        const Mat12 H = block.second_variation(motion(x, block.i), motion(x, block.j), x.t);
-        const int k = static_cast<int>(n), i = 0, j = block.i != ground ? 1 : 0;  // entry numbers
-        if (block.i != ground) out.at(k, i, i) = H.topLeftCorner<6, 6>();
-        if (block.j != ground) out.at(k, j, j) = H.bottomRightCorner<6, 6>();
-        if (block.i == ground || block.j == ground) continue;
+    for_rows_without_alpha(x, [&](const Constraint& c, int n, int k) {
+        const Mat12 H = c.second_variation(arguments(c, x), n);
+        const int i = 0, j = c.i != ground ? 1 : 0;  // entry numbers
+        if (c.i != ground) out.at(k, i, i) = H.topLeftCorner<6, 6>();
+        if (c.j != ground) out.at(k, j, j) = H.bottomRightCorner<6, 6>();
+        if (c.i == ground || c.j == ground) return;
         out.at(k, i, j) = H.topRightCorner<6, 6>();
         out.at(k, j, i) = H.bottomLeftCorner<6, 6>();
-    }
+    });
 }
 
 void Model::nu_variation(const State& x, lie::Rows& out) const
 {
-    lie::Rows::Entry* entry = out.entry.data();
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
-        const Variation v = block.nu_variation(motion(x, block.i), motion(x, block.j), x.t);
-        if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
-        if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
-    }
+    for_rows_without_alpha(x, [&](const Constraint& c, int n, int k) {
+        const Variation v = c.nu_variation(arguments(c, x), n);
+        lie::Rows::Entry* entry = out.entry.data() + out.start[k];
+        if (c.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
+        if (c.j != ground) entry->r = v.r_j, entry->pi = v.pi_j;
+    });
 }
 
 void Model::gamma_variation(const State& x, lie::GammaVariation& out) const
 {
-    lie::GammaVariation::Entry* entry = out.entry.data();
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
-        const GammaDerivatives g = block.gamma_variation(motion(x, block.i), motion(x, block.j), x.t);
-        if (block.i != ground) *entry++ = {g.i.r, g.i.theta, g.i.rdot, g.i.omega};
-        if (block.j != ground) *entry++ = {g.j.r, g.j.theta, g.j.rdot, g.j.omega};
-    }
+    for_rows_without_alpha(x, [&](const Constraint& c, int n, int k) {
+        const GammaDerivatives g = c.gamma_variation(arguments(c, x), n);
+        lie::GammaVariation::Entry* entry = out.entry.data() + rows_pattern.start[k];
+        if (c.i != ground) *entry++ = {g.i.r, g.i.theta, g.i.rdot, g.i.omega};
+        if (c.j != ground) *entry = {g.j.r, g.j.theta, g.j.rdot, g.j.omega};
+    });
 }
 
 lie::LoadVariation Model::load_pattern() const
@@ -204,20 +220,23 @@ double Model::potential_energy(const State& x) const
 void Model::accepted(const State&, State& after) const
 {
     swap_drivers(after);
-    update_contact_states(after, false);
+    update_constraint_states(after, false);
     for (const auto& f : force) f->update_internal_state(after);
 }
 
-void Model::update_contact_states(State& x, bool start) const
+void Model::update_constraint_states(State& x, bool start) const
 {
-    for (const auto& c : general_constraint)
-        if (mode(*c, x) != Constraint::fallback_active &&
-            !c->update_internal_state(arguments(*c, x), start,
-                                      x.internal_state.data() + c->first_internal_state))
-            set_mode(*c, x, Constraint::fallback_active);
+    for (const Row& r : row)
+        r.block->update_internal_state(arguments(*r.block, x), start,
+                                       x.internal_state.data() + r.block->first_internal_state);
+    for (const auto& c : general_constraint) {
+        const int after = c->update_internal_state(arguments(*c, x), start,
+                                                   x.internal_state.data() + c->first_internal_state);
+        if (after != mode(*c, x)) set_mode(*c, x, after);
+    }
 }
 
-void Model::set_mode(const Constraint& c, State& x, Constraint::Mode mode)
+void Model::set_mode(const Constraint& c, State& x, int mode)
 {
     x.discrete_state[c.first_discrete_state] = mode;
     x.lambda.segment(c.first_row, c.position_rows()).setZero();
@@ -231,13 +250,12 @@ void Model::swap_drivers(State& x) const
         if (!r.complement) continue;
         const auto& current = static_cast<const DP1&>(r.active_block(x));
         if (current.alignment(x.t) <= swap_threshold) continue;
-        const Motion &bi = motion(x, current.i), &bj = motion(x, current.j);
         const Block& candidate = &current == r.block.get() ? *r.complement : *r.block;
-        if (std::abs(candidate.phi(bi, bj, x.t)) > swap_tolerance) continue;
-        const Variation from = current.variation(bi, bj, x.t);
+        if (std::abs(candidate.phi(arguments(candidate, x))) > swap_tolerance) continue;
+        const Variation from = current.variation(arguments(current, x));
         // λ' = λ (Π·Π')/(Π'·Π'): the parallel rows then exert the same torque.
         x.discrete_state[r.branch] ^= 1;
-        const Variation to = r.active_block(x).variation(bi, bj, x.t);
+        const Variation to = candidate.variation(arguments(candidate, x));
         x.lambda[static_cast<Eigen::Index>(n)] *= (from.pi_i.dot(to.pi_i) + from.pi_j.dot(to.pi_j)) /
                                                   (to.pi_i.squaredNorm() + to.pi_j.squaredNorm());
     }

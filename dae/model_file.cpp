@@ -279,7 +279,7 @@ private:
             read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
         });
         out.force_place.resize(model.forces().size(), o.place());
-        out.contact_place.resize(model.general_constraints().size(), o.place());
+        out.general_place.resize(model.general_constraints().size(), o.place());
         return o.finish();
     }
 
@@ -368,12 +368,11 @@ StartReport start(Description& description, const StartOptions& options)
     try {
         return start(*description.model, description.x, options);
     } catch (const ConstraintError& e) {
-        throw ConstraintError(
-            description.constraint_place[static_cast<size_t>(e.constraint)] + ": " + e.what(), e.constraint);
-    } catch (const ContactError& e) {
-        const auto k = static_cast<size_t>(e.contact);
-        if (k >= description.contact_place.size()) throw;  // a constraint that is not from the file
-        throw ContactError(description.contact_place[k] + ": " + e.what(), e.contact);
+        const std::vector<std::string>& place =
+            e.general ? description.general_place : description.constraint_place;
+        const auto k = static_cast<size_t>(e.constraint);
+        if (k >= place.size()) throw;  // a constraint that is not from the file
+        throw ConstraintError(place[k] + ": " + e.what(), e.constraint, e.general);
     } catch (const ForceError& e) {
         const auto k = static_cast<size_t>(e.force);
         if (k >= description.force_place.size()) throw;  // a force that is not from the file

@@ -22,7 +22,7 @@ struct Description {
     std::vector<std::string>
         constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint
     std::vector<std::string> force_place;    ///< location of each element of Model::forces()
-    std::vector<std::string> contact_place;  ///< location of each element of Model::general_constraints()
+    std::vector<std::string> general_place;  ///< location of each element of Model::general_constraints()
 };
 
 /// Reads a model from a text. `file` is the file name used in messages. Each element of `set` has the form

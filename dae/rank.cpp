@@ -104,8 +104,8 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     }
     std::string names;
     for (const Constraint* c : dependent_contacts)
-        if (c->has_fallback())
-            Model::set_mode(*c, x, Constraint::fallback_active);
+        if (c->mode_if_redundant() != Constraint::active)
+            Model::set_mode(*c, x, c->mode_if_redundant());
         else
             names += (names.empty() ? "'" : ", '") + c->name + "'";
     if (!names.empty())

@@ -252,7 +252,7 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
             if (!complete && !(model.largest_residual(candidate).value < redundancy_tolerance)) continue;
         } catch (const lie::NumericalFailure&) {
             continue;
-        } catch (const ContactError&) {
+        } catch (const ConstraintError&) {
             continue;
         }
         x = candidate;
@@ -271,44 +271,23 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
 
 namespace {
 
-/// Throws ContactError if the gap of an active constraint exceeds its tolerance, unless positions may be
-/// projected. Records the largest |gap| in the report.
-void check_contact_positions(const Model& model, const State& x, const StartOptions& options,
-                             StartReport& report)
+/// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the initial
+/// state may be projected. Records the largest violation.
+template <class ViolationOf>
+void check_general_constraints(const Model& model, const State& x, const StartOptions& options,
+                               ViolationOf violation_of, double& residual, std::string& worst)
 {
     for (size_t k = 0; k < model.general_constraints().size(); ++k) {
-        const auto& c = model.general_constraints()[k];
-        if (Model::inactive(*c, x)) continue;
-        const double error = std::abs(c->gap(model.arguments(*c, x)));
-        if (!options.fix_initial && !(error <= c->position_tolerance()))
-            throw ContactError(model.name_of(*c) + ": not in contact at the start, the gap or overlap is " +
-                                   number(error) + " m, at most " + number(c->position_tolerance()) +
-                                   " m is allowed; use --fix-initial to move the bodies into contact",
-                               static_cast<int>(k));
-        if (error > report.position_residual) {
-            report.position_residual = error;
-            report.worst_position = model.name_of(*c);
-        }
-    }
-}
-
-/// The same for the velocities
-void check_contact_velocities(const Model& model, const State& x, const StartOptions& options,
-                              StartReport& report)
-{
-    for (size_t k = 0; k < model.general_constraints().size(); ++k) {
-        const auto& c = model.general_constraints()[k];
-        if (Model::inactive(*c, x)) continue;
-        const double error = c->velocity_error(model.arguments(*c, x));
-        if (!options.fix_initial && !(error <= options.tolerance))
-            throw ContactError(model.name_of(*c) + ": the initial velocities violate the contact by " +
-                                   number(error) + " m/s, more than " + number(options.tolerance) +
-                                   " m/s; use --fix-initial to project them onto the constraints",
-                               static_cast<int>(k));
-        if (error > report.velocity_residual) {
-            report.velocity_residual = error;
-            report.worst_velocity = model.name_of(*c);
-        }
+        const Constraint& c = *model.general_constraints()[k];
+        if (Model::inactive(c, x)) continue;
+        const Constraint::Violation v = violation_of(c, model.arguments(c, x));
+        if (!options.fix_initial && !(v.value <= v.most))
+            throw ConstraintError(model.name_of(c) + ": " + v.text + " " + number(v.value) + " " + v.unit +
+                                      ", at most " + number(v.most) + " " + v.unit +
+                                      " is allowed; use --fix-initial to project the initial state onto the "
+                                      "constraints",
+                                  static_cast<int>(k), true);
+        if (v.value > residual) residual = v.value, worst = model.name_of(c);
     }
 }
 
@@ -334,7 +313,12 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                   model.all_rows()[position.row].constraint);
     }
 
-    check_contact_positions(model, x, options, report);
+    check_general_constraints(
+        model, x, options,
+        [&](const Constraint& c, const Constraint::Arguments& at) {
+            return c.position_violation(at, options.tolerance);
+        },
+        report.position_residual, report.worst_position);
     const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().algebraic_variables();
@@ -357,7 +341,12 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                       " m/s or rad/s; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[velocity.row].constraint);
     }
-    check_contact_velocities(model, x, options, report);
+    check_general_constraints(
+        model, x, options,
+        [&](const Constraint& c, const Constraint::Arguments& at) {
+            return c.velocity_violation(at, options.tolerance);
+        },
+        report.velocity_residual, report.worst_velocity);
     if (model.rows() > 0) {
         project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;

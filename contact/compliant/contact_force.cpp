@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact_force.hpp"
 
+#include "contact/evolving/contact.hpp"
+
 #include "dae/model.hpp"
 
 namespace hilda::contact {
@@ -19,7 +21,7 @@ ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& h
 
 bool ContactForce::is_active(const lie::State& x) const
 {
-    return constraint == nullptr || dae::Model::mode(*constraint, x) == dae::Constraint::fallback_active;
+    return constraint == nullptr || dae::Model::mode(*constraint, x) == EvolvingContact::fallback_active;
 }
 
 bool ContactForce::is_near_contact(const lie::State& x) const

@@ -251,7 +251,7 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, double* in
     constexpr double bound_tolerance = 1e-4;  // relative to |λ|; above the tolerance of lie::BoundedRows
     const double h = start ? 0 : x.t - internal_state[node_time];
     internal_state[node_time] = x.t;
-    if (start || x.inactive) {
+    if (start || x.mode != active) {
         std::fill(internal_state + sliding_state, internal_state + 14, 0.);
         return;
     }
@@ -316,18 +316,19 @@ void EvolvingContact::update_alpha(const Arguments& x, bool global_search, doubl
     Vec3::Map(alpha + 3) = a_j;
 }
 
-bool EvolvingContact::update_internal_state(const Arguments& x, bool start, double* internal_state) const
+int EvolvingContact::update_internal_state(const Arguments& x, bool start, double* internal_state) const
 {
+    if (x.mode == fallback_active) return fallback_active;
     const ContactPoint at = contact_point(x);
-    const auto fail = [&](const std::string& status, const std::string& what, double value) {
-        if (fallback) return false;
+    const auto fail = [&](const std::string& status, const std::string& what, double value) -> int {
+        if (fallback) return fallback_active;
         std::ostringstream text;
         text.precision(3);
         text << "contact '" << name << "': " << what << ' ' << value;
         throw lie::NumericalFailure(status, text.str());
     };
     const Vec3 n_i = Side(shape_i, x.bi, x.alpha).n;
-    if (!x.inactive) {
+    if (x.mode == active) {
         if (const double n_dot_n = n_i.dot(at.n); !(n_dot_n < -0.5))
             return fail("contact_lost",
                         "the normals are no longer opposite; n_i . n_j must be below -0.5, got", n_dot_n);
@@ -349,7 +350,7 @@ bool EvolvingContact::update_internal_state(const Arguments& x, bool start, doub
     }
     Mat32::Map(internal_state) = T;
     if (is_regularised()) update_friction(x, start, internal_state);
-    return true;
+    return x.mode;
 }
 
 double EvolvingContact::separation_speed(const Arguments& x) const
@@ -358,11 +359,35 @@ double EvolvingContact::separation_speed(const Arguments& x) const
     return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
 }
 
-double EvolvingContact::velocity_error(const Arguments& x) const
+dae::Constraint::Violation EvolvingContact::position_violation(const Arguments& x, double) const
+{
+    return {std::abs(gap(x)), 1e-6 * L, "not in contact at the start, the gap or overlap is", "m"};
+}
+
+dae::Constraint::Violation EvolvingContact::velocity_violation(const Arguments& x, double tolerance) const
 {
     const ContactPoint at = contact_point(x);
     const Vec3 slip = velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r);
-    return friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip));
+    return {friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip)), tolerance,
+            "the initial velocities violate the contact by", "m/s"};
+}
+
+int EvolvingContact::start(const Arguments& x, double* alpha) const
+{
+    if (const std::string reason = start_error(x); !reason.empty()) {
+        if (!fallback) throw lie::InvalidInput(reason);
+        try {
+            update_alpha(x, true, alpha);  // for output only
+        } catch (const lie::NumericalFailure&) {
+        }
+        return fallback_active;
+    }
+    update_alpha(x, true, alpha);
+    constexpr double max_rest_speed = 1e-9;  // [m/s], above the rounding error of a speed of zero
+    const double distance = gap(x), tolerance = 1e-6 * L;
+    const bool open =
+        distance > tolerance || (distance > -tolerance && std::abs(separation_speed(x)) > max_rest_speed);
+    return unilateral.enabled && open ? inactive : active;
 }
 
 std::string EvolvingContact::start_error(const Arguments& x) const

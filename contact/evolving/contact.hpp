@@ -50,7 +50,7 @@ struct Unilateral {
 ///
 /// For an active contact update_internal_state() throws lie::NumericalFailure: "contact_lost" if
 /// n_i · n_j ≥ -½, and "contact_singular" if the smaller eigenvalue of K_i + K_j in the tangent plane, times
-/// L, is at most 1e-6. With a fallback it returns false instead.
+/// L, is at most 1e-6. With a fallback it returns fallback_active instead.
 class EvolvingContact final : public dae::Constraint {
 public:
     enum class NormalRows { tangent, fixed_xy };
@@ -96,8 +96,14 @@ public:
     int internal_states() const override { return is_regularised() ? 14 : 7; }
     static constexpr int last_rebound = 6, node_time = 7, sliding_state = 8, rolling_state = 11;
 
+    /// Modes of the contact. `active` and `inactive` alternate in a unilateral contact.
+    enum Mode {
+        active = Constraint::active,
+        inactive = 1,        ///< an open unilateral contact; it may become active again
+        fallback_active = 2  ///< replaced by a contact force until the end of the run
+    };
     bool may_be_inactive() const override { return unilateral.enabled || fallback; }
-    bool has_fallback() const override { return fallback; }
+    int mode_if_redundant() const override { return fallback ? fallback_active : active; }
 
     void phi(const Arguments& x, double* out) const override;
     void variation(const Arguments& x, Derivatives& out) const override;
@@ -105,14 +111,22 @@ public:
     unsigned nonzero(int row) const override;
     void regularisation(const Arguments& x, lie::Rows::Regularised* out) const override;
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
-    bool update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
-    double gap(const Arguments& x) const override { return contact_point(x).gap; }
-    double separation_speed(const Arguments& x) const override;
-    bool is_unilateral() const override { return unilateral.enabled; }
-    double velocity_error(const Arguments& x) const override;
-    double position_tolerance() const override { return 1e-6 * L; }
+    int update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;
+    /// The mode is fallback_active if start_error() has a reason and there is a fallback. A unilateral contact
+    /// starts inactive if it has a gap, or if its gap is zero and changes.
+    int start(const Arguments& x, double* alpha) const override;
+    /// |gap|, at most 1e-6 L
+    Violation position_violation(const Arguments& x, double tolerance) const override;
+    /// Normal velocity, and the slip velocity of ideal rolling [m/s]
+    Violation velocity_violation(const Arguments& x, double tolerance) const override;
+    std::string label() const override { return "contact '" + name + "'"; }
     std::string row_name(int row) const override;
+
+    /// Signed distance of the two bodies at the points α [m], negative for an overlap
+    double gap(const Arguments& x) const { return contact_point(x).gap; }
+    /// Time derivative of the gap [m/s]
+    double separation_speed(const Arguments& x) const;
 
     /// The contact point at α of x. The normal is that of surface j, which points into body i; the gap is the
     /// component of C_i - C_j along it.

@@ -100,7 +100,7 @@ Rates EvolvingFriction::damper_rates(const Instant& now, const lie::State& x) co
 
 double EvolvingFriction::stable_step(const lie::State& x) const
 {
-    if (dae::Model::mode(contact, x) == dae::Constraint::fallback_active)
+    if (dae::Model::mode(contact, x) == EvolvingContact::fallback_active)
         return std::numeric_limits<double>::infinity();
     // The stiffness of Hertzian springs grows with F_N; the weight of all bodies is an estimate of the
     // largest F_N.

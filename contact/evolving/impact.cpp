@@ -17,7 +17,7 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
     const Unilateral& unilateral = c.contact->unilateral;
     const double approach = std::max(0., -separation_speed(c, x));
     if (++c.impacts == max_impacts) c.stays_active = true;
-    dae::Model::set_mode(*c.contact, x, dae::Constraint::active);
+    dae::Model::set_mode(*c.contact, x, EvolvingContact::active);
     if (!force_is_determined(c, x)) {
         switch_to_fallback(c, x, approach);
         restart(x);
@@ -42,7 +42,7 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
             event_log.resize(events_before);
             solve_velocity_jump(x, &c, rebound);
         }
-        dae::Model::set_mode(*c.contact, x, dae::Constraint::inactive);
+        dae::Model::set_mode(*c.contact, x, EvolvingContact::inactive);
         if (unilateral.impact == Unilateral::Impact::poisson) {
             before_impact = x;
             add_impulse(c, unilateral.restitution * compression, before_impact);
@@ -71,7 +71,7 @@ bool UnilateralStep::force_is_determined(const TrackedContact& c, State& x)
     } catch (const lie::SingularMatrix&) {
     }
     if (condition > singular) return true;
-    if (!c.contact->has_fallback())
+    if (!c.contact->fallback)
         throw lie::NumericalFailure("contact_rank",
                                     "contact '" + c.contact->name +
                                         "': its normal force is not determined, because the other active "
@@ -123,7 +123,7 @@ void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebound
                 least = P, tensile = &c;
         }
         if (tensile == nullptr || least > -rounding * largest) break;
-        dae::Model::set_mode(*tensile->contact, x, dae::Constraint::inactive);
+        dae::Model::set_mode(*tensile->contact, x, EvolvingContact::inactive);
         event_log.push_back(
             {.type = ContactEvent::Type::lift_off, .t = x.t, .contact = tensile->number, .speed = 0});
     }

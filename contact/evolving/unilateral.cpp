@@ -226,7 +226,7 @@ bool UnilateralStep::switch_least_curved_to_fallback(State& x)
     TrackedContact* least_curved = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (TrackedContact& c : contact)
-        if (is_active(c, x) && c.contact->has_fallback())
+        if (is_active(c, x) && c.contact->fallback)
             if (const double k =
                     least_curvature(c.contact->contact_point(model.arguments(*c.contact, x))) * c.contact->L;
                 k < least)
@@ -240,7 +240,7 @@ bool UnilateralStep::switch_least_curved_to_fallback(State& x)
 void UnilateralStep::report_fallbacks(const State& x)
 {
     for (TrackedContact& c : contact) {
-        if (c.fallback_reported || mode(c, x) != dae::Constraint::fallback_active) continue;
+        if (c.fallback_reported || mode(c, x) != EvolvingContact::fallback_active) continue;
         c.fallback_reported = true;
         const auto logged = [&](const ContactEvent& e) {
             return e.contact == c.number && e.type == ContactEvent::Type::fallback_active;
@@ -253,7 +253,7 @@ void UnilateralStep::report_fallbacks(const State& x)
 
 void UnilateralStep::switch_to_fallback(const TrackedContact& c, State& x, double speed)
 {
-    dae::Model::set_mode(*c.contact, x, dae::Constraint::fallback_active);
+    dae::Model::set_mode(*c.contact, x, EvolvingContact::fallback_active);
     event_log.push_back(
         {.type = ContactEvent::Type::fallback_active, .t = x.t, .contact = c.number, .speed = speed});
 }
@@ -283,7 +283,7 @@ bool UnilateralStep::deactivate_tensile(State& x)
     event_log.push_back({.type = ContactEvent::Type::lift_off,
                          .t = worst->lift_off_time(x.t, least),
                          .contact = worst->number});
-    dae::Model::set_mode(*worst->contact, x, dae::Constraint::inactive);
+    dae::Model::set_mode(*worst->contact, x, EvolvingContact::inactive);
     return true;
 }
 

@@ -128,11 +128,11 @@ private:
     static int mode(const TrackedContact& c, const lie::State& x) { return dae::Model::mode(*c.contact, x); }
     static bool is_inactive(const TrackedContact& c, const lie::State& x)
     {
-        return mode(c, x) == dae::Constraint::inactive;
+        return mode(c, x) == EvolvingContact::inactive;
     }
     static bool is_active(const TrackedContact& c, const lie::State& x)
     {
-        return mode(c, x) == dae::Constraint::active;
+        return mode(c, x) == EvolvingContact::active;
     }
     double force(const TrackedContact& c, const lie::State& x, const Eigen::VectorXd& lambda) const;
     double gap(const TrackedContact& c, const lie::State& x) const;

@@ -23,39 +23,40 @@ public:
         : Block(i, j), c(c), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f)), global_axis(axis_of(c))
     {}
 
-    double phi(const Motion& bi, const Motion& bj, double t) const override
+    double phi(const Arguments& x) const override
     {
-        return c.dot(bj.r - bi.r) + in_body(bj).dot(s_bar_j) - in_body(bi).dot(s_bar_i) - f.f(t);
+        return c.dot(x.bj.r - x.bi.r) + in_body(x.bj).dot(s_bar_j) - in_body(x.bi).dot(s_bar_i) - f.f(x.t);
     }
 
-    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    Variation variation(const Arguments& x) const override
     {
-        return {.r_i = -c, .pi_i = in_body(bi).cross(s_bar_i), .r_j = c, .pi_j = s_bar_j.cross(in_body(bj))};
+        return {
+            .r_i = -c, .pi_i = in_body(x.bi).cross(s_bar_i), .r_j = c, .pi_j = s_bar_j.cross(in_body(x.bj))};
     }
 
-    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+    double nu(const Arguments& x) const override { return f.fdot(x.t); }
 
-    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    double gamma(const Arguments& x) const override
     {
-        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
-        return f.fddot(t) - c.dot(s_j.centripetal - s_i.centripetal);
+        const BodyFixedVector s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
+        return f.fddot(x.t) - c.dot(s_j.centripetal - s_i.centripetal);
     }
 
-    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    Mat12 second_variation(const Arguments& x) const override
     {
         Mat12 H = Mat12::Zero();
-        H.block<3, 3>(3, 3) = -tilde(s_bar_i) * tilde(in_body(bi));
-        H.block<3, 3>(9, 9) = tilde(s_bar_j) * tilde(in_body(bj));
+        H.block<3, 3>(3, 3) = -tilde(s_bar_i) * tilde(in_body(x.bi));
+        H.block<3, 3>(9, 9) = tilde(s_bar_j) * tilde(in_body(x.bj));
         return H;
     }
 
-    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+    Variation nu_variation(const Arguments&) const override { return Variation::zero(); }
 
-    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Arguments& x) const override
     {
         GammaDerivatives g;
-        GammaTerms(bi, g.i).centripetal(s_bar_i, c);
-        GammaTerms(bj, g.j).centripetal(s_bar_j, -c);
+        GammaTerms(x.bi, g.i).centripetal(s_bar_i, c);
+        GammaTerms(x.bj, g.j).centripetal(s_bar_j, -c);
         return g;
     }
 
@@ -67,7 +68,7 @@ public:
         return axes | cross_product_pattern(s_bar_i) << 3 | axes << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string start_error(const Motion&, const Motion&, double) const override
+    std::string start_error(const Arguments&) const override
     {
         return c.norm() > 0 ? "" : "a vector of length zero has no direction, got |c| = 0";
     }

@@ -25,55 +25,55 @@ public:
         : Block(i, j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f))
     {}
 
-    double phi(const Motion& bi, const Motion& bj, double t) const override
+    double phi(const Arguments& x) const override
     {
-        return (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).squaredNorm() - f.f(t);
+        return (x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i).squaredNorm() - f.f(x.t);
     }
 
-    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    Variation variation(const Arguments& x) const override
     {
-        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
         return {.r_i = -2 * d_ij,
-                .pi_i = -2 * s_bar_i.cross(bi.A.transpose() * d_ij),
+                .pi_i = -2 * s_bar_i.cross(x.bi.A.transpose() * d_ij),
                 .r_j = 2 * d_ij,
-                .pi_j = 2 * s_bar_j.cross(bj.A.transpose() * d_ij)};
+                .pi_j = 2 * s_bar_j.cross(x.bj.A.transpose() * d_ij)};
     }
 
-    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+    double nu(const Arguments& x) const override { return f.fdot(x.t); }
 
-    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    double gamma(const Arguments& x) const override
     {
-        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
-        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
-        const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
-        return f.fddot(t) - 2 * d_ijdot.squaredNorm() - 2 * d_ij.dot(s_j.centripetal - s_i.centripetal);
+        const BodyFixedVector s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
+        const Vec3 d_ij = x.bj.r + s_j.v - x.bi.r - s_i.v;
+        const Vec3 d_ijdot = x.bj.rdot + s_j.vdot - x.bi.rdot - s_i.vdot;
+        return f.fddot(x.t) - 2 * d_ijdot.squaredNorm() - 2 * d_ij.dot(s_j.centripetal - s_i.centripetal);
     }
 
-    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    Mat12 second_variation(const Arguments& x) const override
     {
-        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
-        const Mat3 si = tilde(s_bar_i), sj = tilde(s_bar_j), A_si = bi.A * si, A_sj = bj.A * sj;
+        const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
+        const Mat3 si = tilde(s_bar_i), sj = tilde(s_bar_j), A_si = x.bi.A * si, A_sj = x.bj.A * sj;
         Mat12 H;
         // clang-format off
         H <<  Mat3::Identity(),                                       -A_si, -Mat3::Identity(),                                         A_sj,
-             -A_si.transpose(), -si * (tilde(bi.A.transpose() * d_ij) + si),  A_si.transpose(),                     -A_si.transpose() * A_sj,
+             -A_si.transpose(), -si * (tilde(x.bi.A.transpose() * d_ij) + si),  A_si.transpose(),                     -A_si.transpose() * A_sj,
              -Mat3::Identity(),                                        A_si,  Mat3::Identity(),                                        -A_sj,
-              A_sj.transpose(),                    -A_sj.transpose() * A_si, -A_sj.transpose(), sj * (tilde(bj.A.transpose() * d_ij) - sj);
+              A_sj.transpose(),                    -A_sj.transpose() * A_si, -A_sj.transpose(), sj * (tilde(x.bj.A.transpose() * d_ij) - sj);
         // clang-format on
         return 2 * H;
     }
 
-    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+    Variation nu_variation(const Arguments&) const override { return Variation::zero(); }
 
-    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Arguments& x) const override
     {
-        const BodyFixedVector s_i(bi, s_bar_i), s_j(bj, s_bar_j);
-        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
+        const BodyFixedVector s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
+        const Vec3 d_ij = x.bj.r + s_j.v - x.bi.r - s_i.v;
         GammaDerivatives g;
-        GammaTerms terms_i(bi, g.i), terms_j(bj, g.j);
+        GammaTerms terms_i(x.bi, g.i), terms_j(x.bj, g.j);
         g.j.r = -2 * (s_j.centripetal - s_i.centripetal), g.i.r = -g.j.r;
         terms_j.a(s_bar_j, g.j.r), terms_i.a(s_bar_i, g.i.r);
-        g.j.rdot = -4 * (bj.rdot + s_j.vdot - bi.rdot - s_i.vdot), g.i.rdot = -g.j.rdot;
+        g.j.rdot = -4 * (x.bj.rdot + s_j.vdot - x.bi.rdot - s_i.vdot), g.i.rdot = -g.j.rdot;
         terms_j.adot(s_bar_j, g.j.rdot), terms_i.adot(s_bar_i, g.i.rdot);
         terms_j.centripetal(s_bar_j, -2 * d_ij), terms_i.centripetal(s_bar_i, 2 * d_ij);
         return g;
@@ -84,10 +84,10 @@ public:
         return 0b111 | cross_product_pattern(s_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string start_error(const Motion&, const Motion&, double t) const override
+    std::string start_error(const Arguments& x) const override
     {
         std::ostringstream text;
-        if (!(f.f(t) > 0)) text << "f is a squared distance and must be positive, got " << f.f(t);
+        if (!(f.f(x.t) > 0)) text << "f is a squared distance and must be positive, got " << f.f(x.t);
         return text.str();
     }
 

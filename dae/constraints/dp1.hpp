@@ -25,32 +25,32 @@ public:
         : Block(i, j), a_bar_i(a_bar_i), a_bar_j(a_bar_j), f(std::move(f))
     {}
 
-    double phi(const Motion& bi, const Motion& bj, double t) const override
+    double phi(const Arguments& x) const override
     {
-        return (bi.A * a_bar_i).dot(bj.A * a_bar_j) - f.f(t);
+        return (x.bi.A * a_bar_i).dot(x.bj.A * a_bar_j) - f.f(x.t);
     }
 
-    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    Variation variation(const Arguments& x) const override
     {
-        const Vec3 a_i = bi.A * a_bar_i, a_j = bj.A * a_bar_j;
+        const Vec3 a_i = x.bi.A * a_bar_i, a_j = x.bj.A * a_bar_j;
         return {.r_i = Vec3::Zero(),
-                .pi_i = a_bar_i.cross(bi.A.transpose() * a_j),
+                .pi_i = a_bar_i.cross(x.bi.A.transpose() * a_j),
                 .r_j = Vec3::Zero(),
-                .pi_j = a_bar_j.cross(bj.A.transpose() * a_i)};
+                .pi_j = a_bar_j.cross(x.bj.A.transpose() * a_i)};
     }
 
-    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+    double nu(const Arguments& x) const override { return f.fdot(x.t); }
 
-    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    double gamma(const Arguments& x) const override
     {
-        const BodyFixedVector a_i(bi, a_bar_i), a_j(bj, a_bar_j);
-        return f.fddot(t) - a_i.centripetal.dot(a_j.v) - a_i.v.dot(a_j.centripetal) -
+        const BodyFixedVector a_i(x.bi, a_bar_i), a_j(x.bj, a_bar_j);
+        return f.fddot(x.t) - a_i.centripetal.dot(a_j.v) - a_i.v.dot(a_j.centripetal) -
                2 * a_i.vdot.dot(a_j.vdot);
     }
 
-    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    Mat12 second_variation(const Arguments& x) const override
     {
-        const Mat3 ai = tilde(a_bar_i), aj = tilde(a_bar_j), A_ij = bi.A.transpose() * bj.A;
+        const Mat3 ai = tilde(a_bar_i), aj = tilde(a_bar_j), A_ij = x.bi.A.transpose() * x.bj.A;
         Mat12 H = Mat12::Zero();
         H.block<3, 3>(3, 3) = ai * tilde(A_ij * a_bar_j);
         H.block<3, 3>(3, 9) = -ai * A_ij * aj;
@@ -59,19 +59,19 @@ public:
         return H;
     }
 
-    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+    Variation nu_variation(const Arguments&) const override { return Variation::zero(); }
 
-    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Arguments& x) const override
     {
-        const BodyFixedVector a_i(bi, a_bar_i), a_j(bj, a_bar_j);
+        const BodyFixedVector a_i(x.bi, a_bar_i), a_j(x.bj, a_bar_j);
         GammaDerivatives g;
         const auto add_terms = [](GammaTerms terms, const Vec3& a_bar, const BodyFixedVector& other) {
             terms.centripetal(a_bar, -other.v);
             terms.a(a_bar, -other.centripetal);
             terms.adot(a_bar, -2 * other.vdot);
         };
-        add_terms(GammaTerms(bi, g.i), a_bar_i, a_j);
-        add_terms(GammaTerms(bj, g.j), a_bar_j, a_i);
+        add_terms(GammaTerms(x.bi, g.i), a_bar_i, a_j);
+        add_terms(GammaTerms(x.bj, g.j), a_bar_j, a_i);
         return g;
     }
 
@@ -80,9 +80,9 @@ public:
         return cross_product_pattern(a_bar_i) << 3 | cross_product_pattern(a_bar_j) << 9;
     }
 
-    std::string start_error(const Motion&, const Motion&, double t) const override
+    std::string start_error(const Arguments& x) const override
     {
-        const double max_value = a_bar_i.norm() * a_bar_j.norm(), value = f.f(t);
+        const double max_value = a_bar_i.norm() * a_bar_j.norm(), value = f.f(x.t);
         std::ostringstream text;
         if (!(max_value > 0))
             text << "a vector of length zero has no direction, got |a_i||a_j| = " << max_value;
@@ -104,15 +104,15 @@ public:
     /// Let the two vectors have length one and stay in one plane. Then a_i · a_j = cos g implies p · a_j = ±
     /// sin g for the vector p = (a_i × a_j) × a_i, scaled to the length of a_i. p is fixed in body i. Its
     /// direction and its sign are those at the start.
-    std::unique_ptr<DP1> complement(const Motion& bi, const Motion& bj, double t) const
+    std::unique_ptr<DP1> complement(const Arguments& x) const
     {
         const std::optional<Driver> other = f.complement();
         if (!other) return nullptr;
-        const Vec3 a_j = bi.A.transpose() * (bj.A * a_bar_j);
+        const Vec3 a_j = x.bi.A.transpose() * (x.bj.A * a_bar_j);
         const Vec3 axis = a_bar_i.cross(a_j).normalized();
         Vec3 a_bar_perpendicular = axis.cross(a_bar_i);
         const double sine = a_bar_perpendicular.dot(a_j);  // positive, since axis is along a_i × a_j
-        if (other->f(t) * sine < 0) a_bar_perpendicular = -a_bar_perpendicular;
+        if (other->f(x.t) * sine < 0) a_bar_perpendicular = -a_bar_perpendicular;
         return std::make_unique<DP1>(i, a_bar_perpendicular, j, a_bar_j, *other);
     }
 

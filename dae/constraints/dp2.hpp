@@ -21,58 +21,58 @@ public:
         : Block(i, j), a_bar_i(a_bar_i), s_bar_i(s_bar_i), s_bar_j(s_bar_j), f(std::move(f))
     {}
 
-    double phi(const Motion& bi, const Motion& bj, double t) const override
+    double phi(const Arguments& x) const override
     {
-        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
-        return (bi.A * a_bar_i).dot(d_ij) - f.f(t);
+        const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
+        return (x.bi.A * a_bar_i).dot(d_ij) - f.f(x.t);
     }
 
-    Variation variation(const Motion& bi, const Motion& bj, double) const override
+    Variation variation(const Arguments& x) const override
     {
-        const Vec3 a_i = bi.A * a_bar_i;
-        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+        const Vec3 a_i = x.bi.A * a_bar_i;
+        const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
         return {.r_i = -a_i,
-                .pi_i = a_bar_i.cross(s_bar_i) + a_bar_i.cross(bi.A.transpose() * d_ij),
+                .pi_i = a_bar_i.cross(s_bar_i) + a_bar_i.cross(x.bi.A.transpose() * d_ij),
                 .r_j = a_i,
-                .pi_j = s_bar_j.cross(bj.A.transpose() * a_i)};
+                .pi_j = s_bar_j.cross(x.bj.A.transpose() * a_i)};
     }
 
-    double nu(const Motion&, const Motion&, double t) const override { return f.fdot(t); }
+    double nu(const Arguments& x) const override { return f.fdot(x.t); }
 
-    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    double gamma(const Arguments& x) const override
     {
-        const BodyFixedVector a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
-        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
-        const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
-        return f.fddot(t) - a_i.centripetal.dot(d_ij) - 2 * a_i.vdot.dot(d_ijdot) -
+        const BodyFixedVector a_i(x.bi, a_bar_i), s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
+        const Vec3 d_ij = x.bj.r + s_j.v - x.bi.r - s_i.v;
+        const Vec3 d_ijdot = x.bj.rdot + s_j.vdot - x.bi.rdot - s_i.vdot;
+        return f.fddot(x.t) - a_i.centripetal.dot(d_ij) - 2 * a_i.vdot.dot(d_ijdot) -
                a_i.v.dot(s_j.centripetal - s_i.centripetal);
     }
 
-    Mat12 second_variation(const Motion& bi, const Motion& bj, double) const override
+    Mat12 second_variation(const Arguments& x) const override
     {
-        const Vec3 d_ij = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
-        const Mat3 ai = tilde(a_bar_i), sj = tilde(s_bar_j), A_ai = bi.A * ai;
+        const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
+        const Mat3 ai = tilde(a_bar_i), sj = tilde(s_bar_j), A_ai = x.bi.A * ai;
         Mat12 H = Mat12::Zero();
         H.block<3, 3>(0, 3) = A_ai;
         H.block<3, 3>(6, 3) = -A_ai;
         H.block<3, 3>(3, 0) = A_ai.transpose();
         H.block<3, 3>(3, 6) = -A_ai.transpose();
-        H.block<3, 3>(3, 3) = ai * (tilde(bi.A.transpose() * d_ij) + tilde(s_bar_i));
-        H.block<3, 3>(3, 9) = A_ai.transpose() * bj.A * sj;
+        H.block<3, 3>(3, 3) = ai * (tilde(x.bi.A.transpose() * d_ij) + tilde(s_bar_i));
+        H.block<3, 3>(3, 9) = A_ai.transpose() * x.bj.A * sj;
         H.block<3, 3>(9, 3) = H.block<3, 3>(3, 9).transpose();
-        H.block<3, 3>(9, 9) = sj * tilde(bj.A.transpose() * (bi.A * a_bar_i));
+        H.block<3, 3>(9, 9) = sj * tilde(x.bj.A.transpose() * (x.bi.A * a_bar_i));
         return H;
     }
 
-    Variation nu_variation(const Motion&, const Motion&, double) const override { return Variation::zero(); }
+    Variation nu_variation(const Arguments&) const override { return Variation::zero(); }
 
-    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double) const override
+    GammaDerivatives gamma_variation(const Arguments& x) const override
     {
-        const BodyFixedVector a_i(bi, a_bar_i), s_i(bi, s_bar_i), s_j(bj, s_bar_j);
-        const Vec3 d_ij = bj.r + s_j.v - bi.r - s_i.v;
-        const Vec3 d_ijdot = bj.rdot + s_j.vdot - bi.rdot - s_i.vdot;
+        const BodyFixedVector a_i(x.bi, a_bar_i), s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
+        const Vec3 d_ij = x.bj.r + s_j.v - x.bi.r - s_i.v;
+        const Vec3 d_ijdot = x.bj.rdot + s_j.vdot - x.bi.rdot - s_i.vdot;
         GammaDerivatives g;
-        GammaTerms terms_i(bi, g.i), terms_j(bj, g.j);
+        GammaTerms terms_i(x.bi, g.i), terms_j(x.bj, g.j);
         terms_i.centripetal(a_bar_i, -d_ij);
         terms_i.adot(a_bar_i, -2 * d_ijdot);
         terms_i.a(a_bar_i, s_i.centripetal - s_j.centripetal);
@@ -89,7 +89,7 @@ public:
         return 0b111 | cross_product_pattern(a_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
-    std::string start_error(const Motion&, const Motion&, double) const override
+    std::string start_error(const Arguments&) const override
     {
         return a_bar_i.norm() > 0 ? "" : "a vector of length zero has no direction, got |a_i| = 0";
     }

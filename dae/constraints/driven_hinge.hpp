@@ -27,39 +27,33 @@ public:
         : Block(i, j), u_bar(u_bar), u_bar_prime(u_bar_prime), w_bar(w_bar), g(std::move(g))
     {}
 
-    double phi(const Motion& bi, const Motion& bj, double t) const override
-    {
-        return (bi.A * b_bar(t).b).dot(bj.A * w_bar);
-    }
+    double phi(const Arguments& x) const override { return (x.bi.A * b_bar(x.t).b).dot(x.bj.A * w_bar); }
 
-    Variation variation(const Motion& bi, const Motion& bj, double t) const override
+    Variation variation(const Arguments& x) const override
     {
-        const Vec3 b = b_bar(t).b, w = bj.A * w_bar;
+        const Vec3 b = b_bar(x.t).b, w = x.bj.A * w_bar;
         return {.r_i = Vec3::Zero(),
-                .pi_i = b.cross(bi.A.transpose() * w),
+                .pi_i = b.cross(x.bi.A.transpose() * w),
                 .r_j = Vec3::Zero(),
-                .pi_j = w_bar.cross(bj.A.transpose() * (bi.A * b))};
+                .pi_j = w_bar.cross(x.bj.A.transpose() * (x.bi.A * b))};
     }
 
-    double nu(const Motion& bi, const Motion& bj, double t) const override
+    double nu(const Arguments& x) const override { return -(x.bi.A * b_bar(x.t).bdot).dot(x.bj.A * w_bar); }
+
+    double gamma(const Arguments& x) const override
     {
-        return -(bi.A * b_bar(t).bdot).dot(bj.A * w_bar);
+        const DrivenVector b = b_bar(x.t);
+        const BodyFixedVector w(x.bj, w_bar);
+        const Vec3& omega_bar = x.bi.omega_bar;
+        const Vec3 bdot = x.bi.A * (omega_bar.cross(b.b) + b.bdot);
+        const Vec3 bddot = x.bi.A * (omega_bar.cross(omega_bar.cross(b.b) + 2 * b.bdot) + b.bddot);
+        return -bddot.dot(w.v) - 2 * bdot.dot(w.vdot) - (x.bi.A * b.b).dot(w.centripetal);
     }
 
-    double gamma(const Motion& bi, const Motion& bj, double t) const override
+    Mat12 second_variation(const Arguments& x) const override
     {
-        const DrivenVector b = b_bar(t);
-        const BodyFixedVector w(bj, w_bar);
-        const Vec3& omega_bar = bi.omega_bar;
-        const Vec3 bdot = bi.A * (omega_bar.cross(b.b) + b.bdot);
-        const Vec3 bddot = bi.A * (omega_bar.cross(omega_bar.cross(b.b) + 2 * b.bdot) + b.bddot);
-        return -bddot.dot(w.v) - 2 * bdot.dot(w.vdot) - (bi.A * b.b).dot(w.centripetal);
-    }
-
-    Mat12 second_variation(const Motion& bi, const Motion& bj, double t) const override
-    {
-        const Vec3 b = b_bar(t).b;
-        const Mat3 b_tilde = tilde(b), w_tilde = tilde(w_bar), A_ij = bi.A.transpose() * bj.A;
+        const Vec3 b = b_bar(x.t).b;
+        const Mat3 b_tilde = tilde(b), w_tilde = tilde(w_bar), A_ij = x.bi.A.transpose() * x.bj.A;
         Mat12 H = Mat12::Zero();
         H.block<3, 3>(3, 3) = b_tilde * tilde(A_ij * w_bar);
         H.block<3, 3>(3, 9) = -b_tilde * A_ij * w_tilde;
@@ -68,31 +62,31 @@ public:
         return H;
     }
 
-    Variation nu_variation(const Motion& bi, const Motion& bj, double t) const override
+    Variation nu_variation(const Arguments& x) const override
     {
-        const Vec3 bdot = b_bar(t).bdot;
+        const Vec3 bdot = b_bar(x.t).bdot;
         return {.r_i = Vec3::Zero(),
-                .pi_i = -bdot.cross(bi.A.transpose() * (bj.A * w_bar)),
+                .pi_i = -bdot.cross(x.bi.A.transpose() * (x.bj.A * w_bar)),
                 .r_j = Vec3::Zero(),
-                .pi_j = -w_bar.cross(bj.A.transpose() * (bi.A * bdot))};
+                .pi_j = -w_bar.cross(x.bj.A.transpose() * (x.bi.A * bdot))};
     }
 
-    GammaDerivatives gamma_variation(const Motion& bi, const Motion& bj, double t) const override
+    GammaDerivatives gamma_variation(const Arguments& x) const override
     {
-        const DrivenVector b = b_bar(t);
-        const BodyFixedVector w(bj, w_bar);
-        const Vec3& omega_bar = bi.omega_bar;
+        const DrivenVector b = b_bar(x.t);
+        const BodyFixedVector w(x.bj, w_bar);
+        const Vec3& omega_bar = x.bi.omega_bar;
         const Vec3 first = omega_bar.cross(b.b) + b.bdot, inner = omega_bar.cross(b.b) + 2 * b.bdot,
                    second = omega_bar.cross(inner) + b.bddot;
         GammaDerivatives g;
-        const Vec3 g_0 = bi.A.transpose() * -w.centripetal, g_1 = bi.A.transpose() * (-2 * w.vdot),
-                   g_2 = bi.A.transpose() * -w.v;
+        const Vec3 g_0 = x.bi.A.transpose() * -w.centripetal, g_1 = x.bi.A.transpose() * (-2 * w.vdot),
+                   g_2 = x.bi.A.transpose() * -w.v;
         g.i.theta = b.b.cross(g_0) + first.cross(g_1) + second.cross(g_2);
         g.i.omega = b.b.cross(g_1) + inner.cross(g_2) + b.b.cross(g_2.cross(omega_bar));
-        GammaTerms terms_j(bj, g.j);
-        terms_j.a(w_bar, -(bi.A * second));
-        terms_j.adot(w_bar, -2 * (bi.A * first));
-        terms_j.centripetal(w_bar, -(bi.A * b.b));
+        GammaTerms terms_j(x.bj, g.j);
+        terms_j.a(w_bar, -(x.bi.A * second));
+        terms_j.adot(w_bar, -2 * (x.bi.A * first));
+        terms_j.centripetal(w_bar, -(x.bi.A * b.b));
         return g;
     }
 

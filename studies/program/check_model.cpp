@@ -140,7 +140,7 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
     for (const EvolvingContact* c : evolving_contacts(model)) {
         const dae::Constraint::Arguments at = model.arguments(*c, x);
         const ContactForceElements force_elements = find_force_elements(model, *c);
-        const bool fallback_active = dae::Model::mode(*c, x) == dae::Constraint::fallback_active;
+        const bool fallback_active = dae::Model::mode(*c, x) == contact::EvolvingContact::fallback_active;
         const contact::ContactPoint contact_point =
             fallback_active ? force_elements.fallback->at(x).contact_state.contact_point
                             : c->contact_point(at);
@@ -159,7 +159,7 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
              .alpha_i = at.bi.A.transpose() * (contact_point.C_i - at.bi.r),
              .alpha_j = at.bj.A.transpose() * (contact_point.C_j - at.bj.r),
              .unilateral = c->unilateral.enabled,
-             .inactive = dae::Model::mode(*c, x) == dae::Constraint::inactive,
+             .inactive = dae::Model::mode(*c, x) == contact::EvolvingContact::inactive,
              .fallback_active = fallback_active,
              .gap = contact_point.gap,
              .F_N = loads.F_N,

@@ -153,7 +153,7 @@ Eigen::VectorXd values(const Blocks& blocks, const Motion& bi, const Motion& bj)
     Eigen::VectorXd phi(blocks.size());
     for (size_t k = 0; k < blocks.size(); ++k) {
         const bool exchanged = blocks[k]->i != 0 && blocks[k]->j != 1;  // some blocks have exchanged bodies
-        phi[k] = exchanged ? blocks[k]->phi(bj, bi, 0) : blocks[k]->phi(bi, bj, 0);
+        phi[k] = exchanged ? blocks[k]->phi({bj, bi, 0}) : blocks[k]->phi({bi, bj, 0});
     }
     return phi;
 }
@@ -164,7 +164,7 @@ Eigen::MatrixXd variations(const Blocks& blocks, const Motion& bi, const Motion&
     Eigen::MatrixXd C(blocks.size(), 12);
     for (size_t k = 0; k < blocks.size(); ++k) {
         const bool exchanged = blocks[k]->i != 0 && blocks[k]->j != 1;
-        const Variation v = exchanged ? blocks[k]->variation(bj, bi, 0) : blocks[k]->variation(bi, bj, 0);
+        const Variation v = exchanged ? blocks[k]->variation({bj, bi, 0}) : blocks[k]->variation({bi, bj, 0});
         if (exchanged)
             C.row(k) << v.r_j.transpose(), v.pi_j.transpose(), v.r_i.transpose(), v.pi_i.transpose();
         else

@@ -158,7 +158,7 @@ double driver_torque(const Model& model, const State& x, size_t row)
     static const Motion at_rest;
     const bool first = block.i == 0;
     const Variation v =
-        first ? block.variation(x.body[0], at_rest, x.t) : block.variation(at_rest, x.body[0], x.t);
+        first ? block.variation({x.body[0], at_rest, x.t}) : block.variation({at_rest, x.body[0], x.t});
     const double lambda = x.lambda[static_cast<Eigen::Index>(row)];
     return -lambda * (x.body[0].A * (first ? v.pi_i : v.pi_j)).x();
 }

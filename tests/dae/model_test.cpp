@@ -165,19 +165,19 @@ TEST_CASE("phi, nu, gamma and the variation omit removed rows and the ground", "
     const CD two(X, ground, s, 1, q), three(c, 1, s, 0, q, f);
     const Motion& a = x.body[0];
     const Motion& b = x.body[1];
-    CHECK(phi[0] == two.phi({}, b, x.t));
-    CHECK(phi[1] == three.phi(b, a, x.t));
+    CHECK(phi[0] == two.phi({{}, b, x.t}));
+    CHECK(phi[1] == three.phi({b, a, x.t}));
     CHECK(nu[0] == 0);
     CHECK(nu[1] == f.fdot(x.t));
-    CHECK(gamma[0] == two.gamma({}, b, x.t));
-    CHECK(gamma[1] == three.gamma(b, a, x.t));
+    CHECK(gamma[0] == two.gamma({{}, b, x.t}));
+    CHECK(gamma[1] == three.gamma({b, a, x.t}));
     REQUIRE(C.start == std::vector<int>{0, 1, 3});
     CHECK(C.entry[0].body == 1);
-    CHECK(C.entry[0].pi == two.variation({}, b, x.t).pi_j);
+    CHECK(C.entry[0].pi == two.variation({{}, b, x.t}).pi_j);
     CHECK(C.entry[1].body == 1);
     CHECK(C.entry[1].r == -c);
     CHECK(C.entry[2].body == 0);
-    CHECK(C.entry[2].pi == three.variation(b, a, x.t).pi_j);
+    CHECK(C.entry[2].pi == three.variation({b, a, x.t}).pi_j);
 
     // residuals include the removed row and are divided by the length of its first variation
     const Model::Residual largest = model.largest_residual(x);
@@ -185,9 +185,9 @@ TEST_CASE("phi, nu, gamma and the variation omit removed rows and the ground", "
     for (const Model::Row& row : model.all_rows())
         expected = std::max(expected, std::abs(model.scaled_residual(row, x)));
     CHECK(largest.value == expected);
-    const Variation v = model.all_rows()[0].block->variation(a, b, x.t);
+    const Variation v = model.all_rows()[0].block->variation({a, b, x.t});
     CHECK(model.scaled_residual(model.all_rows()[0], x) ==
-          Approx(model.all_rows()[0].block->phi(a, b, x.t) / std::hypot(v.pi_i.norm(), v.pi_j.norm())));
+          Approx(model.all_rows()[0].block->phi({a, b, x.t}) / std::hypot(v.pi_i.norm(), v.pi_j.norm())));
 }
 
 TEST_CASE("the pattern of a model includes the complements of its drivers", "[dae][model]")

@@ -281,7 +281,7 @@ TEST_CASE("the published data of the four-link are rejected with their residual"
     }
     // The residual in m; the message gives it divided by the length of the row.
     const Model::Row& row = model.all_rows()[7];
-    CHECK(std::abs(row.block->phi(x.body[2], {}, 0)) == Approx(8.7e-3).epsilon(0.01));
+    CHECK(std::abs(row.block->phi({x.body[2], {}, 0})) == Approx(8.7e-3).epsilon(0.01));
     std::ostringstream scaled;
     scaled.precision(3);
     scaled << std::abs(model.scaled_residual(row, x));

@@ -65,8 +65,8 @@ TEST_CASE("constraint contacts are read, start, and are written unchanged", "[co
     dae::Description d = dae::load_model((models / "contacts" / "evolving.json").string());
     REQUIRE(d.model->general_constraints().size() == 3);
     CHECK(d.model->forces().empty());
-    CHECK(d.contact_place.size() == 3);
-    CHECK_THAT(d.contact_place[1], Catch::EndsWith("(/contacts/1)"));
+    CHECK(d.general_place.size() == 3);
+    CHECK_THAT(d.general_place[1], Catch::EndsWith("(/contacts/1)"));
     const auto& of = [&](int k) -> const EvolvingContact& {
         return dynamic_cast<const EvolvingContact&>(*d.model->general_constraints()[k]);
     };
@@ -143,7 +143,7 @@ TEST_CASE("tracked friction of a model file belongs to its contact",
     const auto& force = d.model->forces();
     REQUIRE(force.size() == 5);  // three of friction, two fallbacks
     CHECK(d.force_place.size() == 5);
-    CHECK(d.force_place[2] == d.contact_place[1]);
+    CHECK(d.force_place[2] == d.general_place[1]);
     const auto* first_friction = dynamic_cast<const EvolvingFriction*>(force[0].get());
     REQUIRE(first_friction != nullptr);
     CHECK(&first_friction->contact == &of(0));
@@ -177,7 +177,7 @@ TEST_CASE("tracked friction of a model file belongs to its contact",
     lie::Loads out(3);
     fallback.add(d.x, out);
     CHECK(out.F[1].norm() + out.n_bar[1].norm() == 0);
-    dae::Model::set_mode(of(1), d.x, dae::Constraint::fallback_active);
+    dae::Model::set_mode(of(1), d.x, EvolvingContact::fallback_active);
     CHECK(fallback.is_active(d.x));
     CHECK(force[1]->stable_step(d.x) == std::numeric_limits<double>::infinity());
 }
@@ -350,7 +350,7 @@ TEST_CASE("a surface without a normal at the contact is rejected at the start", 
     lie::State x;
     x.body.resize(1);
     x.body[0].r.z() = 0.15;
-    CHECK_THROWS_AS(dae::start(model, x), dae::ContactError);
+    CHECK_THROWS_AS(dae::start(model, x), dae::ConstraintError);
     CHECK_THROWS_WITH(dae::start(model, x),
                       Catch::StartsWith("contact 'egg-floor'; bodies 'egg', 'ground': ") &&
                           Catch::Contains("a surface has no normal at (0, "));

@@ -336,7 +336,7 @@ TEST_CASE("contacts with indeterminate forces are named, or switch to their fall
         }
         CHECK(dae::start(model, x).rank == 3);
         CHECK(x.discrete_state[model.general_constraints()[3]->first_discrete_state] ==
-              dae::Constraint::fallback_active);
+              EvolvingContact::fallback_active);
         const auto step = contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), {});
         const State end = lie::march(x, *step, lie::TimeGrid::over(1, 1e-3)).row.back();
         CHECK((end.body[0].r - x.body[0].r).norm() < 1e-9);
@@ -374,7 +374,7 @@ TEST_CASE("a contact whose curvature vanishes during a run switches to its fallb
         }
         const State end = lie::march(x, *step, grid).row.back();
         CHECK(end.discrete_state[model.general_constraints()[0]->first_discrete_state] ==
-              dae::Constraint::fallback_active);
+              EvolvingContact::fallback_active);
         CHECK(end.body[0].r.z() > 0.19);
     }
 }
@@ -431,7 +431,7 @@ TEST_CASE("a contact that separates or approaches at the start starts inactive",
     const double R = 0.1;
     for (const double v : {2., -2.}) {
         const Ball b(R, 1, plane, Vec3(0, 0, R), Vec3(0, 0, v), {true, 1});
-        CHECK(b.x.discrete_state[0] == dae::Constraint::inactive);
+        CHECK(b.x.discrete_state[0] == EvolvingContact::inactive);
         const BounceRun r = run(b, "rA-half-1-momentum", 0.1, 1e-3);
         CHECK(r.node.back().body[0].r.z() == Approx(R + 0.2 - 0.5 * g * 0.01).epsilon(1e-10));
         CHECK(r.events.size() == (v < 0 ? 1 : 0));

@@ -77,7 +77,7 @@ struct Pair {
     }
     double phi_after(const Block& b, double t, double tau) const
     {
-        return b.phi(tests::pose_after(bi, tau), tests::pose_after(bj, tau), t + tau);
+        return b.phi({tests::pose_after(bi, tau), tests::pose_after(bj, tau), t + tau});
     }
 };
 
@@ -96,12 +96,12 @@ TEST_CASE("the first variation of a block is the derivative of phi", "[dae][cons
     const Pair pair(GENERATE(0, 1, 2), random);
     const double t = random.number(0, 2);
     for (const Named& n : blocks(pair.i, pair.j, random)) {
-        const Vec12 exact = row(n.block->variation(pair.bi, pair.bj, t));
+        const Vec12 exact = row(n.block->variation({pair.bi, pair.bj, t}));
         for (int c = 0; c < 12; ++c) {
             const auto phi = [&](double s) {
                 const Vec12 delta = s * Vec12::Unit(c);
-                return n.block->phi(tests::displaced(pair.bi, delta.head<6>()),
-                                    tests::displaced(pair.bj, delta.tail<6>()), t);
+                return n.block->phi({tests::displaced(pair.bi, delta.head<6>()),
+                                     tests::displaced(pair.bj, delta.tail<6>()), t});
             };
             INFO(n.name << ", component " << c);
             CHECK(exact[c] == Approx(tests::derivative(phi)).margin(1e-10));
@@ -120,12 +120,13 @@ TEST_CASE("nu and gamma complete the first and second time derivatives of phi", 
     acceleration << bi.rddot, bi.omegadot_bar, bj.rddot, bj.omegadot_bar;
     for (const Named& n : blocks(pair.i, pair.j, random)) {
         const auto phi = [&](double tau) { return pair.phi_after(*n.block, t, tau); };
-        const Vec12 v = row(n.block->variation(bi, bj, t));
+        const Vec12 v = row(n.block->variation({bi, bj, t}));
         INFO(n.name);
         // errors of the differences: 1e-16/h², and h⁴/90 times a sixth derivative of up to 1e3 at these
         // speeds
-        CHECK(v.dot(velocity) - n.block->nu(bi, bj, t) == Approx(tests::derivative(phi, 5e-4)).margin(1e-8));
-        CHECK(v.dot(acceleration) - n.block->gamma(bi, bj, t) ==
+        CHECK(v.dot(velocity) - n.block->nu({bi, bj, t}) ==
+              Approx(tests::derivative(phi, 5e-4)).margin(1e-8));
+        CHECK(v.dot(acceleration) - n.block->gamma({bi, bj, t}) ==
               Approx(tests::second_derivative(phi, 1e-3)).epsilon(1e-8).margin(1e-7));
     }
 }
@@ -136,8 +137,8 @@ TEST_CASE("the second variation of a block is the derivative of its first variat
     const Pair pair(GENERATE(0, 1, 2), random);
     const double t = random.number(0, 2);
     for (const Named& n : blocks(pair.i, pair.j, random)) {
-        const Mat12 exact = n.block->second_variation(pair.bi, pair.bj, t);
-        const Vec12 nu = row(n.block->nu_variation(pair.bi, pair.bj, t));
+        const Mat12 exact = n.block->second_variation({pair.bi, pair.bj, t});
+        const Vec12 nu = row(n.block->nu_variation({pair.bi, pair.bj, t}));
         for (int c = 0; c < 12; ++c) {
             const auto moved = [&](auto f) {
                 return tests::derivative([&](double s) {
@@ -146,21 +147,22 @@ TEST_CASE("the second variation of a block is the derivative of its first variat
                              tests::displaced(pair.bj, delta.tail<6>()));
                 });
             };
-            const Vec12 column =
-                moved([&](const Motion& a, const Motion& b) { return row(n.block->variation(a, b, t)); });
+            const Vec12 column = moved([&](const Motion& a, const Motion& b) {
+                return row(n.block->variation({a, b, t}));
+            });
             INFO(n.name << ", component " << c);
             CHECK((exact.col(c) - column).cwiseAbs().maxCoeff() < 1e-9);
             CHECK(nu[c] == Approx(moved([&](const Motion& a, const Motion& b) {
-                               return n.block->nu(a, b, t);
+                               return n.block->nu({a, b, t});
                            })).margin(1e-9));
         }
         // The blocks of two bodies are symmetric. The rotational block H of one body has H - Hᵀ = tilde(pi).
-        const Variation v = n.block->variation(pair.bi, pair.bj, t);
+        const Variation v = n.block->variation({pair.bi, pair.bj, t});
         Mat12 lack = exact - exact.transpose();
         lack.block<3, 3>(3, 3) -= tilde(v.pi_i);
         lack.block<3, 3>(9, 9) -= tilde(v.pi_j);
         CHECK(lack.cwiseAbs().maxCoeff() < 1e-13);
-        CHECK((exact - n.block->Block::second_variation(pair.bi, pair.bj, t)).cwiseAbs().maxCoeff() < 1e-8);
+        CHECK((exact - n.block->Block::second_variation({pair.bi, pair.bj, t})).cwiseAbs().maxCoeff() < 1e-8);
     }
 }
 
@@ -176,7 +178,7 @@ TEST_CASE("the variation of gamma is its derivative", "[dae][constraints]")
         return out;
     };
     for (const Named& n : blocks(pair.i, pair.j, random)) {
-        const Vec24 exact = all(n.block->gamma_variation(pair.bi, pair.bj, t));
+        const Vec24 exact = all(n.block->gamma_variation({pair.bi, pair.bj, t}));
         for (int c = 0; c < 24; ++c) {
             const auto gamma = [&](double s) {
                 Motion b[] = {pair.bi, pair.bj};
@@ -187,12 +189,12 @@ TEST_CASE("the variation of gamma is its derivative", "[dae][constraints]")
                 else
                     (c % 12 < 9 ? moved.rdot : moved.omega_bar)[c % 3] += s;
                 moved = tests::displaced(moved, pose);
-                return n.block->gamma(b[0], b[1], t);
+                return n.block->gamma({b[0], b[1], t});
             };
             INFO(n.name << ", component " << c);
             CHECK(exact[c] == Approx(tests::derivative(gamma)).margin(1e-9));
         }
-        CHECK((exact - all(n.block->Block::gamma_variation(pair.bi, pair.bj, t))).cwiseAbs().maxCoeff() <
+        CHECK((exact - all(n.block->Block::gamma_variation({pair.bi, pair.bj, t}))).cwiseAbs().maxCoeff() <
               1e-7);
     }
 }
@@ -207,7 +209,7 @@ TEST_CASE("the pattern of a block contains exactly the derivatives that can diff
         unsigned seen = 0;
         for (int k = 0; k < 20; ++k) {
             const Pair pair(0, random);
-            const Vec12 v = row(n.block->variation(pair.bi, pair.bj, random.number(0, 2)));
+            const Vec12 v = row(n.block->variation({pair.bi, pair.bj, random.number(0, 2)}));
             for (int c = 0; c < 12; ++c)
                 if (v[c] != 0) seen |= 1u << c;
         }
@@ -240,9 +242,9 @@ TEST_CASE("the blocks agree with their published matrix forms", "[dae][constrain
         Vec12 expected;
         expected << r_i.transpose(), pi_i.transpose(), r_j.transpose(), pi_j.transpose();
         INFO(name);
-        CHECK((row(block.variation(bi, bj, t)) - expected).cwiseAbs().maxCoeff() < 1e-14);
-        CHECK(block.nu(bi, bj, t) == f.fdot(t));
-        CHECK(block.gamma(bi, bj, t) == Approx(gamma + f.fddot(t)).epsilon(1e-14).margin(2e-14));
+        CHECK((row(block.variation({bi, bj, t})) - expected).cwiseAbs().maxCoeff() < 1e-14);
+        CHECK(block.nu({bi, bj, t}) == f.fdot(t));
+        CHECK(block.gamma({bi, bj, t}) == Approx(gamma + f.fddot(t)).epsilon(1e-14).margin(2e-14));
     };
     const Row zero = Row::Zero(), ut = u.transpose(), wt = w.transpose(), dt = d.transpose(),
               ct = c.transpose();
@@ -271,34 +273,34 @@ TEST_CASE("a driven hinge is a dot product with a vector that rotates with the d
     turning.A = pair.bi.A * R;
     turning.omega_bar = R.transpose() * pair.bi.omega_bar + g.fdot(t) * axis;
     const DP1 dot(0, frame.col(1), 1, w);
-    CHECK(hinge.phi(pair.bi, pair.bj, t) == Approx(dot.phi(turning, pair.bj, t)).margin(1e-15));
-    const Variation of_dot = dot.variation(turning, pair.bj, t),
-                    of_hinge = hinge.variation(pair.bi, pair.bj, t);
+    CHECK(hinge.phi({pair.bi, pair.bj, t}) == Approx(dot.phi({turning, pair.bj, t})).margin(1e-15));
+    const Variation of_dot = dot.variation({turning, pair.bj, t}),
+                    of_hinge = hinge.variation({pair.bi, pair.bj, t});
     CHECK((of_hinge.pi_i - R * of_dot.pi_i).norm() < 1e-15);
     CHECK((of_hinge.pi_j - of_dot.pi_j).norm() < 1e-15);
-    CHECK(hinge.nu(pair.bi, pair.bj, t) == Approx(-g.fdot(t) * of_dot.pi_i.dot(axis)).margin(1e-14));
+    CHECK(hinge.nu({pair.bi, pair.bj, t}) == Approx(-g.fdot(t) * of_dot.pi_i.dot(axis)).margin(1e-14));
     // ω̄̇ of the third body is R^T ω̄̇_i + g'' axis - g' axis × R^T ω̄_i.
     const Vec3 omegadot_bar = g.fddot(t) * axis - g.fdot(t) * axis.cross(R.transpose() * pair.bi.omega_bar);
-    CHECK(hinge.gamma(pair.bi, pair.bj, t) ==
-          Approx(dot.gamma(turning, pair.bj, t) - of_dot.pi_i.dot(omegadot_bar)).margin(2e-14));
+    CHECK(hinge.gamma({pair.bi, pair.bj, t}) ==
+          Approx(dot.gamma({turning, pair.bj, t}) - of_dot.pi_i.dot(omegadot_bar)).margin(2e-14));
 }
 
 TEST_CASE("a block rejects data for which it is singular", "[dae][constraints]")
 {
     const Motion m;
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), O = Vec3::Zero();
-    CHECK(DP1(0, X, 1, Y).start_error(m, m, 0).empty());
-    CHECK(DP1(0, 2 * X, 1, Y, 1.9).start_error(m, m, 0).empty());
-    CHECK_THAT(DP1(0, X, 1, Y, 1.1).start_error(m, m, 0), Catch::Contains("got 1.1"));
-    CHECK_THAT(DP1(0, X, 1, Y, -1.0).start_error(m, m, 0), Catch::Contains("parallel"));
-    CHECK_THAT(DP1(0, X, 1, Y, Driver("cos(t)")).start_error(m, m, 0), Catch::Contains("parallel"));
-    CHECK(DP1(0, X, 1, Y, Driver("cos(t)")).start_error(m, m, 1).empty());
-    CHECK(D(0, X, 1, Y, 2.0).start_error(m, m, 0).empty());
-    CHECK_THAT(D(0, X, 1, Y, 0.0).start_error(m, m, 0), Catch::Contains("got 0"));
-    CHECK_THAT(D(0, X, 1, Y, Driver("1-t")).start_error(m, m, 3), Catch::Contains("got -2"));
+    CHECK(DP1(0, X, 1, Y).start_error({m, m, 0}).empty());
+    CHECK(DP1(0, 2 * X, 1, Y, 1.9).start_error({m, m, 0}).empty());
+    CHECK_THAT(DP1(0, X, 1, Y, 1.1).start_error({m, m, 0}), Catch::Contains("got 1.1"));
+    CHECK_THAT(DP1(0, X, 1, Y, -1.0).start_error({m, m, 0}), Catch::Contains("parallel"));
+    CHECK_THAT(DP1(0, X, 1, Y, Driver("cos(t)")).start_error({m, m, 0}), Catch::Contains("parallel"));
+    CHECK(DP1(0, X, 1, Y, Driver("cos(t)")).start_error({m, m, 1}).empty());
+    CHECK(D(0, X, 1, Y, 2.0).start_error({m, m, 0}).empty());
+    CHECK_THAT(D(0, X, 1, Y, 0.0).start_error({m, m, 0}), Catch::Contains("got 0"));
+    CHECK_THAT(D(0, X, 1, Y, Driver("1-t")).start_error({m, m, 3}), Catch::Contains("got -2"));
     // with a vector of length zero the row is zero
-    CHECK_THAT(DP1(0, O, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(DP1(0, X, 1, O).start_error(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(DP2(0, O, X, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
-    CHECK_THAT(CD(O, 0, X, 1, Y).start_error(m, m, 0), Catch::Contains("length zero"));
+    CHECK_THAT(DP1(0, O, 1, Y).start_error({m, m, 0}), Catch::Contains("length zero"));
+    CHECK_THAT(DP1(0, X, 1, O).start_error({m, m, 0}), Catch::Contains("length zero"));
+    CHECK_THAT(DP2(0, O, X, 1, Y).start_error({m, m, 0}), Catch::Contains("length zero"));
+    CHECK_THAT(CD(O, 0, X, 1, Y).start_error({m, m, 0}), Catch::Contains("length zero"));
 }

@@ -19,7 +19,7 @@ target_compile_features(hilda_library PUBLIC cxx_std_20)
 target_include_directories(hilda_library PUBLIC
     "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hilda>)
 target_link_libraries(hilda_library PUBLIC
-    Eigen3::Eigen KLU::KLU SPQR::SPQR nlohmann_json::nlohmann_json fmt::fmt)
+    Eigen3::Eigen KLU::KLU SPQR::SPQR fmt::fmt)
 if(NOT HILDA_SANITIZE)
     # No undefined symbols. This also verifies that these rooms do not use GSL.
     target_link_options(hilda_library PRIVATE LINKER:--no-undefined)

@@ -4,8 +4,8 @@
 # Two precompiled headers: one owned by the lowest room and used by all rooms, one by its tests and used by all tests. A
 # source file must include what it uses: the preset `tidy` builds without precompiled headers.
 #
-# nlohmann/json.hpp is not part of them. Its literal operators instantiate the parser, which costs 0.6 s in each file that
-# sees the header, and most files do not use it. Headers with compile definitions (fmt, spdlog) cannot be part of them,
+# nlohmann/json.hpp, which tests use, is not part of them. Its literal operators instantiate the parser, which costs 0.6 s in
+# each file that sees the header, and most files do not use it. Headers with compile definitions (fmt, spdlog) cannot be part of them,
 # because the definitions differ between the rooms.
 function(hilda_precompile target)
     if(NOT HILDA_PCH)

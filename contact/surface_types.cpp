@@ -100,7 +100,7 @@ Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optio
             all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *x;
         }
     }
-    o.record(key, {.value = rows});
+    o.record(key, rows);
     return all;
 }
 

@@ -3,21 +3,11 @@
 
 #include "dae/driver.hpp"
 
-#include <charconv>
+#include "io/json.hpp"
 
 namespace hilda::dae {
-namespace {
 
-/// The shortest decimal text that is read as the same number
-std::string shortest(double c)
-{
-    char digits[32];
-    return {digits, std::to_chars(digits, digits + sizeof digits, c).ptr};
-}
-
-}  // namespace
-
-Driver::Driver(double constant) : Driver(shortest(constant)) {}
+Driver::Driver(double constant) : Driver(io::shortest(constant)) {}
 
 Driver::Driver(std::string_view text) : expression(std::make_shared<const io::Expression>(text))
 {

@@ -65,7 +65,7 @@ private:
             o.find("hilda_model");
             out.warnings.push_back(o.place() +
                                    ": the key 'hilda_model' is missing; the file is read as version 1");
-            o.record("hilda_model", {.value = 1.0});
+            o.record("hilda_model", 1.0);
         } else if (const double v = o.number("hilda_model"); v != 1) {
             o.fail("hilda_model", "the version of the format must be 1, got " + shortest(v));
         }
@@ -80,9 +80,9 @@ private:
         const Json::List& list = o.list(key, required);
         for (size_t k = 0; k < list.size(); ++k) {
             Json element = read(list[k], pointer_to(o.pointer(key), std::to_string(k)));
-            if (element.object() != nullptr) recorded.push_back(std::move(element));
+            if (element.members() != nullptr) recorded.push_back(std::move(element));
         }
-        return {.value = std::move(recorded)};
+        return recorded;
     }
 
     Json body(const Json& v, const std::string& at)
@@ -132,7 +132,7 @@ private:
     void register_body(ObjectReader& o, const std::string& name, int number)
     {
         if (name != "ground" && !by_name.emplace(name, number).second)
-            o.fail("name", "two bodies have the same name, got " + described({.value = name}));
+            o.fail("name", "two bodies have the same name, got " + described(name));
         if (o.find("id") != nullptr)
             if (const int id = o.integer("id"); !by_id.emplace(id, number).second)
                 o.fail("id", "two bodies have the same id, got " + std::to_string(id));
@@ -146,7 +146,7 @@ private:
             const int id = o.integer(key);
             const auto found = by_id.find(id);
             if (found == by_id.end()) o.fail(key, "no body has this id, got " + std::to_string(id));
-            o.record(key, {.value = model.body_name(found->second)});
+            o.record(key, model.body_name(found->second));
             return found->second;
         }
         if (v != nullptr && v->string() == nullptr)
@@ -157,11 +157,11 @@ private:
             std::vector<std::string> known = {"ground"};
             for (const auto& entry : by_name) known.push_back(entry.first);
             const std::string meant = io::nearest(name, known);
-            o.fail(key, "no body has this name, got " + described({.value = name}) +
+            o.fail(key, "no body has this name, got " + described(name) +
                             (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
         }
         const int number = name == "ground" ? ground : found->second;
-        o.record(key, {.value = model.body_name(number)});
+        o.record(key, model.body_name(number));
         return number;
     }
 
@@ -208,7 +208,7 @@ private:
     {
         std::string name = o.name("name", kind + "-" + std::to_string(used_names.size() + 1));
         if (!used_names.insert(name).second)
-            o.fail("name", "this name is already used, got " + described({.value = name}));
+            o.fail("name", "this name is already used, got " + described(name));
         return name;
     }
 
@@ -317,7 +317,7 @@ private:
                 source.fail(v, at, e.what());
             }
         };
-        o.record("components", {.value = list});
+        o.record("components", list);
         return {component(0), component(1), component(2)};
     }
 
@@ -336,7 +336,7 @@ private:
 
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set)
 {
-    JsonSource source(text, file);
+    JsonSource source{std::string(text), file};
     for (const std::string& change : set) source.set(change);
     Description description;
     description.model = std::make_unique<Model>();

@@ -29,7 +29,7 @@ Driver driver(ObjectReader& o, std::string_view key, const std::optional<std::st
         const io::Jet start = f.jet(0);
         if (!std::isfinite(f.f(0)) || !std::isfinite(start.fdot) || !std::isfinite(start.fddot))
             o.fail(key, std::string(key) + " and its derivatives must be finite at t = 0, got " +
-                            described({.value = text}) + " with the value " + shortest(f.f(0)) +
+                            described(text) + " with the value " + shortest(f.f(0)) +
                             " and the derivatives " + shortest(start.fdot) + ", " + shortest(start.fddot));
         return f;
     } catch (const io::ExpressionError& e) {

@@ -53,4 +53,11 @@ inline std::string nearest(std::string_view word, std::span<const std::string> k
     return best;
 }
 
+/// The ending "; did you mean 'x'?" of a message, or nothing if no known word is near
+inline std::string did_you_mean(std::string_view word, std::span<const std::string> known)
+{
+    const std::string meant = nearest(word, known);
+    return meant.empty() ? "" : "; did you mean '" + meant + "'?";
+}
+
 }  // namespace hilda::io

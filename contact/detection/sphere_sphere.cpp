@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/sphere.hpp"
 #include "contact/detection/detectors.hpp"
-#include "dae/json_source.hpp"
+#include "io/json.hpp"
 
 namespace hilda::contact {
 
@@ -52,8 +52,8 @@ std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j)
     if (!(1 / R_i + 1 / R_j > 0))
         lie::reject("contact::make_detector",
                     "the radius of a sphere must be less than that of the concave sphere around it",
-                    dae::shortest(a->concave ? b->R : a->R) + " m in " +
-                        dae::shortest(a->concave ? a->R : b->R) + " m");
+                    io::shortest(a->concave ? b->R : a->R) + " m in " +
+                        io::shortest(a->concave ? a->R : b->R) + " m");
     return std::make_unique<SphereSphere>(i, R_i, j, R_j);
 }
 

@@ -219,7 +219,7 @@ const bool registered = register_surface(
          if (o.has("corner"))
              corner = Vector2d::Map(o.numbers("corner", 2).data());
          else
-             o.record("corner", {.value = dae::Json::List{{.value = 0.0}, {.value = 0.0}}});
+             o.record("corner", dae::Json{0.0, 0.0});
          return std::make_shared<HeightMap>(heights, corner, Vector2d(spacing[0], spacing[1]));
      }});
 

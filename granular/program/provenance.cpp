@@ -30,10 +30,7 @@ std::string version_line()
 
 io::Json provenance(const std::string& command_line, int threads, const std::string& device)
 {
-    io::Json libraries = {{"Thrust", build::thrust},
-                          {"OpenMP", build::openmp},
-                          {"CLI11", CLI11_VERSION},
-                          {"nlohmann_json", io::json_library_version()}};
+    io::Json libraries = {{"Thrust", build::thrust}, {"OpenMP", build::openmp}, {"CLI11", CLI11_VERSION}};
     if (*build::cuda != '\0') libraries["CUDA"] = build::cuda;
     return {{"version", build::number},
             {"git", git},

@@ -6,7 +6,7 @@
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 #include "io/interrupt.hpp"
-#include "io/json.hpp"
+#include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "io/progress.hpp"
 
@@ -117,9 +117,14 @@ private:
             throw io::IoError(file("case.json") +
                               ": is another case, or this case with other options; --force overwrites it");
         if (fs::exists(file("checkpoint")) || !fs::exists(file("summary.json"))) return false;
-        const auto summary =
-            nlohmann::json::parse(io::read_file(file("summary.json"), most_of_summary), nullptr, false);
-        return summary.is_object() && summary.value("status", "") == "ok";
+        try {
+            const io::JsonSource summary(io::read_file(file("summary.json"), most_of_summary),
+                                         file("summary.json"), most_of_summary);
+            const io::Json::Member* found = summary.root.member("status");
+            return found != nullptr && found->value.string() != nullptr && *found->value.string() == "ok";
+        } catch (const io::InvalidInput&) {
+            return false;
+        }
     }
 
     /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.

@@ -4,9 +4,8 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
+#include "io/json_source.hpp"
 #include "studies/framework/problem.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -45,10 +44,10 @@ std::vector<std::string> normal_rows(const std::string& name_or_path, const std:
     std::vector<std::string> with = set;
     if (rows.empty()) return with;
     const dae::Description d = named_model(name_or_path, set);
-    const nlohmann::json model = nlohmann::json::parse(d.text);
-    const auto contacts = model.find("contacts");
-    for (size_t k = 0; contacts != model.end() && k < contacts->size(); ++k)
-        if ((*contacts)[k]["normal"]["type"] == "constraint")
+    const io::JsonSource model(d.text, d.name);
+    const io::Json::Member* contacts = model.root.member("contacts");
+    for (size_t k = 0; contacts != nullptr && k < contacts->value.size(); ++k)
+        if (*contacts->value.at(k).member("normal")->value.member("type")->value.string() == "constraint")
             with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
     if (with.size() == set.size())
         throw io::UsageError("--normal-rows applies to contacts whose normal is a constraint; model " +

@@ -2,11 +2,11 @@
 #include "studies/program/plot.hpp"
 
 #include "io/files.hpp"
+#include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "lie/check.hpp"
 
 #include <hilda/version.hpp>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -117,13 +117,14 @@ std::string script_for(const std::string& directory)
     std::error_code error;
     if (fs::is_regular_file(fs::path(directory) / "study.csv", error)) {
         const std::string record = directory + "/study.json";
-        const auto study = nlohmann::json::parse(io::read_file(record, 64 << 20), nullptr, false);
-        const auto kind = study.is_object() ? study.find("study") : study.end();
-        if (kind == study.end() || !kind->is_string() ||
-            kind->get<std::string>().find('/') != std::string::npos)
+        const io::JsonSource study(io::read_file(record, io::JsonSource::max_bytes), record,
+                                   io::JsonSource::max_bytes);
+        const io::Json::Member* kind = study.root.member("study");
+        if (kind == nullptr || kind->value.string() == nullptr ||
+            kind->value.string()->find('/') != std::string::npos)
             throw lie::InvalidInput(record +
                                     ": the key 'study' is missing or invalid; expected the name of a study");
-        return kind->get<std::string>() + ".py";
+        return *kind->value.string() + ".py";
     }
     if (fs::is_regular_file(fs::path(directory) / "trajectory.csv", error)) return "trajectory.py";
     throw lie::InvalidInput(directory +

@@ -11,14 +11,14 @@ namespace hilda::studies {
 
 std::vector<std::pair<std::string, std::string>> libraries()
 {
-    return {{"Eigen", version::eigen},
-            {"KLU", version::klu},
-            {"SPQR", version::spqr},
-            {"GSL", version::gsl},
-            {"SUNDIALS", version::sundials},
-            {"CLI11", CLI11_VERSION},
-            {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-            {"nlohmann_json", io::json_library_version()}};
+    return {
+        {"Eigen", version::eigen},
+        {"KLU", version::klu},
+        {"SPQR", version::spqr},
+        {"GSL", version::gsl},
+        {"SUNDIALS", version::sundials},
+        {"CLI11", CLI11_VERSION},
+        {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)}};
 }
 
 io::Json provenance(const std::string& command_line, int threads)

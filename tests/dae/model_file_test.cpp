@@ -220,8 +220,8 @@ TEST_CASE("the three forms of an orientation give the same rotation", "[dae][mod
     };
     const auto list = [](const Eigen::VectorXd& v) {
         dae::Json::List all;
-        for (const double x : v) all.push_back({.value = x});
-        return dae::Json{.value = all};
+        for (const double x : v) all.push_back(x);
+        return dae::Json(all);
     };
     CHECK(read("A", dae::json(A)) == A);
     CHECK((read("p", list(p)) - A).norm() < 1e-15);
@@ -359,7 +359,7 @@ TEST_CASE("any strict JSON is stored with its locations", "[dae][model_file]")
 {
     const std::string text = "{\"a\": [1, true, null, -0, 2.5e3],\n \"b\\u00e9\": {\"\": \"\\n\"}}";
     const dae::JsonSource source(text, "f");
-    REQUIRE(source.root.object()->size() == 2);
+    REQUIRE(source.root.members()->size() == 2);
     const dae::Json::List& a = *source.root.member("a")->value.list();
     CHECK(*a[0].number() == 1);
     CHECK(std::get<bool>(a[1].value));
@@ -367,7 +367,7 @@ TEST_CASE("any strict JSON is stored with its locations", "[dae][model_file]")
     CHECK(std::signbit(*a[3].number()));
     CHECK(*a[4].number() == 2500);
     CHECK(source.place(a[4].offset, "/a/4") == "f:1:27 (/a/4)");
-    CHECK(source.place((*source.root.object())[1].offset, "") == "f:2:2 (/)");
+    CHECK(source.place((*source.root.members())[1].offset, "") == "f:2:2 (/)");
     CHECK(*source.root.member("b\xc3\xa9")->value.member("")->value.string() == "\n");
     CHECK(written(source.root) ==
           "{\n  \"a\": [1, true, null, -0, 2500],\n  \"b\xc3\xa9\": {\n    \"\": \"\\n\"\n  }\n}");

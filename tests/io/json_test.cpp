@@ -34,6 +34,9 @@ TEST_CASE("io::Json writes the text of nlohmann::ordered_json")
         CHECK(io::Json("a \"b\"\n").text() == text("a \"b\"\n"));
         for (const double x : {0.0, -0.0, 1.0, 0.1, 1e-300, 1e22, 1.0 / 3, -2.5e-7})
             CHECK(io::Json(x).text() == text(x));
+        for (const double x :
+             {1e-5, 9.99e-5, 1e-4, 123456.75, 1e14, 1e15, 123456789012345.6, 5e-324, 1.7976931348623157e308})
+            CHECK(io::Json(x).text() == text(x));
         for (const double x : {infinity, -infinity, std::nan("")}) CHECK(io::Json(x).text() == "null\n");
         CHECK(io::Json(-3).text() == "-3\n");
         CHECK(io::Json(std::uint32_t{4294967295}).text() == "4294967295\n");
@@ -41,6 +44,9 @@ TEST_CASE("io::Json writes the text of nlohmann::ordered_json")
         CHECK(io::Json(UINT64_MAX).text() == "18446744073709551615\n");
         CHECK(io::Json(INT64_MIN).text() == "-9223372036854775808\n");
         CHECK(io::Json("\xff").text() == text("\xff"));  // not UTF-8
+        std::string all;
+        for (int c = 0; c < 128; ++c) all += static_cast<char>(c);
+        CHECK(io::Json(all).text() == text(all));
     }
     SECTION("the initializer list of a value")
     {

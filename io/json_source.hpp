@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A JSON tree that was read from a text, for messages of the form
+/// "FILE:LINE:COL (/json/pointer): what is wrong".
+
+#pragma once
+
+#include "io/error.hpp"
+#include "io/json.hpp"
+
+namespace hilda::io {
+
+/// Invalid input with its location. what() begins with "FILE:LINE:COL (/json/pointer): ".
+class PlacedError : public InvalidInput {
+public:
+    using InvalidInput::InvalidInput;
+};
+
+/// Strict JSON (RFC 8259, UTF-8), with changes by --set.
+///
+/// The constructor throws PlacedError for invalid JSON, for duplicate keys of an object, for numbers outside
+/// the range of double, for integers of 2^53 and more, and for texts that exceed the limits below.
+class JsonSource {
+public:
+    static constexpr std::size_t max_bytes = std::size_t{64} << 20;
+    static constexpr int max_depth = 64;
+    static constexpr std::size_t max_string = 4096;     ///< [bytes]
+    static constexpr std::size_t max_values = 2000000;  ///< each takes about 50 bytes of memory
+
+    Json root;
+
+    /// `file` is the file name used in messages. A file of the program itself may have longer strings.
+    JsonSource(std::string text, std::string file, std::size_t longest_string = max_string);
+
+    /// Applies a change "/json/pointer=VALUE": replaces a value, or adds a key to an object. A VALUE that is
+    /// not valid JSON is taken as a string, unless it begins like an object, a list or a string. Throws
+    /// PlacedError for an invalid change. `origin` is the option that gave the change, for messages; by
+    /// default --set "change".
+    void set(const std::string& change, const std::string& origin = "");
+
+    std::vector<std::string> changes;  ///< that were applied
+
+    /// Accepts an old name of a key of the root object, in the text and in later changes, with an entry in
+    /// `notices`. Messages keep the name of the text. Throws PlacedError if the text has both names.
+    void rename(const std::string& old_name, const std::string& new_name);
+    std::vector<std::string> notices;  ///< one line with the location for each old name that was used
+
+    /// The text as it was read, or the canonical text if a value or a name was changed
+    std::string current_text() const { return changed ? written(root) + '\n' : text; }
+
+    /// Location "FILE:LINE:COL (/json/pointer)". Columns are counted in characters from 1.
+    std::string place(std::size_t offset, const std::string& pointer) const;
+    /// Location of the value with a pointer, or of the innermost existing value that contains it
+    std::string place(const std::string& pointer) const;
+    /// Throws PlacedError "location: what". The message also names the --set that gave the value.
+    [[noreturn]] void fail(const Json& at, const std::string& pointer, const std::string& what) const;
+    [[noreturn]] void fail(const std::string& pointer, const std::string& what) const;
+
+private:
+    struct Renamed {
+        std::string old_name, new_name;
+        bool in_text;
+    };
+
+    const Json& find(const std::string& pointer) const;
+    void notice(const std::string& pointer, const Renamed& key);
+
+    std::string text, file;
+    std::vector<std::uint32_t> line_start;
+    std::vector<std::string> origins;
+    std::vector<Renamed> renamed;
+    bool changed = false;  ///< by --set, or because a key has its new name
+};
+
+/// Parses a text. `source` forms the locations of errors.
+Json parse_json(std::string_view text, const JsonSource& source, std::size_t longest_string);
+
+}  // namespace hilda::io

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/object_reader.hpp"
+
+#include "io/nearest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::io {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string all;
+    for (const std::string& w : words) all += (all.empty() ? "" : ", ") + w;
+    return all;
+}
+
+/// Ending of a message about an unknown word
+std::string suggestion(std::string_view word, const std::vector<std::string>& known)
+{
+    const std::string meant = did_you_mean(word, known);
+    return meant.empty() ? "; allowed: " + joined(known) : meant;
+}
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
+
+}  // namespace
+
+ObjectReader::ObjectReader(const JsonSource& source, const Json& value, std::string pointer)
+    : source(source), value(value), own_pointer(std::move(pointer))
+{
+    if (value.members() == nullptr) fail("must be an object, got " + described(value));
+}
+
+double ObjectReader::number(std::string_view key, std::optional<double> fallback)
+{
+    const Json* v = lookup(key, !fallback);
+    const double x = v != nullptr ? number_at(*v, pointer(key), key) : *fallback;
+    record(key, x);
+    return x;
+}
+
+double ObjectReader::positive(std::string_view key, std::optional<double> fallback)
+{
+    const double x = number(key, fallback);
+    if (!(x > 0)) fail(key, std::string(key) + " must be positive, got " + shortest(x));
+    if (x < least_positive)
+        fail(key,
+             std::string(key) + " must be at least " + shortest(least_positive) + ", got " + shortest(x));
+    return x;
+}
+
+double ObjectReader::not_negative(std::string_view key, std::optional<double> fallback)
+{
+    const double x = number(key, fallback);
+    if (!(x >= 0)) fail(key, std::string(key) + " must not be negative, got " + shortest(x));
+    return x;
+}
+
+double ObjectReader::fraction(std::string_view key, std::optional<double> fallback)
+{
+    const double x = number(key, fallback);
+    if (!(x >= 0 && x <= 1)) fail(key, std::string(key) + " must be from 0 to 1, got " + shortest(x));
+    return x;
+}
+
+int ObjectReader::integer(std::string_view key)
+{
+    const double x = number(key);
+    constexpr double most = 2147483647;
+    if (x != std::trunc(x) || std::abs(x) > most)
+        fail(key, std::string(key) + " must be an integer of at most 31 bits, got " + shortest(x));
+    return static_cast<int>(x);
+}
+
+long ObjectReader::count(std::string_view key, std::optional<long> fallback)
+{
+    const double x = number(key, fallback);
+    constexpr double most = 9007199254740992;  // 2^53
+    if (x != std::trunc(x) || x < 0 || x > most)
+        fail(key, std::string(key) + " must be an integer from 0 to 2^53, got " + shortest(x));
+    return static_cast<long>(x);
+}
+
+bool ObjectReader::flag(std::string_view key, std::optional<bool> fallback)
+{
+    const Json* v = lookup(key, !fallback);
+    const bool* given = v != nullptr ? v->boolean() : nullptr;
+    if (v != nullptr && given == nullptr)
+        fail(key, std::string(key) + " must be true or false, got " + described(*v));
+    const bool x = given != nullptr ? *given : *fallback;
+    record(key, x);
+    return x;
+}
+
+std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count)
+{
+    const Json& v = *lookup(key, true);
+    if (v.list() == nullptr || v.list()->size() != count)
+        fail(key, std::string(key) + " must be a list of " + std::to_string(count) + " numbers, got " +
+                      described(v));
+    std::vector<double> x;
+    Json::List list;
+    for (std::size_t k = 0; k < count; ++k) {
+        x.push_back(number_at((*v.list())[k], pointer_to(pointer(key), std::to_string(k)), key));
+        list.push_back(x.back());
+    }
+    record(key, std::move(list));
+    return x;
+}
+
+std::string ObjectReader::text(std::string_view key, const std::optional<std::string>& fallback)
+{
+    const Json* v = lookup(key, !fallback);
+    if (v != nullptr && v->string() == nullptr)
+        fail(key, std::string(key) + " must be a string, got " + described(*v));
+    const std::string& s = v != nullptr ? *v->string() : *fallback;
+    if (s.size() > JsonSource::max_string)
+        fail(key, std::string(key) + " has " + std::to_string(s.size()) + " bytes; at most " +
+                      std::to_string(JsonSource::max_string) + " are allowed");
+    record(key, s);
+    return s;
+}
+
+std::string ObjectReader::name(std::string_view key, const std::optional<std::string>& fallback)
+{
+    std::string s = text(key, fallback);
+    if (s.empty() || std::any_of(s.begin(), s.end(), is_control))
+        fail(key, std::string(key) + " must be a name without control characters, got " + described(s));
+    return s;
+}
+
+std::string ObjectReader::one_of(std::string_view key, const std::vector<std::string>& allowed,
+                                 const std::optional<std::string>& fallback)
+{
+    std::string s = text(key, fallback);
+    if (std::find(allowed.begin(), allowed.end(), s) == allowed.end())
+        fail(key, "unknown " + std::string(key) + " " + described(s) + suggestion(s, allowed));
+    return s;
+}
+
+std::string ObjectReader::formula(std::string_view key, const std::optional<std::string>& fallback)
+{
+    const Json* v = lookup(key, !fallback);
+    if (v == nullptr || v->string() != nullptr) return text(key, fallback);
+    if (v->number() == nullptr)
+        fail(key, std::string(key) + " must be a number or an expression in a string, got " + described(*v));
+    return shortest(number(key));
+}
+
+std::array<Expression, 3> ObjectReader::expressions(std::string_view key)
+{
+    const Json::List& parts = list(key, true);
+    if (parts.size() != 3)
+        fail(key, std::string(key) + " must be three numbers or expressions in t, got " + described(parts));
+    const auto expression = [&](std::size_t k) {
+        if (parts[k].number() == nullptr && parts[k].string() == nullptr)
+            fail(key, k,
+                 "a component must be a number or an expression in a string, got " + described(parts[k]));
+        if (const std::string* s = parts[k].string(); s != nullptr) try {
+                return Expression(*s);
+            } catch (const ExpressionError& e) {
+                fail(key, k, e.what());
+            }
+        return Expression(shortest(number_at(parts[k], pointer_to(pointer(key), std::to_string(k)), key)));
+    };
+    record(key, parts);
+    return {expression(0), expression(1), expression(2)};
+}
+
+ObjectReader ObjectReader::object(std::string_view key) { return {source, *lookup(key, true), pointer(key)}; }
+
+const Json::List& ObjectReader::list(std::string_view key, bool required)
+{
+    static const Json::List empty;
+    const Json* v = lookup(key, required);
+    if (v == nullptr) return empty;
+    if (v->list() == nullptr) fail(key, std::string(key) + " must be a list, got " + described(*v));
+    return *v->list();
+}
+
+const Json* ObjectReader::find(std::string_view key) { return lookup(key, false); }
+
+void ObjectReader::exclude(std::string_view key, std::string_view other)
+{
+    const bool both = find(key) != nullptr && find(other) != nullptr;
+    if (both) fail(other, "give one of " + std::string(key) + " and " + std::string(other) + ", not both");
+}
+
+void ObjectReader::record(std::string_view key, Json as)
+{
+    for (Json::Member& m : recorded)
+        if (m.key == key) {
+            m.value = std::move(as);
+            return;
+        }
+    recorded.push_back({std::string(key), 0, std::move(as)});
+}
+
+Json ObjectReader::finish()
+{
+    if (find("note") != nullptr) text("note");
+    for (const Json::Member& m : *value.members())
+        if (std::find(known.begin(), known.end(), m.key) == known.end()) fail_unknown_key(m);
+    return std::move(recorded);
+}
+
+std::string ObjectReader::place(std::string_view key) const
+{
+    const Json::Member* m = value.member(key);
+    return m != nullptr ? source.place(m->value.offset, pointer(key)) : place();
+}
+
+void ObjectReader::fail(std::string_view key, const std::string& what) const
+{
+    const Json::Member* m = value.member(key);
+    if (m == nullptr) fail(what);
+    source.fail(m->value, pointer(key), what);
+}
+
+void ObjectReader::fail(std::string_view key, std::size_t element, const std::string& what) const
+{
+    const Json::Member* m = value.member(key);
+    source.fail(m->value.list()->at(element), pointer_to(pointer(key), std::to_string(element)), what);
+}
+
+const Json* ObjectReader::lookup(std::string_view key, bool required)
+{
+    if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
+    if (const Json::Member* m = value.member(key)) return &m->value;
+    if (required) fail_missing_key(key);
+    return nullptr;
+}
+
+double ObjectReader::number_at(const Json& v, const std::string& at, std::string_view key) const
+{
+    if (v.number() == nullptr)
+        source.fail(v, at, std::string(key) + " must be a number, got " + described(v));
+    if (std::abs(*v.number()) > largest)
+        source.fail(v, at,
+                    std::string(key) + " must be at most " + shortest(largest) + " in magnitude, got " +
+                        described(v));
+    return *v.number();
+}
+
+/// Reports a missing key. If an unknown key of the object resembles it, that key is reported instead. Keys
+/// that differ in the last letter only, such as body_i and body_j, do not count as similar.
+void ObjectReader::fail_missing_key(std::string_view key)
+{
+    const std::vector<std::string> this_key = {std::string(key)};
+    const auto stem = [](std::string_view word) { return word.substr(0, word.size() - 1); };
+    for (const Json::Member& m : *value.members())
+        if (std::find(known.begin(), known.end(), m.key) == known.end() &&
+            io::nearest(m.key, this_key) == key && stem(m.key) != stem(key)) {
+            known = this_key;
+            fail_unknown_key(m);
+        }
+    fail("missing key '" + this_key[0] + "'");
+}
+
+void ObjectReader::fail_unknown_key(const Json::Member& m) const
+{
+    Json at;
+    at.offset = m.offset;
+    at.change = m.value.change;
+    source.fail(at, pointer(m.key), "unknown key " + described(m.key) + suggestion(m.key, known));
+}
+
+}  // namespace hilda::io

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# KLU, the sparse LU factorisation of SuiteSparse. SuiteSparse 5 has no CMake package.
+# KLU, the sparse LU factorisation of SuiteSparse, and AMD, its ordering. SuiteSparse 5 has no CMake package.
 # Defines the target KLU::KLU and KLU_VERSION.
 include(FindPackageHandleStandardArgs)
 

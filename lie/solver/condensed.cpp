@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/solver/condensed.hpp"
 
+#include <amd.h>
+
 #include <algorithm>
 #include <map>
+#include <new>
 #include <set>
 
 namespace hilda::lie {
@@ -109,6 +112,21 @@ void subtract_transposed_times(double* y, const double* A, const double* x, int 
         subtract_transposed_times<0>(y, A, x, m, n);
 }
 
+/// Order of elimination with little fill-in, by AMD of SuiteSparse
+std::vector<int> minimum_degree_order(const std::vector<std::set<int>>& neighbours)
+{
+    std::vector<int> start{0}, index, order(neighbours.size());
+    index.reserve(1), order.reserve(1);  // AMD rejects null pointers
+    for (const std::set<int>& of_group : neighbours) {
+        index.insert(index.end(), of_group.begin(), of_group.end());
+        start.push_back(static_cast<int>(index.size()));
+    }
+    if (amd_order(static_cast<int>(order.size()), start.data(), index.data(), order.data(), nullptr,
+                  nullptr) < AMD_OK)
+        throw std::bad_alloc();  // the only error for a pattern that is valid
+    return order;
+}
+
 }  // namespace
 
 Condensed::Condensed(const Mass& mass, const Rows& pattern) : diagonal(pattern.rows()), y(pattern.rows())
@@ -160,26 +178,20 @@ void Condensed::analyse(const Rows& pattern)
             for (const auto& [h, t] : all)
                 if (g != h) couplings += neighbours[g].insert(h).second;
 
-    // Elimination in minimum-degree order. The neighbours of a group at its elimination are the blocks of its
-    // column.
-    std::vector<std::vector<int>> below(n);  // by group
-    std::set<std::pair<size_t, int>> queue;
-    for (int g = 0; g < n; ++g) queue.emplace(neighbours[g].size(), g);
-    while (!queue.empty()) {
-        const int g = queue.begin()->second;
-        queue.erase(queue.begin());
-        order.push_back(g);
-        below[g].assign(neighbours[g].begin(), neighbours[g].end());
-        for (const int h : below[g]) queue.erase({neighbours[h].size(), h});
-        for (const int h : below[g]) {
-            neighbours[h].erase(g);
-            for (const int k : below[g])
-                if (k != h) neighbours[h].insert(k);
-        }
-        for (const int h : below[g]) queue.emplace(neighbours[h].size(), h);
-    }
+    order = minimum_degree_order(neighbours);
     std::vector<int> position(n);
     for (int p = 0; p < n; ++p) position[order[p]] = p;
+
+    // The blocks of a column: the neighbours of the group that are eliminated after it, and those of its
+    // children in the elimination tree. The parent of a group is the first of them.
+    std::vector<std::vector<int>> below(n);  // by group, in the order of elimination
+    const auto earlier = [&](int a, int b) { return position[a] < position[b]; };
+    for (const int g : order) {
+        for (const int h : neighbours[g])
+            if (earlier(g, h)) below[g].push_back(h);
+        std::sort(below[g].begin(), below[g].end(), earlier);
+        if (!below[g].empty()) neighbours[below[g].front()].insert(below[g].begin(), below[g].end());
+    }
 
     // storage of the blocks, column by column
     int size = 0;
@@ -188,7 +200,6 @@ void Condensed::analyse(const Rows& pattern)
         group[g].diagonal = size;
         place[{g, g}] = size;
         size += group[g].rows * group[g].rows;
-        std::sort(below[g].begin(), below[g].end(), [&](int a, int b) { return position[a] < position[b]; });
         column.push_back(static_cast<int>(block.size()));
         for (const int h : below[g]) {
             place[{h, g}] = size;

@@ -8,7 +8,7 @@
 /// with W = C L⁻ᵀ. The compliance of regularised rows is added to the diagonal of S.
 ///
 /// Consecutive rows between the same bodies form a group. S has a block for each pair of groups that share a
-/// body. Its Cholesky factor is computed by blocks, in a minimum-degree order that is determined once from
+/// body. Its Cholesky factor is computed by blocks, in an order that AMD (SuiteSparse) determines once from
 /// the pattern. A chain or a tree of joints has no fill-in.
 
 #pragma once

@@ -18,6 +18,12 @@ using lie::Vec3;
 /// Number of the fixed body at the origin. Constraints and forces may refer to it. It has no equations.
 inline constexpr int ground = -1;
 
+/// Velocity of the material point of a body at this arm from the centre of mass, global frame [m/s]
+inline Vec3 velocity_at(const Motion& body, const Vec3& arm)
+{
+    return body.rdot + (body.A * body.omega_bar).cross(arm);
+}
+
 struct Body {
     std::string name;
     double m = 1;                   ///< mass [kg]

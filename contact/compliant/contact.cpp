@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact.hpp"
 
+#include "dae/body.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -15,9 +16,6 @@ constexpr double contact_tolerance = 1e-6;  // largest gap of is_near_contact(),
 constexpr double max_relative_overlap = 0.1;
 // a curvature below this is counted as zero, relative to the curvatures of the two surfaces
 constexpr double no_curvature = 1e-12;
-
-/// Velocity of the material point of body b at C [m/s, global]
-Vec3 velocity(const Motion& b, const Vec3& C) { return b.rdot + (b.A * b.omega_bar).cross(C - b.r); }
 
 /// "what, got value unit"
 std::string got(const std::string& what, double value, const std::string& unit)
@@ -43,8 +41,10 @@ NormalInput CompliantContact::normal_input(const ContactPoint& contact_point, co
                                            const Motion& bj) const
 {
     const Vec3 C = contact_point.C();
+    const double overlap_rate =
+        contact_point.n.dot(dae::velocity_at(bj, C - bj.r) - dae::velocity_at(bi, C - bi.r));
     return {.overlap = -contact_point.gap,
-            .overlap_rate = contact_point.n.dot(velocity(bj, C) - velocity(bi, C)),
+            .overlap_rate = overlap_rate,
             .curvature = 0.5 * (contact_point.K_i.trace() + contact_point.K_j.trace()),
             .m = m_normal};
 }

@@ -86,12 +86,6 @@ struct CurvedSide {
     Mat3 shape_operator() const { return dn - (dn * u) * u.transpose(); }
 };
 
-/// Velocity of the material point of the body at this arm from the centre of mass, global axes
-Vec3 velocity(const Motion& body, const Vec3& arm)
-{
-    return body.rdot + (body.A * body.omega_bar).cross(arm);
-}
-
 }  // namespace
 
 EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
@@ -174,7 +168,7 @@ void EvolvingContact::gamma(const Arguments& x, double* out) const
     // Contact equations of Montana (1988) in coordinate-free form, with the slip velocity s:
     //     (K_i + K_j) A_i ᾱ̇_i = n × (ω_i - ω_j) - K_j s,    (K_i + K_j) A_j ᾱ̇_j = n × (ω_i - ω_j) + K_i s
     const Mat32 T = tangent_basis(n);
-    const Vec3 slip = velocity(x.bi, side_i.arm) - velocity(x.bj, side_j.arm),
+    const Vec3 slip = dae::velocity_at(x.bi, side_i.arm) - dae::velocity_at(x.bj, side_j.arm),
                n_cross_omega = n.cross(omega_i - omega_j);
     const Mat3 K_i = side_i.shape_operator(), K_j = side_j.shape_operator();
     const Eigen::Matrix2d K = T.transpose() * (K_i + K_j) * T;
@@ -356,7 +350,7 @@ int EvolvingContact::update_internal_state(const Arguments& x, bool start, doubl
 double EvolvingContact::separation_speed(const Arguments& x) const
 {
     const ContactPoint at = contact_point(x);
-    return at.n.dot(velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r));
+    return at.n.dot(dae::velocity_at(x.bi, at.C_i - x.bi.r) - dae::velocity_at(x.bj, at.C_j - x.bj.r));
 }
 
 dae::Constraint::Violation EvolvingContact::position_violation(const Arguments& x, double) const
@@ -367,7 +361,7 @@ dae::Constraint::Violation EvolvingContact::position_violation(const Arguments& 
 dae::Constraint::Violation EvolvingContact::velocity_violation(const Arguments& x, double tolerance) const
 {
     const ContactPoint at = contact_point(x);
-    const Vec3 slip = velocity(x.bi, at.C_i - x.bi.r) - velocity(x.bj, at.C_j - x.bj.r);
+    const Vec3 slip = dae::velocity_at(x.bi, at.C_i - x.bi.r) - dae::velocity_at(x.bj, at.C_j - x.bj.r);
     return {friction == Friction::rolling ? slip.norm() : std::abs(at.n.dot(slip)), tolerance,
             "the initial velocities violate the contact by", "m/s"};
 }

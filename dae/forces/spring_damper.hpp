@@ -35,9 +35,8 @@ public:
     void add(const State& x, lie::Loads& out) const override
     {
         const Motion &bi = motion(x, i), &bj = motion(x, j);
-        const Vec3 d = bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
-        const Vec3 ddot =
-            bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot - bi.A * bi.omega_bar.cross(s_bar_i);
+        const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j;
+        const Vec3 d = bj.r + s_j - bi.r - s_i, ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i);
         const double l = d.norm();
         if (!(l > 0))
             throw lie::NonFinite(

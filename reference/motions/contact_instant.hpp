@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "lie/state.hpp"
+#include "dae/body.hpp"
 
 namespace hilda::reference {
 
@@ -29,7 +29,7 @@ struct ContactInstant {
     Vec3 F() const { return F_N * n + F_t; }
     /// Sliding velocity: velocity of the material point of the moving body at the contact, global [m/s]. Zero
     /// in rolling.
-    Vec3 slip() const { return body.rdot + body.A * body.omega_bar.cross(a_bar); }
+    Vec3 slip() const { return dae::velocity_at(body, body.A * a_bar); }
 };
 
 }  // namespace hilda::reference

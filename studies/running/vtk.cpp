@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/vtk.hpp"
 
+#include "dae/body.hpp"
 #include "io/csv.hpp"
 #include "io/files.hpp"
 
@@ -24,8 +25,6 @@ const Motion& motion(const std::vector<Motion>& bodies, int b)
     static const Motion at_rest;
     return b < 0 ? at_rest : bodies[b];
 }
-
-Vec3 velocity(const Motion& b, const Vec3& p) { return b.rdot + (b.A * b.omega_bar).cross(p - b.r); }
 
 std::string escaped(const std::string& name)
 {
@@ -179,7 +178,8 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
     int count = 0;
     for (const ContactData& t : now.contacts) {
         points.add(t.C);
-        velocities.add(velocity(motion(now.body, t.i), t.C));
+        const Motion& b = motion(now.body, t.i);
+        velocities.add(dae::velocity_at(b, t.C - b.r));
         N.add(t.N);
         F.add(t.F);
         slipping.add(t.slipping);
@@ -193,7 +193,7 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
         for (const Vec3& a : piece.mesh.point) {
             const Vec3 p = b.r + b.A * a;
             points.add(p);
-            velocities.add(velocity(b, p));
+            velocities.add(dae::velocity_at(b, p - b.r));
             N.add(Vec3::Zero());
             F.add(Vec3::Zero());
             slipping.add(0);

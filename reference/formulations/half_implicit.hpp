@@ -34,15 +34,13 @@
 #pragma once
 
 #include "lie/check.hpp"
-#include "lie/rows.hpp"
+#include "lie/schemes.hpp"
 #include "lie/solver/newton_matrix.hpp"
 #include "lie/steps/newton_step.hpp"
-#include "lie/system.hpp"
 
 #include <cmath>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hilda::reference {
@@ -60,15 +58,13 @@ public:
     double phi;  ///< the second of the angles [rad]
 };
 
-/// The scheme for Coordinates = EulerParameters or EulerAngles
-template <class Coordinates>
-class HalfImplicit : public lie::NewtonStep {
+/// The schemes NAME-half-1 (plain start) and NAME-half-1-kick (start with a half step) for Coordinates =
+/// EulerParameters (NAME = rp) or EulerAngles (NAME = reps)
+template <class Coordinates, bool kick>
+class HalfImplicit final : public lie::NewtonStep {
 public:
-    enum class StartMethod { plain, kick };
-
-    HalfImplicit(const lie::System& model, const lie::Settings& settings, std::string name, StartMethod start)
-        : NewtonStep(model, settings), name(std::move(name)), start(start), C(model.pattern()),
-          part(model.bodies()), Ct_lambda(6 * model.bodies())
+    HalfImplicit(const lie::System& model, const lie::Settings& settings)
+        : NewtonStep(model, settings), C(model.pattern()), part(model.bodies()), Ct_lambda(6 * model.bodies())
     {
         const int bodies = model.bodies();
         for (int i = 0; i < bodies; ++i) {
@@ -108,16 +104,20 @@ public:
                 return done(attempt, iteration);
             }
         }
-        no_convergence(name, correction, x);
+        no_convergence(name(), correction, x);
     }
 
+    static std::string name()
+    {
+        return std::string(Coordinates::formulation) + (kick ? "-half-1-kick" : "-half-1");
+    }
     lie::Statistics statistics() const override { return statistics_with(N); }
 
     bool is_staggered() const override { return true; }
     void fill_node(lie::State& node, const lie::State& after) const override
     {
         take_loads(node, after);
-        if (start == StartMethod::plain) return;
+        if (!kick) return;
         for (int i = 0; i < model.bodies(); ++i) {
             const auto left = after.history.template segment<6>(stride * i);
             node.body[i].rdot = left.template head<3>();
@@ -167,7 +167,7 @@ private:
             }
             if constexpr (Coordinates::singular_somewhere) keep_off_singular_set(i, h, at_start);
             if (at_start) {
-                const double back = start == StartMethod::kick ? 0.5 * h : 0;
+                const double back = kick ? 0.5 * h : 0;
                 p.rdot = body.rdot - back * body.rddot;
                 p.qdot = p.at.qdot(body.omega_bar);
                 p.qdot -= back * p.at.qddot(p.qdot, body.omegadot_bar);
@@ -320,7 +320,7 @@ private:
 
             const Vec3 rdot = z.segment<3>(at_r(i)) / h;
             const Vector qdot = z.segment<k>(at_q(i)) / h;
-            const double ahead = start == StartMethod::kick ? 0.5 : 0;
+            constexpr double ahead = kick ? 0.5 : 0;
             body.rdot = rdot + ahead * (rdot - p.rdot);
             body.omega_bar = p.after.T() * (qdot + ahead * (qdot - p.qdot));
 
@@ -335,13 +335,33 @@ private:
         }
     }
 
-    const std::string name;
-    const StartMethod start;
     lie::NewtonMatrix N;
     lie::Rows C;  ///< Φ_r, Π̄ at t_n
     std::vector<Part> part;
     std::vector<int> upper, lower;
     Eigen::VectorXd b, Ct_lambda;
 };
+
+/// Adds both schemes to the list. `coordinates` is the text for their descriptions.
+template <class Coordinates>
+bool register_half_implicit(const std::string& coordinates, const std::string& unknowns)
+{
+    lie::register_scheme<HalfImplicit<Coordinates, false>>(
+        {.name = HalfImplicit<Coordinates, false>::name(),
+         .description = "half-implicit (symplectic) Euler on " + coordinates,
+         .order = 1,
+         .order_lambda = 1,
+         .formulation = Coordinates::formulation,
+         .unknowns = unknowns,
+         .source = "Fang (2022), Secs. 3.5, 3.9"});
+    return lie::register_scheme<HalfImplicit<Coordinates, true>>(
+        {.name = HalfImplicit<Coordinates, true>::name(),
+         .description = "leapfrog (SHAKE) on " + coordinates,
+         .order = 2,
+         .order_lambda = 2,
+         .formulation = Coordinates::formulation,
+         .unknowns = unknowns,
+         .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
+}
 
 }  // namespace hilda::reference

@@ -16,6 +16,7 @@ namespace hilda::reference {
 /// One of three orthogonal axes makes an angle of at least acos(1/√3) = 0.955 rad with any line, so one of
 /// the three frames is always at least that far from its singular set.
 struct EulerAngles {
+    static constexpr const char* formulation = "reps";
     static constexpr int size = 3;
     static constexpr bool unit_length = false;
     static constexpr bool singular_somewhere = true;

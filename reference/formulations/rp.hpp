@@ -21,6 +21,7 @@ inline Eigen::Matrix4d Q(const lie::Vec3& w)
 /// A(p) is the rotation of p/|p|. It is a rotation for every iterate p, and its variation is exactly
 /// δπ̄ = 2G δp / |p|².
 struct EulerParameters {
+    static constexpr const char* formulation = "rp";
     static constexpr int size = 4;
     static constexpr bool unit_length = true;  ///< one additional constraint per body, (pᵀp - 1)/2 = 0
     static constexpr bool singular_somewhere = false;

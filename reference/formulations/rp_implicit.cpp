@@ -10,7 +10,7 @@ namespace hilda::reference {
 
 RpImplicit::RpImplicit(const lie::System& model, const lie::Settings& settings, std::string name)
     : NewtonStep(model, settings), name(std::move(name)), equations(model), q_n(7 * model.bodies()),
-      qdot_n(7 * model.bodies())
+      qdot_n(q_n.size()), qddot_n(q_n.size())
 {
     formula.q = formula.qdot = q_n;
     z.resize(equations.size()), e.resize(equations.size());
@@ -44,34 +44,25 @@ int RpImplicit::step(lie::State& x, double h)
     no_convergence(name, correction, x);
 }
 
-/// Sets q_n and q̇_n from x_n and its history.
+/// Sets q_n and q̇_n from x_n and its history, and q̈_n with p̈ from ω̄̇.
 void RpImplicit::restore(bool at_start)
 {
     for (int i = 0; i < model.bodies(); ++i) {
         const lie::Motion& body = x_n.body[i];
-        lie::Vec4 p, pdot;
-        if (at_start) {
-            const EulerParameters coordinates(body.A);
-            p = coordinates.q, pdot = coordinates.qdot(body.omega_bar);
-        } else
-            p = x_n.history.segment<4>(8 * i), pdot = x_n.history.segment<4>(8 * i + 4);
-        q_n.segment<7>(7 * i) << body.r, p;
+        EulerParameters p;
+        lie::Vec4 pdot;
+        if (at_start)
+            p = EulerParameters(body.A), pdot = p.qdot(body.omega_bar);
+        else
+            p.q = x_n.history.segment<4>(8 * i), pdot = x_n.history.segment<4>(8 * i + 4);
+        q_n.segment<7>(7 * i) << body.r, p.q;
         qdot_n.segment<7>(7 * i) << body.rdot, pdot;
+        qddot_n.segment<7>(7 * i) << body.rddot, p.qddot(pdot, body.omegadot_bar);
     }
 }
 
-/// Initial guess: the accelerations and multipliers of t_n, with p̈ from ω̄̇
-void RpImplicit::predict()
-{
-    for (int i = 0; i < model.bodies(); ++i) {
-        EulerParameters coordinates;
-        coordinates.q = q_n.segment<4>(7 * i + 3);
-        z.segment<7>(7 * i) << x_n.body[i].rddot,
-            coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x_n.body[i].omegadot_bar);
-        z[equations.at_norm() + i] = 0;
-    }
-    z.segment(equations.at_lambda(), model.rows()) = x_n.lambda;
-}
+/// Initial guess: the accelerations and multipliers of t_n
+void RpImplicit::predict() { z << qddot_n, x_n.lambda, Eigen::VectorXd::Zero(model.bodies()); }
 
 /// Norm of the correction in (r̈, ω̄̇). |ω̄̇| = 2 |p̈|, so the squares of p̈ have the weight 4.
 double RpImplicit::length_of_motion(const Eigen::VectorXd& dz) const

@@ -25,7 +25,7 @@ public:
     lie::Statistics statistics() const override;
 
 protected:
-    /// Sets q*, q̇*, g_q and g_v from q_n, q̇_n and the scheme's data in x_n.history.
+    /// Sets q*, q̇*, g_q and g_v from q_n, q̇_n, q̈_n and the scheme's data in x_n.history.
     virtual void set_formula(double h, bool at_start) = 0;
     /// Size of the scheme's data in the history
     virtual int more() const { return 0; }
@@ -35,7 +35,7 @@ protected:
     const std::string name;
     RpStepEquations equations;
     RpFormula formula;
-    Eigen::VectorXd q_n, qdot_n;  ///< (r, p) and (ṙ, ṗ) at the beginning of the step
+    Eigen::VectorXd q_n, qdot_n, qddot_n;  ///< q = (r, p) and its derivatives at the beginning of the step
 
 private:
     void restore(bool at_start);

@@ -30,8 +30,7 @@ namespace {
 
 class RpBdf2 final : public RpImplicit {
 public:
-    RpBdf2(const lie::System& model, const lie::Settings& settings)
-        : RpImplicit(model, settings, "rp-bdf2"), qddot(q_n.size())
+    RpBdf2(const lie::System& model, const lie::Settings& settings) : RpImplicit(model, settings, "rp-bdf2")
     {}
 
 private:
@@ -52,20 +51,12 @@ private:
 
     void set_starting_formula(double h)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
-            EulerParameters coordinates;
-            coordinates.q = q_n.segment<4>(7 * i + 3);
-            qddot.segment<7>(7 * i) << x_n.body[i].rddot,
-                coordinates.qddot(qdot_n.segment<4>(7 * i + 3), x_n.body[i].omegadot_bar);
-        }
-        formula.qdot = qdot_n + h / 2 * qddot;
-        formula.q = q_n + h * qdot_n + h * h / 3 * qddot;
+        formula.qdot = qdot_n + h / 2 * qddot_n;
+        formula.q = q_n + h * qdot_n + h * h / 3 * qddot_n;
         formula.g_v = h / 2, formula.g_q = h * h / 6;
     }
 
     void save_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }
-
-    Eigen::VectorXd qddot;  ///< q̈_0, at the start
 };
 
 const bool registered = lie::register_scheme<RpBdf2>({.name = "rp-bdf2",

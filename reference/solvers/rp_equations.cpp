@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/solvers/rp_equations.hpp"
 
+#include "reference/formulations/rp.hpp"
+
 #include <algorithm>
 #include <random>
 
@@ -15,14 +17,6 @@ using lie::Vec3;
 using lie::Vec4;
 using Mat4 = Eigen::Matrix4d;
 using Row4 = Eigen::RowVector4d;
-
-/// Q(R) with G(p)ᵀ R = Q(R) p, R in the body frame
-Mat4 Q(const Vec3& R)
-{
-    Mat4 Q;
-    Q << 0, -R.transpose(), R, -lie::tilde(R);
-    return Q;
-}
 
 /// ∂(T(p) a)/∂p for a fixed a; Ta is T a
 Mat34 dT_dp(const Vec4& p, double p2, const Vec4& a, const Vec3& Ta)

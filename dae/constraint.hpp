@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dae/body.hpp"
+#include "lie/bounded_rows.hpp"
 #include "lie/rows.hpp"
 
 #include <string>
@@ -65,7 +66,7 @@ public:
     /// also use them to select one of several equivalent forms of its equations, such as a tangent basis.
     virtual int internal_states() const { return 0; }
 
-    /// Whether the velocity rows are regularised in pairs, see lie::Rows::Regularised. The normal force of
+    /// Whether the velocity rows are regularised in pairs, see lie::BoundedPair. The normal force of
     /// each pair is N = n · λ, where λ are the multipliers of the first three position rows.
     virtual bool is_regularised() const { return false; }
     int regularised_pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
@@ -116,7 +117,7 @@ public:
     /// γ of all rows: C v̇ + Φ_α α̈ = γ for a position row, C v̇ = γ for a velocity row
     virtual void gamma(const Arguments& x, double* out) const = 0;
     /// K, D, mu, S and n of the regularised pairs, in the order of their rows
-    virtual void regularisation(const Arguments& /*x*/, lie::Rows::Regularised* /*out*/) const {}
+    virtual void regularisation(const Arguments& /*x*/, lie::BoundedPair* /*out*/) const {}
     /// Sparsity pattern of a row: bit c (0 to 11) is clear if the derivative with respect to component c of
     /// (r_i, π̄_i, r_j, π̄_j) is zero in every state.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }

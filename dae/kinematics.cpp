@@ -2,7 +2,8 @@
 /// Kinematic analysis and inverse dynamics with the saddle matrix.
 #include "dae/kinematics.hpp"
 
-#include "dae/start.hpp"
+#include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 
 namespace hilda::dae {
 
@@ -32,9 +33,9 @@ void Kinematics::move_to(State& x, double t, double substep)
             body.r += h * body.rdot + 0.5 * h * h * body.rddot;
             body.A = body.A * lie::exp(h * body.omega_bar + 0.5 * h * h * body.omegadot_bar);
         }
-        project_positions(model, K, x);
-        project_velocities(model, K, x);
-        solve_accelerations(model, K, x);
+        lie::project_positions(model, K, x);
+        lie::project_velocities(model, K, x);
+        lie::solve_accelerations(model, K, x);
         model.accepted(before, x);
     }
 }
@@ -56,14 +57,11 @@ Eigen::VectorXd inverse_dynamics(const Model& model, const State& x, std::vector
     lie::Saddle K(model, lie::Metric::unit);  // [1 Cᵀ; C 0] (residual, λ) = (loads - M a, 0)
     K.assemble(x);
     lie::Loads loads(model.bodies());
-    model.loads(x, loads);
     Eigen::VectorXd b(K.size());
+    lie::set_load_terms(model, K, x, loads, b);
     for (int i = 0; i < model.bodies(); ++i) {
-        const Motion& body = x.body[i];
-        const Mat3& J_bar = model.mass().J_bar[i];
-        b.segment<3>(6 * i) = loads.F[i] - model.mass().m[i] * body.rddot;
-        b.segment<3>(6 * i + 3) =
-            loads.n_bar[i] - body.omega_bar.cross(J_bar * body.omega_bar) - J_bar * body.omegadot_bar;
+        b.segment<3>(6 * i) -= model.mass().m[i] * x.body[i].rddot;
+        b.segment<3>(6 * i + 3) -= model.mass().J_bar[i] * x.body[i].omegadot_bar;
     }
     K.constraint_part(b).setZero();
     K.solve_refined(b);

@@ -244,15 +244,10 @@ void Model::set_pattern()
         c->first_velocity_row = rows_pattern.rows();
         add_to_pattern(*c, c->position_rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
-        for (int n = 0; n < c->regularised_pairs(); ++n) {
-            lie::Rows::Regularised pair;
-            pair.first = c->first_velocity_row + 2 * n;
-            pair.normal_row = c->first_row;
-            pair.solved_first = c->solved_first(n);
-            rows_pattern.regularised.push_back(pair);
+        for (int k = c->first_velocity_row; k < rows_pattern.rows(); ++k) {
+            if (c->may_be_inactive() || c->is_regularised()) rows_pattern.unilateral.push_back(k);
+            if (c->is_regularised()) rows_pattern.regularised.push_back(k);
         }
-        for (int k = 0; (c->may_be_inactive() || c->is_regularised()) && k < c->velocity_rows(); ++k)
-            rows_pattern.unilateral.push_back(c->first_velocity_row + k);
     }
 }
 
@@ -309,6 +304,16 @@ Model::Residual Model::largest_residual(const State& x, RowSet over) const
         for (int k = 0; k < c->position_rows(); ++k) largest.include(Phi[k], k, c.get());
     }
     return largest;
+}
+
+Model::PositionError Model::position_error(const State& x) const
+{
+    const Residual largest = largest_residual(x, RowSet::in_equations);
+    if (largest.row < 0) return {};
+    const auto in_equations = std::lower_bound(active.begin(), active.end(), largest.row) - active.begin();
+    const int row = largest.constraint != nullptr ? largest.constraint->first_row + largest.row
+                                                  : static_cast<int>(in_equations);
+    return {.value = largest.value, .row = row};
 }
 
 double Model::scaled_velocity_residual(const Row& r, const State& x) const

@@ -167,6 +167,10 @@ public:
     void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
     void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override;
     void update_alpha(State& x) const override;
+    std::vector<lie::BoundedPair> bounded_pairs() const override;
+    void update_pairs(const State& x, std::vector<lie::BoundedPair>& pair) const override;
+    /// The largest residual of the rows in the equations; see largest_residual()
+    PositionError position_error(const State& x) const override;
     void second_variation(const State& x, lie::SecondVariation& out) const override;
     void nu_variation(const State& x, lie::Rows& out) const override;
     void gamma_variation(const State& x, lie::GammaVariation& out) const override;

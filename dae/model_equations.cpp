@@ -59,12 +59,8 @@ void Model::variation(const State& x, lie::Rows& out) const
                 out.entry[e].pi = C_body.row(first + k).tail<3>();
             }
     };
-    lie::Rows::Regularised* pair = out.regularised.data();
     for (size_t n = 0; n < general_constraint.size(); ++n) {
         const Constraint& c = *general_constraint[n];
-        for (int p = 0; p < c.regularised_pairs(); ++p) pair[p].K = 0;
-        if (!inactive(c, x)) c.regularisation(arguments(c, x), pair);
-        pair += c.regularised_pairs();
         d.set_zero(c);
         if (inactive(c, x))
             d.Phi_alpha.setIdentity();  // regular, so that the corrections of α are zero
@@ -113,6 +109,29 @@ void Model::update_alpha(State& x) const
 {
     for (const auto& c : general_constraint)
         if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->first_alpha);
+}
+
+std::vector<lie::BoundedPair> Model::bounded_pairs() const
+{
+    std::vector<lie::BoundedPair> pairs;
+    for (const auto& c : general_constraint)
+        for (int n = 0; n < c->regularised_pairs(); ++n) {
+            pairs.emplace_back();
+            pairs.back().first = c->first_velocity_row + 2 * n;
+            pairs.back().normal_row = c->first_row;
+            pairs.back().solved_first = c->solved_first(n);
+        }
+    return pairs;
+}
+
+void Model::update_pairs(const State& x, std::vector<lie::BoundedPair>& pairs) const
+{
+    lie::BoundedPair* pair = pairs.data();
+    for (const auto& c : general_constraint) {
+        for (int p = 0; p < c->regularised_pairs(); ++p) pair[p].K = 0;
+        if (!inactive(*c, x)) c->regularisation(arguments(*c, x), pair);
+        pair += c->regularised_pairs();
+    }
 }
 
 /// Calls f(constraint, row, k) for all rows k of the equations without algebraic variables; `row` is the number

@@ -34,7 +34,7 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
 {
     lie::Rows full_rows = model.pattern();
     model.variation(x, full_rows);
-    full_rows.regularise(0);  // regularised rows become zero: their multipliers are always determined
+    full_rows.regularise({});  // regularised rows become zero: their multipliers are always determined
     std::vector<char> inactive(full_rows.rows(), 0);
     for (const int k : full_rows.unilateral) inactive[k] = full_rows.is_inactive(k);
     lie::Elimination elimination(full_rows, inactive);  // one row remains of each contact

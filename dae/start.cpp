@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Projections, accelerations and multipliers at a start, and the removal of redundant rows.
+/// Removal of redundant rows, projection and consistent internal states at a start.
 #include "dae/start.hpp"
 
 #include "dae/model.hpp"
 #include "dae/rank.hpp"
-#include "lie/bounded_rows.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 
 #include <algorithm>
 
@@ -59,142 +60,13 @@ void check_redundant_row(const Model& model, const Model::Row& row, const State&
     check("acceleration", model.scaled_acceleration_residual(row, x), acceleration_scale);
 }
 
-}  // namespace
-
-int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance)
-{
-    Eigen::VectorXd step(K.size());
-    constexpr int max_iterations = 50;
-    double largest_distance = 0;  // from the origin: scales the rounding error of a position
-    for (const lie::Motion& body : x.body) largest_distance = std::max(largest_distance, body.r.norm());
-    tolerance = std::max(tolerance, 8 * std::numeric_limits<double>::epsilon() * largest_distance);
-    const auto residual = [&] { return model.largest_residual(x, Model::RowSet::in_equations).value; };
-    for (int k = 0;; ++k) {
-        const double before = residual();
-        if (!std::isfinite(before))
-            throw lie::NonFinite(
-                "the projection of the positions: the residual of a constraint is not finite");
-        K.assemble(x);
-        step.setZero();
-        model.phi(x, K.constraint_part(step));
-        step *= -1;
-        K.solve_refined(step);
-        // Damped step: no body rotates by more than 0.5 rad. This makes distant starts converge.
-        double largest_rotation = 0;
-        for (int b = 0; b < model.bodies(); ++b)
-            largest_rotation = std::max(largest_rotation, step.segment<3>(6 * b + 3).norm());
-        const double step_fraction = largest_rotation > 0.5 ? 0.5 / largest_rotation : 1;
-        const State from = x;
-        for (int b = 0; b < model.bodies(); ++b) {
-            x.body[b].r += step_fraction * step.segment<3>(6 * b);
-            x.body[b].A =
-                lie::orthonormalised(x.body[b].A * lie::exp(step_fraction * step.segment<3>(6 * b + 3)));
-        }
-        if (x.alpha.size() > 0)
-            x.alpha +=
-                step_fraction * K.algebraic_part(step);  // State::alpha has the order of the constraints
-        // Iterate below the tolerance as long as the residual decreases by a factor of ten. The last step
-        // costs little and gives the last digits.
-        const double after = residual();
-        if (before <= tolerance && after >= 0.1 * before) {
-            if (after > before) x = from;
-            return k;
-        }
-        if (k == max_iterations)
-            throw lie::NoConvergence(
-                "the projection of the positions onto the constraints did not converge in " +
-                    std::to_string(max_iterations) + " steps; largest residual " + number(after) + " in " +
-                    model.name_of(model.largest_residual(x, Model::RowSet::in_equations)),
-                after, max_iterations);
-    }
-}
-
-void project_velocities(const lie::System& system, lie::Saddle& K, State& x)
-{
-    K.assemble(x);
-    Eigen::VectorXd v(K.size());
-    for (int b = 0; b < system.bodies(); ++b) {
-        v.segment<3>(6 * b) = system.mass().m[b] * x.body[b].rdot;
-        v.segment<3>(6 * b + 3) = system.mass().J_bar[b] * x.body[b].omega_bar;
-    }
-    K.algebraic_part(v).setZero();
-    system.nu(x, K.constraint_part(v));
-    K.solve_refined(v);
-    for (int b = 0; b < system.bodies(); ++b) {
-        x.body[b].rdot = v.segment<3>(6 * b);
-        x.body[b].omega_bar = v.segment<3>(6 * b + 3);
-    }
-}
-
-namespace {
-
-// At a start there is no step. Regularised rows have the compliance of a step of this length, and friction
-// opposes a sliding velocity as if to stop it within slip_decay_time [s].
-constexpr double regularisation_step = 1, slip_decay_time = 1e-6;
-
-/// Replaces γ of the regularised rows by γ - C v/τ. The relative acceleration is γ without sliding, and
-/// opposes the sliding velocity otherwise.
-void oppose_slip(double tau, const lie::Rows& C, const State& x, Eigen::VectorXd& a)
-{
-    for (const lie::Rows::Regularised& c : C.regularised)
-        for (int k = c.first; k < c.first + 2; ++k) {
-            double slip = 0;
-            for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
-                const lie::Motion& body = x.body[C.entry[n].body];
-                slip += C.entry[n].r.dot(body.rdot) + C.entry[n].pi.dot(body.omega_bar);
-            }
-            a[6 * static_cast<int>(x.body.size()) + k] -= slip / tau;
-        }
-}
-
-}  // namespace
-
-void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x)
-{
-    lie::BoundedRows bounded_rows(system.pattern());
-    bounded_rows.all_stick(K);
-    K.assemble(x, regularisation_step);
-    lie::Loads loads(system.bodies());
-    system.loads(x, loads);
-    Eigen::VectorXd a(K.size());
-    for (int b = 0; b < system.bodies(); ++b) {
-        const Vec3& omega_bar = x.body[b].omega_bar;
-        a.segment<3>(6 * b) = loads.F[b];
-        a.segment<3>(6 * b + 3) = loads.n_bar[b] - omega_bar.cross(system.mass().J_bar[b] * omega_bar);
-    }
-    K.algebraic_part(a).setZero();
-    system.gamma(x, K.constraint_part(a));
-    oppose_slip(slip_decay_time, K.rows(), x, a);
-    if (!a.allFinite())
-        throw lie::NonFinite("the accelerations at the start: a load or a constraint is not finite");
-    const Eigen::VectorXd right_side = a;
-    constexpr int max_iterations = 100;
-    for (int k = 0;; ++k) {
-        K.solve_refined(a);
-        if (bounded_rows(K, K.rows(), a, x)) break;
-        if (k == max_iterations)
-            throw lie::NumericalFailure("start_not_converged",
-                                        "the friction forces and the normal forces that bound them did not "
-                                        "converge at the start in " +
-                                            std::to_string(max_iterations) + " iterations");
-        a = right_side;
-    }
-    for (int b = 0; b < system.bodies(); ++b) {
-        x.body[b].rddot = a.segment<3>(6 * b);
-        x.body[b].omegadot_bar = a.segment<3>(6 * b + 3);
-    }
-    x.lambda = K.constraint_part(a);
-}
-
-namespace {
-
 /// Computes the internal states, accelerations and multipliers of a start. If internal states depend on
 /// multipliers, they are iterated until they are consistent.
 void solve_with_internal_states(const Model& model, lie::Saddle& K, State& x)
 {
     const auto solve_once = [&] {
         model.set_internal_state_at_start(x);
-        solve_accelerations(model, K, x);
+        lie::solve_accelerations(model, K, x);
     };
     solve_once();
     const auto& forces = model.forces();
@@ -232,7 +104,7 @@ std::vector<int> project_without_redundant(Model& model, State& x, double tolera
     for (const int k : redundant) model.drop(k);
     if (model.rows() > 0) {
         lie::Saddle K(model, lie::Metric::mass, start_solver(model));
-        project_positions(model, K, x);
+        lie::project_positions(model, K, x);
     }
     return redundant;
 }
@@ -266,10 +138,6 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
         redundant = project_without_redundant(model, x, rank_tolerance);
     return redundant;
 }
-
-}  // namespace
-
-namespace {
 
 /// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the initial
 /// state may be projected. Records the largest violation.
@@ -348,7 +216,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         },
         report.velocity_residual, report.worst_velocity);
     if (model.rows() > 0) {
-        project_velocities(model, K, x);
+        lie::project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection

@@ -9,35 +9,10 @@
 #include <string>
 #include <vector>
 
-namespace hilda::lie {
-class Saddle;
-class System;
-}  // namespace hilda::lie
-
 namespace hilda::dae {
 
 class Model;
 using lie::State;
-
-/// Projects r and A onto Φ(r, A, t) = 0 by Newton's method. Each step K (δr, δθ, ·) = (0, -Φ) is the shortest
-/// one in the metric of the mass. Algebraic variables are projected with them.
-///
-/// Returns the number of steps. The tolerance [m or rad] applies to the scaled residual, see
-/// Model::scaled_residual. Far from the origin it is at least 8 eps max |r|, the rounding error of a
-/// position. Throws lie::NoConvergence after 50 steps, and lie::NonFinite if a residual is not finite.
-int project_positions(const Model& model, lie::Saddle& K, State& x, double tolerance = 1e-13);
-
-/// Projects ṙ and ω̄ onto Φ_r ṙ + Π̄ ω̄ = ν by K (v, ·) = (M v, ν). The change is the shortest one in the metric
-/// of the mass, as in an ideal inelastic impact.
-void project_velocities(const lie::System& system, lie::Saddle& K, State& x);
-
-/// Computes r̈, ω̄̇ and λ from K (r̈, ω̄̇, λ) = (F, τ̄, γ). Positions and velocities must satisfy the constraints.
-///
-/// Regularised rows have the compliance of a step of 1 s here. Their γ is replaced by γ - C v/τ with
-/// τ = 1e-6 s, so that friction opposes the sliding velocity. Throws lie::NumericalFailure
-/// "start_not_converged" if their bounds and the normal forces do not become consistent, and lie::NonFinite
-/// for a load that is not finite.
-void solve_accelerations(const lie::System& system, lie::Saddle& K, State& x);
 
 struct StartOptions {
     bool fix_initial = false;  ///< project data that violate the constraints, instead of rejecting them

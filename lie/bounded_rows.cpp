@@ -2,8 +2,10 @@
 #include "lie/bounded_rows.hpp"
 
 #include "lie/solver/saddle.hpp"
+#include "lie/system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::lie {
 
@@ -15,51 +17,68 @@ constexpr double smallest_bound = 1e-9;        // relative to |λ(1)|; replaces 
 
 }  // namespace
 
-void BoundedRows::all_stick(Saddle& K)
+BoundedRows::BoundedRows(const System& system)
+    : system(system), pair(system.bounded_pairs()), search(pair.size()), compliances(2 * pair.size())
+{}
+
+void BoundedRows::start(const State& x, double step)
 {
-    for (size_t n = 0; n < search.size(); ++n) {
+    h = step;
+    if (pair.empty()) return;
+    system.update_pairs(x, pair);
+    for (size_t n = 0; n < pair.size(); ++n) {
         search[n] = {};
-        K.set_compliance_scale(static_cast<int>(n), 1);
+        set_compliance(n);
     }
 }
 
-bool BoundedRows::operator()(Saddle& K, const Rows& C, Eigen::VectorXd& z, const State& x)
+void BoundedRows::set_right_side(Eigen::Ref<Eigen::VectorXd> constraint_part) const
+{
+    for (const BoundedPair& c : pair) constraint_part.segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
+}
+
+bool BoundedRows::within_bounds(Saddle& K, Eigen::VectorXd& z)
 {
     const auto lambda = K.constraint_part(z);
     for (const bool solved_first : {true, false}) {
         bool within = true;
-        for (size_t n = 0; n < search.size(); ++n) {
-            const Rows::Regularised& c = C.regularised[n];
-            if (c.solved_first != solved_first || C.is_inactive(c.first)) continue;
-            const double N = c.n.dot(lambda.segment<3>(c.normal_row)), p = K.rows().regularised[n].p;
-            const double next =
-                next_scale(search[n], p, c.mu * std::max(N, 0.), lambda.segment<2>(c.first).norm());
-            if (next == p) continue;
-            K.set_compliance_scale(static_cast<int>(n), next);
+        for (size_t n = 0; n < pair.size(); ++n) {
+            const BoundedPair& c = pair[n];
+            if (c.solved_first != solved_first || c.K == 0) continue;
+            const double N = c.n.dot(lambda.segment<3>(c.normal_row)), p = search[n].p;
+            search[n].p = next_scale(search[n], c.mu * std::max(N, 0.), lambda.segment<2>(c.first).norm());
+            if (search[n].p == p) continue;
+            set_compliance(n);
             within = false;
         }
         if (within) continue;
-        K.refactor_regularised(x);
+        K.refactor(compliances);
         return false;
     }
     return true;
 }
 
-double BoundedRows::next_scale(PairSearch& s, double p, double bound, double length)
+double BoundedRows::next_scale(Search& s, double bound, double length)
 {
-    if (bound >= length && p == 1) return 1;
+    if (bound >= length && s.p == 1) return 1;
     if (s.iterations == 0) s.length_at_one = length;
     bound = std::max(bound, smallest_bound * s.length_at_one);
     const double f = bound / length, error = std::abs(f - 1);
     if (error < tolerance ||
-        (s.iterations > 2 && error < stagnation_tolerance && error > 0.5 * std::abs(s.f - 1)))
-        return p;
-    double next = p / f;
-    if (const double slope = (f - s.f) / (p - s.p); s.iterations > 0 && slope > 0 && std::isfinite(slope))
-        next = p + (1 - f) / slope;
+        (s.iterations > 2 && error < stagnation_tolerance && error > 0.5 * std::abs(s.previous_f - 1)))
+        return s.p;
+    double next = s.p / f;
+    if (const double slope = (f - s.previous_f) / (s.p - s.previous_p);
+        s.iterations > 0 && slope > 0 && std::isfinite(slope))
+        next = s.p + (1 - f) / slope;
     ++s.iterations;
-    s.p = p, s.f = f;
+    s.previous_p = s.p, s.previous_f = f;
     return std::max(next, 1.);
+}
+
+void BoundedRows::set_compliance(size_t n)
+{
+    compliances[2 * n] = compliances[2 * n + 1] = search[n].p * pair[n].mobility(h) / h;
 }
 
 }  // namespace hilda::lie

@@ -1,18 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Search for the compliance scales of regularised rows, such that the multipliers satisfy the Coulomb bound.
+/// Regularised rows with a Coulomb bound, as friction with springs and dashpots at the end of a step.
 
 #pragma once
 
-#include "lie/rows.hpp"
-#include "lie/state.hpp"
+#include "lie/so3.hpp"
 
 #include <vector>
 
 namespace hilda::lie {
 
 class Saddle;
+struct State;
+class System;
 
-/// Determines the compliance scale p ≥ 1 of each pair of regularised rows (Rows::Regularised).
+/// A pair of regularised friction rows: the nonholonomic rows first and first + 1.
+///
+/// The two multipliers λ [N] model a spring and a dashpot at the end of the step h:
+///
+///     p λ = K (S + h C v) + D C v,     v = (ṙ, ω̄) at the end of the step,  C the two rows of (Φ_r, Π̄)
+///     |λ| ≤ μ N,                       N = max(0, n · (λ_normal_row, λ_normal_row+1, λ_normal_row+2))
+///
+/// p = 1 if the spring and dashpot do not exceed the bound. Otherwise p > 1 scales the compliance such that
+/// |λ| = μ N. λ is then parallel to the force of spring and dashpot for the velocity at the end of the step.
+struct BoundedPair {
+    // constant
+    int first = 0, normal_row = 0;
+    bool solved_first = false;  ///< p is determined before that of the pairs without this flag
+
+    // of a state, see System::update_pairs()
+    double K = 0, D = 0, mu = 0;                  ///< [N/m] (0: the pair is inactive), [N s/m], [1]
+    Eigen::Vector2d S = Eigen::Vector2d::Zero();  ///< elastic displacement at t_n [m]
+    Vec3 n = Vec3::Zero();                        ///< contact normal, global frame
+
+    /// 1/(D + h K), the ratio of C v to λ for S = 0 and p = 1 [m/(N s)]; 0 for an inactive pair
+    double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }
+};
+
+/// The pairs of a step from t_n, and the search for the compliance scale p ≥ 1 of each pair. A step owns one
+/// such object.
+///
+/// In the variables of a step the law of a pair is
+///
+///     C (h v) - compliance (h² λ) = -h K mobility S,     compliance = p mobility/h
+///
+/// The compliance is on the diagonal of the saddle matrix, with a negative sign (Rows::regularised).
 ///
 /// With the compliance scaled by p, the solution of the step has the multipliers λ(p) of the pair and the
 /// normal force N(p). Let
@@ -38,32 +69,42 @@ class Saddle;
 /// limits the number of solutions.
 class BoundedRows {
 public:
-    explicit BoundedRows(const Rows& pattern) : search(pattern.regularised.size()) {}
+    /// The system must outlive the object.
+    explicit BoundedRows(const System& system);
 
-    /// Sets p = 1 for all pairs. To be called before K.assemble() at the beginning of a step.
-    void all_stick(Saddle& K);
+    /// Evaluates the pairs in the state x, for a step h from it. All pairs stick: p = 1.
+    void start(const State& x, double h);
+    /// Of each regularised row, for Saddle::assemble() [1/kg]
+    const std::vector<double>& compliance() const { return compliances; }
+    /// Writes the right sides -h K mobility S of the pairs into the constraint part of a right side.
+    void set_right_side(Eigen::Ref<Eigen::VectorXd> constraint_part) const;
+
     /// Returns true if the multipliers in z satisfy the bounds.
     ///
     /// Otherwise factors K with new p and returns false. The caller then solves the step again. The pairs
     /// with solved_first are treated first. The p of the other pairs change only when the former satisfy
     /// their bounds.
     ///
-    /// z: solution of the step with the present K. Its multipliers may be scaled by a common positive
-    /// factor. C: the rows at the node t_n, with mu and n of each pair. x: argument of
-    /// Saddle::refactor_regularised().
-    bool operator()(Saddle& K, const Rows& C, Eigen::VectorXd& z, const State& x);
+    /// z: solution of the step with the present K. Its multipliers may be scaled by a common positive factor.
+    bool within_bounds(Saddle& K, Eigen::VectorXd& z);
 
 private:
-    struct PairSearch {
+    struct Search {
         int iterations = 0;
-        double p = 1, f = 1;       ///< values of the previous iteration
+        double p = 1;  ///< present value
+        double previous_p = 1, previous_f = 1;
         double length_at_one = 0;  ///< |λ(1)|
     };
     /// The next p of a pair with |λ(p)| = length and μ N(p) = bound. Returns p itself if the iteration has
     /// converged.
-    static double next_scale(PairSearch& s, double p, double bound, double length);
+    static double next_scale(Search& s, double bound, double length);
+    void set_compliance(size_t n);
 
-    std::vector<PairSearch> search;
+    const System& system;
+    std::vector<BoundedPair> pair;
+    std::vector<Search> search;
+    std::vector<double> compliances;
+    double h = 0;
 };
 
 }  // namespace hilda::lie

@@ -37,11 +37,11 @@ public:
     /// The state in which the present pivots of the linear solver were chosen.
     ///
     /// The pivots affect the last digits of a result. They are the only data that a scheme may keep outside
-    /// State. A restarted run calls choose_pivots() with this state to reproduce the digits. The default, no
-    /// state, is for schemes whose first step from a saved node chooses the same pivots again.
+    /// State. A restarted run calls choose_pivots() with this state and the step h to reproduce the digits. The
+    /// default, no state, is for schemes whose first step from a saved node chooses the same pivots again.
     virtual const State* pivots() const { return nullptr; }
-    /// Chooses the pivots in the state x.
-    virtual void choose_pivots(const State& /*x*/) {}
+    /// Chooses the pivots in the state x for steps of the length h.
+    virtual void choose_pivots(const State& /*x*/, double /*h*/) {}
 
     virtual const System& system() const = 0;
     virtual Statistics statistics() const = 0;

@@ -5,20 +5,18 @@
 
 namespace hilda::lie {
 
-void Rows::regularise(double h)
+void Rows::regularise(std::span<const double> compliances)
 {
-    for (Regularised& c : regularised) {
-        c.compliance = h > 0 ? c.p * c.mobility(h) / h : 0;
-        for (int n = start[c.first]; h == 0 && n < start[c.first + 2]; ++n)
-            entry[n].r.setZero(), entry[n].pi.setZero();
-    }
+    compliance.assign(compliances.begin(), compliances.end());
+    if (!compliances.empty()) return;
+    compliance.resize(regularised.size(), 0);
+    for (const int k : regularised)
+        for (int n = start[k]; n < start[k + 1]; ++n) entry[n].r.setZero(), entry[n].pi.setZero();
 }
 
 bool Rows::is_regularised(int k) const
 {
-    for (const Regularised& c : regularised)
-        if (k == c.first || k == c.first + 1) return true;
-    return false;
+    return std::binary_search(regularised.begin(), regularised.end(), k);
 }
 
 bool Rows::is_inactive(int k) const

@@ -5,6 +5,7 @@
 
 #include "lie/so3.hpp"
 
+#include <span>
 #include <vector>
 
 namespace hilda::lie {
@@ -12,7 +13,8 @@ namespace hilda::lie {
 /// The first variation δΦ = Φ_r δr + Π̄ δθ̄ + Φ_α δα of all rows, with A ← A exp(δθ̄~), as sparse blocks.
 ///
 /// Row k has the entries start[k] … start[k+1]-1. An entry holds the six derivatives for one body. The
-/// pattern (start, body, nonzero) is fixed; only the values depend on the state.
+/// pattern (start, body, nonzero) is fixed; only the values depend on the state and, for the compliances, on
+/// the step.
 struct Rows {
     struct Entry {
         int body = 0;
@@ -29,45 +31,21 @@ struct Rows {
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> D;  ///< ∂Φ/∂α, rows × count
     };
 
-    /// A pair of regularised friction rows: the nonholonomic rows first and first + 1.
-    ///
-    /// The two multipliers λ [N] model a spring and a dashpot at the end of the step h:
-    ///
-    ///     p λ = K (S + h C v) + D C v,     v = (ṙ, ω̄) at the end of the step,  C the two rows of (Φ_r, Π̄)
-    ///     |λ| ≤ μ N,                       N = max(0, n · (λ_normal_row, λ_normal_row+1, λ_normal_row+2))
-    ///
-    /// p = 1 if the spring and dashpot do not exceed the bound. Otherwise p > 1 scales the compliance such
-    /// that |λ| = μ N. λ is then parallel to the force of spring and dashpot for the velocity at the end of
-    /// the step. BoundedRows determines p.
-    struct Regularised {
-        int first = 0, normal_row = 0;  ///< both rows are unilateral
-        bool solved_first = false;      ///< p is determined before that of the pairs without this flag
-        double K = 0, D = 0, mu = 0;    ///< [N/m] (0: the pair is inactive), [N s/m], [1]
-        Eigen::Vector2d S = Eigen::Vector2d::Zero();  ///< elastic displacement at t_n [m]
-        Vec3 n = Vec3::Zero();                        ///< contact normal, global frame
-        double p = 1, compliance = 0;  ///< set by the integrator; compliance = p mobility(h)/h [1/kg]
-
-        /// 1/(D + h K), the ratio of C v to λ for S = 0 and p = 1 [m/(N s)]; 0 for an inactive pair
-        double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }
-    };
-
     std::vector<int> start{0};
     std::vector<Entry> entry;
     std::vector<AlgebraicGroup> algebraic;
-    std::vector<Regularised> regularised;
-    int velocity_rows = 0;  ///< number of nonholonomic rows, the last ones
+    /// The regularised rows, ascending. Row regularised[n] has the diagonal entry -compliance[n] in the saddle
+    /// matrix. They are nonholonomic rows, and unilateral.
+    std::vector<int> regularised;
+    std::vector<double> compliance;  ///< [1/kg]
+    int velocity_rows = 0;           ///< number of nonholonomic rows, the last ones
     /// The rows that are inactive in some states, ascending. The saddle system gives an inactive row the
     /// correction zero. The multiplier of a row must be set to zero when the row becomes inactive.
     std::vector<int> unilateral;
 
-    /// Sets the compliance of the regularised rows for a step h. In the variables of a step the law of the
-    /// pair is
-    ///
-    ///     C (h v) - compliance (h² λ) = -h K mobility(h) S
-    ///
-    /// For h = 0 a regularised row carries no force: its derivatives are set to zero.
-    void regularise(double h);
-    /// Whether row k belongs to a regularised pair
+    /// Sets the compliances, one for each regularised row. Without compliances the regularised rows are made
+    /// inactive: their derivatives are set to zero.
+    void regularise(std::span<const double> compliances);
     bool is_regularised(int k) const;
     /// Whether row k is inactive, i.e. all its derivatives are zero. The last row of an algebraic group
     /// represents the whole group; Φ_α is checked for this row only.

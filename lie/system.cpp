@@ -3,6 +3,7 @@
 #include "lie/system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::lie {
 
@@ -15,6 +16,17 @@ double energy(const System& system, const State& x)
              0.5 * body.omega_bar.dot(system.mass().J_bar[b] * body.omega_bar);
     }
     return e;
+}
+
+System::PositionError System::position_error(const State& x) const
+{
+    PositionError largest;
+    Eigen::VectorXd Phi(rows());
+    phi(x, Phi);
+    for (int k = 0; k < rows(); ++k)
+        if (largest.row < 0 || std::abs(Phi[k]) > largest.value || std::isnan(Phi[k]))
+            largest = {.value = std::abs(Phi[k]), .row = k};
+    return largest;
 }
 
 namespace {

@@ -11,11 +11,13 @@
 /// - Algebraic variables α. The position constraints are then Φ(r, A, α, t) = 0 with Φ_αᵀ λ = 0 (Eq. 5.33).
 ///   The variables form groups, and each group occurs in its own rows only. Evolving contacts use them.
 /// - Nonholonomic rows Φ_r ṙ + Π̄ ω̄ = ν, which have no Φ. They are the last rows. Example: ideal rolling.
-/// - Regularised rows: pairs of nonholonomic rows with a compliance and a bound. Implicit friction uses them.
+/// - Regularised rows: pairs of nonholonomic rows with a compliance and a bound (BoundedRows). Implicit friction
+///   uses them.
 /// - Unilateral rows, which are inactive in some states. Φ, Φ_r and Π̄ of an inactive row are zero.
 
 #pragma once
 
+#include "lie/bounded_rows.hpp"
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
 #include "lie/state.hpp"
@@ -56,6 +58,20 @@ public:
     /// satisfy the constraints only approximately, as those of a stage of a Runge-Kutta step do. Throws
     /// NumericalFailure if no α is found.
     virtual void update_alpha(State& /*x*/) const {}
+
+    /// The pairs of regularised rows, with the rows of each. The default is for systems without such rows.
+    virtual std::vector<BoundedPair> bounded_pairs() const { return {}; }
+    /// Sets K, D, mu, S and n of the pairs in the state x; `pair` is a copy of bounded_pairs().
+    virtual void update_pairs(const State& /*x*/, std::vector<BoundedPair>& /*pair*/) const {}
+
+    /// The row with the largest error of the positions
+    struct PositionError {
+        double value = 0;  ///< [m or rad]
+        int row = -1;      ///< -1 if there are no rows
+    };
+    /// The largest |Φ_k| in x. A system with rows of other units divides by the lengths of their variations.
+    /// NaN counts as larger than any number.
+    virtual PositionError position_error(const State& x) const;
 
     // Derivatives for exact Newton matrices. Schemes with a frozen matrix do not use them. The defaults of
     // the derivatives of the rows are central differences. They are slow; their relative error is about

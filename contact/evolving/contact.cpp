@@ -220,10 +220,10 @@ Mat3 EvolvingContact::lever_arms(const Mat3& K_sum, const Vec3& n) const
            along.transpose();
 }
 
-void EvolvingContact::regularisation(const Arguments& x, lie::Rows::Regularised* out) const
+void EvolvingContact::regularisation(const Arguments& x, lie::BoundedPair* out) const
 {
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
-    const auto set_pair = [&](lie::Rows::Regularised& pair, const double* pair_state, double K, double D,
+    const auto set_pair = [&](lie::BoundedPair& pair, const double* pair_state, double K, double D,
                               double factor) {
         pair.K = K, pair.D = D, pair.n = n;
         pair.S = Eigen::Vector2d::Map(pair_state);
@@ -249,14 +249,14 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, double* in
         std::fill(internal_state + sliding_state, internal_state + 14, 0.);
         return;
     }
-    lie::Rows::Regularised pair[2];
+    lie::BoundedPair pair[2];
     regularisation(x, pair);
     const Vec3 Psi = x.lambda->segment<3>(first_row);
     const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
     for (const RowPair p : {sliding_pair, rolling_pair}) {
         if (p == rolling_pair && !law.has_rolling_resistance()) continue;
         double* pair_state = internal_state + (p == sliding_pair ? sliding_state : rolling_state);
-        const lie::Rows::Regularised& c = pair[p];
+        const lie::BoundedPair& c = pair[p];
         const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
         Eigen::Vector2d::Map(pair_state) += h * c.mobility(h) * (lambda - c.K * c.S);
         pair_state[2] = lambda.norm() > (1 - bound_tolerance) * c.mu * N;

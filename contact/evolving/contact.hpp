@@ -109,7 +109,7 @@ public:
     void variation(const Arguments& x, Derivatives& out) const override;
     void gamma(const Arguments& x, double* out) const override;
     unsigned nonzero(int row) const override;
-    void regularisation(const Arguments& x, lie::Rows::Regularised* out) const override;
+    void regularisation(const Arguments& x, lie::BoundedPair* out) const override;
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
     int update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;

@@ -2,7 +2,8 @@
 // Impacts of UnilateralStep: compression, restitution, closing.
 #include "contact/evolving/unilateral.hpp"
 #include "dae/model.hpp"
-#include "dae/start.hpp"
+#include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 
 #include <algorithm>
 
@@ -23,12 +24,12 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
         restart(x);
         return;
     }
-    dae::project_positions(model, K, x);
+    lie::project_positions(model, K, x);
     before_impact = x;
     const size_t events_before = event_log.size();
     solve_velocity_jump(x, nullptr, 0);  // compression: all active constraints hold
     const double compression = force(c, x, x.lambda);
-    dae::solve_accelerations(model, K, x);
+    lie::solve_accelerations(model, K, x);
     const double F_N = force(c, x, x.lambda);
 
     // Without c the gap would have the acceleration -F_N/m with the effective mass m = compression/approach.
@@ -104,9 +105,7 @@ void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebound
     for (TrackedContact* tensile = nullptr;; tensile = nullptr) {
         K.assemble(x);
         v.setZero();
-        for (int b = 0; b < model.bodies(); ++b)
-            v.segment<6>(6 * b) << model.mass().m[b] * x.body[b].rdot,
-                model.mass().J_bar[b] * x.body[b].omega_bar;
+        lie::set_momenta(model, x, v);
         v.head(momentum.size()) += momentum;
         model.nu(x, K.constraint_part(v));
         if (rebounding != nullptr)
@@ -127,10 +126,7 @@ void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebound
         event_log.push_back(
             {.type = ContactEvent::Type::lift_off, .t = x.t, .contact = tensile->number, .speed = 0});
     }
-    for (int b = 0; b < model.bodies(); ++b) {
-        x.body[b].rdot = v.segment<3>(6 * b);
-        x.body[b].omega_bar = v.segment<3>(6 * b + 3);
-    }
+    lie::set_velocities(x, v);
     momentum.setZero();
 }
 

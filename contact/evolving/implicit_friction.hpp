@@ -7,7 +7,7 @@ namespace hilda::contact {
 
 /// Friction of Fang (2022), Sec. 4.3, with springs and dampers evaluated at the end of the step.
 ///
-/// The friction is a set of regularised velocity rows of an EvolvingContact (lie::Rows::Regularised): one
+/// The friction is a set of regularised velocity rows of an EvolvingContact (lie::BoundedPair): one
 /// pair for sliding and, if η_r > 0, one pair for rolling.
 ///
 ///     λ   = K_E (S + h ṡ) + K_D ṡ,              ṡ = T'ᵀ (v_i - v_j) at C                 |λ| ≤ μ F_N

@@ -2,10 +2,10 @@
 #include "contact/evolving/unilateral.hpp"
 
 #include "dae/model.hpp"
-#include "dae/start.hpp"
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
+#include "lie/steps/accelerations.hpp"
 
 #include <algorithm>
 
@@ -263,7 +263,7 @@ void UnilateralStep::switch_to_fallback(const TrackedContact& c, State& x, doubl
 void UnilateralStep::restart(State& x)
 {
     x.history.resize(0);
-    do dae::solve_accelerations(model, K, x);
+    do lie::solve_accelerations(model, K, x);
     while (deactivate_tensile(x));
 }
 

@@ -84,7 +84,7 @@ public:
     void fill_node(lie::State& node, const lie::State& after) const override;
     bool keeps_history() const override { return scheme->keeps_history(); }
     const lie::State* pivots() const override { return scheme->pivots(); }
-    void choose_pivots(const lie::State& x) override { scheme->choose_pivots(x); }
+    void choose_pivots(const lie::State& x, double h) override { scheme->choose_pivots(x, h); }
     const lie::System& system() const override { return model; }
     lie::Statistics statistics() const override { return scheme->statistics(); }
 

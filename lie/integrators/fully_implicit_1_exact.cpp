@@ -20,7 +20,7 @@
 
 #include "lie/schemes.hpp"
 #include "lie/solver/newton_matrix.hpp"
-#include "lie/steps/newton_step.hpp"
+#include "lie/steps/backward_euler_step.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -28,10 +28,10 @@ namespace {
 
 using Mat63 = Eigen::Matrix<double, 6, 3>;
 
-class FullyImplicit1Exact final : public NewtonStep {
+class FullyImplicit1Exact final : public BackwardEulerStep {
 public:
     FullyImplicit1Exact(const System& model, const Settings& settings)
-        : NewtonStep(model, settings), C(model.pattern()), H(model.pattern()), dF(model.load_pattern()),
+        : BackwardEulerStep(model, settings, "rA-full-1-exact"), H(C), dF(model.load_pattern()),
           J_r(model.bodies())
     {
         const int m = 6 * model.bodies();
@@ -47,75 +47,16 @@ public:
         for (const LoadVariation::Block& block : dF.block)
             load_at.push_back(N.declare(6 * block.on, 6 * block.by, 6, 6));
         N.analyse(m + model.rows());
-        z.resize(m + model.rows());
-        e.resize(z.size());
     }
 
     Statistics statistics() const override { return statistics_with(N); }
 
-    int step(State& x, double h) override
-    {
-        x_n = x;
-        Attempt attempt(x, x_n);
-        predict();
-        x.t = x_n.t + h;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
-            place(x, h);
-            set_residual(x, h);
-            assemble(x, h);
-            N.factor();
-            N.solve(e);
-            z -= e;
-            if (converged(k, h * h * e.head(6 * model.bodies()).norm(), e.tail(model.rows()), h * h)) {
-                place(x, h);
-                refuse_whole_turns(x, h, "rA-full-1-exact");
-                for (Motion& body : x.body) body.A = orthonormalised(body.A);
-                return done(attempt, k);
-            }
-        }
-        no_convergence("rA-full-1-exact", correction, x);
-    }
-
 private:
-    /// Initial guess: accelerations and multipliers of t_n
-    void predict()
+    void solve(const State& x, double h) override
     {
-        for (int i = 0; i < model.bodies(); ++i) {
-            z.segment<3>(6 * i) = x_n.body[i].rddot;
-            z.segment<3>(6 * i + 3) = x_n.body[i].omegadot_bar;
-        }
-        z.tail(model.rows()) = x_n.lambda;
-    }
-
-    /// The state x at t_{n+1} from z (Eq. 3.19)
-    void place(State& x, double h)
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& from = x_n.body[i];
-            Motion& body = x.body[i];
-            body.rddot = z.segment<3>(6 * i);
-            body.omegadot_bar = z.segment<3>(6 * i + 3);
-            body.rdot = from.rdot + h * body.rddot;
-            body.omega_bar = from.omega_bar + h * body.omegadot_bar;
-            body.r = from.r + h * body.rdot;
-            body.A = from.A * exp(h * body.omega_bar);
-        }
-        x.lambda = z.tail(model.rows());
-    }
-
-    /// The residual e in the state x (Eq. 3.20)
-    void set_residual(const State& x, double h)
-    {
-        model.loads(x, loads);
-        model.variation(x, C);
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x.body[i];
-            e.segment<3>(6 * i) = model.mass().m[i] * body.rddot - loads.F[i];
-            e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
-        }
-        C.add_transpose(1, x.lambda, e);
-        model.phi(x, e.tail(model.rows()));
-        e.tail(model.rows()) /= h * h;
+        assemble(x, h);
+        N.factor();
+        N.solve(e);
     }
 
     /// The Newton matrix N in the state x
@@ -163,7 +104,6 @@ private:
         return out;
     }
 
-    Rows C;  ///< Φ_r, Π̄ at the iterate
     SecondVariation H;
     LoadVariation dF;
     std::vector<Mat3> J_r;  ///< J_r(h ω̄) of each body

@@ -28,6 +28,7 @@
 
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "lie/steps/saddle_step.hpp"
 #include "lie/system.hpp"
 
@@ -56,8 +57,8 @@ public:
         else
             a_n = x_n.history;
         kappa = beta * h * h * (1 - alpha_f) / (1 - alpha_m);
-        K.assemble(x_n);  // the Newton matrix, frozen at t_n
-        predict(h);
+        K.assemble(x_n);                 // the Newton matrix, frozen at t_n
+        predict(h, 0.5 * h * h, kappa);  // the increment of constant accelerations
         x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x, h);
@@ -90,28 +91,13 @@ private:
         }
         model.update_alpha(ahead);
         K.assemble(ahead);
-        model.loads(ahead, loads);
-        for (int i = 0; i < model.bodies(); ++i) e.segment<6>(6 * i) << loads.F[i], tau_bar(i, ahead.body[i]);
-        K.algebraic_part(e).setZero();
-        model.gamma(ahead, K.constraint_part(e));
+        set_load_terms(model, K, ahead, loads, e);
         K.solve(e);
         for (int i = 0; i < model.bodies(); ++i) {
             a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
             a_n.segment<6>(6 * i) +=
                 (alpha_m - alpha_f) * (e.segment<6>(6 * i) - a_n.segment<6>(6 * i)).eval();
         }
-    }
-
-    /// Initial guess: the increment of constant accelerations, and the multipliers of t_n
-    void predict(double h)
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            z.segment<6>(6 * i) << h * body.rdot + 0.5 * h * h * body.rddot,
-                h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
-        }
-        K.constraint_part(z) = kappa * x_n.lambda;
-        K.algebraic_part(z).setZero();
     }
 
     /// The state x at t_{n+1}, and a_{n+1}, from z
@@ -129,11 +115,10 @@ private:
             const Vec6 v = v_n + h * (1 - gamma) * a + h * gamma * a_new;
             const Vec6 vdot = ((1 - alpha_m) * a_new + alpha_m * a - alpha_f * vdot_n) / (1 - alpha_f);
             a_next.segment<6>(6 * i) = a_new;
-            body.r = from.r + increment.head<3>();
-            body.A = from.A * exp(increment.tail<3>());
             body.rdot = v.head<3>(), body.omega_bar = v.tail<3>();
             body.rddot = vdot.head<3>(), body.omegadot_bar = vdot.tail<3>();
         }
+        place_increments(x);
         place_algebraic(x, 1);
         x.lambda = K.constraint_part(z) / kappa;
     }
@@ -141,16 +126,7 @@ private:
     /// The residual e in the state x; the equations of motion multiplied by κ
     void set_residual(const State& x)
     {
-        model.loads(x, loads);
-        model.variation(x, C);
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x.body[i];
-            e.segment<3>(6 * i) = model.mass().m[i] * body.rddot - loads.F[i];
-            e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
-        }
-        C.add_transpose(1, x.lambda, e);
-        K.algebraic_part(e).setZero();
-        C.add_algebraic_transpose(1, x.lambda, K.algebraic_part(e));
+        set_motion_residual(x, C);
         e *= kappa;
         model.phi(x, K.constraint_part(e));
     }

@@ -30,15 +30,6 @@ public:
     HalfImplicit1(const System& model, const Settings& settings)
         : HalfImplicitStep(model, settings, "rA-half-1", 1, 1)
     {}
-
-private:
-    void place(State& x) const override
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
-            x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
-        }
-    }
 };
 
 const bool registered = register_scheme<HalfImplicit1>(

@@ -40,12 +40,6 @@ public:
     }
 
 private:
-    /// J_r(θ)⁻¹ J̄ θ of body i: h times its angular momentum
-    Vec3 momentum(int i, const Vec3& theta) const
-    {
-        return right_jacobian_inverse(theta) * (model.mass().J_bar[i] * theta);
-    }
-
     /// J_r(-θ')⁻¹ J̄ ω̄_{-½} = J̄ ω̄_0 - ½h (J̄ ω̄̇_0 + ω̄_0 × J̄ ω̄_0), by fixed-point iteration
     Vec3 half_kick_back(int i, double h) const override
     {
@@ -87,10 +81,7 @@ private:
     {
         set_linear_residual(rows_of_node());
         if (k > 1) K.algebraic_part(e).setZero();  // Φ_αᵀ λ = 0 is linear and already satisfied
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Vec3 theta = z.segment<3>(6 * i + 3);
-            e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;
-        }
+        balance_momentum();
         set_constraint_residual(1, x, 1);
         if (K.rows().velocity_rows > 0) set_nonholonomic_residual();
         K.solve(e);

@@ -22,6 +22,7 @@
 
 #include "lie/schemes.hpp"
 #include "lie/steps/node_step.hpp"
+#include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -37,18 +38,13 @@ public:
         Attempt attempt(x, x_n);
         assemble_once(x_n);
         set_known_part(h);
-        predict(h);
+        predict(h, 0.5 * h * h, 0.5 * h * h);  // constant accelerations, and the multipliers of t_n
         x.t = x_n.t + h;
         for (int k = 1; k <= settings.max_iterations; ++k) {
             place(x);
-            K.multiply(z, e);
-            e = b - e;
-            for (int i = 0; i < model.bodies(); ++i) {
-                const Vec3 theta = z.segment<3>(6 * i + 3), J_theta = model.mass().J_bar[i] * theta;
-                e.segment<3>(6 * i + 3) -= right_jacobian_inverse(theta) * J_theta - J_theta;
-            }
-            model.phi(x, K.constraint_part(e));
-            K.constraint_part(e) *= -1;
+            set_linear_residual(K.rows());
+            balance_momentum();
+            set_constraint_residual(1, x, 1);
             K.solve(e);
             z += e;
             if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
@@ -77,25 +73,10 @@ private:
         K.algebraic_part(b).setZero();
     }
 
-    /// Initial guess: constant accelerations, and the multipliers of t_n
-    void predict(double h)
-    {
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Motion& body = x_n.body[i];
-            z.segment<3>(6 * i) = h * body.rdot + 0.5 * h * h * body.rddot;
-            z.segment<3>(6 * i + 3) = h * body.omega_bar + 0.5 * h * h * body.omegadot_bar;
-        }
-        K.constraint_part(z) = 0.5 * h * h * x_n.lambda;
-        K.algebraic_part(z).setZero();
-    }
-
     /// The pose x at t_{n+1} from z
     void place(State& x)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
-            x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
-            x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
-        }
+        place_increments(x);
         place_algebraic(x, 1);
     }
 
@@ -108,19 +89,11 @@ private:
         }
         model.loads(x, loads);
         for (int i = 0; i < model.bodies(); ++i) {
-            const Vec3 theta = z.segment<3>(6 * i + 3);
             e.segment<3>(6 * i) = model.mass().m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
-            e.segment<3>(6 * i + 3) = right_jacobian_inverse(-theta) * (model.mass().J_bar[i] * theta) / h +
-                                      0.5 * h * loads.n_bar[i];
+            e.segment<3>(6 * i + 3) = -momentum(i, -z.segment<3>(6 * i + 3)) / h + 0.5 * h * loads.n_bar[i];
         }
         assemble_once(x);
-        K.algebraic_part(e).setZero();
-        model.nu(x, K.constraint_part(e));
-        K.solve(e);
-        for (int i = 0; i < model.bodies(); ++i) {
-            x.body[i].rdot = e.segment<3>(6 * i);
-            x.body[i].omega_bar = e.segment<3>(6 * i + 3);
-        }
+        solve_velocities(model, K, x, e);
     }
 };
 

@@ -15,6 +15,7 @@
 
 #include "lie/schemes.hpp"
 #include "lie/steps/node_step.hpp"
+#include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -47,7 +48,9 @@ public:
         place(x, h, sum);
         model.update_alpha(x);
         const int k = project_positions(x);
-        project_velocities(x);
+        assemble_once(x);
+        set_momenta(model, x, e);
+        solve_velocities(model, K, x, e);
         set_accelerations(x);
         return done(attempt, k);
     }
@@ -85,34 +88,12 @@ private:
     int project_positions(State& x)
     {
         for (int k = 1; k <= settings.max_iterations; ++k) {
-            e.setZero();
-            model.phi(x, K.constraint_part(e));
-            K.constraint_part(e) *= -1;
+            set_position_residual(model, K, x, e);
             K.solve(e);
-            for (int i = 0; i < model.bodies(); ++i) {
-                x.body[i].r += e.segment<3>(6 * i);
-                x.body[i].A = orthonormalised(x.body[i].A * exp(e.segment<3>(6 * i + 3)));
-            }
-            move_algebraic(x, K.algebraic_part(e));
+            move(K, x, e);
             if (converged(k, length_of_motion(e), K.constraint_part(e), 0)) return k;
         }
         no_convergence("rA-rkmk-4", correction, x);
-    }
-
-    /// Projection onto Φ_r ṙ + Π̄ ω̄ = ν: K (v, ·) = (M v, ν)
-    void project_velocities(State& x)
-    {
-        assemble_once(x);
-        for (int i = 0; i < model.bodies(); ++i)
-            e.segment<6>(6 * i) << model.mass().m[i] * x.body[i].rdot,
-                model.mass().J_bar[i] * x.body[i].omega_bar;
-        K.algebraic_part(e).setZero();
-        model.nu(x, K.constraint_part(e));
-        K.solve(e);
-        for (int i = 0; i < model.bodies(); ++i) {
-            x.body[i].rdot = e.segment<3>(6 * i);
-            x.body[i].omega_bar = e.segment<3>(6 * i + 3);
-        }
     }
 
     Eigen::VectorXd sum, slope, theta;  ///< θ of each body at the stage

@@ -209,11 +209,10 @@ void Condensed::analyse(const Rows& pattern)
     }
     column.push_back(static_cast<int>(block.size()));
     value.resize(size);
-    for (const Rows::Regularised& c : pattern.regularised)
-        for (const int k : {c.first, c.first + 1})
-            for (const Group& g : group)
-                if (k >= g.first && k < g.first + g.rows)
-                    regularised.push_back({k, g.diagonal + (k - g.first) * (g.rows + 1)});
+    for (const int k : pattern.regularised)
+        for (const Group& g : group)
+            if (k >= g.first && k < g.first + g.rows)
+                regularised_at.push_back(g.diagonal + (k - g.first) * (g.rows + 1));
     fill = static_cast<long>(block.size()) - couplings / 2;
 
     for (const auto& [body, all] : at_body)
@@ -264,8 +263,8 @@ bool Condensed::factor(const Rows& C)
     for (const Term& t : term) add_product(&value[t.at], &W[t.w_of], &W[t.w_by], t.of, t.by, 6, 1);
     for (const Group& g : group)
         for (int k = 0; k < g.rows; ++k) diagonal[g.first + k] = value[g.diagonal + k * g.rows + k];
-    for (size_t n = 0; n < regularised.size(); ++n)
-        diagonal[regularised[n].row] = value[regularised[n].at] += C.regularised[n / 2].compliance;
+    for (size_t n = 0; n < regularised_at.size(); ++n)
+        diagonal[C.regularised[n]] = value[regularised_at[n]] += C.compliance[n];
 
     smallest = 1;
     for (size_t p = 0; p < order.size(); ++p) {

@@ -75,11 +75,7 @@ private:
     std::vector<int> column, update_start;  ///< first index into `block` and `update`, by position in `order`
     std::vector<Block> block;
     std::vector<Update> update;
-    /// A regularised row, and the index of its diagonal entry in `value`
-    struct RegularisedRow {
-        int row, at;
-    };
-    std::vector<RegularisedRow> regularised;
+    std::vector<int> regularised_at;  ///< index of the diagonal entry of each regularised row in `value`
     std::vector<double> W, value, diagonal;  ///< diagonal: of S, the reference of the pivots
     Eigen::VectorXd y;
     double smallest = 1, flops = 0;

@@ -70,11 +70,11 @@ Elimination::Elimination(const Rows& pattern, const std::vector<char>& inactive)
     for (int k = pattern.position_rows(); k < pattern.rows(); ++k) remaining.velocity_rows += !inactive[k];
     for (size_t n = 0; n < pattern.regularised.size(); ++n)
         for (const Group& g : group)
-            if (const int k = pattern.regularised[n].first - g.first; k >= 0 && k < g.rows) {
+            if (const int k = pattern.regularised[n] - g.first; k >= 0 && k < g.rows) {
                 regularised.push_back(static_cast<int>(n));
-                remaining.regularised.push_back(pattern.regularised[n]);
-                remaining.regularised.back().first = g.reduced_first + k;
+                remaining.regularised.push_back(g.reduced_first + k);
             }
+    remaining.compliance.resize(regularised.size());
 }
 
 void Elimination::reflect(const Group& g, Few& v, bool transpose)
@@ -91,8 +91,7 @@ void Elimination::reflect(const Group& g, Few& v, bool transpose)
 
 void Elimination::factor(const Rows& full)
 {
-    for (size_t n = 0; n < regularised.size(); ++n)
-        remaining.regularised[n].compliance = full.regularised[regularised[n]].compliance;
+    for (size_t n = 0; n < regularised.size(); ++n) remaining.compliance[n] = full.compliance[regularised[n]];
     for (Group& g : group) {
         if (g.count == 0) {
             std::copy(full.entry.begin() + full.start[g.first],

@@ -63,7 +63,7 @@ private:
     Rows remaining;
     std::vector<Group> group;
     std::vector<InactiveRows> inactive_rows;  ///< the corrections of their multipliers and variables are zero
-    std::vector<int> regularised;             ///< indices in Rows::regularised of the pairs that remain
+    std::vector<int> regularised;             ///< indices in Rows::regularised of the rows that remain
     int bodies = 0;
 };
 

@@ -200,34 +200,39 @@ void Saddle::fill()
     const Rows& R = solved();
     for (size_t n = 0; n < unilateral_slot.size(); ++n)  // an inactive row does not change its multiplier
         klu.value[unilateral_slot[n]] = C.is_inactive(C.unilateral[n]) ? -1 : 0;
-    if (R.unilateral
-            .empty())  // then the loop above has not reset the diagonal entries of the regularised rows
+    if (R.unilateral.empty())  // the loop above has not reset the diagonal entries of the regularised rows
         for (const int at : regularised_slot) klu.value[at] = 0;
     for (size_t n = 0; n < regularised_slot.size(); ++n) {
-        const Rows::Regularised& c = R.regularised[n / 2];
-        const double of_row = scale[6 * bodies + c.first + static_cast<int>(n % 2)];
-        klu.value[regularised_slot[n]] -= of_row * of_row * c.compliance;
+        const double of_row = scale[6 * bodies + R.regularised[n]];
+        klu.value[regularised_slot[n]] -= of_row * of_row * R.compliance[n];
     }
 }
 
-void Saddle::assemble(const State& x, double step)
+void Saddle::assemble(const State& x, std::span<const double> compliance)
 {
-    h = step;
-    system.variation(x, C);
-    C.regularise(h);
+    set_rows(x, compliance);
     factor_rows(x);
+    if (!compliance.empty()) assembled = x;
 }
 
-void Saddle::refactor_regularised(const State& x)
+void Saddle::refactor(std::span<const double> compliance)
 {
-    C.regularise(h);
-    factor_rows(x);
+    C.regularise(compliance);
+    if (elimination) elimination->factor(C);
+    factor_rows(assembled);
+}
+
+/// Evaluates the rows in the state x and eliminates the algebraic variables.
+void Saddle::set_rows(const State& x, std::span<const double> compliance)
+{
+    system.variation(x, C);
+    C.regularise(compliance);
+    leave_out_inactive();
+    if (elimination) elimination->factor(C);
 }
 
 void Saddle::factor_rows(const State& x)
 {
-    leave_out_inactive();
-    if (elimination) elimination->factor(C);
     by_condensed = condensed != nullptr && condensed->factor(solved());
     if (by_condensed) {
         ++condensed_factorizations;
@@ -238,12 +243,9 @@ void Saddle::factor_rows(const State& x)
     if (!klu.refactor()) factor(x);
 }
 
-void Saddle::choose_pivots(const State& x)
+void Saddle::choose_pivots(const State& x, std::span<const double> compliance)
 {
-    system.variation(x, C);
-    C.regularise(h);
-    leave_out_inactive();
-    if (elimination) elimination->factor(C);
+    set_rows(x, compliance);
     by_condensed = false;
     factor(x);
 }
@@ -317,8 +319,8 @@ void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& 
     const auto lambda = z.segment(6 * bodies, m);
     C.add_transpose(1, lambda, out);
     for (int k = 0; k < m; ++k) out[6 * bodies + k] = C.dot(k, z);
-    for (const Rows::Regularised& c : C.regularised)
-        for (int k = 0; k < 2; ++k) out[6 * bodies + c.first + k] -= c.compliance * lambda[c.first + k];
+    for (size_t n = 0; n < C.compliance.size(); ++n)
+        out[6 * bodies + C.regularised[n]] -= C.compliance[n] * lambda[C.regularised[n]];
     if (C.algebraic.empty()) return;
     out.tail(unknowns).setZero();
     C.add_algebraic_transpose(1, lambda, out.tail(unknowns));

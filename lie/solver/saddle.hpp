@@ -10,7 +10,7 @@
 /// half-implicit schemes (3.32, 3.51), evaluated once per step at t_n.
 ///
 /// K depends on the step h only through the compliance of regularised rows, which is on the diagonal with a
-/// negative sign (Rows::regularise).
+/// negative sign (Rows::regularised).
 ///
 /// A system with algebraic variables α has in addition the column Φ_α of the constraint rows and its
 /// transpose, with a zero diagonal block (Eq. 5.48). The α are the last unknowns.
@@ -23,6 +23,7 @@
 #include "lie/state.hpp"
 
 #include <memory>
+#include <span>
 
 namespace hilda::lie {
 
@@ -47,23 +48,21 @@ public:
                     LinearSolver solver = LinearSolver::klu);
     ~Saddle();
 
-    /// Evaluates the rows in the state x and factors K. The regularised rows are those of a step h.
+    /// Evaluates the rows in the state x and factors K. `compliance` has a number for each regularised row;
+    /// without it these rows are inactive.
     ///
     /// The condensed solver factors the Schur complement. If the rows are nearly dependent, KLU replaces it
     /// for this matrix. KLU reuses the pivot order of the last full factorisation (klu_refactor) and chooses
     /// new pivots when the estimate of the reciprocal condition is too small. Throws SingularMatrix if new
     /// pivots do not help, and NonFinite if the rows are not finite.
-    void assemble(const State& x, double h = 0);
-    /// Sets the compliance scale p of regularised pair n, for the next assemble() or refactor_regularised().
-    void set_compliance_scale(int n, double p) { C.regularised[n].p = p; }
-    /// Factors K again with the present compliance scales. The rows and h remain those of the last
-    /// assemble(); x is the state of that call.
-    void refactor_regularised(const State& x);
+    void assemble(const State& x, std::span<const double> compliance = {});
+    /// Factors K with other compliances. The rows remain those of the last assemble(), which had compliances.
+    void refactor(std::span<const double> compliance);
 
     /// The state at which the present KLU pivots were chosen. It has no bodies if there are no pivots.
     const State& pivots() const { return pivot_state; }
     /// Chooses new KLU pivots in the state x.
-    void choose_pivots(const State& x);
+    void choose_pivots(const State& x, std::span<const double> compliance = {});
 
     /// Solves K z = b in place. b has size() components.
     void solve(Eigen::VectorXd& b);
@@ -89,10 +88,7 @@ public:
 
     /// KLU's estimate for the scaled matrix, or the smallest relative pivot of the condensed matrix
     double reciprocal_condition() const;
-    long factorizations() const
-    {
-        return klu.factorizations();
-    }  ///< number of factorisations with new pivots
+    long factorizations() const { return klu.factorizations(); }  ///< with new pivots
     /// Number of factorisations in a fixed order: KLU with the pivots of an earlier one, or condensed
     long refactorizations() const { return klu.refactorizations() + condensed_factorizations; }
     bool is_condensed() const { return condensed != nullptr; }
@@ -100,6 +96,7 @@ public:
 private:
     void analyse();
     void choose_solver();
+    void set_rows(const State& x, std::span<const double> compliance);
     void leave_out_inactive();
     void scale_rows();
     void fill();
@@ -123,7 +120,6 @@ private:
 
     std::unique_ptr<Condensed> condensed;
     bool by_condensed = false;  ///< whether the present factors are those of `condensed`
-    double h = 0;               ///< step of the last assemble() [s]
     long condensed_factorizations = 0;
 
     // KLU factors S K S. The scaling S gives diagonal blocks and rows of length one.
@@ -140,6 +136,7 @@ private:
     std::vector<int> regularised_slot;  ///< diagonal entries of the regularised rows
     Eigen::VectorXd work, residual, right_side;
 
+    State assembled;  ///< state of the last assemble() with compliances, for refactor()
     State pivot_state;
     bool scaled = false;
 };

@@ -10,8 +10,7 @@ namespace hilda::lie {
 
 HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
                                    double q)
-    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()),
-      within_bounds(model.pattern())
+    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()), friction(model)
 {}
 
 int HalfImplicitStep::step(State& x, double h)
@@ -19,22 +18,28 @@ int HalfImplicitStep::step(State& x, double h)
     x_n = x;
     Attempt attempt(x, x_n);
     begin(h);
-    within_bounds.all_stick(K);
-    K.assemble(x_n, h);  // the Newton matrix of t_n (Eqs. 3.32, 3.51)
+    friction.start(x_n, h);
+    K.assemble(x_n, friction.compliance());  // the Newton matrix of t_n (Eqs. 3.32, 3.51)
     set_known_part(h);
     predict(h);
     x.t = x_n.t + h;
     refreshed = false;
     int corrections = 0;
     for (int solved = 0; solved <= most_solved; ++solved) {
-        corrections += solve(x, h);
-        if (within_bounds(K, rows_of_node(), z, x)) {
+        corrections += solve(x);
+        if (friction.within_bounds(K, z)) {
             accept(x, h);
             return done(attempt, corrections);
         }
-        if (refreshed) scale_compliance_as_K(C_n, h);
+        if (refreshed) C_n.regularise(friction.compliance());
     }
     no_convergence(name, correction, x);
+}
+
+void HalfImplicitStep::choose_pivots(const State& x, double h)
+{
+    friction.start(x, h);
+    K.choose_pivots(x, friction.compliance());
 }
 
 HalfImplicitStep::Vec6 HalfImplicitStep::velocity(int i) const
@@ -70,12 +75,12 @@ void HalfImplicitStep::correct(int k, const State& x)
 }
 
 /// Newton's method from the present z. Returns the number of corrections.
-int HalfImplicitStep::solve(State& x, double h)
+int HalfImplicitStep::solve(State& x)
 {
     for (int k = 1; k <= settings.max_iterations; ++k) {
         place(x);
         place_algebraic(x, 1 / q);
-        if (k > patience) refresh(x, h);
+        if (k > patience) refresh(x);
         correct(refreshed ? 1 : k, x);
         if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
     }
@@ -94,8 +99,7 @@ void HalfImplicitStep::set_known_part(double h)
     K.constraint_part(b).setZero();
     K.algebraic_part(b).setZero();
     if (K.rows().velocity_rows > 0) set_nonholonomic_part(h);
-    for (const Rows::Regularised& c : K.rows().regularised)
-        K.constraint_part(b).segment<2>(c.first) = -h * c.K * c.mobility(h) * c.S;
+    friction.set_right_side(K.constraint_part(b));
 }
 
 /// The nonholonomic rows require C_n (v + v_{n+1}) = 2 ν. This is of second order if v and v_{n+1} are the
@@ -132,18 +136,11 @@ double HalfImplicitStep::length()
 }
 
 /// Assembles K at the iterate x. Used when the iteration with K of t_n converges too slowly.
-void HalfImplicitStep::refresh(const State& x, double h)
+void HalfImplicitStep::refresh(const State& x)
 {
     if (!refreshed) C_n = K.rows();
     refreshed = true;
-    K.assemble(x, h);
-}
-
-/// Applies the compliance scales of K to the rows C.
-void HalfImplicitStep::scale_compliance_as_K(Rows& C, double h) const
-{
-    for (size_t n = 0; n < C.regularised.size(); ++n) C.regularised[n].p = K.rows().regularised[n].p;
-    C.regularise(h);
+    K.assemble(x, friction.compliance());
 }
 
 void HalfImplicitStep::accept(State& x, double h)

@@ -23,6 +23,7 @@ public:
 
     bool is_staggered() const override { return true; }
     void fill_node(State& node, const State& after) const override { take_loads(node, after); }
+    void choose_pivots(const State& x, double h) override;
 
 protected:
     using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -36,13 +37,14 @@ protected:
     virtual Vec6 velocity(int i) const;
     /// The node t_n for the evaluation of the loads
     virtual const State& node() const { return x_n; }
-    /// Sets r and A of x from x_n and z.
-    virtual void place(State& x) const = 0;
+    /// Sets r and A of x from x_n and z. The default takes z for the increments of the positions.
+    virtual void place(State& x) const { place_increments(x); }
     /// Sets the velocities and the history of x from z.
     virtual void leave(State& x, double h);
     /// The known part of the moment equation of body i: h J̄ (ω̄ - (w - 1) h ω̄̇_{n-1}) + w h² τ̄_n
     virtual Vec3 known_moment(int i, double h) const;
-    /// Correction k of z (SaddleStep::correct). k = 1 solves for the residual of all equations.
+    /// Correction k of z. The rows of the bodies, of the algebraic variables and the nonholonomic rows are linear
+    /// in z: from the second correction on their residual is zero. k = 1 solves for the residual of all equations.
     virtual void correct(int k, const State& x);
     /// The rows of t_n, in whose directions the multipliers act. They differ from the rows of K after a
     /// refresh.
@@ -52,20 +54,19 @@ protected:
     const double w, q;
 
 private:
-    int solve(State& x, double h);
+    int solve(State& x);
     void set_known_part(double h);
     void set_nonholonomic_part(double h);
     void predict(double h);
     double length();
-    void refresh(const State& x, double h);
-    void scale_compliance_as_K(Rows& C, double h) const;
+    void refresh(const State& x);
     void accept(State& x, double h);
 
     static constexpr int patience = 10;     ///< corrections with K of t_n before it is refreshed
     static constexpr int most_solved = 50;  ///< solutions of the step in the search for the compliance scales
     bool refreshed = false;  ///< whether K is that of an iterate; the rows of t_n are then in C_n
     Rows C_n;
-    BoundedRows within_bounds;
+    BoundedRows friction;
 };
 
 }  // namespace hilda::lie

@@ -40,14 +40,6 @@ void LeapfrogStep::begin(double h)
     extrapolate(at_node = x_n);
 }
 
-void LeapfrogStep::place(State& x) const
-{
-    for (int i = 0; i < model.bodies(); ++i) {
-        x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
-        x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
-    }
-}
-
 void LeapfrogStep::leave(State& x, double h)
 {
     const int half = 6 * model.bodies();

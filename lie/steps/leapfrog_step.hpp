@@ -26,7 +26,6 @@ protected:
     void begin(double h) override;
     Vec6 velocity(int i) const override { return later(half_steps, i); }
     const State& node() const override { return at_node; }
-    void place(State& x) const override;
     void leave(State& x, double h) override;
 
 private:

@@ -2,6 +2,7 @@
 #include "lie/steps/newton_step.hpp"
 
 #include "lie/check.hpp"
+#include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
 
 #include <Eigen/LU>
@@ -29,7 +30,52 @@ NewtonStep::Attempt::~Attempt()
 
 Vec3 NewtonStep::tau_bar(int i, const Motion& body) const
 {
-    return loads.n_bar[i] - body.omega_bar.cross(model.mass().J_bar[i] * body.omega_bar);
+    return loads.tau_bar(i, model.mass().J_bar[i], body.omega_bar);
+}
+
+void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
+{
+    for (int i = 0; i < model.bodies(); ++i) {
+        const Motion& body = x_n.body[i];
+        z.segment<6>(6 * i) << by_v * body.rdot + by_vdot * body.rddot,
+            by_v * body.omega_bar + by_vdot * body.omegadot_bar;
+    }
+    constraint_part(z) = by_lambda * x_n.lambda;
+    algebraic_part(z).setZero();
+}
+
+void NewtonStep::place_increments(State& x) const
+{
+    for (int i = 0; i < model.bodies(); ++i) {
+        x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
+        x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
+    }
+}
+
+void NewtonStep::place_algebraic(State& x, double factor) const
+{
+    x.alpha = x_n.alpha;
+    const Rows& C = model.pattern();
+    move_algebraic(C, x, z.tail(C.algebraic_variables()), factor);
+}
+
+void NewtonStep::set_motion_residual(const State& x, Rows& C)
+{
+    model.loads(x, loads);
+    model.variation(x, C);
+    for (int i = 0; i < model.bodies(); ++i) {
+        const Motion& body = x.body[i];
+        e.segment<3>(6 * i) = model.mass().m[i] * body.rddot - loads.F[i];
+        e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
+    }
+    C.add_transpose(1, x.lambda, e);
+    algebraic_part(e).setZero();
+    C.add_algebraic_transpose(1, x.lambda, algebraic_part(e));
+}
+
+double NewtonStep::length_of_motion(Eigen::VectorXd& e) const
+{
+    return std::sqrt(e.head(6 * model.bodies()).squaredNorm() + algebraic_part(e).squaredNorm());
 }
 
 bool NewtonStep::converged(int k, double motion, const Eigen::Ref<const Eigen::VectorXd>& multipliers,

@@ -4,9 +4,8 @@
 #pragma once
 
 #include "lie/integrator.hpp"
-#include "lie/loads.hpp"
 #include "lie/settings.hpp"
-#include "lie/state.hpp"
+#include "lie/system.hpp"
 
 #include <string>
 #include <vector>
@@ -39,6 +38,28 @@ protected:
 
     /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                               Eq. 2.13c
     Vec3 tau_bar(int i, const Motion& body) const;
+
+    // For schemes with the unknowns z = (motion of the bodies, multipliers, algebraic variables), scaled:
+
+    /// Initial guess: by_v v + by_vdot v̇ for each body, with v = (ṙ, ω̄) of t_n; by_lambda λ_n; 0
+    void predict(double by_v, double by_vdot, double by_lambda);
+    /// Poses of x from the increments in z: r = r_n + z_r, A = A_n exp(z_θ)
+    void place_increments(State& x) const;
+    /// x.alpha = α_n + factor · (algebraic part of z)
+    void place_algebraic(State& x, double factor) const;
+    /// The residual of the equations of motion in the state x: M r̈ + Φ_rᵀ λ - F, J̄ ω̄̇ + Π̄ᵀ λ - τ̄ and Φ_αᵀ λ in
+    /// the components of e for the bodies and the algebraic variables. Sets `loads`, and the rows C, in x.
+    void set_motion_residual(const State& x, Rows& C);
+    Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const
+    {
+        return z.segment(6 * model.bodies(), model.rows());
+    }
+    Eigen::VectorBlock<Eigen::VectorXd> algebraic_part(Eigen::VectorXd& z) const
+    {
+        return z.tail(z.size() - 6 * model.bodies() - model.rows());
+    }
+    /// Euclidean norm of the components of the bodies and of the algebraic variables
+    double length_of_motion(Eigen::VectorXd& e) const;
 
     /// Whether the iteration ends with correction k = 1, 2, … .
     ///

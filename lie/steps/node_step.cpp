@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/steps/node_step.hpp"
 
+#include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
 
-void NodeStep::choose_pivots(const State& x)
+void NodeStep::choose_pivots(const State& x, double h)
 {
-    K.choose_pivots(x);
+    SaddleStep::choose_pivots(x, h);
     at = x;
 }
 
@@ -22,16 +23,7 @@ void NodeStep::assemble_once(const State& x)
 void NodeStep::set_accelerations(State& x)
 {
     assemble_once(x);
-    model.loads(x, loads);
-    for (int i = 0; i < model.bodies(); ++i) e.segment<6>(6 * i) << loads.F[i], tau_bar(i, x.body[i]);
-    K.algebraic_part(e).setZero();
-    model.gamma(x, K.constraint_part(e));
-    K.solve(e);
-    for (int i = 0; i < model.bodies(); ++i) {
-        x.body[i].rddot = e.segment<3>(6 * i);
-        x.body[i].omegadot_bar = e.segment<3>(6 * i + 3);
-    }
-    x.lambda = K.constraint_part(e);
+    solve_accelerations(model, K, x, loads, e);
 }
 
 bool NodeStep::assembled_at(const State& x) const

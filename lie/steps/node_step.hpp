@@ -14,7 +14,7 @@ class NodeStep : public SaddleStep {
 public:
     using SaddleStep::SaddleStep;
 
-    void choose_pivots(const State& x) override;
+    void choose_pivots(const State& x, double h) override;
 
 protected:
     /// Assembles K in the state x, unless K is already that of x.

@@ -3,8 +3,6 @@
 
 #include "lie/system.hpp"
 
-#include <cmath>
-
 namespace hilda::lie {
 
 SaddleStep::SaddleStep(const System& model, const Settings& settings)
@@ -16,17 +14,7 @@ SaddleStep::SaddleStep(const System& model, const Settings& settings)
 }
 
 Statistics SaddleStep::statistics() const { return statistics_with(K); }
-
-void SaddleStep::correct(int k, const State& x, double factor)
-{
-    if (k == 1) set_linear_residual();
-    set_constraint_residual(k, x, factor);
-    if (k == 1)
-        K.solve(e);
-    else
-        K.solve_constraints(e);
-    z += e;
-}
+void SaddleStep::choose_pivots(const State& x, double /*h*/) { K.choose_pivots(x); }
 
 void SaddleStep::set_linear_residual(const Rows& C)
 {
@@ -42,37 +30,23 @@ void SaddleStep::set_constraint_residual(int k, const State& x, double factor)
     if (k == 1) velocity_part(e) = nonholonomic_residual;
 }
 
-Eigen::VectorBlock<const Eigen::VectorXd> SaddleStep::motion_part(const Eigen::VectorXd& z) const
+Vec3 SaddleStep::momentum(int i, const Vec3& theta) const
 {
-    return z.head(6 * model.bodies());
+    return right_jacobian_inverse(theta) * (model.mass().J_bar[i] * theta);
 }
 
-double SaddleStep::length_of_motion(Eigen::VectorXd& e) const
+void SaddleStep::balance_momentum()
 {
-    return std::sqrt(motion_part(e).squaredNorm() + K.algebraic_part(e).squaredNorm());
+    for (int i = 0; i < model.bodies(); ++i) {
+        const Vec3 theta = z.segment<3>(6 * i + 3);
+        e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;
+    }
 }
 
 Eigen::VectorBlock<Eigen::VectorXd> SaddleStep::velocity_part(Eigen::VectorXd& z) const
 {
     const Eigen::Index rows = nonholonomic_residual.size();
     return z.segment(6 * model.bodies() + model.rows() - rows, rows);
-}
-
-void SaddleStep::move_algebraic(State& x, const Eigen::Ref<const Eigen::VectorXd>& change,
-                                double factor) const
-{
-    Eigen::Index at = 0;
-    for (const Rows::AlgebraicGroup& group : K.rows().algebraic) {
-        x.alpha.segment(group.first_alpha, group.count) += factor * change.segment(at, group.count);
-        at += group.count;
-    }
-}
-
-void SaddleStep::place_algebraic(State& x, double factor)
-{
-    x.alpha = x_n.alpha;
-    if (K.rows().algebraic.empty()) return;
-    move_algebraic(x, K.algebraic_part(z), factor);
 }
 
 }  // namespace hilda::lie

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/solvers/ida_solver.hpp"
 
-#include "dae/start.hpp"
 #include "lie/check.hpp"
 #include "lie/solver/saddle.hpp"
-#include "reference/solvers/consistent.hpp"
+#include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -137,7 +137,7 @@ public:
         }
         last.discrete_state = internal.discrete_state;
         last.discrete_state = updated_internal_state(last).discrete_state;
-        dae::solve_accelerations(system, K, last);
+        lie::solve_accelerations(system, K, last);
         has_last = true;
         x = last;
         return static_cast<int>(statistics().iterations - before);
@@ -186,7 +186,8 @@ private:
     {
         updated = x;
         if (x.discrete_state.empty()) return updated;
-        project(system, K, updated);
+        lie::project_positions(system, K, updated);
+        lie::project_velocities(system, K, updated);
         if (updated.lambda.size() != system.rows()) updated.lambda.setZero(system.rows());
         const lie::State before = updated;
         system.accepted(before, updated);
@@ -196,8 +197,9 @@ private:
     void start(const lie::State& x, double t_end)
     {
         lie::State consistent = x;
-        project(system, K, consistent);
-        dae::solve_accelerations(system, K, consistent);
+        lie::project_positions(system, K, consistent);
+        lie::project_velocities(system, K, consistent);
+        lie::solve_accelerations(system, K, consistent);
         equations.write(consistent, map(y.get()), map(ydot.get()));
         internal = consistent;
         t = consistent.t;

@@ -2,9 +2,10 @@
 #include "reference/solvers/index1.hpp"
 
 #include "dae/model.hpp"
-#include "dae/start.hpp"
 #include "lie/euler_parameters.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 
 namespace hilda::reference {
 
@@ -57,7 +58,7 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
         size * model.bodies(),
         [&](double t, const ConstVectorRef& y, VectorRef ydot) {
             read(t, y, stage);
-            dae::solve_accelerations(model, K, stage);
+            lie::solve_accelerations(model, K, stage);
             for (size_t b = 0; b < stage.body.size(); ++b) {
                 const lie::Motion& body = stage.body[b];
                 const auto at = static_cast<Eigen::Index>(size * b);
@@ -86,9 +87,9 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
                         instant);
         write(x, y);
         ode.advance(t, y, instant, accepted);
-        dae::project_positions(model, K, x);
-        dae::project_velocities(model, K, x);
-        dae::solve_accelerations(model, K, x);
+        lie::project_positions(model, K, x);
+        lie::project_velocities(model, K, x);
+        lie::solve_accelerations(model, K, x);
         run.row.push_back(x);
     }
     return run;

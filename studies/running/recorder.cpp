@@ -29,7 +29,7 @@ void PivotNode::restore(const lie::State& from, double h)
     if (node.body.empty()) return;
     try {
         if (integrator.pivots() != nullptr) {
-            integrator.choose_pivots(node);
+            integrator.choose_pivots(node, h);
         } else {
             lie::State discarded = node;
             integrator.step(discarded, h);

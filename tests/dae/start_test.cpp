@@ -8,6 +8,7 @@
 #include "dae/constraints/dp1.hpp"
 #include "dae/joints.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/steps/projection.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -123,7 +124,7 @@ TEST_CASE("positions are projected to rounding error by the shortest displacemen
         Random same(99);
         const State off = disturbed(x, size, same);
         State on = off;
-        CHECK(project_positions(model, K, on) <= 5);
+        CHECK(lie::project_positions(model, K, on) <= 5);
         CHECK(model.largest_residual(on).value < 1e-13);
         for (const Motion& m : on.body) CHECK(lie::orthogonality_error(m.A) < 1e-15);
         // shortest to first order: the tangent part is proportional to the disturbance
@@ -135,7 +136,7 @@ TEST_CASE("positions are projected to rounding error by the shortest displacemen
     }
 
     State on = x;
-    project_positions(model, K, on);
+    lie::project_positions(model, K, on);
     CHECK(displacement(x, on).norm() < 1e-14);  // consistent positions do not change
 }
 
@@ -148,7 +149,7 @@ TEST_CASE("distant starts are projected, or rejected with the residual", "[dae][
     model.prepare(x);
     lie::Saddle K(model);
     State on = disturbed(x, 0.7, random);
-    project_positions(model, K, on);
+    lie::project_positions(model, K, on);
     CHECK(model.largest_residual(on).value < 1e-13);
 
     // No point has the distances 1 m and 5 m from two points that are 2 m apart.
@@ -174,7 +175,7 @@ TEST_CASE("velocities are projected as in an ideal impact", "[dae][start]")
     for (Motion& m : x.body) m.rdot = random.vector(3), m.omega_bar = random.vector(3);
     lie::Saddle K(model);
     const Eigen::VectorXd before = velocities(x);
-    project_velocities(model, K, x);
+    lie::project_velocities(model, K, x);
     const Eigen::VectorXd after = velocities(x);
     CHECK((dense_rows(model, x) * after).cwiseAbs().maxCoeff() < 1e-13);
     CHECK(model.largest_velocity_residual(x).value < 1e-13);
@@ -185,7 +186,7 @@ TEST_CASE("velocities are projected as in an ideal impact", "[dae][start]")
     const auto energy = [&](const Eigen::VectorXd& v) { return 0.5 * v.dot(M * v); };
     CHECK(energy(before) - energy(after) == Approx(energy(before - after)).epsilon(1e-13));
 
-    project_velocities(model, K, x);
+    lie::project_velocities(model, K, x);
     CHECK((velocities(x) - after).norm() < 1e-14 * after.norm());
 }
 
@@ -198,7 +199,7 @@ TEST_CASE("driven velocities are projected onto the driver", "[dae][start]")
     lie::Saddle K(model);
     const Eigen::VectorXd exact = velocities(x);
     for (Motion& m : x.body) m.rdot.setZero(), m.omega_bar.setZero();
-    project_velocities(model, K, x);  // without degrees of freedom the driver determines all velocities
+    lie::project_velocities(model, K, x);  // without degrees of freedom the driver determines all velocities
     CHECK((velocities(x) - exact).norm() < 1e-13);
 }
 

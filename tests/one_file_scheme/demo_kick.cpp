@@ -8,6 +8,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -22,24 +23,14 @@ public:
     int step(State& x, double h) override
     {
         K.assemble(x);
-        model.loads(x, loads);
-        for (int i = 0; i < model.bodies(); ++i) {
-            const Vec3& omega_bar = x.body[i].omega_bar;
-            a.segment<3>(6 * i) = loads.F[i];
-            a.segment<3>(6 * i + 3) = loads.n_bar[i] - omega_bar.cross(model.mass().J_bar[i] * omega_bar);
-        }
-        model.gamma(x, K.constraint_part(a));
-        K.solve(a);
+        solve_accelerations(model, K, x, loads, a);
         for (int i = 0; i < model.bodies(); ++i) {
             Motion& body = x.body[i];
-            body.rddot = a.segment<3>(6 * i);
-            body.omegadot_bar = a.segment<3>(6 * i + 3);
             body.rdot += h * body.rddot;
             body.omega_bar += h * body.omegadot_bar;
             body.r += h * body.rdot;
             body.A = orthonormalised(body.A * exp(h * body.omega_bar));
         }
-        x.lambda = K.constraint_part(a);
         x.t += h;
         ++steps;
         return 1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lie/solver/saddle.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::tests {
@@ -73,17 +74,7 @@ public:
             body.rdot = -body.A * body.omega_bar.cross(s_bar);
         }
         lie::Saddle K(*this);
-        K.assemble(x);
-        Eigen::VectorXd a(K.size());
-        lie::Loads load(1);
-        loads(x, load);
-        a.head<3>() = load.F[0];
-        a.segment<3>(3) = -body.omega_bar.cross(inertia.J_bar[0] * body.omega_bar);
-        gamma(x, K.constraint_part(a));
-        K.solve_refined(a);
-        body.rddot = a.head<3>();
-        body.omegadot_bar = a.segment<3>(3);
-        x.lambda = K.constraint_part(a);
+        lie::solve_accelerations(*this, K, x);
         return x;
     }
 

@@ -7,7 +7,7 @@
 #include "contact/surfaces/sphere.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "dae/start.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 #include "reference/motions/ellipsoid_on_plane.hpp"
 #include "studies/running/contact_rows.hpp"
@@ -132,7 +132,7 @@ lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double
         x.body[0] = at.body;
         x.alpha << at.a_bar, at.p;
         d.model->set_internal_state_at_start(x);
-        dae::solve_accelerations(*d.model, K, x);  // sets the multipliers
+        lie::solve_accelerations(*d.model, K, x);  // sets the multipliers
         run.row.push_back(std::move(x));
     }
     return run;
@@ -153,7 +153,7 @@ lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vecto
             x = march.node();
             x.t = instant;
         }
-        dae::solve_accelerations(*d.model, K, x);
+        lie::solve_accelerations(*d.model, K, x);
         run.row.push_back(x);
     }
     return run;

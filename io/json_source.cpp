@@ -105,7 +105,10 @@ void JsonSource::set(const std::string& requested, const std::string& option)
     std::string change = requested;
     for (const Renamed& key : renamed)
         if (change = with_first_part(requested, key.old_name, key.new_name); change != requested) {
-            if (!key.in_text) notice("/" + key.new_name, key);
+            if (!key.in_text) {
+                notice("/" + key.new_name, key);
+                notices.back() += " (from " + origin + ")";
+            }
             break;
         }
     const std::size_t equals = change.find('=');

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/boundary_keys.hpp"
 
-#include "io/error.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace hilda::granular {
 
 namespace {
-
-Vec3 unit_vector(Keys& keys, const std::string& key)
-{
-    const Vec3 v = keys.vector(key);
-    if (!(v.norm() > 0)) keys.refuse(key, "must not be zero", keys.raw(key));
-    return (1 / v.norm()) * v;
-}
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -29,70 +21,72 @@ Vec3 value_at_start(const VectorFormula& f)
 
 /// Reads r and v. Vectors of numbers become initial values, vectors with a formula also become prescribed
 /// motions.
-NamedBoundary read_motion(Keys& keys, const std::string& name)
+NamedBoundary read_motion(ObjectReader& o, const std::string& name)
 {
     NamedBoundary all{.name = name, .boundary = {}};
     all.motion.name = name;
     const auto read = [&](const std::string& key, Vec3& number, std::optional<VectorFormula>& formula) {
-        if (!keys.has_formula(key)) {
-            number = keys.vector(key, {0, 0, 0});
+        if (!o.has_formula(key)) {
+            number = o.vec3(key, Vec3{0, 0, 0});
             return;
         }
-        formula = keys.formulas(key);
+        formula = o.formulas(key);
         number = value_at_start(*formula);
     };
     read("r", all.boundary.r, all.motion.r);
     if (all.motion.r && !finite((*all.motion.r)(0)))
-        keys.refuse("r", "must be finite at t = 0", keys.raw("r"));
-    if (all.motion.r && keys.has("v")) keys.refuse("v", "must not be given if r is a formula", keys.raw("v"));
+        o.fail("r", "r must be finite at t = 0, got " + described(*o.find("r")));
+    if (all.motion.r && o.has("v")) o.fail("v", "v must not be given if r is a formula");
     read("v", all.boundary.v, all.motion.v);
     return all;
 }
 
 /// Reads the keys of a boundary that may be a tool: omega, mass, inertia, free and F.
-void read_tool(Keys& keys, NamedBoundary& tool)
+void read_tool(ObjectReader& o, NamedBoundary& tool)
 {
     Boundary& b = tool.boundary;
-    if (keys.has_formula("omega")) {
-        tool.motion.omega = keys.formulas("omega");
+    if (o.has_formula("omega")) {
+        tool.motion.omega = o.formulas("omega");
         b.omega = value_at_start(*tool.motion.omega);
     } else {
-        b.omega = keys.vector("omega", {0, 0, 0});
+        b.omega = o.vec3("omega", Vec3{0, 0, 0});
     }
-    if (!keys.has("mass")) return;
-    b.mass = keys.positive("mass");
-    b.inertia = keys.not_negative("inertia");
+    if (!o.has("mass")) return;
+    b.mass = o.positive("mass");
+    b.inertia = o.not_negative("inertia", 0);
     if (b.inertia > 0 && tool.motion.omega)
-        keys.refuse("omega", "must be three numbers if inertia is positive", keys.raw("omega"));
-    b.free = keys.flags("free", {true, true, true});
+        o.fail("omega", "omega must be three numbers if inertia is positive");
+    b.free = o.flags("free", {true, true, true});
     if (tool.motion.v && !finite((*tool.motion.v)(0)))
-        keys.refuse("v", "must be finite at t = 0 if the boundary has a mass", keys.raw("v"));
-    if (keys.has_formula("F")) {
-        tool.motion.F = keys.formulas("F");
+        o.fail("v", "v must be finite at t = 0 if the boundary has a mass");
+    if (o.has_formula("F")) {
+        tool.motion.F = o.formulas("F");
         b.F = value_at_start(*tool.motion.F);
     } else {
-        b.F = keys.vector("F", {0, 0, 0});
+        b.F = o.vec3("F", Vec3{0, 0, 0});
     }
 }
 
 /// The sides of a box as planes, without those that `open` lists
-std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
+std::vector<NamedBoundary> read_box(ObjectReader& o, const NamedBoundary& box)
 {
-    const Vec3 low = keys.vector("low"), high = keys.vector("high");
+    const Vec3 low = o.vec3("low"), high = o.vec3("high");
     const double widths[] = {high.x - low.x, high.y - low.y, high.z - low.z};
     for (int k = 0; k < 3; ++k)
         if (!(widths[k] > 0))
-            keys.refuse("high", std::string("must be above low along ") + "xyz"[k], keys.raw("high"));
+            o.fail("high", std::string("high must be above low along ") + "xyz"[k] + ", got " +
+                               described(*o.find("high")));
     const std::pair<std::string, Vec3> sides[] = {{"-x", {1, 0, 0}},  {"+x", {-1, 0, 0}}, {"-y", {0, 1, 0}},
                                                   {"+y", {0, -1, 0}}, {"-z", {0, 0, 1}},  {"+z", {0, 0, -1}}};
     std::set<std::string> open;
-    for (const auto& [side, place] : keys.list("open")) {
-        const std::string name = side->is_string() ? side->get<std::string>() : "";
-        const bool known =
-            std::any_of(std::begin(sides), std::end(sides), [&](auto& s) { return s.first == name; });
-        if (!known || !open.insert(name).second)
-            throw io::InvalidInput(place + ": must be one of -x, +x, -y, +y, -z, +z, each once, got " +
-                                   side->dump());
+    const io::Json::List& listed = o.list("open", false);
+    for (std::size_t k = 0; k < listed.size(); ++k) {
+        const auto is = [&](const auto& side) {
+            return listed[k].string() != nullptr && side.first == *listed[k].string();
+        };
+        if (std::none_of(std::begin(sides), std::end(sides), is) || !open.insert(*listed[k].string()).second)
+            o.fail("open", k,
+                   "open must list some of -x, +x, -y, +y, -z, +z, each once, got " + described(listed[k]));
     }
     std::vector<NamedBoundary> all;
     for (const auto& [side, normal] : sides) {
@@ -109,39 +103,38 @@ std::vector<NamedBoundary> read_box(Keys& keys, const NamedBoundary& box)
         }
         all.push_back(std::move(plane));
     }
-    if (all.empty()) keys.refuse("open", "must not contain all six sides", keys.raw("open"));
+    if (all.empty()) o.fail("open", "open must not contain all six sides");
     return all;
 }
 
 }  // namespace
 
-std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name)
+std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name)
 {
-    const std::string type = keys.text("type");
-    NamedBoundary one = read_motion(keys, name);
-    if (type == "box") return read_box(keys, one);
-    read_tool(keys, one);
+    const std::string type = o.one_of("type", {"plane", "box", "cylinder", "cone", "sphere"});
+    NamedBoundary one = read_motion(o, name);
+    if (type == "box") return read_box(o, one);
+    read_tool(o, one);
     Boundary& b = one.boundary;
     if (type == "plane") {
-        b.axis = unit_vector(keys, "normal");
+        b.axis = o.direction("normal");
         return {one};
     }
-    b.inside = keys.flag("inside");
+    b.inside = o.flag("inside", false);
     if (type == "sphere") {
         b.shape = Boundary::Shape::sphere;
-        b.radius = keys.positive("radius");
+        b.radius = o.positive("radius");
     } else if (type == "cylinder") {
         b.shape = Boundary::Shape::cylinder;
-        b.axis = unit_vector(keys, "axis");
-        b.radius = keys.positive("radius");
-    } else if (type == "cone") {
-        b.shape = Boundary::Shape::cone;
-        b.axis = unit_vector(keys, "axis");
-        const double half = keys.number("half_angle");
-        if (!(half > 0 && half < M_PI / 2)) keys.refuse("half_angle", "must be in (0, pi/2) rad", half);
-        b.cosine = std::cos(half), b.sine = std::sin(half);
+        b.axis = o.direction("axis");
+        b.radius = o.positive("radius");
     } else {
-        keys.refuse("type", "must be one of plane, box, cylinder, cone, sphere", type);
+        b.shape = Boundary::Shape::cone;
+        b.axis = o.direction("axis");
+        const double half = o.number("half_angle");
+        if (!(half > 0 && half < M_PI / 2))
+            o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + io::shortest(half));
+        b.cosine = std::cos(half), b.sine = std::sin(half);
     }
     return {one};
 }

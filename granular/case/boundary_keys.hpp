@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/keys.hpp"
+#include "granular/case/object_reader.hpp"
 
 namespace hilda::granular {
 
@@ -15,6 +15,6 @@ struct NamedBoundary {
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
-std::vector<NamedBoundary> read_boundary(Keys& keys, const std::string& name);
+std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name);
 
 }  // namespace hilda::granular

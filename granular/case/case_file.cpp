@@ -7,72 +7,51 @@
 #include "io/error.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace hilda::granular {
 
 namespace {
 
-using Json = Keys::Json;
-
-/// Calls f and prefixes the message of an io::InvalidInput with the JSON pointer of the entry.
-template <class F>
-auto with_place(const std::string& place, const F& f)
+Scheme read_scheme(ObjectReader& o)
 {
-    try {
-        return f();
-    } catch (const io::InvalidInput& e) {
-        throw io::InvalidInput(place + ": " + e.what());
-    }
+    const std::vector<std::string> names = {"symplectic-euler", "velocity-verlet", "forward-euler",
+                                            "extended-taylor", "chung"};
+    constexpr Scheme schemes[] = {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::forward_euler,
+                                  Scheme::extended_taylor, Scheme::chung};
+    const std::string name = o.one_of("integrator", names, names[0]);
+    return schemes[std::find(names.begin(), names.end(), name) - names.begin()];
 }
 
-Scheme read_scheme(Keys& keys)
-{
-    const std::pair<const char*, Scheme> all[] = {{"symplectic-euler", Scheme::symplectic_euler},
-                                                  {"velocity-verlet", Scheme::velocity_verlet},
-                                                  {"forward-euler", Scheme::forward_euler},
-                                                  {"extended-taylor", Scheme::extended_taylor},
-                                                  {"chung", Scheme::chung}};
-    const std::string name = keys.text("integrator", all[0].first);
-    std::string names;
-    for (const auto& [known, scheme] : all) {
-        if (name == known) return scheme;
-        names += (names.empty() ? "" : ", ") + std::string(known);
-    }
-    keys.refuse("integrator", "must be one of " + names, name);
-}
-
-std::uint16_t read_replica(Keys& keys)
-{
-    const long replica = keys.count("replica", 0);
-    if (replica > 0xffff) keys.refuse("replica", "must be below 65536", replica);
-    return static_cast<std::uint16_t>(replica);
-}
-
-Material read_material(Keys& m)
+Material read_material(ObjectReader o)
 {
     Material material{
-        .name = m.text("name"), .density = m.positive("density"), .E = m.positive("E"), .nu = m.number("nu")};
-    if (!(material.nu > -1 && material.nu < 0.5)) m.refuse("nu", "must be between -1 and 0.5", material.nu);
-    m.end();
+        .name = o.name("name"), .density = o.positive("density"), .E = o.positive("E"), .nu = o.number("nu")};
+    if (!(material.nu > -1 && material.nu < 0.5))
+        o.fail("nu", "nu must be above -1 and below 0.5, got " + io::shortest(material.nu));
+    o.finish();
     return material;
 }
 
-void read_domain(Keys domain, WorldOptions& o)
+void read_domain(ObjectReader domain, WorldOptions& o)
 {
-    o.low = domain.vector("low"), o.high = domain.vector("high");
+    o.low = domain.vec3("low"), o.high = domain.vec3("high");
     for (const auto& [low, high, axis] :
-         {std::tuple{o.low.x, o.high.x, 0}, {o.low.y, o.high.y, 1}, {o.low.z, o.high.z, 2}})
-        if (!(low < high)) domain.refuse("high/" + std::to_string(axis), "must be above the low end", high);
+         {std::tuple{o.low.x, o.high.x, 0u}, {o.low.y, o.high.y, 1u}, {o.low.z, o.high.z, 2u}})
+        if (!(low < high))
+            domain.fail("high", axis,
+                        "high must be above low, " + io::shortest(low) + ", got " + io::shortest(high));
     o.periodic = domain.flags("periodic", o.periodic);
-    domain.end();
+    domain.finish();
 }
 
-/// Compares an estimate of the required memory with the available memory. Throws io::InvalidInput.
+/// Compares an estimate of the required memory with the available memory. Throws io::PlacedError.
 ///
 /// The peak occurs while contacts.csv is written. It was measured on a close-packed crystal with six contacts
 /// per particle and rolling and spin laws: 3460 bytes per particle.
-void check_memory(double particles, double largest, const WorldOptions& o, const std::vector<FillSpec>& fills,
-                  const Environment& available)
+void check_memory(const io::JsonSource& source, double particles, double largest, const WorldOptions& o,
+                  const std::vector<FillSpec>& fills, const Environment& available)
 {
     constexpr double gigabyte = 1e9, of_output = 2560, of_cell = 4;
     std::uint16_t replicas = 0;
@@ -89,9 +68,9 @@ void check_memory(double particles, double largest, const WorldOptions& o, const
                            const char* where) {
         if (many * each <= static_cast<double>(have)) return;
         char what[200];
-        std::snprintf(what, sizeof what, "%s: %.3g %s need about %.3g GB of memory%s; %.3g GB are available",
-                      place, many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
-        throw io::InvalidInput(what);
+        std::snprintf(what, sizeof what, "%.3g %s need about %.3g GB of memory%s; %.3g GB are available",
+                      many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
+        source.fail(place, what);
     };
     check("/fill", particles, "particles", of_output + in_world, available.memory, "");
     check("/fill", particles, "particles", in_world, available.device_memory, " of the GPU");
@@ -101,165 +80,203 @@ void check_memory(double particles, double largest, const WorldOptions& o, const
 
 void seed_fills(Case& c, std::uint64_t seed)
 {
-    const Json& all = c.source.json();
-    const std::size_t fills = all.is_object() && all.contains("fill") ? all.at("fill").size() : 0;
+    const io::Json::Member* fill = c.source.root.member("fill");
+    const std::size_t fills = fill != nullptr ? fill->value.size() : 0;
     if (fills == 0) c.notices.emplace_back("--seed has no effect: the case has no fill");
     for (std::size_t k = 0; k < fills; ++k) {
-        const Json& one = all.at("fill").at(k);
-        if (one.is_object() && one.contains("file")) continue;
-        c.source.set({.pointer = "/fill/" + std::to_string(k) + "/seed",
-                      .value = std::to_string(seed + k),
-                      .origin = "--seed " + std::to_string(seed)});
+        const io::Json& one = fill->value.list() != nullptr ? fill->value.at(k) : fill->value;
+        if (one.members() != nullptr && one.member("file") == nullptr)
+            c.source.set("/fill/" + std::to_string(k) + "/seed=" + std::to_string(seed + k),
+                         "--seed " + std::to_string(seed));
     }
 }
 
-void read(Case& out, const Environment& environment)
-{
-    Keys keys(out.source.json(), "");
-    if (keys.count("hilda_case", -1) != 1) throw io::InvalidInput("/hilda_case: must be 1");
-    out.name = keys.text("name", "case");
-    keys.text("note", "");
+class CaseReader {
+public:
+    CaseReader(Case& out, const Environment& environment) : out(out), environment(environment) {}
 
-    WorldOptions o;
-    read_domain(keys.object("domain"), o);
-    o.device = environment.device;
-    o.gravity = keys.vector("gravity", {0, 0, -9.81});
-    out.h = o.h = keys.positive("step");
-    out.end = keys.positive("end");
-    if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)
-        keys.refuse("end", "must be at most 9e15 steps", out.end);
-    out.interval = keys.has("interval") ? keys.positive("interval") : out.end / 1000;
-    // a whole number of rows, which are a whole number of steps apart
-    const double row = out.h * std::max(1., std::round(out.interval / out.h)),
-                 long_interval = row * std::max(1., std::round(out.end / 100 / row));
-    out.frame_interval = keys.has("frame_interval") ? keys.positive("frame_interval") : long_interval;
-    out.checkpoint_interval =
-        keys.has("checkpoint_interval") ? keys.positive("checkpoint_interval") : long_interval;
-    o.skin = keys.number("skin", o.skin);
-    if (!(o.skin > 0 && o.skin <= 1)) keys.refuse("skin", "must be in (0, 1] diameters", o.skin);
-    o.scheme = read_scheme(keys);
-    o.orientation = keys.flag("orientation");
+    void read()
+    {
+        ObjectReader o(out.source, out.source.root, "");
+        if (const long version = o.count("hilda_case"); version != 1)
+            o.fail("hilda_case", "the version of the format must be 1, got " + std::to_string(version));
+        out.name = o.text("name", "case");
+        options(o);
+        for (ObjectReader& m : o.objects("materials")) add_material(m);
+        if (materials.empty()) o.fail("materials", "a case must have at least one material, got none");
+        out.world = std::make_unique<World>(world, materials);
+        for (ObjectReader& l : o.objects("laws")) law(l);
+        for (ObjectReader& b : o.objects("boundaries")) boundary(b);
+        for (ObjectReader& p : o.objects("particles")) particle(p);
+        for (ObjectReader& f : o.objects("fill")) fill_spec(f);
+        o.finish();
+        check_memory(out.source, static_cast<double>(out.world->count()), largest, world, fills, environment);
+        for (std::size_t k = 0; k < fills.size(); ++k) {
+            out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()),
+                                     fill_places[k].pointer());
+            fill_places[k].located([&] {
+                for (const Particle& p : fill(fills[k])) out.world->add(p);
+            });
+        }
+        start_motions();
+    }
 
-    std::vector<Material> materials;
-    for (const auto& [object, place] : keys.list("materials")) {
-        Keys m(*object, place);
-        materials.push_back(read_material(m));
+private:
+    void options(ObjectReader& o)
+    {
+        read_domain(o.object("domain"), world);
+        world.device = environment.device;
+        world.gravity = o.vec3("gravity", Vec3{0, 0, -9.81});
+        out.h = world.h = o.positive("step");
+        out.end = o.positive("end");
+        if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)
+            o.fail("end", "end must be at most 9e15 steps, got " + io::shortest(out.end));
+        out.interval = o.positive("interval", out.end / 1000);
+        // a whole number of rows, which are a whole number of steps apart
+        const double row = out.h * std::max(1., std::round(out.interval / out.h)),
+                     long_interval = row * std::max(1., std::round(out.end / 100 / row));
+        out.frame_interval = o.positive("frame_interval", long_interval);
+        out.checkpoint_interval = o.positive("checkpoint_interval", long_interval);
+        world.skin = o.number("skin", world.skin);
+        if (!(world.skin > 0 && world.skin <= 1))
+            o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
+        world.scheme = read_scheme(o);
+        world.orientation = o.flag("orientation", false);
     }
-    if (materials.empty()) throw io::InvalidInput("/materials: must have at least one entry");
-    const auto material = [&](Keys& k, const std::string& key) {
-        const std::string name = k.text(key, materials.size() == 1 ? materials[0].name : "");
-        for (std::size_t n = 0; n < materials.size(); ++n)
-            if (materials[n].name == name) return static_cast<int>(n);
-        k.refuse(key, "no material has this name", name);
-    };
-    out.world = std::make_unique<World>(o, materials);
-    for (const auto& entry : keys.list("laws")) {
-        Keys pair(*entry.first, entry.second);
-        const auto ij = read_between(pair, materials);
-        const PairLaw law = read_pair(pair, materials[ij[0]], materials[ij[1]], out.notices);
-        with_place(pair.place,
-                   [&] { out.world->set_law(static_cast<int>(ij[0]), static_cast<int>(ij[1]), law); });
-        pair.end();
+
+    void add_material(ObjectReader& o)
+    {
+        Material m = read_material(o);
+        for (const Material& other : materials)
+            if (other.name == m.name)
+                o.fail("name", "two materials have the same name, got " + io::described(m.name));
+        materials.push_back(std::move(m));
     }
-    std::vector<std::pair<BoundaryMotion, std::string>> motions;
-    std::string free;  // place of the first boundary with a mass
-    for (const auto& entry : keys.list("boundaries")) {
-        Keys b(*entry.first, entry.second);
-        const int boundary_material = material(b, "material");
-        const std::string name = b.text("name", "boundary " + std::to_string(out.boundaries.size()));
-        if (name.find_first_of(",\"\n\r") != std::string::npos)
-            b.refuse("name",
-                     "must not contain commas, quotes or line ends, because it is part of column names",
-                     name);
-        for (NamedBoundary& n : read_boundary(b, name)) {
+
+    int material(ObjectReader& o)
+    {
+        const std::string name =
+            o.text("material", materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
+        return material_named(name, materials, [&](const std::string& what) { o.fail("material", what); });
+    }
+
+    void law(ObjectReader& o)
+    {
+        const auto [i, j] = read_between(o, materials);
+        if (const auto [first, is_new] = law_places.emplace(std::minmax(i, j), o.place()); !is_new)
+            o.fail("between", "two laws have the same materials, got " + io::described(materials[i].name) +
+                                  " and " + io::described(materials[j].name) + "; first at " + first->second);
+        const PairLaw pair = read_pair(o, materials[i], materials[j], out.notices);
+        o.located([&, i = i, j = j] { out.world->set_law(i, j, pair); });
+        o.finish();
+    }
+
+    void boundary(ObjectReader& o)
+    {
+        const int boundary_material = material(o);
+        const std::string name = o.name("name", "boundary " + std::to_string(out.boundaries.size()));
+        if (name.find_first_of(",\"") != std::string::npos)
+            o.fail("name",
+                   "name must not contain commas and quotes, because it is part of column names, got " +
+                       io::described(name));
+        for (NamedBoundary& n : read_boundary(o, name)) {
             if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
-                b.refuse("name", "another boundary has this name", n.name);
+                o.fail("name", "two boundaries have the same name, got " + io::described(n.name));
             n.boundary.material = boundary_material;
-            n.motion.boundary = with_place(b.place, [&] { return out.world->add(n.boundary); });
-            if (n.motion.is_prescribed()) motions.emplace_back(n.motion, b.place);
-            if (n.boundary.mass > 0 && free.empty()) free = b.place;
+            n.motion.boundary = o.located([&] { return out.world->add(n.boundary); });
+            if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
+            if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
             out.boundaries.push_back(n.name);
         }
-        b.end();
+        o.finish();
     }
-    double largest = 0;
-    const auto replica = [&](Keys& k) {
-        const std::uint16_t number = read_replica(k);
+
+    std::uint16_t replica(ObjectReader& o)
+    {
+        constexpr long most = 0xffff;
+        const long number = o.count("replica", 0);
+        if (number > most) o.fail("replica", "replica must be at most 65535, got " + std::to_string(number));
         if (number > 0 && !free.empty())
-            k.refuse("replica", "must be 0 if a boundary has a mass, as " + free + " has", number);
-        return number;
-    };
-    for (const auto& entry : keys.list("particles")) {
-        Keys p(*entry.first, entry.second);
-        if (p.has("orientation") && !o.orientation)
-            p.refuse("orientation", "requires /orientation to be true", p.raw("orientation"));
-        const Particle particle{.r = p.vector("r"),
-                                .radius = p.positive("radius"),
-                                .material = material(p, "material"),
-                                .v = p.vector("v", {0, 0, 0}),
-                                .omega = p.vector("omega", {0, 0, 0}),
-                                .fixed = p.flag("fixed"),
-                                .replica = replica(p),
-                                .e = p.four("orientation", Particle().e)};
-        largest = std::max(largest, 2 * particle.radius);
-        const std::uint32_t id = with_place(p.place, [&] { return out.world->add(particle); });
-        out.entries.emplace_back(id, p.place);
-        if (p.has("force")) {
-            const Vec3 F = p.vector("force");
-            with_place(p.place, [&] { out.world->set_force(id, F); });
-        }
-        p.end();
+            o.fail("replica", "replica must be 0 if a boundary has a mass, as " + free + " has, got " +
+                                  std::to_string(number));
+        return static_cast<std::uint16_t>(number);
     }
-    std::vector<FillSpec> fills;
-    for (const auto& entry : keys.list("fill")) {
-        Keys f(*entry.first, entry.second);
-        fills.push_back(read_fill(f));
-        FillSpec& spec = fills.back();
+
+    void particle(ObjectReader& o)
+    {
+        Particle p{.r = o.vec3("r"),
+                   .radius = o.positive("radius"),
+                   .material = material(o),
+                   .v = o.vec3("v", Vec3{0, 0, 0}),
+                   .omega = o.vec3("omega", Vec3{0, 0, 0}),
+                   .fixed = o.flag("fixed", false),
+                   .replica = replica(o)};
+        if (o.has("orientation")) {
+            if (!world.orientation) o.fail("orientation", "orientation requires /orientation to be true");
+            const std::vector<double> e = o.numbers("orientation", 4);
+            p.e = {e[0], e[1], e[2], e[3]};
+        }
+        largest = std::max(largest, 2 * p.radius);
+        const std::uint32_t id = o.located([&] { return out.world->add(p); });
+        out.entries.emplace_back(id, o.pointer());
+        if (o.has("force")) out.world->set_force(id, o.vec3("force"));
+        o.finish();
+    }
+
+    void fill_spec(ObjectReader& o)
+    {
+        FillSpec spec = read_fill(o);
         const bool from_csv = spec.type == FillSpec::Type::csv;
-        spec.material = from_csv && !f.has("material") ? -1 : material(f, "material");
-        spec.replica = replica(f);
-        if (!o.orientation)
+        spec.material = from_csv && !o.has("material") ? -1 : material(o);
+        spec.replica = replica(o);
+        if (!world.orientation)
             for (Particle& p : spec.particles) p.e = Particle().e;
-        if (from_csv) out.files_read += "\n" + f.place_of("file") + ' ' + std::to_string(spec.checksum);
-        f.end();
+        if (from_csv) out.files_read += "\n" + o.pointer("file") + ' ' + std::to_string(spec.checksum);
+        o.finish();
+        fills.push_back(std::move(spec));
+        fill_places.push_back(o);
     }
-    keys.end();
-    check_memory(static_cast<double>(out.world->count()), largest, o, fills, environment);
-    for (std::size_t k = 0; k < fills.size(); ++k) {
-        const std::string place = "/fill/" + std::to_string(k);
-        out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()), place);
-        with_place(place, [&] {
-            for (const Particle& p : fill(fills[k])) out.world->add(p);
-        });
-    }
-    if (motions.empty()) return;
-    std::vector<BoundaryMotion> all;
-    for (const auto& [motion, place] : motions) {
-        all.push_back(motion);
-        try {
-            apply_motions(*out.world, {motion}, out.h);
-        } catch (const NotFinite& e) {
-            throw io::InvalidInput(place + ": " + e.what());
+
+    /// Evaluates the formulas of the boundaries for the first step, and registers them for all steps.
+    void start_motions() const
+    {
+        if (motions.empty()) return;
+        std::vector<BoundaryMotion> all;
+        for (const auto& [motion, o] : motions) {
+            all.push_back(motion);
+            try {
+                apply_motions(*out.world, {motion}, out.h);
+            } catch (const NotFinite& e) {
+                o.fail(e.what());
+            }
         }
+        out.world->before_each_step([all, h = out.h](World& w) { apply_motions(w, all, h); });
     }
-    out.world->before_each_step([all, h = out.h](World& w) { apply_motions(w, all, h); });
-}
+
+    Case& out;
+    const Environment& environment;
+    WorldOptions world;
+    std::vector<Material> materials;
+    std::map<std::pair<int, int>, std::string> law_places;  ///< by the smaller and the larger material index
+    std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
+    std::string free;    ///< pointer of the first boundary with a mass
+    double largest = 0;  ///< diameter of the particles that are given one by one [m]
+    std::vector<FillSpec> fills;
+    std::vector<ObjectReader> fill_places;
+};
 
 }  // namespace
 
 Case read_case(const std::string& text, const std::string& file, const Environment& environment)
 {
-    Case out{.source = CaseText(text, file)};
-    for (const Setting& setting : environment.settings) out.source.set(setting);
-    try {
-        out.notices = out.source.notices();
-        if (environment.seed) seed_fills(out, *environment.seed);
-        read(out, environment);
-    } catch (const io::InvalidInput& e) {
-        throw io::InvalidInput(out.source.with_location(e.what()));
-    } catch (const Json::exception& e) {
-        throw io::InvalidInput(out.source.with_location(e.what()));
-    }
+    Case out{.source = io::JsonSource(text, file)};
+    out.source.rename("every", "interval");
+    out.source.rename("frames_every", "frame_interval");
+    out.source.rename("checkpoint_every", "checkpoint_interval");
+    for (const Setting& setting : environment.settings) out.source.set(setting.change, setting.origin);
+    out.notices = out.source.notices;
+    if (environment.seed) seed_fills(out, *environment.seed);
+    CaseReader(out, environment).read();
     return out;
 }
 
@@ -280,7 +297,7 @@ void insert_particles(const Case& c)
         } else if (what.starts_with("domain: ")) {
             place = "/domain";
         }
-        throw io::InvalidInput(c.source.with_location(place.empty() ? what : place + ": " + what));
+        c.source.fail(place, what);
     }
 }
 

@@ -3,15 +3,21 @@
 
 #pragma once
 
-#include "granular/case_text.hpp"
+#include "granular/world/world.hpp"
+#include "io/json_source.hpp"
 
 #include <optional>
 
 namespace hilda::granular {
 
+/// A change of one entry of a case: "/json/pointer=VALUE", and the option that gave it, for messages
+struct Setting {
+    std::string change, origin = {};
+};
+
 /// A case that is ready to run
 struct Case {
-    CaseText source;
+    io::JsonSource source;
     std::string name = {};
     std::unique_ptr<World> world = {};
     double h = 0, end = 0;           ///< step and end time [s]
@@ -19,7 +25,7 @@ struct Case {
     double frame_interval = 0;       ///< time between frames [s]
     double checkpoint_interval = 0;  ///< time between the instants at which a checkpoint can be written [s]
     std::vector<std::string> boundaries = {};  ///< names, by number
-    std::vector<std::string> notices = {};     ///< warnings, as "/pointer: text" or as text
+    std::vector<std::string> notices = {};     ///< warnings, with their location
     std::string files_read = {};               ///< names and checksums of the other files that were read
     /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};

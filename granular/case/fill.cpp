@@ -100,19 +100,19 @@ std::vector<Vec3> poisson(const FillSpec& f, const Vec3& low, const Vec3& high, 
     return all;
 }
 
-FillSpec read_table(Keys& keys)
+FillSpec read_table(ObjectReader& o)
 {
     FillSpec f;
     f.type = FillSpec::Type::csv;
-    const std::string file = keys.text("file");
+    const std::string file = o.text("file");
     try {
         const std::string text = io::read_file(file, std::size_t{1} << 36);
         f.particles = particles_of_csv(text, file);
         f.checksum = io::checksum(text.data(), text.size());
     } catch (const io::IoError& e) {
-        throw io::InvalidInput(keys.place_of("file") + ": " + e.what());
+        o.fail("file", e.what());
     } catch (const io::InvalidInput& e) {
-        throw io::InvalidInput(keys.place_of("file") + ": " + e.what());
+        o.fail("file", e.what());
     }
     for (const Particle& p : f.particles) f.radius = std::max(f.radius, p.radius);
     return f;
@@ -120,37 +120,34 @@ FillSpec read_table(Keys& keys)
 
 }  // namespace
 
-FillSpec read_fill(Keys& keys)
+FillSpec read_fill(ObjectReader& o)
 {
     FillSpec f;
-    const std::string kind = keys.text("type");
-    if (kind == "csv") return read_table(keys);
-    if (kind == "lattice")
-        f.type = FillSpec::Type::lattice;
-    else if (kind == "hcp")
-        f.type = FillSpec::Type::hcp;
-    else if (kind == "poisson")
-        f.type = FillSpec::Type::poisson;
-    else
-        keys.refuse("type", "must be one of lattice, hcp, poisson, csv", kind);
-    f.low = keys.vector("low"), f.high = keys.vector("high");
-    f.radius = keys.positive("radius");
-    f.least_radius = keys.number("least_radius", f.radius);
+    const std::string type = o.one_of("type", {"lattice", "hcp", "poisson", "csv"});
+    if (type == "csv") return read_table(o);
+    f.type = type == "lattice" ? FillSpec::Type::lattice
+             : type == "hcp"   ? FillSpec::Type::hcp
+                               : FillSpec::Type::poisson;
+    f.low = o.vec3("low"), f.high = o.vec3("high");
+    f.radius = o.positive("radius");
+    f.least_radius = o.number("least_radius", f.radius);
     if (!(f.least_radius > 0 && f.least_radius <= f.radius))
-        keys.refuse("least_radius", "must be positive and not greater than radius", f.least_radius);
-    const double spacing = keys.number("spacing", 1.05);
-    if (!(spacing >= 1)) keys.refuse("spacing", "must be at least one diameter", spacing);
+        o.fail("least_radius", "least_radius must be positive and not greater than radius, got " +
+                                   io::shortest(f.least_radius));
+    const double spacing = o.number("spacing", 1.05);
+    if (!(spacing >= 1))
+        o.fail("spacing", "spacing must be at least 1 diameter, got " + io::shortest(spacing));
     f.spacing = 2 * f.radius * spacing;
-    f.jitter = keys.number("jitter", 0);
-    if (!(f.jitter >= 0 && f.jitter <= 1)) keys.refuse("jitter", "must be in [0, 1]", f.jitter);
-    f.max_count = static_cast<std::size_t>(keys.count("count", 0));
-    f.seed = static_cast<std::uint64_t>(keys.count("seed", 1));
-    f.v = keys.vector("v", {0, 0, 0});
-    f.random_v = keys.not_negative("random_v");
+    f.jitter = o.fraction("jitter", 0);
+    f.max_count = static_cast<std::size_t>(o.count("count", 0));
+    f.seed = static_cast<std::uint64_t>(o.count("seed", 1));
+    f.v = o.vec3("v", Vec3{0, 0, 0});
+    f.random_v = o.not_negative("random_v", 0);
     for (const auto& [low, high, axis] :
-         {std::tuple{f.low.x, f.high.x, 0}, {f.low.y, f.high.y, 1}, {f.low.z, f.high.z, 2}})
+         {std::tuple{f.low.x, f.high.x, 0u}, {f.low.y, f.high.y, 1u}, {f.low.z, f.high.z, 2u}})
         if (!(high - low >= 2 * f.radius))
-            keys.refuse("high/" + std::to_string(axis), "the box must be at least a diameter wide", high);
+            o.fail("high", axis,
+                   "the box must be at least a diameter wide, got high = " + io::shortest(high));
     return f;
 }
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/keys.hpp"
+#include "granular/case/object_reader.hpp"
 
 namespace hilda::granular {
 
@@ -30,7 +30,7 @@ struct FillSpec {
 };
 
 /// Reads an entry of `fill`, without material and replica. Throws io::InvalidInput.
-FillSpec read_fill(Keys& keys);
+FillSpec read_fill(ObjectReader& o);
 
 /// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
 /// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,

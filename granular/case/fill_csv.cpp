@@ -74,6 +74,11 @@ std::vector<Particle> particles_of_csv(const std::string& text, const std::strin
         if (here.empty()) continue;
         if (names.empty()) {
             names = cells(here);
+            for (auto name = names.begin(); name != names.end(); ++name)
+                if (std::find(names.begin(), name, *name) != name)
+                    throw io::InvalidInput(file + ':' + std::to_string(line + 1) +
+                                           ": two columns have the same name, got '" + std::string(*name) +
+                                           '\'');
             continue;
         }
         const Row row{names, cells(here), file + ':' + std::to_string(line + 1)};

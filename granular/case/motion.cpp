@@ -11,7 +11,9 @@ namespace {
 Vec3 value(const BoundaryMotion& m, const char* of, const VectorFormula& f, double t)
 {
     const Vec3 at = f(t);
-    if (std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z)) return at;
+    // in single precision, in which the particles are computed
+    const auto finite = [](double x) { return std::isfinite(static_cast<float>(x)); };
+    if (finite(at.x) && finite(at.y) && finite(at.z)) return at;
     char when[64];
     std::snprintf(when, sizeof when, " is not finite at t = %.9g s", t);
     throw NotFinite("boundary '" + m.name + "': " + of + when);

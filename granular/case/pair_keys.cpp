@@ -1,54 +1,103 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/pair_keys.hpp"
 
+#include "io/nearest.hpp"
+
 #include <algorithm>
 
 namespace hilda::granular {
 
 namespace {
 
-using Json = Keys::Json;
+/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it
+class LawKeys {
+public:
+    LawKeys(ObjectReader& own, ObjectReader& pair, const Material& i, const Material& j, bool material_normal)
+        : i(i), j(j), own(own), pair(pair), of_materials(material_normal)
+    {}
+
+    float positive(const char* key) { return static_cast<float>(own.positive(key)); }
+    float not_negative(const char* key, float default_value = 0)
+    {
+        return static_cast<float>(own.not_negative(key, default_value));
+    }
+    int flag(const char* key) { return own.flag(key, false) ? 1 : 0; }
+    double restitution()
+    {
+        constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
+        return std::max(pair.fraction("restitution"), least);
+    }
+    float static_friction()
+    {
+        return pair.has("mu_s") ? static_cast<float>(pair.not_negative("mu_s")) : kinetic_friction();
+    }
+    float kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
+    /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
+    /// then does so too
+    bool material_normal() const { return of_materials; }
+
+    const Material &i, &j;
+
+private:
+    ObjectReader &own, &pair;
+    bool of_materials;
+};
+
+template <class... Laws>
+std::vector<std::string> names(const AnyOf<Laws...>&)
+{
+    return {Laws::name...};
+}
 
 template <class Laws>
-Laws read_law(Keys& pair, const std::string& kind, const std::string& default_value, const Material& i,
+Laws read_law(ObjectReader& pair, const char* kind, const char* default_value, const Material& i,
               const Material& j, bool material_normal)
 {
-    static const Json none = Json::object();
-    const bool given = pair.has(kind);
-    Keys own(given ? pair.raw(kind) : none, pair.place_of(kind));
-    const std::string name = own.text("law", default_value);
+    static const io::JsonSource none("{}", "");
+    ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");
     LawKeys keys(own, pair, i, j, material_normal);
     Laws law;
-    if (!law.read(name, keys)) own.refuse("law", "must be one of " + Laws::names(), name);
-    own.end();
+    law.read(own.one_of("law", names(law), default_value), keys);
+    own.finish();
     return law;
 }
 
 }  // namespace
 
-std::array<std::size_t, 2> read_between(Keys& pair, const std::vector<Material>& materials)
+int material_named(const std::string& name, const std::vector<Material>& materials,
+                   const std::function<void(const std::string&)>& fail)
 {
-    std::array<std::size_t, 2> ij = {0, 0};
-    if (materials.size() == 1 && !pair.has("between")) return ij;
-    const Json& names = pair.raw("between");
-    if (!names.is_array() || names.size() != 2) pair.refuse("between", "must be two names", names);
+    std::vector<std::string> known;
+    for (const Material& m : materials) known.push_back(m.name);
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+        fail("no material has this name, got " + io::described(name) + io::did_you_mean(name, known));
+    return static_cast<int>(found - known.begin());
+}
+
+std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>& materials)
+{
+    std::array<int, 2> ij = {0, 0};
+    if (materials.size() == 1 && pair.find("between") == nullptr) return ij;
+    const io::Json::List& names = pair.list("between", true);
+    if (names.size() != 2)
+        pair.fail("between", "between must be two names of materials, got " + io::described(names));
     for (std::size_t k = 0; k < 2; ++k) {
-        const auto found = std::find_if(materials.begin(), materials.end(), [&](const Material& m) {
-            return names[k].is_string() && m.name == names[k].get<std::string>();
-        });
-        if (found == materials.end())
-            pair.refuse("between/" + std::to_string(k), "no material has this name", names[k]);
-        ij[k] = static_cast<std::size_t>(found - materials.begin());
+        if (names[k].string() == nullptr)
+            pair.fail("between", k, "between must be two names of materials, got " + io::described(names[k]));
+        ij[k] = material_named(*names[k].string(), materials,
+                               [&](const std::string& what) { pair.fail("between", k, what); });
     }
     return ij;
 }
 
-PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<std::string>& notices)
+PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std::vector<std::string>& notices)
 {
-    PairLaw law;
-    if (pair.has("restitution") && pair.number("restitution") == 0)
-        notices.push_back(pair.place_of("restitution") +
+    if (pair.has("restitution") && pair.fraction("restitution") == 0)
+        notices.push_back(pair.place("restitution") +
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
+    for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
+    PairLaw law;
     law.normal = read_law<NormalLaws>(pair, "normal", "hertz", i, j, true);
     const bool material_stiffness = law.normal.is<Hertz>();
     law.tangential = read_law<TangentialLaws>(pair, "tangential", "none", i, j, material_stiffness);
@@ -59,14 +108,15 @@ PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<
     const bool has_rotational_spring =
         !(law.rolling.is<NoRolling>() || law.rolling.is<ConstantTorque>()) || !law.spin.is<NoSpin>();
     if (has_rotational_spring && !spring)
-        pair.refuse(
+        pair.fail(
             "tangential",
-            "must not be none with this rolling or spin law, whose stiffness is that of the tangential law",
-            "none");
-    if (pair.has("mu_s") && pair.has("mu") && pair.number("mu_s") < pair.number("mu"))
-        pair.refuse("mu_s", "must not be less than mu", pair.number("mu_s"));
-    for (const char* key : {"mu", "mu_s", "restitution"})
-        pair.has(key);  // accepted even if no law reads them
+            "the tangential law must not be none with this rolling or spin law, whose stiffness is that of "
+            "the tangential law");
+    // Checked even if no law reads them.
+    const double mu = pair.not_negative("mu", 0), mu_s = pair.not_negative("mu_s", mu);
+    if (mu_s < mu)
+        pair.fail("mu_s",
+                  "mu_s must not be less than mu, " + io::shortest(mu) + ", got " + io::shortest(mu_s));
     return law;
 }
 

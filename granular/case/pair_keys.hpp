@@ -3,16 +3,21 @@
 
 #pragma once
 
+#include "granular/case/object_reader.hpp"
 #include "granular/core/pair_law.hpp"
-#include "granular/keys.hpp"
 
 namespace hilda::granular {
 
-/// Indices of the two materials of a law, from the key `between`. Throws io::InvalidInput.
-std::array<std::size_t, 2> read_between(Keys& pair, const std::vector<Material>& materials);
+/// Index of the material with this name. If there is none, calls `fail` with the message; it must throw.
+int material_named(const std::string& name, const std::vector<Material>& materials,
+                   const std::function<void(const std::string&)>& fail);
 
-/// Reads the laws between the materials i and j. Throws io::InvalidInput. A restitution of 0 is raised to 1e-7,
+/// Indices of the two materials of a law, from the key `between`. Throws io::PlacedError.
+std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>& materials);
+
+/// Reads the laws between the materials i and j. Throws io::PlacedError. A restitution of 0 is raised to 1e-7,
 /// with a warning in `notices`.
-PairLaw read_pair(Keys& pair, const Material& i, const Material& j, std::vector<std::string>& notices);
+PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j,
+                  std::vector<std::string>& notices);
 
 }  // namespace hilda::granular

@@ -3,114 +3,95 @@
 
 #include "granular/program/provenance.hpp"
 #include "io/error.hpp"
+#include "io/json.hpp"
 #include "io/message.hpp"
+#include "io/option_values.hpp"
 #include "io/provenance.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <set>
 
 namespace hilda::granular {
 
 namespace {
 
-/// The number, if the whole text is one
-template <class Number>
-std::optional<Number> number_in(std::string_view text)
-{
-    Number value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
-}
-
 std::optional<Device> device_of(const std::string& name)
 {
     if (name == "cpu") return Device{};
     if (name == "cuda") return Device{.kind = Device::cuda};
-    const auto number = number_in<int>(name.starts_with("cuda:") ? name.substr(5) : "");
+    const auto number = io::number_in<int>(name.starts_with("cuda:") ? name.substr(5) : "");
     if (number && *number >= 0) return Device{.kind = Device::cuda, .number = *number};
     return {};
-}
-
-/// Validator with the message "must be BE, got 'TEXT'"
-CLI::Validator must(const std::string& be, bool (*is)(const std::string&))
-{
-    return {[=](const std::string& text) { return is(text) ? "" : "must be " + be + ", got '" + text + "'"; },
-            ""};
-}
-
-bool is_finite(const std::string& text)
-{
-    const auto value = number_in<double>(text);
-    return value && std::isfinite(*value);
-}
-
-Setting setting_of(const std::string& text)
-{
-    const std::size_t equals = text.find('=');
-    return {.pointer = text.substr(0, equals),
-            .value = text.substr(equals + 1),
-            .origin = "--set '" + text + '\''};
 }
 
 }  // namespace
 
 std::optional<int> read_arguments(int argc, char** argv, Options& o)
 {
-    const CLI::Validator positive = must("a positive, finite number", [](const std::string& s) {
-        return is_finite(s) && *number_in<double>(s) > 0;
-    });
-    std::string threads, checkpoint, seed, every;
-    std::vector<std::string> set;
-    std::vector<std::pair<const char*, std::string>> entries = {{"step", ""}, {"end", ""}, {"interval", ""}};
-
+    std::string step, end, interval, every;
     CLI::App app("hilda-granular: runs a granular case or a validation");
     app.set_version_flag("--version", version_line());
-    const auto value = [&](const char* name, const char* kind, std::string& to, const char* what) {
-        return app.add_option(name, to, what)->type_name(kind);
+    /// An option with one value, which `set` receives after the name of the option
+    const auto value = [&](const std::string& name, const char* kind, const char* what, const auto& set) {
+        return app
+            .add_option_function<std::string>(
+                name, [=](const std::string& text) { set(name, text); }, what)
+            ->type_name(kind);
+    };
+    const auto positive = [](std::string& to) {
+        return [&to](const std::string& option, const std::string& text) {
+            io::positive_number(option, text);
+            to = text;
+        };
+    };
+    const auto assign = [](auto& to, auto read) {
+        return [&to, read](const std::string& option, const std::string& text) { to = read(option, text); };
     };
     app.add_option("CASE", o.file, "case file (JSON), or name of a validation")->required()->type_name("");
-    value("--step", "H", entries[0].second, "time step [s]; default: that of the case")->check(positive);
-    value("--end", "T", entries[1].second, "end time [s]; default: that of the case")->check(positive);
-    value("--interval", "DT", entries[2].second,
-          "time between rows of run.csv [s]; default: that of the case, or end/1000")
-        ->check(positive);
-    value("--every", "DT", every, "old name of --interval")->group("");  // not in the help
-    app.add_option("--set", set, "change one entry of the case, for example /laws/0/mu=0.5; repeatable")
+    value("--step", "H", "time step [s]; default: that of the case", positive(step));
+    value("--end", "T", "end time [s]; default: that of the case", positive(end));
+    value("--interval", "DT", "time between rows of run.csv [s]; default: that of the case, or end/1000",
+          positive(interval));
+    value("--every", "DT", "old name of --interval", positive(every))->group("");  // not in the help
+    app.add_option_function<std::vector<std::string>>(
+           "--set",
+           [&](const std::vector<std::string>& all) {
+               for (const std::string& text : all) o.settings.push_back({io::setting("--set", text)});
+           },
+           "change one entry of the case, for example /laws/0/mu=0.5; repeatable")
         ->type_name("/json/pointer=VALUE")
-        ->allow_extra_args(false)
-        ->check(must("/json/pointer=VALUE, such as /laws/0/mu=0.5", [](const std::string& s) {
-            return s.starts_with('/') && s.find('=') != std::string::npos;
+        ->allow_extra_args(false);
+    value(
+        "--seed", "N",
+        "seeds of the random numbers of the fills: N, N + 1, ... in their order; default: those of the case",
+        assign(o.seed, [](const std::string& option, const std::string& text) {
+            const auto n = io::number_in<std::uint64_t>(text);
+            if (!n || *n >= std::uint64_t{1} << 53)
+                io::refuse_option(option, "must be a whole number from 0 to 2^53 - 1", text);
+            return *n;
         }));
     value(
-        "--seed", "N", seed,
-        "seeds of the random numbers of the fills: N, N + 1, ... in their order; default: those of the case")
-        ->check(must("a whole number from 0 to 2^53", [](const std::string& s) {
-            const auto n = number_in<std::uint64_t>(s);
-            return n && *n <= std::uint64_t{1} << 53;
-        }));
-    value(
-        "--output", "DIR", o.output,
-        "output directory, new or empty unless --force or --resume is given; default: out/NAME for NAME.json")
-        ->check(must("a directory", [](const std::string& s) { return !s.empty(); }));
+        "--output", "DIR",
+        "output directory, new or empty unless --force or --resume is given; default: out/NAME for NAME.json",
+        assign(o.output, io::path));
     app.add_flag("--force", o.force,
                  "overwrite an output directory that is not empty; accept a step above the stability limit");
     app.add_flag("--resume", o.resume, "continue the run in the output directory from its last checkpoint");
-    value("--checkpoint", "S", checkpoint, "wall time between checkpoints [s]; default: 0, no checkpoints")
-        ->check(must("a finite number, not negative",
-                     [](const std::string& s) { return is_finite(s) && *number_in<double>(s) >= 0; }));
-    value("--threads", "N", threads, "number of CPU threads, without influence on the results; default: 1")
-        ->check(must("a whole number from 1 to 1024", [](const std::string& s) {
-            const auto n = number_in<int>(s);
-            return n && *n >= 1 && *n <= 1024;
-        }));
-    value("--device", "cpu|cuda[:N]", o.device_name,
-          "device: the CPU, or the GPU with number N; default: cpu")
-        ->check(must("cpu, cuda or cuda:N", [](const std::string& s) { return device_of(s).has_value(); }));
+    value("--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
+          assign(o.checkpoint, io::nonnegative_number));
+    value("--threads", "N", "number of CPU threads, without influence on the results; default: 1",
+          assign(o.threads, [](const std::string& option, const std::string& text) {
+              return io::count_up_to(1024, option, text);
+          }));
+    value("--device", "cpu|cuda[:N]", "device: the CPU, or the GPU with number N; default: cpu",
+          [&](const std::string& option, const std::string& text) {
+              const std::optional<Device> device = device_of(text);
+              if (!device) io::refuse_option(option, "must be cpu, cuda or cuda:N", text);
+              o.device = *device;
+              o.device_name = text;
+          });
     app.add_flag("--no-vtk", o.no_vtk, "write no frames for ParaView");
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
     app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
@@ -121,17 +102,17 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         "5 input/output, 6 a check of a validation failed, 7 device not available, 130/143 interrupted.");
     try {
         app.parse(argc, argv);
-        if (o.force && o.resume) throw CLI::ValidationError("--force and --resume exclude each other");
-        if (const std::string error = every.empty() ? "" : positive(every); !error.empty())
-            throw CLI::ValidationError("--every", error);
-        if (!every.empty() && !entries[2].second.empty())
-            throw CLI::ValidationError("--every is the old name of --interval; give only one of them");
+        if (o.force && o.resume) throw io::UsageError("--force and --resume exclude each other");
+        if (!every.empty() && !interval.empty())
+            throw io::UsageError("--every is the old name of --interval; give only one of them");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);
         return io::report(io::UsageError(std::string("granular: ") + e.what()));
+    } catch (const io::UsageError& e) {
+        return io::report(io::UsageError(std::string("granular: ") + e.what()));
     }
     if (!every.empty()) {
-        entries[2].second = every;  // the origin in messages is then --interval
+        interval = every;  // the origin in messages is then --interval
         if (!o.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
     const std::set<std::string> of_all = {"CASE", "--threads", "--device", "--full", "--quiet", "--verbose"};
@@ -140,16 +121,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
             o.case_only_option = option->get_name();
     if (!every.empty())
         o.case_only_option = "--every";  // CLI11 gives no name for options that are not in the help
-    for (const std::string& s : set) o.settings.push_back(setting_of(s));
-    for (const auto& [key, given] : entries)
+    for (const auto& [key, given] : {std::pair{"step", step}, {"end", end}, {"interval", interval}})
         if (!given.empty())
-            o.settings.push_back({.pointer = std::string("/") + key,
-                                  .value = CaseText::Json(*number_in<double>(given)).dump(),
-                                  .origin = std::string("--") + key + ' ' + given});
-    if (!seed.empty()) o.seed = number_in<std::uint64_t>(seed);
-    if (!threads.empty()) o.threads = *number_in<int>(threads);
-    if (!checkpoint.empty()) o.checkpoint = *number_in<double>(checkpoint);
-    o.device = *device_of(o.device_name);
+            o.settings.push_back({std::string("/") + key + '=' + io::shortest(*io::number_in<double>(given)),
+                                  std::string("--") + key + ' ' + given});
     if (o.output.empty()) o.output = "out/" + std::filesystem::path(o.file).stem().string();
     o.command_line = argv[0];  // may be "hilda granular"
     if (argc > 1) o.command_line += ' ' + io::shell_quoted(argc - 1, argv + 1);

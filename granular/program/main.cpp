@@ -12,7 +12,9 @@
 
 #include <omp.h>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 using namespace hilda;
 using namespace hilda::granular;
@@ -56,11 +58,15 @@ int main(int argc, char** argv)
         return fail(io::exit_code::wrong_command_line,
                     "granular: --full: is valid for validations only, but " + o.file + " is a file");
     try {
-        if (validation != nullptr)
-            return validate(*validation, {.full = o.full, .device = o.device}, o.quiet);
-        const io::Interrupt interrupt;
         std::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit is then an io::IoError
-        return run_case(o);
+        std::optional<io::Interrupt> interrupt;
+        if (validation == nullptr) interrupt.emplace();
+        const int code = validation != nullptr
+                             ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet)
+                             : run_case(o);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw io::IoError("standard output: cannot be written");
+        return code;
     } catch (const DeviceError& e) {
         return fail(io::exit_code::not_available, "--device " + o.device_name + ": " + e.what());
     } catch (const std::bad_alloc&) {

@@ -30,7 +30,7 @@ long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(
 class CaseRun {
 public:
     CaseRun(const Options& o, Case from)
-        : o(o), c(std::move(from)), text(c.source.text()), interval(steps_in(c.interval, c.h)),
+        : o(o), c(std::move(from)), text(c.source.current_text()), interval(steps_in(c.interval, c.h)),
           frame_interval(o.no_vtk ? 0 : steps_in(c.frame_interval, c.h)),
           checkpoint_interval(steps_in(c.checkpoint_interval, c.h)), steps(std::lround(c.end / c.h)),
           rows(o.output, c, interval, frame_interval)
@@ -41,7 +41,7 @@ public:
         if (!io::is_missing_or_empty(o.output) && !o.force && !o.resume)
             throw io::UsageError(o.output +
                                  ": is not empty; --force overwrites it, --resume continues its run");
-        for (const std::string& n : c.notices) warn(c.source.with_location(n));
+        for (const std::string& n : c.notices) warn(n);
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written
         log("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(), c.boundaries.size(), steps,
@@ -91,21 +91,17 @@ private:
         const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
         char what[160];
         if (c.h > stable) {
-            std::snprintf(what, sizeof what, "/step: must not be above %.3g s, the stability limit, got %g",
+            std::snprintf(what, sizeof what, "step must not be above %.3g s, the stability limit, got %g",
                           stable, c.h);
-            if (!o.force)
-                throw io::InvalidInput(c.source.with_location(std::string(what) + "; --force overrides"));
-            warn(c.source.with_location(what));
+            if (!o.force) c.source.fail("/step", std::string(what) + "; --force overrides");
+            warn(c.source.place("/step") + ": " + what);
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
             std::snprintf(what, sizeof what,
-                          "/step: %g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
+                          "%g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
                           c.h / limits.rayleigh, c.h / limits.collision);
-            warn(c.source.with_location(what));
+            warn(c.source.place("/step") + ": " + what);
         }
-        if (c.end < c.h) {
-            std::snprintf(what, sizeof what, "/end: must be at least one step, got %g", c.end);
-            throw io::InvalidInput(c.source.with_location(what));
-        }
+        if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
     }
 
     /// Whether the output directory contains a completed run of this case. Throws io::IoError if it contains
@@ -279,9 +275,6 @@ private:
         const World& w = *c.world;
         io::Json s = {{"status", status}, {"exit_code", code}};
         if (!message.empty()) s["message"] = message;
-        io::Json set = io::Json::array();
-        for (const Setting& setting : c.source.settings())
-            set.push_back(setting.pointer + '=' + setting.value);
         s["case"] = {{"name", c.name},
                      {"particles", w.count()},
                      {"boundaries", c.boundaries.size()},
@@ -290,7 +283,7 @@ private:
                      {"interval", c.interval},
                      {"frame_interval", c.frame_interval},
                      {"checkpoint_interval", c.checkpoint_interval},
-                     {"set", set},
+                     {"set", c.source.changes},
                      {"warnings", c.notices}};
         s["counters"] = {
             {"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows.count()}, {"t", w.t()}};

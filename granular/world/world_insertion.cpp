@@ -24,9 +24,14 @@ std::uint32_t World::add(const Particle& p)
     if (!options.orientation && p.e != Particle().e)
         refuse(where, "an orientation requires a world that integrates orientations; e0", p.e[0]);
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
+    const double density = materials[static_cast<std::size_t>(p.material)].density,
+                 mass = p.mass > 0 ? p.mass : sphere_mass(p.radius, density);
+    // The mass and its inverse are stored in single precision.
+    constexpr double least = std::numeric_limits<float>::min();
+    if (!p.fixed && !(mass >= least && mass <= 1 / least))
+        refuse(where, "the mass must be in the range of single precision, 1.2e-38 to 8.5e37 kg", mass);
     pending.push_back(p);
-    if (!(p.mass > 0))
-        pending.back().mass = sphere_mass(p.radius, materials[static_cast<std::size_t>(p.material)].density);
+    pending.back().mass = mass;
     return id;
 }
 

@@ -8,7 +8,6 @@
 #include "studies/running/vtk.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -16,82 +15,30 @@ namespace hilda::studies {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& text)
-{
-    throw io::UsageError(option + ": " + what + ", got '" + text + "'");
-}
-
-/// The finite number that the whole text represents; NaN if it represents none
-double parse(std::string_view text)
-{
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && at == end && std::isfinite(value) ? value : std::nan("");
-}
-
-/// The integer that the whole text represents
-template <class Number>
-std::optional<Number> whole_number(std::string_view text)
-{
-    Number value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
-}
-
 std::vector<double> descending(const std::string& option, const std::string& text,
                                double (*read)(const std::string&, const std::string&), const char* once)
 {
     std::vector<double> all;
     for (const std::string& part : list(option, text)) all.push_back(read(option, part));
     std::sort(all.rbegin(), all.rend());
-    if (std::adjacent_find(all.begin(), all.end()) != all.end()) refuse(option, once, text);
+    if (std::adjacent_find(all.begin(), all.end()) != all.end()) refuse_option(option, once, text);
     return all;
 }
 
 }  // namespace
 
-double number(const std::string& option, const std::string& text)
-{
-    const double value = parse(text);
-    if (std::isnan(value)) refuse(option, "must be a finite number", text);
-    return value;
-}
-
-double positive_number(const std::string& option, const std::string& text)
-{
-    const double value = parse(text);
-    if (!(value > 0)) refuse(option, "must be a positive, finite number", text);
-    return value;
-}
-
-double nonnegative_number(const std::string& option, const std::string& text)
-{
-    const double value = parse(text);
-    if (!(value >= 0)) refuse(option, "must be a finite number, not negative", text);
-    return value;
-}
-
-double fraction(const std::string& option, const std::string& text)
-{
-    const double value = parse(text);
-    if (!(value >= 0 && value <= 1)) refuse(option, "must be a number from 0 to 1", text);
-    return value;
-}
-
 double relative_tolerance(const std::string& option, const std::string& text)
 {
-    const double value = parse(text);
+    const double value = io::finite_number_in(text);
     if (!(value >= 1e-14 && value < 1))
-        refuse(option, "must be a number from 1e-14 (limit of double precision) to below 1", text);
+        refuse_option(option, "must be a number from 1e-14 (limit of double precision) to below 1", text);
     return value;
 }
 
 double absolute_tolerance(const std::string& option, const std::string& text)
 {
-    const double value = parse(text);
-    if (!(value >= 1e-14)) refuse(option, "must be a finite number, at least 1e-14", text);
+    const double value = io::finite_number_in(text);
+    if (!(value >= 1e-14)) refuse_option(option, "must be a finite number, at least 1e-14", text);
     return value;
 }
 
@@ -100,7 +47,7 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
     if (text == "auto") return lie::LinearSolver::automatic;
     if (text == "klu") return lie::LinearSolver::klu;
     if (text == "condensed") return lie::LinearSolver::condensed;
-    refuse(option, "must be auto, klu or condensed", text);
+    refuse_option(option, "must be auto, klu or condensed", text);
 }
 
 std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words)
@@ -109,7 +56,7 @@ std::string one_of(const std::string& option, const std::string& text, std::span
     std::string all;
     for (size_t k = 0; k < words.size(); ++k)
         all += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
-    refuse(option, "must be " + all, text);
+    refuse_option(option, "must be " + all, text);
 }
 
 std::string preset(const std::string& option, const std::string& text)
@@ -122,38 +69,9 @@ std::string normal_rows(const std::string& option, const std::string& text)
     return one_of(option, text, std::vector<std::string>{"tangent", "fixed-xy"});
 }
 
-int positive_count(const std::string& option, const std::string& text)
-{
-    const std::optional<int> value = whole_number<int>(text);
-    if (!value || *value < 1) refuse(option, "must be a whole number, at least 1", text);
-    return *value;
-}
-
 int frames(const std::string& option, const std::string& text)
 {
-    const std::optional<int> value = whole_number<int>(text);
-    if (!value || *value < 1 || *value > Snapshots::max_frames)
-        refuse(option, "must be a whole number from 1 to " + std::to_string(Snapshots::max_frames), text);
-    return *value;
-}
-
-std::uint64_t seed(const std::string& option, const std::string& text)
-{
-    const std::optional<std::uint64_t> value = whole_number<std::uint64_t>(text);
-    if (!value) refuse(option, "must be a whole number from 0 to 2^64 - 1", text);
-    return *value;
-}
-
-std::vector<std::string> list(const std::string& option, const std::string& text)
-{
-    std::vector<std::string> parts;
-    for (size_t from = 0; from <= text.size();) {
-        const size_t to = std::min(text.find(',', from), text.size());
-        if (to == from) refuse(option, "must be a list such as A,B without empty parts", text);
-        parts.push_back(text.substr(from, to - from));
-        from = to + 1;
-    }
-    return parts;
+    return io::count_up_to(Snapshots::max_frames, option, text);
 }
 
 std::vector<double> steps(const std::string& option, const std::string& text)
@@ -170,39 +88,34 @@ std::vector<int> bars(const std::string& option, const std::string& text)
 {
     std::vector<int> N;
     for (const std::string& part : list(option, text)) {
-        const std::optional<int> n = whole_number<int>(part);
+        const std::optional<int> n = io::number_in<int>(part);
         if (!n || *n < 1 || *n > most_bars)
-            refuse(option, "N must be a whole number from 1 to " + std::to_string(most_bars), part);
+            refuse_option(option, "N must be a whole number from 1 to " + std::to_string(most_bars), part);
         N.push_back(*n);
     }
     std::sort(N.begin(), N.end());
-    if (std::adjacent_find(N.begin(), N.end()) != N.end()) refuse(option, "must contain each N once", text);
+    if (std::adjacent_find(N.begin(), N.end()) != N.end())
+        refuse_option(option, "must contain each N once", text);
     return N;
-}
-
-std::string setting(const std::string& option, const std::string& text)
-{
-    if (!text.starts_with('/') || text.find('=') == std::string::npos)
-        refuse(option, "must be /json/pointer=VALUE, such as /bodies/0/mass=2", text);
-    return text;
 }
 
 Expectation expectation(const std::string& option, const std::string& text)
 {
     const size_t equals = text.find('='), plus_minus = text.find("+-");
     const std::string form = "must be KEY=VALUE or KEY=VALUE+-TOL, such as order=2+-0.1";
-    if (equals == std::string::npos || equals == 0) refuse(option, form, text);
+    if (equals == std::string::npos || equals == 0) refuse_option(option, form, text);
     Expectation e{.key = text.substr(0, equals), .text = text};
-    e.value = parse(std::string_view(text).substr(equals + 1, plus_minus - std::min(plus_minus, equals + 1)));
-    if (plus_minus != std::string::npos) e.tolerance = parse(std::string_view(text).substr(plus_minus + 2));
-    if (std::isnan(e.value) || !(e.tolerance >= 0)) refuse(option, form, text);
+    e.value = io::finite_number_in(
+        std::string_view(text).substr(equals + 1, plus_minus - std::min(plus_minus, equals + 1)));
+    if (plus_minus != std::string::npos)
+        e.tolerance = io::finite_number_in(std::string_view(text).substr(plus_minus + 2));
+    if (std::isnan(e.value) || !(e.tolerance >= 0)) refuse_option(option, form, text);
     return e;
 }
 
 std::string with_nearest(const std::string& word, std::span<const std::string> known)
 {
-    const std::string near = io::nearest(word, known);
-    return " '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+    return " '" + word + "'" + io::did_you_mean(word, known);
 }
 
 std::vector<std::string> integrators(const std::string& option, const std::string& text)
@@ -216,7 +129,7 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
                                  " (hilda integrators lists them)");
         if (std::find(selected.begin(), selected.begin() + static_cast<std::ptrdiff_t>(k), selected[k]) !=
             selected.begin() + static_cast<std::ptrdiff_t>(k))
-            refuse(option, "must contain each integrator once", text);
+            refuse_option(option, "must contain each integrator once", text);
     }
     return selected;
 }
@@ -224,7 +137,7 @@ std::vector<std::string> integrators(const std::string& option, const std::strin
 std::string integrator(const std::string& option, const std::string& text)
 {
     const std::vector<std::string> named = integrators(option, text);
-    if (named.size() != 1) refuse(option, "must be one integrator", text);
+    if (named.size() != 1) refuse_option(option, "must be one integrator", text);
     return named.front();
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Conversion of option values of the command line to numbers, lists and names. Each function takes the name
-/// of the option and its text. An invalid text is a io::UsageError that states the option, the valid range and
-/// the text.
+/// Option values of hilda, as in io/option_values.hpp.
 
 #pragma once
 
+#include "io/option_values.hpp"
 #include "lie/solver/linear_solver.hpp"
 #include "studies/framework/study.hpp"
 
@@ -15,13 +14,16 @@
 
 namespace hilda::studies {
 
-/// A finite number. The whole text must be the number.
-double number(const std::string& option, const std::string& text);
-/// A finite number > 0, and a finite number >= 0
-double positive_number(const std::string& option, const std::string& text);
-double nonnegative_number(const std::string& option, const std::string& text);
-/// A number from 0 to 1
-double fraction(const std::string& option, const std::string& text);
+using io::fraction;
+using io::list;
+using io::nonnegative_number;
+using io::number;
+using io::positive_count;
+using io::positive_number;
+using io::refuse_option;
+using io::seed;
+using io::setting;
+
 /// A relative tolerance: 1e-14 <= value < 1. Smaller tolerances are below the rounding errors of double
 /// precision.
 double relative_tolerance(const std::string& option, const std::string& text);
@@ -35,16 +37,9 @@ std::string one_of(const std::string& option, const std::string& text, std::span
 std::string preset(const std::string& option, const std::string& text);
 /// tangent or fixed-xy
 std::string normal_rows(const std::string& option, const std::string& text);
-/// An integer >= 1
-int positive_count(const std::string& option, const std::string& text);
 /// A number of frames, from 1 to Snapshots::max_frames
 int frames(const std::string& option, const std::string& text);
 
-/// An unsigned 64-bit integer
-std::uint64_t seed(const std::string& option, const std::string& text);
-
-/// The parts of A,B,C. No part may be empty.
-std::vector<std::string> list(const std::string& option, const std::string& text);
 /// Step sizes H1,H2,... > 0, sorted in descending order. Each may occur once.
 std::vector<double> steps(const std::string& option, const std::string& text);
 /// Relative tolerances R1,R2,..., each as in relative_tolerance(), sorted in descending order
@@ -52,8 +47,6 @@ std::vector<double> relative_tolerances(const std::string& option, const std::st
 /// Numbers of bars N1,N2,...: integers from 1 to most_bars, sorted in ascending order
 std::vector<int> bars(const std::string& option, const std::string& text);
 
-/// The text of a setting. It must have the form /json/pointer=VALUE.
-std::string setting(const std::string& option, const std::string& text);
 /// KEY=VALUE[+-TOL]
 Expectation expectation(const std::string& option, const std::string& text);
 

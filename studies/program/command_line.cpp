@@ -128,11 +128,6 @@ private:
     {
         return {setting(option, text)};
     }
-    static std::string path(const std::string& option, const std::string& text)
-    {
-        if (text.empty()) throw io::UsageError(option + ": must not be empty");
-        return text;
-    }
 
     /// The options of lie::Settings, common to run and study
     static void add_settings(CLI::App* c, lie::Settings& s)
@@ -196,7 +191,7 @@ private:
         c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force or --resume is given; default: out/NAME",
-              assign(o.output, path));
+              assign(o.output, io::path));
         c->add_flag(
             "--force", o.force,
             "overwrite an output directory that is not empty; accept a step above the stability limit");
@@ -244,7 +239,7 @@ private:
         CLI::App* c = add("models", "list the built-in models, or print one as a model file",
                           [this] { return name.empty() ? list_models(json) : write_model(name, write_to); });
         c->add_option("NAME", name, "name of a built-in model; default: print the list")->type_name("");
-        value(c, "--write", "FILE", "write the model to this file; default: stdout", assign(write_to, path));
+        value(c, "--write", "FILE", "write the model to this file; default: stdout", assign(write_to, io::path));
         c->add_flag("--json", json, "print the list as JSON");
     }
 
@@ -283,7 +278,7 @@ private:
         add_settings(c, o.settings);
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force is given; default: out/KIND",
-              assign(o.output, path));
+              assign(o.output, io::path));
         value(c, "--reference", "NAME",
               "integrator of the reference solution; default: the reference solution of each problem",
               assign(o.reference, integrator));
@@ -303,7 +298,7 @@ private:
             "study convergence with every problem, integrator and step instead of the short selection");
         c->add_flag("--check", o.check,
                     "evaluate all acceptance criteria of the study; exit code 6 if one fails");
-        value(c, "--against", "FILE", "CSV table to compare the result with", assign(o.against, path));
+        value(c, "--against", "FILE", "CSV table to compare the result with", assign(o.against, io::path));
         value(c, "--grid", "NAME", "parameter grid of a sweep; default: the finest",
               assign(o.grid, unchanged));
         value(c, "--vtk", "N", "number of ParaView frames of each run; default: no frames",

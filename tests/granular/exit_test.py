@@ -33,7 +33,7 @@ def main():
                 ("--seed", "-1", "must be a whole number from 0"), ("--seed", "1.5", "must be a whole number from 0"),
                 ("--threads", "0", "must be a whole number from 1"), ("--checkpoint", "-1", "must be a finite number, not negative"),
                 ("--set", "step=1", "must be /json/pointer=VALUE"), ("--set", "/step", "must be /json/pointer=VALUE"),
-                ("--output", "", "must be a directory")):
+                ("--output", "", "must not be empty")):
             refused(2, f"granular: {option}: {message}", option, value)
         for option in ("--end", "1"), ("--set", "/end=1"), ("--seed", "1"), ("--every", "1"), ("--json",), ("--resume",):
             process = subprocess.run([sys.argv[1], "head-on", *option], cwd=here, capture_output=True, text=True)
@@ -43,12 +43,12 @@ def main():
         refused(2, "exclude each other", "--force", "--resume")
         refused(2, "--every is the old name of --interval; give only one of them", "--every", "1", "--interval", "1")
         place = r"short.json:1:\d+ \({}\): "
-        refused(3, place.format("/laws/0/mu") + r"must not be negative, got -1.0 \(from --set '/laws/0/mu=-1'\)", "--set", "/laws/0/mu=-1")
-        refused(3, place.format("/steps") + r"unknown key.*\(from --set '/steps=1'\)", "--set", "/steps=1")
-        refused(3, place.format("/laws") + r"--set '/laws/7/mu=1': entry \"7\" does not exist", "--set", "/laws/7/mu=1")
-        refused(3, place.format("/step") + r"must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
-        refused(3, place.format("/end") + r"must be at most 9e15 steps", "--end", "1e30")
-        refused(3, place.format("/end") + r"must be at least one step, got 1e-08", "--end", "1e-8")
+        refused(3, place.format("/laws/0/mu") + r'mu must not be negative, got -1 \(from --set "/laws/0/mu=-1"\)', "--set", "/laws/0/mu=-1")
+        refused(3, place.format("/steps") + r'unknown key.*\(from --set "/steps=1"\)', "--set", "/steps=1")
+        refused(3, place.format("/laws") + r'--set "/laws/7/mu=1": there is no "7" in a list of 2', "--set", "/laws/7/mu=1")
+        refused(3, place.format("/step") + r"step must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
+        refused(3, place.format("/end") + r"end must be at most 9e15 steps", "--end", "1e30")
+        refused(3, place.format("/end") + r"end must be at least one step, got 1e-08", "--end", "1e-8")
         refused(7, "--device cuda:99: ", "--device", "cuda:99")
         refused(3, "none.json: does not exist", case="none")
         expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "rejected runs write no files")
@@ -101,12 +101,19 @@ def main():
         expect("hilda: warning: --every was renamed to --interval; the old name is still read\n" in err, f"notice for the option: {err}")
         expect((here / "new" / "run.csv").read_text().count("\n") == 6, "--every sets the interval")
         err = runs.finish(short, "--output", "new", "--force", "--set", "/every=2.5e-5")
-        expect(r"every was renamed to interval; the old name is still read (from --set '/every=2.5e-5')" in err, f"notice for --set: {err}")
+        expect('every was renamed to interval; the old name is still read (from --set "/every=2.5e-5")' in err, f"notice for --set: {err}")
         expect((here / "new" / "run.csv").read_text().count("\n") == 6, "--set /every sets the interval")
         runs.finish("old", "--quiet", "--output", "old", "--force", "--interval", "2.5e-5")
         expect((here / "old" / "run.csv").read_text().count("\n") == 6, "--interval replaces the old name in the file")
         (here / "both.json").write_text(json.dumps(dict(old, interval=5e-5)))
-        refused(3, r"both.json:1:\d+ \(/every\): is the old name of interval, which is given as well; remove one of them", case="both")
+        refused(3, r"both.json:1:\d+ \(/every\): every is the old name of interval, which is given as well; remove one of them", case="both")
+
+        # a full device behind stdout
+        with open("/dev/full", "w") as full:
+            for arguments in (["short.json", "--output", "pipe", "--json"], ["head-on"]):
+                process = subprocess.run([sys.argv[1], *arguments, "--quiet" if arguments[0] != "head-on" else "--verbose"], cwd=here, stdout=full,
+                                         stderr=subprocess.PIPE, text=True, env=runs.environment)
+                expect(process.returncode == 5 and "standard output: cannot be written" in process.stderr, f"{process.returncode}: {process.stderr}")
 
         # a full disk
         process = subprocess.run([sys.argv[1], "short.json", "--output", "full", "--quiet", "--threads", "1"], cwd=here,
@@ -117,7 +124,7 @@ def main():
 
         # a step above the stability limit is rejected, and accepted with --force
         coarse = runs.case("coarse", step=3e-5, end=3e-5)
-        refused(3, r"coarse.json:1:\d+ \(/step\): must not be above .* got 3e-05; --force", case=coarse)
+        refused(3, r"coarse.json:1:\d+ \(/step\): step must not be above .* got 3e-05; --force", case=coarse)
         expect("warning" in runs.finish(coarse, "--force"), "an unstable step is accepted with --force")
 
         # lost particles: id, time and velocity

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/object_reader.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+ObjectReader::ObjectReader(io::ObjectReader o) : io::ObjectReader(std::move(o))
+{
+    largest = std::numeric_limits<float>::max();
+    least_positive = std::numeric_limits<float>::min();
+}
+
+Vec3 ObjectReader::vec3(std::string_view key, const std::optional<Vec3>& fallback)
+{
+    if (fallback && find(key) == nullptr) return *fallback;
+    const std::vector<double> x = numbers(key, 3);
+    return {x[0], x[1], x[2]};
+}
+
+Vec3 ObjectReader::direction(std::string_view key)
+{
+    const Vec3 v = vec3(key);
+    if (!(v.norm() > 0))
+        fail(key, std::string(key) + " must have a direction, got " + io::described(*find(key)));
+    return (1 / v.norm()) * v;
+}
+
+std::array<bool, 3> ObjectReader::flags(std::string_view key, const std::array<bool, 3>& fallback)
+{
+    const io::Json* v = find(key);
+    if (v == nullptr) return fallback;
+    if (v->list() == nullptr || v->size() != 3)
+        fail(key,
+             std::string(key) + " must be a list of 3 values, each true or false, got " + io::described(*v));
+    const io::Json::List& all = *v->list();
+    std::array<bool, 3> x{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (all[k].boolean() == nullptr)
+            fail(key, k, std::string(key) + " must be true or false, got " + io::described(all[k]));
+        x[k] = *all[k].boolean();
+    }
+    return x;
+}
+
+bool ObjectReader::has_formula(std::string_view key)
+{
+    const io::Json* v = find(key);
+    return v != nullptr && v->list() != nullptr &&
+           std::any_of(v->list()->begin(), v->list()->end(),
+                       [](const io::Json& part) { return part.string() != nullptr; });
+}
+
+VectorFormula ObjectReader::formulas(std::string_view key)
+{
+    VectorFormula all;
+    std::array<io::Expression, 3> parts = expressions(key);
+    for (std::size_t k = 0; k < 3; ++k)
+        all.of[k] = [e = std::move(parts[k])](double t) { return e.value(t); };
+    return all;
+}
+
+std::vector<ObjectReader> ObjectReader::objects(std::string_view key)
+{
+    std::vector<ObjectReader> all;
+    const io::Json::List& elements = list(key, false);
+    for (std::size_t k = 0; k < elements.size(); ++k)
+        all.emplace_back(source, elements[k], io::pointer_to(pointer(key), std::to_string(k)));
+    return all;
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Reader of one JSON object of a case: that of io, with vectors and formulas of granular.
+
+#pragma once
+
+#include "granular/case/motion.hpp"
+#include "io/object_reader.hpp"
+
+namespace hilda::granular {
+
+/// Numbers must be in the range of single precision, in which the particles are computed.
+class ObjectReader : public io::ObjectReader {
+public:
+    ObjectReader(const io::JsonSource& source, const io::Json& value, std::string pointer)
+        : ObjectReader(io::ObjectReader(source, value, std::move(pointer)))
+    {}
+    ObjectReader(io::ObjectReader o);
+
+    Vec3 vec3(std::string_view key, const std::optional<Vec3>& fallback = {});
+    Vec3 direction(std::string_view key);  ///< three numbers, not all zero, divided by their length
+    std::array<bool, 3> flags(std::string_view key, const std::array<bool, 3>& fallback);
+    /// Whether the value is a list that contains a string, that is, a formula
+    bool has_formula(std::string_view key);
+    /// A vector of three components, each a number or a formula in t
+    VectorFormula formulas(std::string_view key);
+    /// Readers of the elements of a list. Empty if the key is missing.
+    std::vector<ObjectReader> objects(std::string_view key);
+    ObjectReader object(std::string_view key) { return io::ObjectReader::object(key); }
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/option_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hilda::io {
+
+void refuse_option(const std::string& option, const std::string& what, const std::string& text)
+{
+    throw UsageError(option + ": " + what + ", got '" + text + "'");
+}
+
+double finite_number_in(std::string_view text)
+{
+    const std::optional<double> value = number_in<double>(text);
+    return value && std::isfinite(*value) ? *value : std::nan("");
+}
+
+double number(const std::string& option, const std::string& text)
+{
+    const double value = finite_number_in(text);
+    if (std::isnan(value)) refuse_option(option, "must be a finite number", text);
+    return value;
+}
+
+double positive_number(const std::string& option, const std::string& text)
+{
+    const double value = finite_number_in(text);
+    if (!(value > 0)) refuse_option(option, "must be a positive, finite number", text);
+    return value;
+}
+
+double nonnegative_number(const std::string& option, const std::string& text)
+{
+    const double value = finite_number_in(text);
+    if (!(value >= 0)) refuse_option(option, "must be a finite number, not negative", text);
+    return value;
+}
+
+double fraction(const std::string& option, const std::string& text)
+{
+    const double value = finite_number_in(text);
+    if (!(value >= 0 && value <= 1)) refuse_option(option, "must be a number from 0 to 1", text);
+    return value;
+}
+
+int positive_count(const std::string& option, const std::string& text)
+{
+    const std::optional<int> value = number_in<int>(text);
+    if (!value || *value < 1) refuse_option(option, "must be a whole number, at least 1", text);
+    return *value;
+}
+
+int count_up_to(int most, const std::string& option, const std::string& text)
+{
+    const std::optional<int> value = number_in<int>(text);
+    if (!value || *value < 1 || *value > most)
+        refuse_option(option, "must be a whole number from 1 to " + std::to_string(most), text);
+    return *value;
+}
+
+std::uint64_t seed(const std::string& option, const std::string& text)
+{
+    const std::optional<std::uint64_t> value = number_in<std::uint64_t>(text);
+    if (!value) refuse_option(option, "must be a whole number from 0 to 2^64 - 1", text);
+    return *value;
+}
+
+std::vector<std::string> list(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> parts;
+    for (size_t from = 0; from <= text.size();) {
+        const size_t to = std::min(text.find(',', from), text.size());
+        if (to == from) refuse_option(option, "must be a list such as A,B without empty parts", text);
+        parts.push_back(text.substr(from, to - from));
+        from = to + 1;
+    }
+    return parts;
+}
+
+std::string path(const std::string& option, const std::string& text)
+{
+    if (text.empty()) throw UsageError(option + ": must not be empty");
+    return text;
+}
+
+std::string setting(const std::string& option, const std::string& text)
+{
+    if (!text.starts_with('/') || text.find('=') == std::string::npos)
+        refuse_option(option, "must be /json/pointer=VALUE, such as /gravity/2=-1.62", text);
+    return text;
+}
+
+}  // namespace hilda::io

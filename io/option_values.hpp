@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Conversion of option values of the command line to numbers and lists. Each function takes the name of the
+/// option and its text. An invalid text is a UsageError that states the option, the valid range and the text.
+
+#pragma once
+
+#include "io/error.hpp"
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hilda::io {
+
+/// Throws UsageError "OPTION: what, got 'TEXT'".
+[[noreturn]] void refuse_option(const std::string& option, const std::string& what, const std::string& text);
+
+/// The number that the whole text represents, if it is one
+template <class Number>
+std::optional<Number> number_in(std::string_view text)
+{
+    Number value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
+}
+
+/// The finite number that the whole text represents; NaN if it represents none
+double finite_number_in(std::string_view text);
+
+/// A finite number. The whole text must be the number.
+double number(const std::string& option, const std::string& text);
+/// A finite number > 0, and a finite number >= 0
+double positive_number(const std::string& option, const std::string& text);
+double nonnegative_number(const std::string& option, const std::string& text);
+/// A number from 0 to 1
+double fraction(const std::string& option, const std::string& text);
+/// An integer from 1 to `most`
+int positive_count(const std::string& option, const std::string& text);
+int count_up_to(int most, const std::string& option, const std::string& text);
+/// An unsigned 64-bit integer
+std::uint64_t seed(const std::string& option, const std::string& text);
+/// The parts of A,B,C. No part may be empty.
+std::vector<std::string> list(const std::string& option, const std::string& text);
+/// A text that is not empty
+std::string path(const std::string& option, const std::string& text);
+/// The text of a --set. It must have the form /json/pointer=VALUE.
+std::string setting(const std::string& option, const std::string& text);
+
+}  // namespace hilda::io

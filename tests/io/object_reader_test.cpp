@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/object_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+
+namespace {
+
+/// Message of reading the value of the key "x"; "" if it is read
+template <class Read>
+std::string refusal(const std::string& text, const Read& read)
+{
+    const io::JsonSource source(text, "f");
+    try {
+        io::ObjectReader o(source, source.root, "");
+        read(o);
+        o.finish();
+        return "";
+    } catch (const io::PlacedError& e) {
+        return e.what();
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a reader refuses other types and values outside the range with their place", "[io][object_reader]")
+{
+    const auto number = [](io::ObjectReader& o) { o.number("x"); };
+    const auto positive = [](io::ObjectReader& o) { o.positive("x"); };
+    const auto count = [](io::ObjectReader& o) { o.count("x"); };
+    const auto fraction = [](io::ObjectReader& o) { o.fraction("x"); };
+    const auto word = [](io::ObjectReader& o) { o.one_of("x", {"plane", "sphere"}); };
+    const auto three = [](io::ObjectReader& o) { o.numbers("x", 3); };
+    const auto formulas = [](io::ObjectReader& o) { o.expressions("x"); };
+    CHECK(refusal("[]", number) == "f:1:1 (/): must be an object, got []");
+    CHECK(refusal("{}", number) == "f:1:1 (/): missing key 'x'");
+    CHECK(refusal(R"({"x": "1"})", number) == "f:1:7 (/x): x must be a number, got \"1\"");
+    CHECK(refusal(R"({"x": 0})", positive) == "f:1:7 (/x): x must be positive, got 0");
+    CHECK(refusal(R"({"x": -1})", count) == "f:1:7 (/x): x must be an integer from 0 to 2^53, got -1");
+    CHECK(refusal(R"({"x": 1.5})", count) == "f:1:7 (/x): x must be an integer from 0 to 2^53, got 1.5");
+    CHECK(refusal(R"({"x": 9007199254740991})", count).empty());
+    CHECK(refusal(R"({"x": 7})", fraction) == "f:1:7 (/x): x must be from 0 to 1, got 7");
+    CHECK(refusal(R"({"x": "plan"})", word) == "f:1:7 (/x): unknown x \"plan\"; did you mean 'plane'?");
+    CHECK(refusal(R"({"x": "torus"})", word) == "f:1:7 (/x): unknown x \"torus\"; allowed: plane, sphere");
+    CHECK(refusal(R"({"x": [1, 2]})", three) == "f:1:7 (/x): x must be a list of 3 numbers, got [1, 2]");
+    CHECK(refusal(R"({"x": [1, 2, true]})", three) == "f:1:14 (/x/2): x must be a number, got true");
+    CHECK(refusal("{\"x\": [1, \"t\", \"sine(t)\"]}", formulas) ==
+          "f:1:16 (/x/2): unknown function 'sine' in \"sine(t)\" at column 1; did you mean 'sin'?");
+    CHECK(refusal(R"({"x": [1, "t", null]})", formulas) ==
+          "f:1:16 (/x/2): a component must be a number or an expression in a string, got null");
+    CHECK(refusal(R"({"x": 1, "xx": 2, "note": "n"})", number) ==
+          "f:1:10 (/xx): unknown key \"xx\"; did you mean 'x'?");
+    CHECK(refusal(R"({"x": 1, "note": "any object may have one"})", number).empty());
+}

@@ -23,7 +23,7 @@
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/foot.hpp"
 #include "dae/model.hpp"
-#include "dae/model_file_types.hpp"
+#include "dae/model_types.hpp"
 #include "lie/settings.hpp"
 
 namespace hilda::contact {

@@ -176,6 +176,14 @@ void Model::set_internal_state_at_start(State& x) const
     for (const auto& f : force) f->update_internal_state(x);
 }
 
+bool Model::internal_states_are_history() const
+{
+    return std::any_of(force.begin(), force.end(), [](const auto& f) { return f->internal_states() > 0; }) ||
+           std::any_of(general_constraint.begin(), general_constraint.end(), [](const auto& c) {
+               return c->algebraic_variables() > 0 && c->internal_states() > 0;
+           });
+}
+
 Model::StableStep Model::stable_step(const State& x) const
 {
     StableStep smallest;
@@ -234,9 +242,11 @@ void Model::set_pattern()
     for (const auto& c : general_constraint) {
         c->first_row = rows_pattern.rows();
         add_to_pattern(*c, 0, c->position_rows());
-        rows_pattern.algebraic.push_back(
-            {c->first_row, c->position_rows(), alphas, c->algebraic_variables(), {}});
-        rows_pattern.algebraic.back().D.setZero(c->position_rows(), c->algebraic_variables());
+        if (c->algebraic_variables() > 0) {
+            rows_pattern.algebraic.push_back(
+                {c->first_row, c->position_rows(), alphas, c->algebraic_variables(), {}});
+            rows_pattern.algebraic.back().D.setZero(c->position_rows(), c->algebraic_variables());
+        }
         if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->first_row + c->position_rows() - 1);
         alphas += c->algebraic_variables();
     }

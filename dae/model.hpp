@@ -181,6 +181,8 @@ public:
     /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
     /// same torque, and updates the internal states of forces and general constraints.
     void accepted(const State& before, State& after) const override;
+    /// Whether a force or a contact has internal states
+    bool internal_states_are_history() const override;
     std::string row_name(int k) const override;
     std::string body_name(int b) const override { return b == ground ? "ground" : body[b].name; }
 

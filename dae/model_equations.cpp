@@ -59,8 +59,9 @@ void Model::variation(const State& x, lie::Rows& out) const
                 out.entry[e].pi = C_body.row(first + k).tail<3>();
             }
     };
-    for (size_t n = 0; n < general_constraint.size(); ++n) {
-        const Constraint& c = *general_constraint[n];
+    auto group = out.algebraic.begin();
+    for (const auto& constraint : general_constraint) {
+        const Constraint& c = *constraint;
         d.set_zero(c);
         if (inactive(c, x))
             d.Phi_alpha.setIdentity();  // regular, so that the corrections of α are zero
@@ -68,7 +69,7 @@ void Model::variation(const State& x, lie::Rows& out) const
             c.variation(arguments(c, x), d);
         fill(c, 0, c.first_row, c.position_rows());
         fill(c, c.position_rows(), c.first_velocity_row, c.velocity_rows());
-        out.algebraic[n].D = d.Phi_alpha;
+        if (c.algebraic_variables() > 0) (group++)->D = d.Phi_alpha;
     }
 }
 

@@ -2,8 +2,7 @@
 /// ModelReader: builds a model from the JSON tree, and writes the canonical form of what it reads.
 #include "dae/model_file.hpp"
 
-#include "dae/forces/prescribed.hpp"
-#include "dae/model_file_types.hpp"
+#include "dae/model_types.hpp"
 #include "io/expression.hpp"
 #include "io/nearest.hpp"
 
@@ -29,7 +28,7 @@ Mat3 inertia(ObjectReader& o)
     return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
 }
 
-class ModelReader {
+class ModelReader final : public BodyFinder {
 public:
     ModelReader(const JsonSource& source, Description& out) : source(source), out(out), model(*out.model) {}
 
@@ -139,7 +138,7 @@ private:
     }
 
     /// Number of the body whose name or id is given by a key
-    int body_named(ObjectReader& o, std::string_view key)
+    int body(ObjectReader& o, std::string_view key) const override
     {
         const Json* v = o.find(key);
         if (v != nullptr && v->number() != nullptr) {
@@ -166,40 +165,23 @@ private:
     }
 
     /// body_i and body_j, which must differ
-    std::pair<int, int> pair(ObjectReader& o)
+    std::pair<int, int> pair(ObjectReader& o) const override
     {
-        const int i = body_named(o, "body_i"), j = body_named(o, "body_j");
+        const int i = body(o, "body_i"), j = body(o, "body_j");
         if (i == j)
             o.fail("body_j",
                    "body_i and body_j must be two different bodies, got '" + model.body_name(i) + "' twice");
         return {i, j};
     }
 
-    /// Calls `build` and adds the location of the object to messages of exceptions that have none.
-    template <class Build>
-    auto with_location(const ObjectReader& o, Build build)
-    {
-        try {
-            return build();
-        } catch (const PlacedError&) {
-            throw;
-        } catch (const lie::InvalidInput& e) {
-            o.fail(e.what());
-        } catch (const io::ExpressionError& e) {
-            o.fail(e.what());
-        }
-    }
-
-    struct Heading {
-        std::string name, type;
-    };
     /// Name and type of a constraint or force. The default name consists of the type and the number in the
     /// list.
-    Heading heading(ObjectReader& o, const std::vector<std::string>& types, std::set<std::string>& used_names)
+    template <class Type>
+    std::pair<std::string, const Type*> heading(ObjectReader& o, std::set<std::string>& used_names)
     {
         o.record("name", {});  // so that the name precedes the type
-        const std::string type = o.one_of("type", types);
-        return {unique_name(o, type, used_names), type};
+        const std::string type = o.one_of("type", io::Registry<Type>::names());
+        return {unique_name(o, type, used_names), io::Registry<Type>::find(type)};
     }
 
     /// A name that is not used yet. The default consists of the kind and the number in the list.
@@ -215,14 +197,20 @@ private:
     Json constraint(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const auto [name, type] = heading(o, constraint_types(), constraint_names);
+        const auto [name, type] = heading<ConstraintType>(o, constraint_names);
         const auto [i, j] = pair(o);
-        Blocks rows =
-            with_location(o, [&, t = type, i = i, j = j] { return read_constraint(t, o, i, j, out.x); });
-        if (type == "DP1" || type == "DP2" || type == "D" || type == "CD") ignore_derivatives(o);
+        ConstraintType::Constraints constraint =
+            o.located([&, type = type, i = i, j = j] { return type->read(o, i, j, out.x); });
+        if (std::count(type->schema.parts.begin(), type->schema.parts.end(), "derivatives") > 0)
+            ignore_derivatives(o);
         Json recorded = o.finish();
-        model.constrain(name, std::move(rows));
-        out.constraint_place.push_back(o.place());
+        if (auto* rows = std::get_if<Blocks>(&constraint)) {
+            model.constrain(name, std::move(*rows));
+            out.constraint_place.push_back(o.place());
+        } else {
+            model.constrain(name, std::get<std::unique_ptr<Constraint>>(std::move(constraint)));
+            out.general_place.push_back(o.place());
+        }
         return recorded;
     }
 
@@ -237,18 +225,9 @@ private:
 
     Json load(const Json& v, const std::string& at)
     {
-        std::vector<std::string> types = pair_force_types();
-        types.insert(types.end(), {"force", "torque"});
         ObjectReader o(source, v, at);
-        const auto [name, type] = heading(o, types, force_names);
-        std::unique_ptr<Force> force;
-        if (type == "force" || type == "torque") {
-            force = prescribed(o, type);
-        } else {
-            const auto [i, j] = pair(o);
-            force =
-                with_location(o, [&, t = type, i = i, j = j] { return read_pair_force(t, o, i, j, out.x); });
-        }
+        const auto [name, type] = heading<ForceType>(o, force_names);
+        std::unique_ptr<Force> force = o.located([&, type = type] { return type->read(o, *this, out.x); });
         force->name = name;
         Json recorded = o.finish();
         model.load(std::move(force));
@@ -275,50 +254,11 @@ private:
         ObjectReader o(source, v, at);
         const std::string name = unique_name(o, "contact", contact_names);
         const auto [i, j] = pair(o);
-        with_location(o, [&, i = i, j = j] {
-            read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x});
-        });
+        o.located(
+            [&, i = i, j = j] { read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x}); });
         out.force_place.resize(model.forces().size(), o.place());
         out.general_place.resize(model.general_constraints().size(), o.place());
         return o.finish();
-    }
-
-    std::unique_ptr<Force> prescribed(ObjectReader& o, const std::string& type)
-    {
-        const int b = body_named(o, "body");
-        if (b == ground) o.fail("body", "a " + type + " must act on a movable body, got 'ground'");
-        const Vec3 point_bar = type == "force" ? o.vec3("point_bar", Vec3::Zero()) : Vec3::Zero();
-        const Frame frame = o.one_of("frame", {"global", "body"}) == "global" ? Frame::global : Frame::body;
-        std::array<io::Expression, 3> in_t = components(o);
-        if (type == "force") return std::make_unique<PrescribedForce>(b, point_bar, frame, std::move(in_t));
-        return std::make_unique<PrescribedTorque>(b, frame, std::move(in_t));
-    }
-
-    std::array<io::Expression, 3> components(ObjectReader& o)
-    {
-        const Json::List& list = o.list("components", true);
-        if (list.size() != 3)
-            o.fail("components", "components must be three numbers or expressions in t, got a list of " +
-                                     std::to_string(list.size()));
-        const auto component = [&](size_t k) {
-            const std::string at = pointer_to(o.pointer("components"), std::to_string(k));
-            const Json& v = list[k];
-            if (v.number() == nullptr && v.string() == nullptr)
-                source.fail(v, at,
-                            "a component must be a number or an expression in a string, got " + described(v));
-            try {
-                io::Expression e(v.number() != nullptr ? shortest(*v.number()) : *v.string());
-                if (!std::isfinite(e.value(0)))
-                    source.fail(v, at,
-                                "a component must be finite at t = 0, got " + described(v) + " with " +
-                                    shortest(e.value(0)));
-                return e;
-            } catch (const io::ExpressionError& e) {
-                source.fail(v, at, e.what());
-            }
-        };
-        o.record("components", list);
-        return {component(0), component(1), component(2)};
     }
 
     const JsonSource& source;

@@ -462,6 +462,36 @@ def commands_page(program, granular):
     return "\n\n".join(head + list(sections.values())) + "\n"
 
 
+# ----------------------------------------------------------------------------------------------- committed schemas
+
+WIDTH = 130
+
+
+def schema_text(value, indent=0):
+    """JSON text with short members on common lines of at most WIDTH columns."""
+    flat = json.dumps(value, ensure_ascii=False)
+    if not isinstance(value, (dict, list)) or not value or indent + len(flat) < WIDTH - 30:
+        return flat
+    pairs = value.items() if isinstance(value, dict) else [(None, item) for item in value]
+    pieces = [("" if key is None else json.dumps(key) + ": ") + schema_text(item, indent + 2) for key, item in pairs]
+    lines = []
+    for piece in pieces:
+        alone = "\n" in piece or "\"description\": " in piece[:15] or isinstance(value, list) and piece[0] in "{["
+        if lines and not alone and not lines[-1][1] and indent + 2 + len(lines[-1][0]) + len(piece) + 3 <= WIDTH:
+            lines[-1][0] += ", " + piece
+        else:
+            lines.append([piece, alone])
+    inner = (",\n" + " " * (indent + 2)).join(line for line, _ in lines)
+    return f"{'{['[isinstance(value, list)]}\n{' ' * (indent + 2)}{inner}\n{' ' * indent}{'}]'[isinstance(value, list)]}"
+
+
+def program_schema(program):
+    result = subprocess.run([program, "schema"], capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise Failure(f"{program} schema: exit code {result.returncode}: {result.stderr.strip()}")
+    return schema_text(json.loads(result.stdout)) + "\n"
+
+
 # ------------------------------------------------------------------------------------------------------------ main
 
 def main():
@@ -474,6 +504,14 @@ def main():
     if (options.program is None) != (options.granular is None):
         parser.error("--program and --granular must be given together")
     try:
+        if options.program is not None:
+            path, text = ROOT / "dae" / "model.schema.json", program_schema(options.program)
+            if json.loads(path.read_text(encoding="utf-8")) != json.loads(text):
+                if options.check:
+                    print(f"dae/model.schema.json is out of date; run: {FROM_PROGRAMS}")
+                    return 1
+                path.write_text(text, encoding="utf-8")
+                print("dae/model.schema.json written")
         model, case = (SchemaPage(ROOT / name) for name in ("dae/model.schema.json", "granular/case.schema.json"))
         pages = {"model-file.md": (model.page("Model file reference"), FROM_SCHEMAS),
                  "case-file.md": (case.page("Granular case file reference"), FROM_SCHEMAS)}

@@ -95,6 +95,9 @@ public:
     /// changes with these states. Called once for each accepted step. While the step is computed, `after` has
     /// the discrete and internal states of `before`.
     virtual void accepted(const State& /*before*/, State& /*after*/) const {}
+    /// Whether the solution depends on the history through State::internal_state, as with a friction law. If not,
+    /// internal states only select among equivalent forms of the equations, such as the number of revolutions.
+    virtual bool internal_states_are_history() const { return true; }
     /// Name of row k for messages, e.g. constraint 'crank-rod' row 2; bodies 'crank', 'rod'
     virtual std::string row_name(int k) const { return "constraint row " + std::to_string(k); }
     /// Name of body b for messages

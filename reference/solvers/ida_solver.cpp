@@ -106,7 +106,7 @@ public:
         if (!(t_end > x.t) || !std::isfinite(t_end))
             lie::reject("reference::IdaSolver", "the end must be finite and after t = " + number(x.t) + " s",
                         t_end);
-        if (!x.internal_state.empty())
+        if (!x.internal_state.empty() && system.internal_states_are_history())
             lie::reject(
                 "reference::IdaSolver",
                 "a model with continuous internal states (friction histories) cannot be integrated with "
@@ -135,8 +135,9 @@ public:
             check(IDAGetDky(ida_memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
             equations.read(t_end, map(at_node.get()), last);
         }
-        last.discrete_state = internal.discrete_state;
-        last.discrete_state = updated_internal_state(last).discrete_state;
+        last.discrete_state = internal.discrete_state, last.internal_state = internal.internal_state;
+        const lie::State& now = updated_internal_state(last);
+        last.discrete_state = now.discrete_state, last.internal_state = now.internal_state;
         lie::solve_accelerations(system, K, last);
         has_last = true;
         x = last;
@@ -180,12 +181,11 @@ private:
         return true;
     }
 
-    /// x projected onto the constraints, with updated internal states. A copy of x if there are no discrete
-    /// states.
+    /// x projected onto the constraints, with updated internal states. A copy of x if there are none.
     const lie::State& updated_internal_state(const lie::State& x)
     {
         updated = x;
-        if (x.discrete_state.empty()) return updated;
+        if (x.discrete_state.empty() && x.internal_state.empty()) return updated;
         lie::project_positions(system, K, updated);
         lie::project_velocities(system, K, updated);
         if (updated.lambda.size() != system.rows()) updated.lambda.setZero(system.rows());
@@ -274,9 +274,11 @@ private:
         if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
         if (code < 0 && !nonfinite.empty()) throw lie::NonFinite(nonfinite);
         check(code, "IDASolve");
-        if (internal.discrete_state.empty()) return;
+        if (internal.discrete_state.empty() && internal.internal_state.empty()) return;
         equations.read(t, map(y.get()), internal);
         const lie::State& now = updated_internal_state(internal);
+        equations.set_internal_state(now.internal_state);
+        internal.internal_state = now.internal_state;
         if (now.discrete_state == internal.discrete_state) return;
         internal = now;
         to_restart = !equations.set_discrete_state(internal.discrete_state, t, map(y.get()), map(ydot.get()));

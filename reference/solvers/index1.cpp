@@ -73,7 +73,7 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
         const lie::State before = x;
         read(t, y, x);
         model.accepted(before, x);
-        stage.discrete_state = x.discrete_state;
+        stage.discrete_state = x.discrete_state, stage.internal_state = x.internal_state;
     };
 
     lie::Trajectory run;

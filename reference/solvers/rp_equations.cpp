@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/solvers/rp_equations.hpp"
 
+#include "lie/check.hpp"
 #include "reference/formulations/rp.hpp"
 
 #include <algorithm>
@@ -291,7 +292,14 @@ void RpEquations::find_pairs()
             for (double& e : motion.r) e += normal(engine);
             motion.A = lie::rotation(p.normalized());
         }
-        system.second_variation(random_state, H);
+        try {
+            system.second_variation(random_state, H);
+        } catch (
+            const lie::NumericalFailure&) {  // not defined in this pose: no derivative is known to be zero
+            for (Pair& q : pair)
+                for (const int i : {0, 1}) q.nonzero[i][0] = q.nonzero[i][1] = true;
+            return;
+        }
         for (size_t h = 0; h < H.block.size(); ++h)
             for (const int i : {0, 1})
                 for (const int j : {0, 1})

@@ -54,6 +54,9 @@ public:
     bool set_discrete_state(const std::vector<int>& discrete_state, double t, const ConstVectorRef& y,
                             const ConstVectorRef& ydot);
 
+    /// Replaces the internal states, which must not change the solutions.
+    void set_internal_state(const std::vector<double>& internal_state) { x.internal_state = internal_state; }
+
     /// F(t, y, ẏ), size() components
     void residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
     /// ∂F/∂y + c_j ∂F/∂ẏ in compressed columns with a fixed pattern, evaluated with μ = 0. μ is zero up to

@@ -44,6 +44,7 @@ public:
         add_check();
         add_models();
         add_integrators();
+        add_schema();
         add_study();
         add_granular();
         add_plot();
@@ -248,6 +249,8 @@ private:
         CLI::App* c = add("integrators", "list the integrators", [this] { return list_integrators(json); });
         c->add_flag("--json", json, "print the list as JSON");
     }
+
+    void add_schema() { add("schema", "print the JSON schema of model files", print_schema); }
 
     void add_study()
     {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/lists.hpp"
 
+#include "dae/model_schema.hpp"
+#include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "lie/integrator.hpp"
@@ -115,6 +117,12 @@ int list_studies(bool json)
     for (const Study& s : studies()) lines.push_back({s.kind, s.answers});
     show(json, {"kind", "answers"}, lines);
     return io::exit_code::done;
+}
+
+int print_schema()
+{
+    std::cout << io::written(dae::model_schema()) << '\n';
+    return io::success;
 }
 
 }  // namespace hilda::studies

@@ -14,5 +14,7 @@ int list_models(bool json);
 int write_model(const std::string& name, const std::string& file);
 int list_integrators(bool json);
 int list_studies(bool json);
+/// Prints the schema of model files
+int print_schema();
 
 }  // namespace hilda::studies

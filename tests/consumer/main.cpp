@@ -3,7 +3,7 @@
 // reader of contacts, which register themselves and are not referenced by name.
 #include <iostream>
 
-#include "dae/model_file_types.hpp"
+#include "dae/model_types.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 

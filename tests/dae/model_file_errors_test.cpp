@@ -202,7 +202,7 @@ const std::vector<InvalidModel> constraints = {
     {"\"name\": \"rod\"", "\"name\": \"pin\"", "/constraints/1/name", "already used, got \"pin\""},
     {"\"type\": \"revolute\", ", "", "/constraints/0", "missing key 'type'"},
     {"\"type\": \"DP1\"", "\"type\": \"DP3\"", "/constraints/3/type", "unknown type \"DP3\"; did you mean 'DP1'?"},
-    {"\"type\": \"DP1\"", "\"type\": \"screw\"", "/constraints/3/type", "allowed: DP1, DP2, D, CD, spherical"},
+    {"\"type\": \"DP1\"", "\"type\": \"slot\"", "/constraints/3/type", "allowed: CD, D, DP1, DP2, cylindrical, distance"},
     {"\"type\": \"DP1\"", "\"type\": 1", "/constraints/3/type", "type must be a string, got 1"},
     {"\"body_j\": \"bar\", ", "", "/constraints/0", "missing key 'body_j'"},
     {"\"body_j\": \"bar\"", "\"body_j\": \"baar\"", "/constraints/0/body_j", "no body has this name, got \"baar\"; did you mean 'bar'?"},

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "dae/model_file_types.hpp"
+#include "dae/model_types.hpp"
 #include "tests/support/bristle.hpp"
 
 namespace hilda::tests {

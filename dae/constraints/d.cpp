@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Type D of the model file.
+#include "dae/constraints/d.hpp"
+
+#include "dae/model_types.hpp"
+
+namespace hilda::dae {
+
+namespace {
+
+const TypeSchema schema = {
+    .description =
+        "Distance constraint, one row: d_ij . d_ij = f(t) (Fang 2022, Eq. 2.5c). d_ij is the vector "
+        "from point P to point Q.",
+    .parts = {"points", "derivatives"},
+    .keys = {{"f", "Square of the distance, f(t) [m^2]. It must be positive.",
+              R"("$ref": "#/$defs/formula", "exclusiveMinimum": 0, )"
+              R"("examples": [0.25, "(0.5 + 0.1*sin(t))^2"])",
+              true}},
+    .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
+               R"("f": 0.25)"};
+
+const bool registered = io::Registry<ConstraintType>::add(
+    {.name = "D",
+     .schema = schema,
+     .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
+         const Points s(o);
+         return single_row(D(i, s.i, j, s.j, read_driver(o, "f")));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Bushing: a spring and damper with six components between two bodies.
+#include "dae/forces/bushing.hpp"
+
+#include "dae/model_types.hpp"
+#include "lie/check.hpp"
+
+namespace hilda::dae {
+
+Bushing::Bushing(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, const Coefficients& coefficients,
+                 const State& start)
+    : Bushing(coefficients)
+{
+    this->i = i, this->j = j, this->s_bar_i = s_bar_i, this->s_bar_j = s_bar_j;
+    R_0 = motion(start, i).A.transpose() * motion(start, j).A;
+}
+
+Bushing::Bushing(const Coefficients& coefficients) : coefficients(coefficients)
+{
+    for (const Vec3& k : {coefficients.stiffness, coefficients.damping, coefficients.rotational_stiffness,
+                          coefficients.rotational_damping})
+        if (!(k.minCoeff() >= 0) || !k.allFinite())
+            lie::reject("bushing", "the coefficients must not be negative", k.transpose());
+}
+
+Bushing::Deflection Bushing::deflection(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Mat3 A_ij = bi.A.transpose() * bj.A;
+    return {bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i),
+            lie::log(R_0.transpose() * A_ij)};
+}
+
+void Bushing::add(const State& x, lie::Loads& out) const
+{
+    constexpr double max_angle = 3;  // [rad]; the rotation vector jumps at π
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Deflection at = deflection(x);
+    if (!(at.psi.norm() < max_angle))
+        throw lie::NumericalFailure("bushing_turned",
+                                    label() + ": the relative rotation must be below 3 rad, got " +
+                                        std::to_string(at.psi.norm()) + " rad");
+    const Vec3 s_bar_q = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);  // Q in the frame of body i
+    const Vec3 ddot = bi.A.transpose() * (bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot) -
+                      bi.omega_bar.cross(s_bar_q);
+    const Vec3 F =
+        -bi.A * (coefficients.stiffness.cwiseProduct(at.d) + coefficients.damping.cwiseProduct(ddot));
+    apply_force(j, F, s_bar_j, x, out);
+    apply_force(i, -F, s_bar_q, x, out);
+
+    // ψ̇ = J_r(ψ)⁻¹ (ω̄_j - A_jᵀ A_i ω̄_i); the torque on body j is conjugate to ψ.
+    const Mat3 J_inverse = lie::right_jacobian_inverse(at.psi), A_ji = bj.A.transpose() * bi.A;
+    const Vec3 psidot = J_inverse * (bj.omega_bar - A_ji * bi.omega_bar);
+    const Vec3 n_j = -J_inverse.transpose() * (coefficients.rotational_stiffness.cwiseProduct(at.psi) +
+                                               coefficients.rotational_damping.cwiseProduct(psidot));
+    if (j != ground) out.n_bar[j] += n_j;
+    if (i != ground) out.n_bar[i] -= A_ji.transpose() * n_j;
+}
+
+double Bushing::potential_energy(const State& x) const
+{
+    const Deflection at = deflection(x);
+    return 0.5 * (at.d.dot(coefficients.stiffness.cwiseProduct(at.d)) +
+                  at.psi.dot(coefficients.rotational_stiffness.cwiseProduct(at.psi)));
+}
+
+namespace {
+
+const TypeSchema schema = {
+    .description =
+        "Bushing: a linear spring and damper with three translational and three rotational components. The "
+        "deflection is the vector from P to Q and the rotation vector of body j relative to body i since "
+        "the start, in the frame of body i and of body j at the start. The run stops with an error at a "
+        "relative rotation of 3 rad.",
+    .parts = {"points"},
+    .keys = {{"stiffness", "Stiffness along the axes of body i [N/m].",
+              R"("$ref": "#/$defs/coefficients", "examples": [[1e5, 1e5, 1e4]])", true},
+             {"damping", "Damping coefficients along the axes of body i [N s/m].",
+              R"("$ref": "#/$defs/coefficients", "default": [0, 0, 0], "examples": [[100, 100, 10]])"},
+             {"rotational_stiffness", "Stiffness for the components of the rotation vector [N m/rad].",
+              R"("$ref": "#/$defs/coefficients", "examples": [[50, 50, 5]])", true},
+             {"rotational_damping",
+              "Damping coefficients for the components of the rotation vector [N m s/rad].",
+              R"("$ref": "#/$defs/coefficients", "default": [0, 0, 0], "examples": [[0.1, 0.1, 0.1]])"}},
+    .example = R"("body_i": "ground", "body_j": "rod", "stiffness": [1e5, 1e5, 1e4], )"
+               R"("rotational_stiffness": [50, 50, 5])"};
+
+Vec3 not_negative(ObjectReader& o, const char* key, const std::optional<Vec3>& fallback = {})
+{
+    const Vec3 k = o.vec3(key, fallback);
+    if (!(k.minCoeff() >= 0))
+        o.fail(key, std::string(key) + " must not have negative components, got " + described(*o.find(key)));
+    return k;
+}
+
+const bool registered = io::Registry<ForceType>::add(
+    {.name = "bushing",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) -> std::unique_ptr<Force> {
+         const auto [i, j] = bodies.pair(o);
+         const Points s(o);
+         Bushing::Coefficients c;
+         c.stiffness = not_negative(o, "stiffness"), c.damping = not_negative(o, "damping", Vec3::Zero());
+         c.rotational_stiffness = not_negative(o, "rotational_stiffness");
+         c.rotational_damping = not_negative(o, "rotational_damping", Vec3::Zero());
+         return std::make_unique<Bushing>(i, s.i, j, s.j, c, x);
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

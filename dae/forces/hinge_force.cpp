@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A torque about the common axis of two bodies.
+#include "dae/forces/hinge_force.hpp"
+
+#include "dae/constraints/angle.hpp"
+#include "lie/check.hpp"
+
+namespace hilda::dae {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+}  // namespace
+
+HingeForce::HingeForce(const char* type, int i, const Vec3& axis_i, int j, const Vec3& axis_j,
+                       const State& start)
+    : i(i), j(j)
+{
+    for (const Vec3* axis : {&axis_i, &axis_j})
+        if (!(axis->norm() > 0)) lie::reject(type, "an axis must have a positive length", axis->norm());
+    axis_bar_i = axis_i.normalized();
+    u_bar_i = axis_bar_i.unitOrthogonal();
+    v_bar_i = axis_bar_i.cross(u_bar_i);
+    const Motion &bi = motion(start, i), &bj = motion(start, j);
+    const double cosine = (bi.A * axis_bar_i).dot(bj.A * axis_j.normalized());
+    if (cosine < 1 - 1e-6)
+        lie::reject(type,
+                    "the two axes must be parallel at the start and point in the same direction; "
+                    "cosine of their angle",
+                    cosine);
+    u_bar_j = bj.A.transpose() * (bi.A * u_bar_i);
+}
+
+double HingeForce::angle(const State& x) const
+{
+    const Vec3 u_j = motion(x, i).A.transpose() * (motion(x, j).A * u_bar_j);
+    const double saved_angle = x.discrete_state[first_discrete_state] * (pi / 2);
+    return nearest_revolution(std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j)), saved_angle);
+}
+
+void HingeForce::update_internal_state(State& x) const
+{
+    x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
+}
+
+void HingeForce::add(const State& x, lie::Loads& out) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 axis = bi.A * axis_bar_i;
+    const double thetadot = axis.dot(bj.A * bj.omega_bar - bi.A * bi.omega_bar);
+    const Vec3 n = torque(angle(x), thetadot) * axis;
+    if (i != ground) out.n_bar[i] += bi.A.transpose() * n;
+    if (j != ground) out.n_bar[j] -= bj.A.transpose() * n;
+}
+
+}  // namespace hilda::dae

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Compliant limits of a distance and of an angle.
+#include "dae/forces/limits.hpp"
+
+#include "dae/model_types.hpp"
+
+namespace hilda::dae {
+
+Vec3 DistanceLimit::d_ij(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    return bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+}
+
+void DistanceLimit::add(const State& x, lie::Loads& out) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 d = d_ij(x);
+    const double l = d.norm();
+    if (!(l > 0))
+        return;  // without a direction; only a positive minimum can be violated here, for an instant
+    const Vec3 ddot =
+        bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot - bi.A * bi.omega_bar.cross(s_bar_i);
+    const Vec3 along = d / l, F = stop.force(l, along.dot(ddot)) * along;
+    apply_force(i, F, s_bar_i, x, out);
+    apply_force(j, -F, s_bar_j, x, out);
+}
+
+double DistanceLimit::potential_energy(const State& x) const { return stop.potential(d_ij(x).norm()); }
+
+namespace {
+
+/// The keys of a stop. At least one limit must be given.
+Stop read_stop(ObjectReader& o)
+{
+    Stop stop;
+    if (o.has("minimum")) stop.minimum = o.number("minimum");
+    if (o.has("maximum")) stop.maximum = o.number("maximum");
+    if (!o.has("minimum") && !o.has("maximum")) o.fail("one of the keys minimum and maximum must be given");
+    if (!(stop.minimum < stop.maximum))
+        o.fail("maximum", "maximum must be above minimum = " + shortest(stop.minimum) + ", got " +
+                              shortest(stop.maximum));
+    stop.stiffness = o.positive("stiffness");
+    stop.damping = o.not_negative("damping", 0);
+    return stop;
+}
+
+const TypeSchema distance_schema = {
+    .description =
+        "Compliant limits of the distance l of points P and Q. Beyond a limit, by delta, the force "
+        "k delta max(0, 1 + d deltadot) pushes the points back; within the limits there is no force. It "
+        "models a slack rope, a bump stop or a telescope. At least one limit must be given.",
+    .parts = {"points"},
+    .keys = {{"minimum", "Smallest distance [m].", R"("type": "number", "examples": [0.1])"},
+             {"maximum", "Largest distance [m]. It must be above the minimum.",
+              R"("type": "number", "examples": [0.5])"},
+             {"stiffness", "Stiffness k [N/m].",
+              R"("type": "number", "exclusiveMinimum": 0, "examples": [1e5])", true},
+             {"damping", "Damping d [s/m].",
+              R"("type": "number", "minimum": 0, "default": 0, "examples": [0.5])"}},
+    .example = R"("body_i": "ground", "body_j": "load", "maximum": 0.5, "stiffness": 1e5, "damping": 0.5)"};
+
+const bool distance_registered = io::Registry<ForceType>::add(
+    {.name = "distance-limit",
+     .schema = distance_schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
+         const auto [i, j] = bodies.pair(o);
+         const Points s(o);
+         return std::make_unique<DistanceLimit>(i, s.i, j, s.j, read_stop(o));
+     }});
+
+const TypeSchema angle_schema = {
+    .description =
+        "Compliant limits of the rotation theta of body j relative to body i about a common axis since "
+        "the start. Beyond a limit, by delta, the torque k delta max(0, 1 + d deltadot) turns the bodies "
+        "back; within the limits there is no torque. The angle is counted through whole turns. One step "
+        "must rotate the bodies by less than three eighths of a turn. At least one limit must be given.",
+    .parts = {"axes"},
+    .keys = {{"minimum", "Smallest angle [rad].", R"("type": "number", "examples": [-0.5])"},
+             {"maximum", "Largest angle [rad]. It must be above the minimum.",
+              R"("type": "number", "examples": [0.5])"},
+             {"stiffness", "Stiffness k [N m/rad].",
+              R"("type": "number", "exclusiveMinimum": 0, "examples": [1e3])", true},
+             {"damping", "Damping d [s/rad].",
+              R"("type": "number", "minimum": 0, "default": 0, "examples": [0.1])"}},
+    .example = R"("body_i": "ground", "body_j": "door", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1], )"
+               R"("maximum": 1.5, "stiffness": 1e3)"};
+
+const bool angle_registered = io::Registry<ForceType>::add(
+    {.name = "angle-limit",
+     .schema = angle_schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) -> std::unique_ptr<Force> {
+         const auto [i, j] = bodies.pair(o);
+         const Axes axis(o);
+         return std::make_unique<AngleLimit>(i, axis.i, j, axis.j, read_stop(o), x);
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Compliant limits of a distance and of an angle.
+#pragma once
+
+#include "dae/forces/hinge_force.hpp"
+
+#include <limits>
+
+namespace hilda::dae {
+
+/// One-sided stop on both sides of a range. Beyond the range, by delta > 0, it pushes back with
+///
+///     f = k delta max(0, 1 + d deltadot)                                 Hunt and Crossley (1975)
+///
+/// The force is continuous and never pulls. For small d the coefficient of restitution at the approach speed v is
+/// about 1 - 2 d v/3.
+struct Stop {
+    double minimum = -std::numeric_limits<double>::infinity();  ///< of the range
+    double maximum = std::numeric_limits<double>::infinity();
+    double stiffness = 0, damping = 0;  ///< k [N/m] or [N m/rad], d [s/m] or [s/rad]
+
+    /// Force that reduces q: positive above the maximum, negative below the minimum
+    double force(double q, double qdot) const
+    {
+        if (q > maximum) return stiffness * (q - maximum) * std::max(0., 1 + damping * qdot);
+        if (q < minimum) return stiffness * (q - minimum) * std::max(0., 1 - damping * qdot);
+        return 0;
+    }
+    double potential(double q) const
+    {
+        const double delta = std::max({0., q - maximum, minimum - q});
+        return 0.5 * stiffness * delta * delta;
+    }
+};
+
+/// Limits of the distance of point P of body i and point Q of body j [m]
+class DistanceLimit final : public Force {
+public:
+    DistanceLimit(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, const Stop& stop)
+        : i(i), j(j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), stop(stop)
+    {}
+
+    void add(const State& x, lie::Loads& out) const override;
+    double potential_energy(const State& x) const override;
+    std::array<int, 2> bodies() const override { return {i, j}; }
+    int last_body() const override { return std::max(i, j); }
+
+private:
+    Vec3 d_ij(const State& x) const;
+
+    const int i, j;
+    const Vec3 s_bar_i, s_bar_j;
+    const Stop stop;
+};
+
+/// Limits of the rotation of body j relative to body i about a common axis since the start [rad]
+class AngleLimit final : public HingeForce {
+public:
+    AngleLimit(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j, const Stop& stop,
+               const State& start)
+        : HingeForce("angle limit", i, axis_bar_i, j, axis_bar_j, start), stop(stop)
+    {}
+
+    double torque(double theta, double thetadot) const override { return stop.force(theta, thetadot); }
+    double potential(double theta) const override { return stop.potential(theta); }
+
+private:
+    const Stop stop;
+};
+
+}  // namespace hilda::dae

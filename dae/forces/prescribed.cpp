@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Types force and torque of the model file.
+#include "dae/forces/prescribed.hpp"
+
+#include "dae/model_types.hpp"
+
+#include <cmath>
+
+namespace hilda::dae {
+
+namespace {
+
+/// The body on which a prescribed force acts
+int movable_body(ObjectReader& o, const BodyFinder& bodies, const std::string& type)
+{
+    const int b = bodies.body(o, "body");
+    if (b == ground) o.fail("body", "a " + type + " must act on a movable body, got 'ground'");
+    return b;
+}
+
+Frame frame(ObjectReader& o)
+{
+    return o.one_of("frame", {"global", "body"}) == "global" ? Frame::global : Frame::body;
+}
+
+/// Components of a force or torque, finite at t = 0
+std::array<io::Expression, 3> components(ObjectReader& o)
+{
+    std::array<io::Expression, 3> all = read_expressions(o, "components");
+    for (size_t k = 0; k < 3; ++k)
+        if (const double value = all[k].value(0); !std::isfinite(value))
+            o.fail("components", k,
+                   "a component must be finite at t = 0, got " + described(all[k].text()) + " with " +
+                       shortest(value));
+    return all;
+}
+
+const TypeSchema schema_force = {
+    .description = "Prescribed force on a point of a body.",
+    .parts = {"on_one_body"},
+    .keys = {{"point_bar", "Point of application relative to the centre of mass [m], in the body frame.",
+              R"("$ref": "#/$defs/vector", "default": [0, 0, 0], )"
+              R"("examples": [[0, 0.1, 0]])"},
+             {"components", "Components of the force [N], in the frame given by the key frame.",
+              R"("type": "array", "items": {"$ref": "#/$defs/formula"}, )"
+              R"-("minItems": 3, "maxItems": 3, "examples": [[0, "10*sin(t)", 0]])-"}},
+    .example = R"-("body": "slider", "frame": "global", "components": [0, "10*sin(t)", 0])-"};
+
+const bool registered_force = io::Registry<ForceType>::add(
+    {.name = "force",
+     .schema = schema_force,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
+         const int b = movable_body(o, bodies, "force");
+         const Vec3 point_bar = o.vec3("point_bar", Vec3::Zero());
+         const Frame f = frame(o);
+         return std::make_unique<PrescribedForce>(b, point_bar, f, components(o));
+     }});
+
+const TypeSchema schema_torque = {
+    .description = "Prescribed torque on a body.",
+    .parts = {"on_one_body"},
+    .keys = {{"components", "Components of the torque [N m], in the frame given by the key frame.",
+              R"("type": "array", "items": {"$ref": "#/$defs/formula"}, )"
+              R"-("minItems": 3, "maxItems": 3, "examples": [[0, 0, "0.5*cos(t)"]])-"}},
+    .example = R"("body": "crank", "frame": "body", "components": [0.5, 0, 0])"};
+
+const bool registered_torque = io::Registry<ForceType>::add(
+    {.name = "torque",
+     .schema = schema_torque,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
+         const int b = movable_body(o, bodies, "torque");
+         const Frame f = frame(o);
+         return std::make_unique<PrescribedTorque>(b, f, components(o));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

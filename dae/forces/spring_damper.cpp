@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Type spring-damper of the model file.
+#include "dae/forces/spring_damper.hpp"
+
+#include "dae/model_types.hpp"
+
+namespace hilda::dae {
+
+namespace {
+
+const TypeSchema schema = {
+    .description =
+        "Spring, damper and actuator between points P and Q. The force k (l - l_0) + c ldot + F acts "
+        "along the line from P to Q; l is the distance of the points. A positive force pulls the "
+        "bodies together. The run stops with an error if the points coincide.",
+    .parts = {"points"},
+    .keys = {{"stiffness", "Stiffness k [N/m].", R"("type": "number", "minimum": 0, "examples": [1000])",
+              true},
+             {"damping", "Damping coefficient c [N s/m].",
+              R"("type": "number", "minimum": 0, "default": 0, "examples": [10])"},
+             {"free_length", "Free length l_0 [m].", R"("type": "number", "minimum": 0, "examples": [0.3])",
+              true},
+             {"force",
+              "Additional force F [N]: a number or an expression in the variables l (m), ldot (m/s) "
+              "and t (s). Without it F is zero.",
+              R"("$ref": "#/$defs/formula", "examples": ["-5*ldot^3"])"}},
+    .example = R"("body_i": "ground", "body_j": "slider", "stiffness": 1000, )"
+               R"("damping": 10, "free_length": 0.3)"};
+
+const bool registered = io::Registry<ForceType>::add(
+    {.name = "spring-damper",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
+         const auto [i, j] = bodies.pair(o);
+         const Points s(o);
+         const double k = o.not_negative("stiffness"), c = o.not_negative("damping", 0);
+         SpringDamper spring(i, s.i, j, s.j, k, c, o.not_negative("free_length"));
+         if (o.find("force") != nullptr) {
+             const std::string law = o.formula("force");
+             try {
+                 spring.law.emplace(law, std::vector<std::string>{"l", "ldot", "t"});
+             } catch (const io::ExpressionError& e) {
+                 o.fail("force", e.what());
+             }
+         }
+         return std::make_unique<SpringDamper>(std::move(spring));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

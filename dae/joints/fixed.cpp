@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Fixed joint.
+#include "dae/joints.hpp"
+
+#include "dae/constraints/dp1.hpp"
+#include "dae/joints/rows.hpp"
+#include "dae/model_types.hpp"
+
+namespace hilda::dae {
+
+Blocks fixed(int i, int j, const State& x)
+{
+    const Mat3 A_ij = orientation(x, i).transpose() * orientation(x, j);
+    Blocks blocks;
+    coincide(blocks, i, orientation(x, i).transpose() * (position(x, j) - position(x, i)), j, Vec3::Zero());
+    for (int k = 0; k < 3; ++k)
+        add<DP1>(blocks, i, Vec3::Unit(k), j, A_ij.transpose() * Vec3::Unit((k + 1) % 3));
+    return blocks;
+}
+
+namespace {
+
+const TypeSchema schema = {
+    .description = "Fixed joint, 6 rows: the relative position and orientation keep their initial values.",
+    .example = R"("body_i": "crank", "body_j": "rod")"};
+
+const bool registered = io::Registry<ConstraintType>::add(
+    {.name = "fixed",
+     .schema = schema,
+     .read = [](ObjectReader&, int i, int j, const State& x) -> ConstraintType::Constraints {
+         return fixed(i, j, x);
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Types of constraints and forces of the model file: a reader and a schema for each.
+///
+/// The file of a type registers it by a constant with static initialisation:
+///
+///     const bool registered = io::Registry<ConstraintType>::add({.name = "spherical", ...});
+
+#pragma once
+
+#include "dae/block.hpp"
+#include "dae/object_reader.hpp"
+#include "dae/type_schema.hpp"
+#include "io/expression.hpp"
+#include "io/registry.hpp"
+
+#include <array>
+#include <utility>
+#include <variant>
+
+namespace hilda::dae {
+
+class Driver;
+class Force;
+class Model;
+
+/// Finds bodies of the model by the name or id that a key gives. Throws io::PlacedError for an unknown body.
+class BodyFinder {
+public:
+    virtual ~BodyFinder() = default;
+    /// Number of the body whose name or id is given by a key
+    virtual int body(ObjectReader& o, std::string_view key) const = 0;
+    /// body_i and body_j, which must differ
+    virtual std::pair<int, int> pair(ObjectReader& o) const = 0;
+};
+
+/// A type of constraint between two bodies: a joint, a driver or a basic constraint
+struct ConstraintType {
+    /// The rows of a joint, or a general constraint
+    using Constraints = std::variant<Blocks, std::unique_ptr<Constraint>>;
+
+    std::string name;  ///< value of the key "type"
+    TypeSchema schema;
+    /// Reads the keys of the type. x holds the initial data. Throws PlacedError, or lie::InvalidInput or
+    /// io::ExpressionError without a location from the constructor of the constraint.
+    ///
+    /// The order of the calls of the reader is the order of the keys in the canonical form.
+    Constraints (*read)(ObjectReader& o, int i, int j, const State& x);
+};
+
+/// A type of force
+struct ForceType {
+    std::string name;  ///< value of the key "type"
+    TypeSchema schema;
+    /// Reads the keys of the type, including those of the bodies. Throws as ConstraintType::read.
+    std::unique_ptr<Force> (*read)(ObjectReader& o, const BodyFinder& bodies, const State& x);
+};
+
+/// The function f(t) given by a key. f, ḟ and f̈ must be finite at t = 0.
+Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {});
+
+/// Three expressions given by a list of numbers or texts
+std::array<io::Expression, 3> read_expressions(ObjectReader& o, std::string_view key,
+                                               const std::vector<std::string>& variables = {"t"});
+
+/// Points P and Q of the two bodies in the body frames [m], by default the centres of mass
+struct Points {
+    Vec3 i, j;
+    explicit Points(ObjectReader& o)
+        : i(o.vec3("s_bar_p_i", Vec3::Zero())), j(o.vec3("s_bar_q_j", Vec3::Zero()))
+    {}
+};
+
+/// Axes of the two bodies in the body frames, not zero
+struct Axes {
+    Vec3 i, j;
+    explicit Axes(ObjectReader& o) : i(o.direction("axis_bar_i")), j(o.direction("axis_bar_j")) {}
+};
+
+/// A list of one block
+template <class B>
+Blocks single_row(B block)
+{
+    Blocks rows;
+    rows.push_back(std::make_unique<B>(std::move(block)));
+    return rows;
+}
+
+/// Arguments of the reader of a contact: its name, its two different bodies, the model with all bodies,
+/// joints, forces and the preceding contacts, and the initial data
+struct ContactPair {
+    const std::string& name;
+    int i, j;
+    Model& model;
+    const State& start;
+};
+
+/// Reads an element of "contacts", except for the keys name, body_i and body_j, and adds its forces and
+/// general constraints to the model. Throws PlacedError, or lie::InvalidInput or io::ExpressionError without a
+/// location from the constructor of the contact.
+using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
+
+/// Registers the reader of contacts and returns true. It replaces the earlier one; nullptr removes it. Called
+/// during static initialisation: const bool registered = register_contact_reader(...);
+bool register_contact_reader(ReadContact read);
+/// The registered reader of contacts, or nullptr
+ReadContact contact_reader();
+
+}  // namespace hilda::dae

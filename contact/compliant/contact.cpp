@@ -73,7 +73,12 @@ ContactState CompliantContact::state_without_displacement(const ContactPoint& co
 ContactState CompliantContact::evaluate(const Motion& bi, const Motion& bj,
                                         const ContactHistory& history) const
 {
-    const ContactPoint contact_point = detect(bi, bj, history);
+    return evaluate_at(detect(bi, bj, history), bi, bj, history);
+}
+
+ContactState CompliantContact::evaluate_at(const ContactPoint& contact_point, const Motion& bi,
+                                           const Motion& bj, const ContactHistory& history) const
+{
     return contact_state(contact_point, law->force(normal_input(contact_point, bi, bj)), bi, bj, history);
 }
 

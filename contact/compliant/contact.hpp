@@ -25,6 +25,9 @@ public:
     /// The state of the contact for the poses and velocities of bi and bj. Throws lie::NumericalFailure
     /// "contact_not_converged" with the name of the contact if no contact point is found.
     ContactState evaluate(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
+    /// The same for a contact point that is known for these poses
+    ContactState evaluate_at(const ContactPoint& contact_point, const Motion& bi, const Motion& bj,
+                             const ContactHistory& history) const;
 
     /// The reason why a run cannot start at these poses, or an empty text if it can. The reasons are: the
     /// contact point is not unique; one surface does not fit into the other; a law needs a positive curvature

@@ -2,6 +2,7 @@
 #include "contact/compliant/contact_force.hpp"
 
 #include "contact/evolving/contact.hpp"
+#include "contact/internal_state.hpp"
 
 #include "dae/model.hpp"
 
@@ -16,7 +17,26 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
 
 ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& history) const
 {
-    return contact.evaluate(motion(x, i), motion(x, j), history);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const auto last =
+        restored<NodePoint>(x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
+    return last.is_at(bi, bj) ? contact.evaluate_at(last.contact_point, bi, bj, history)
+                              : contact.evaluate(bi, bj, history);
+}
+
+int ContactForce::internal_states() const { return TrackedForce::internal_states() + reals<NodePoint>(); }
+
+void ContactForce::save(const Instant& now, lie::State& x) const
+{
+    static_assert(reals<NodePoint>() == 2 * (3 + 9) + 5 * 3 + 1 + 2 * 9, "NodePoint must not have padding");
+    TrackedForce::save(now, x);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    contact::save(NodePoint{.r_i = bi.r,
+                            .r_j = bj.r,
+                            .A_i = bi.A,
+                            .A_j = bj.A,
+                            .contact_point = now.contact_state.contact_point},
+                  x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
 }
 
 bool ContactForce::is_active(const lie::State& x) const

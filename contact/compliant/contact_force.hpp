@@ -21,6 +21,7 @@ public:
     /// Elastic energy of the normal law [J]. The energy of the friction springs is not included.
     double potential_energy(const lie::State& x) const override;
     std::string start_error(const lie::State& x) const override;
+    int internal_states() const override;
     /// Stability limit [s] at the largest compression expected, see
     /// CompliantContact::state_at_largest_compression
     double stable_step(const lie::State& x) const override;
@@ -37,6 +38,21 @@ private:
     ContactState evaluate(const lie::State& x, const ContactHistory& history) const override;
     bool applies_normal_force() const override { return true; }
     bool is_near_contact(const lie::State& x) const override;
+    void save(const Instant& now, lie::State& x) const override;
+
+    /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and the
+    /// poses of the bodies there. Loads, energy and output at these poses do not detect the contact again. The
+    /// poses are compared bit by bit, so the result depends on x only.
+    struct NodePoint {
+        Vec3 r_i, r_j;
+        Mat3 A_i, A_j;
+        ContactPoint contact_point;
+
+        bool is_at(const Motion& bi, const Motion& bj) const
+        {
+            return r_i == bi.r && r_j == bj.r && A_i == bi.A && A_j == bj.A;
+        }
+    };
 
     const dae::Constraint* constraint = nullptr;
 };

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evolving/friction.hpp"
 
+#include "contact/internal_state.hpp"
 #include "dae/model.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace hilda::contact {
 
 namespace {
 
-constexpr int step_data_size = 8;
 constexpr double min_interval = 1e-9;  // [s]; displacements over less time are rounding errors
 
 }  // namespace
@@ -45,22 +44,18 @@ ContactState EvolvingFriction::evaluate(const lie::State& x, const ContactHistor
                                        history);
 }
 
-int EvolvingFriction::internal_states() const { return TrackedForce::internal_states() + step_data_size; }
+int EvolvingFriction::internal_states() const { return TrackedForce::internal_states() + reals<StepData>(); }
 
 EvolvingFriction::StepData EvolvingFriction::last_step(const lie::State& x) const
 {
-    static_assert(sizeof(StepData) == step_data_size * sizeof(double));
-    StepData last;
-    std::memcpy(static_cast<void*>(&last),
-                x.internal_state.data() + first_internal_state + TrackedForce::internal_states(),
-                sizeof last);
-    return last;
+    static_assert(reals<StepData>() == 2 + 3 * 2, "StepData must not have padding");
+    return restored<StepData>(x.internal_state.data() + first_internal_state +
+                              TrackedForce::internal_states());
 }
 
 void EvolvingFriction::save_step(const StepData& last, lie::State& x) const
 {
-    std::memcpy(x.internal_state.data() + first_internal_state + TrackedForce::internal_states(),
-                static_cast<const void*>(&last), sizeof last);
+    contact::save(last, x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
 }
 
 void EvolvingFriction::update_internal_state(lie::State& x) const

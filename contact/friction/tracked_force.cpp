@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/friction/tracked_force.hpp"
 
+#include "contact/internal_state.hpp"
 #include "dae/model.hpp"
-
-#include <cstring>
 
 namespace hilda::contact {
 
@@ -21,16 +20,7 @@ struct SavedValues {
     ContactFrame contact_frame = {};
     double Psi = 0, t = 0;
 };
-constexpr size_t saved_reals = 5 * 2 + 6 * 3 + 2;
-static_assert(sizeof(SavedValues) == saved_reals * sizeof(double),
-              "SavedValues must consist of doubles without padding");
-
-SavedValues saved_values(const lie::State& x, int first)
-{
-    SavedValues all;
-    std::memcpy(static_cast<void*>(&all), x.internal_state.data() + first, sizeof all);
-    return all;
-}
+static_assert(reals<SavedValues>() == 5 * 2 + 6 * 3 + 2, "SavedValues must not have padding");
 
 /// The discrete state of a contact: one bit per flag, so that 0 is the initial history
 int flags_of(const ContactHistory& m)
@@ -78,13 +68,13 @@ Inertia TrackedForce::inertia(const dae::Model& model, int b)
     return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
 }
 
-int TrackedForce::internal_states() const { return saved_reals; }
+int TrackedForce::internal_states() const { return reals<SavedValues>(); }
 
 ContactHistory TrackedForce::saved_history(const lie::State& x) const
 {
     ContactHistory m;
     set_flags(x.discrete_state[first_discrete_state], m);
-    const SavedValues all = saved_values(x, first_internal_state);
+    const auto all = restored<SavedValues>(x.internal_state.data() + first_internal_state);
     m.contact_frame = all.contact_frame;
     m.deflections.S = all.S, m.deflections.Theta_i = all.Theta_i, m.deflections.Theta_j = all.Theta_j;
     m.deflections.Psi = all.Psi;
@@ -102,7 +92,7 @@ void TrackedForce::save(const Instant& now, lie::State& x) const
     all.contact_frame = m.contact_frame;
     all.t = x.t;
     if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
-    std::memcpy(x.internal_state.data() + first_internal_state, static_cast<const void*>(&all), sizeof all);
+    contact::save(all, x.internal_state.data() + first_internal_state);
 }
 
 TrackedForce::Instant TrackedForce::at(const lie::State& x) const
@@ -115,7 +105,7 @@ TrackedForce::Instant TrackedForce::at(const lie::State& x) const
     }
     SlidingDisplacement& s = now.contact_state.slip;
     if (now.contact_state.N > 0 && now.history.touching) {
-        const SavedValues last = saved_values(x, first_internal_state);
+        const auto last = restored<SavedValues>(x.internal_state.data() + first_internal_state);
         const double length = same_pose * (1 + now.contact_state.contact_point.C().norm());
         if (std::abs(x.t - last.t) <= same_pose * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
             s.p_j.norm() < length && std::abs(s.psi) < same_pose) {
@@ -159,7 +149,7 @@ Wrench TrackedForce::friction(const lie::State& x) const { return is_active(x) ?
 
 double TrackedForce::time_of_history(const lie::State& x) const
 {
-    return saved_values(x, first_internal_state).t;
+    return restored<SavedValues>(x.internal_state.data() + first_internal_state).t;
 }
 
 void TrackedForce::update_internal_state(lie::State& x) const

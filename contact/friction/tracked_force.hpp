@@ -75,7 +75,7 @@ protected:
     static Inertia inertia(const dae::Model& model, int b);
 
     /// Stores the history of `now` in x
-    void save(const Instant& now, lie::State& x) const;
+    virtual void save(const Instant& now, lie::State& x) const;
     double time_of_history(const lie::State& x) const;  ///< time t_n of the stored history [s]
 
     const dae::Model& model;

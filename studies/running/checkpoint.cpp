@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
 
 constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'C', 'K', 'P'};
-constexpr std::uint64_t format_version = 5;
+constexpr std::uint64_t format_version = 6;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(std::uint64_t),
                  checksum_bytes = sizeof(std::uint32_t);
 

@@ -115,12 +115,12 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
 EvolvingContact::Mat32 EvolvingContact::tangents(const Arguments& x) const
 {
     if (normal_rows == NormalRows::fixed_xy) return Mat3::Identity().leftCols<2>();
-    return Mat32::Map(x.internal_state);
+    return restored<NodeState>(x.internal_state).T;
 }
 
 EvolvingContact::Mat32 EvolvingContact::projected_tangents(const Arguments& x, const Vec3& n) const
 {
-    const Mat32 T = Mat32::Map(x.internal_state);
+    const Mat32 T = restored<NodeState>(x.internal_state).T;
     return T - n * (n.transpose() * T);
 }
 
@@ -223,30 +223,32 @@ Mat3 EvolvingContact::lever_arms(const Mat3& K_sum, const Vec3& n) const
 void EvolvingContact::regularisation(const Arguments& x, lie::BoundedPair* out) const
 {
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
-    const auto set_pair = [&](lie::BoundedPair& pair, const double* pair_state, double K, double D,
+    const auto set_pair = [&](lie::BoundedPair& pair, const NodeState::Pair& saved, double K, double D,
                               double factor) {
         pair.K = K, pair.D = D, pair.n = n;
-        pair.S = Eigen::Vector2d::Map(pair_state);
-        pair.mu = factor * (pair_state[2] != 0 ? law.mu_k : law.mu_s);
+        pair.S = saved.S;
+        pair.mu = factor * (saved.slipping != 0 ? law.mu_k : law.mu_s);
     };
     if (!is_regularised()) return;
-    set_pair(out[sliding_pair], x.internal_state + sliding_state, law.K_E, law.K_D, 1);
+    const auto state = restored<NodeState>(x.internal_state);
+    set_pair(out[sliding_pair], state.sliding, law.K_E, law.K_D, 1);
     if (!law.has_rolling_resistance()) return;
     const ContactPoint at = contact_point(x);
     const double kappa = 2 / lever_arms(at.K_i + at.K_j, n).trace();
-    set_pair(out[rolling_pair], x.internal_state + rolling_state, 4 * law.eta_r * law.K_E,
-             law.D_roll * kappa * kappa, 2 * law.eta_r);
+    set_pair(out[rolling_pair], state.rolling, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
+             2 * law.eta_r);
 }
 
 /// Updates S, Z and the slip flags from the multipliers of the last step (see ImplicitFriction). They are set
 /// to zero at a start and for an inactive contact.
-void EvolvingContact::update_friction(const Arguments& x, bool start, double* internal_state) const
+void EvolvingContact::update_friction(const Arguments& x, bool start, NodeState& state) const
 {
     constexpr double bound_tolerance = 1e-4;  // relative to |λ|; above the tolerance of lie::BoundedRows
-    const double h = start ? 0 : x.t - internal_state[node_time];
-    internal_state[node_time] = x.t;
+    const double h = start ? 0 : x.t - state.t;
+    state.t = x.t;
     if (start || x.mode != active) {
-        std::fill(internal_state + sliding_state, internal_state + 14, 0.);
+        for (NodeState::Pair* saved : {&state.sliding, &state.rolling})
+            saved->S.setZero(), saved->slipping = 0;
         return;
     }
     lie::BoundedPair pair[2];
@@ -255,11 +257,11 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, double* in
     const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
     for (const RowPair p : {sliding_pair, rolling_pair}) {
         if (p == rolling_pair && !law.has_rolling_resistance()) continue;
-        double* pair_state = internal_state + (p == sliding_pair ? sliding_state : rolling_state);
+        NodeState::Pair& saved = p == sliding_pair ? state.sliding : state.rolling;
         const lie::BoundedPair& c = pair[p];
         const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
-        Eigen::Vector2d::Map(pair_state) += h * c.mobility(h) * (lambda - c.K * c.S);
-        pair_state[2] = lambda.norm() > (1 - bound_tolerance) * c.mu * N;
+        saved.S += h * c.mobility(h) * (lambda - c.K * c.S);
+        saved.slipping = lambda.norm() > (1 - bound_tolerance) * c.mu * N;
     }
 }
 
@@ -332,18 +334,17 @@ int EvolvingContact::update_internal_state(const Arguments& x, bool start, doubl
                         "eigenvalue of K_i + K_j times the size of the surfaces must exceed 1e-6, got",
                         least);
     }
-    Mat32 T;
+    auto state = restored<NodeState>(internal_state);
     if (start) {
-        T = tangent_basis(n_i);
-        internal_state[last_rebound] = -std::numeric_limits<double>::infinity();
+        state.T = tangent_basis(n_i);
+        state.last_rebound = -std::numeric_limits<double>::infinity();
     } else {
-        const Mat32 before = Mat32::Map(internal_state);
-        const Vec3 along = before.col(0) - n_i * n_i.dot(before.col(0));
-        T.col(0) = along.norm() > 0.1 ? Vec3(along.normalized()) : Vec3(tangent_basis(n_i).col(0));
-        T.col(1) = n_i.cross(T.col(0));
+        const Vec3 before = state.T.col(0), along = before - n_i * n_i.dot(before);
+        state.T.col(0) = along.norm() > 0.1 ? Vec3(along.normalized()) : Vec3(tangent_basis(n_i).col(0));
+        state.T.col(1) = n_i.cross(state.T.col(0));
     }
-    Mat32::Map(internal_state) = T;
-    if (is_regularised()) update_friction(x, start, internal_state);
+    if (is_regularised()) update_friction(x, start, state);
+    save(state, internal_state);
     return x.mode;
 }
 

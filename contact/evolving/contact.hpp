@@ -7,6 +7,7 @@
 #include "contact/detection/common_normal.hpp"
 #include "contact/detection/detector.hpp"
 #include "contact/evolving/implicit_friction.hpp"
+#include "contact/internal_state.hpp"
 #include "contact/shape.hpp"
 #include "dae/constraint.hpp"
 
@@ -83,18 +84,21 @@ public:
     bool is_regularised() const override { return friction == Friction::implicit; }
     bool solved_first(int pair) const override { return pair == rolling_pair; }
     int algebraic_variables() const override { return 6; }
-    /// Number of internal states. They are, by index:
-    ///
-    ///     0 … 5     T by columns
-    ///     6         last_rebound: time of the last rebound [s]; -∞ before the first one
-    ///
-    /// and with implicit friction also
-    ///
-    ///     7         node_time: time of the node [s]
-    ///     8 … 10    sliding_state: elastic displacement S along T [m] (2 numbers); 1 if slipping, else 0
-    ///     11 … 13   rolling_state: the same for rolling, with the elastic displacement Z [m]
-    int internal_states() const override { return is_regularised() ? 14 : 7; }
-    static constexpr int last_rebound = 6, node_time = 7, sliding_state = 8, rolling_state = 11;
+    using Mat32 = Eigen::Matrix<double, 3, 2>;
+    /// The internal state of the contact at the last node
+    struct NodeState {
+        Mat32 T;              ///< tangent basis
+        double last_rebound;  ///< time of the last rebound [s]; -∞ before the first one
+        // With implicit friction only, else zero:
+        double t;  ///< time of the node [s]
+        /// Elastic displacement along T [m]: S of sliding, Z of rolling; 1 if slipping, else 0
+        struct Pair {
+            Eigen::Matrix<double, 2, 1, Eigen::DontAlign> S;
+            double slipping;
+        } sliding, rolling;
+    };
+    static_assert(reals<NodeState>() == 6 + 2 + 2 * 3, "NodeState must not have padding");
+    int internal_states() const override { return reals<NodeState>(); }
 
     /// Modes of the contact. `active` and `inactive` alternate in a unilateral contact.
     enum Mode {
@@ -161,7 +165,6 @@ private:
                     const ImplicitFriction& law, NormalRows normal_rows, const Unilateral& unilateral);
 
     struct Side;
-    using Mat32 = Eigen::Matrix<double, 3, 2>;
     Mat32 tangents(const Arguments& x) const;
     /// T' = (I - n nᵀ) T: the tangent basis of the node projected on the tangent plane of the normal n
     Mat32 projected_tangents(const Arguments& x, const Vec3& n) const;
@@ -169,7 +172,7 @@ private:
     /// (K_i + K_j)⁻¹ in the tangent plane of the normal n, as a 3 × 3 matrix in global axes [m]. Its
     /// eigenvalues, the lever arms 1/κ, are limited to 10 L.
     Mat3 lever_arms(const Mat3& K_sum, const Vec3& n) const;
-    void update_friction(const Arguments& x, bool start, double* internal_state) const;
+    void update_friction(const Arguments& x, bool start, NodeState& state) const;
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;

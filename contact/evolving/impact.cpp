@@ -34,8 +34,10 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
 
     // Without c the gap would have the acceleration -F_N/m with the effective mass m = compression/approach.
     // The contact separates if the time of flight 2 m rebound/F_N is longer than a step.
-    double& last_rebound = x.internal_state[c.contact->first_internal_state + EvolvingContact::last_rebound];
-    const double rebound = c.stays_active || x.t - last_rebound < h ? 0 : unilateral.restitution * approach;
+    const auto node_state = [&] { return x.internal_state.data() + c.contact->first_internal_state; };
+    auto state = restored<EvolvingContact::NodeState>(node_state());
+    const double rebound =
+        c.stays_active || x.t - state.last_rebound < h ? 0 : unilateral.restitution * approach;
     const bool separates = rebound > 0 && 2 * rebound * compression > h * approach * F_N;
     if (separates) {
         if (unilateral.impact == Unilateral::Impact::newton) {
@@ -56,7 +58,10 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
                       .contact = c.number,
                       .speed = approach});
     c.last_node = c.previous_node = {};
-    if (separates) last_rebound = x.t;
+    if (separates) {
+        state.last_rebound = x.t;
+        save(state, node_state());
+    }
     restart(x);
 }
 

@@ -8,6 +8,7 @@
 #include "lie/steps/accelerations.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hilda::contact {
 
@@ -92,25 +93,27 @@ void UnilateralStep::update_alpha(State& x) const
 int UnilateralStep::step(State& x, double h)
 {
     report_fallbacks(x);
+    step_start = x;
     struct Rollback {
-        State &x, &from;
+        State& x;
+        const State* from;
         std::vector<ContactEvent>& event_log;
         const size_t events;
         bool done = false;
         ~Rollback()
         {
             if (done) return;
-            x = from;
+            x = *from;
             event_log.resize(events);
         }
-    } rollback{x, at_entry = x, event_log, event_log.size()};
-    step_start = x;
+    } rollback{x, &step_start, event_log, event_log.size()};
     size_t kept_events = event_log.size();
     for (;;) try {
             const int iterations = advance(x, h);
             rollback.done = true;
             return iterations;
         } catch (const lie::NumericalFailure&) {
+            if (rollback.from == &step_start) rollback.from = &(at_entry = step_start);
             x = step_start;
             event_log.resize(kept_events);
             if (!switch_least_curved_to_fallback(x)) throw;
@@ -154,7 +157,8 @@ void UnilateralStep::restore(const History& saved)
     }
 }
 
-/// Advances x from t_n to t_n + h through all events.
+/// Advances x from t_n to t_n + h through all events. During a part of the step x is its beginning and `trial`
+/// its end.
 int UnilateralStep::advance(State& x, double h)
 {
     int iterations = 0;
@@ -162,37 +166,36 @@ int UnilateralStep::advance(State& x, double h)
     for (TrackedContact& c : contact) c.stays_active = false, c.impacts = 0;
     double remaining = h;
     for (int part = 0; part < max_parts; ++part) {
-        node = x;
         // A staggered scheme computes the multipliers of this node in the step that starts there. After a
         // restart they are known already.
-        const bool restarts = part > 0 || (scheme->keeps_history() && node.history.size() == 0);
+        const bool restarts = part > 0 || (scheme->keeps_history() && x.history.size() == 0);
         const bool forces_known = !scheme->is_staggered() || restarts;
-        if (forces_known && deactivate_tensile(node)) restart(node);
-        int k = try_step(node, trial, remaining);
+        if (forces_known && deactivate_tensile(x)) restart(x);
+        int k = try_step(x, trial, remaining);
         while (!forces_known) {
-            node.lambda = trial.lambda;
-            if (!deactivate_tensile(node)) break;
-            k += try_step(node, trial, remaining);
+            x.lambda = trial.lambda;
+            if (!deactivate_tensile(x)) break;
+            k += try_step(x, trial, remaining);
         }
         iterations = std::max(iterations, k);
 
-        restart_node = node;
-        if (!forces_known) scheme->fill_node(restart_node, trial);
-        restart_node.history.resize(0);
-        if (part == 0) full_node = restart_node;
+        State& from = part == 0 ? full_node : restart_node;
+        from = x;
+        if (!forces_known) scheme->fill_node(from, trial);
+        from.history.resize(0);
         for (TrackedContact& c : contact)
-            if (is_active(c, node)) c.record(node.t, force(c, node, restart_node.lambda));
+            if (is_active(c, x)) c.record(x.t, force(c, x, from.lambda));
 
         TrackedContact* closing = nullptr;
-        const double elapsed = find_closing(trial, remaining, closing);
+        const double elapsed = find_closing(from, trial, remaining, closing);
         if (closing == nullptr) {
-            x = trial;
+            std::swap(x, trial);
             if (part > 0) restart(x);  // the history of x is that of another step size
             return iterations;
         }
-        if (elapsed > 0) model.accepted(node, trial);
-        resolve_impact(trial, *closing, h);
-        x = trial;
+        if (elapsed > 0) model.accepted(x, trial);
+        std::swap(x, trial);
+        resolve_impact(x, *closing, h);
         remaining -= elapsed;
         if (remaining <= min_remainder * h) {
             x.t = step_start.t + h;
@@ -301,23 +304,23 @@ UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from
     return next;
 }
 
-/// Returns the length of the step from restart_node after which the first gap is zero, and sets `to` to the
+/// Returns the length of the step from `from` after which the first gap is zero, and sets `to` to the
 /// state there and `first` to the contact. Returns h and sets `first` to nullptr if no inactive contact
 /// overlaps in `to`.
-double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
+double UnilateralStep::find_closing(const State& from, State& to, double h, TrackedContact*& first)
 {
     first = nullptr;
     const double whole = h;
-    while (TrackedContact* next = first_to_close(restart_node, to)) {
+    while (TrackedContact* next = first_to_close(from, to)) {
         first = next;
-        h = find_zero_gap(*next, to, h);
+        h = find_zero_gap(*next, from, to, h);
         if (!(h > 0)) {
             // The gap is already zero at the node. If the approach speed is within rounding, there is no
             // impact. For example, the contact has become inactive at this node but does not separate. It
             // then becomes active again and stays active for this step.
-            if (!(whole * separation_speed(*next, restart_node) < -rounding * next->contact->L))
+            if (!(whole * separation_speed(*next, from) < -rounding * next->contact->L))
                 next->stays_active = true;
-            to = restart_node;
+            to = from;
             return 0;
         }
     }
@@ -326,14 +329,14 @@ double UnilateralStep::find_closing(State& to, double h, TrackedContact*& first)
 
 /// Step length in (0, h] after which the gap of c is zero, given a negative gap after h. Returns 0 if the
 /// gap is zero at the node and no positive gap is found after h/2, h/4, …, h/64.
-double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double h)
+double UnilateralStep::find_zero_gap(const TrackedContact& c, const State& from, State& to, double h)
 {
     const double tolerance = gap_tolerance * c.contact->L;
-    double a = 0, g_a = gap(c, restart_node), b = h, g_b = gap(c, to);
+    double a = 0, g_a = gap(c, from), b = h, g_b = gap(c, to);
     for (int halving = 0; g_a <= tolerance; ++halving) {  // the gap may open first and close again
-        if (halving == 6 || !(separation_speed(c, restart_node) > 0)) return 0;
+        if (halving == 6 || !(separation_speed(c, from) > 0)) return 0;
         a = halving == 0 ? 0.5 * h : 0.5 * a;
-        try_step(restart_node, to, a);
+        try_step(from, to, a);
         g_a = gap(c, to);
         if (g_a < -tolerance) b = a, g_b = g_a;
     }
@@ -341,7 +344,7 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double 
     for (int k = 0, last = 0; k < max_gap_iterations; ++k) {
         s = (a * g_b - b * g_a) / (g_b - g_a);
         if (!(s > a && s < b)) s = 0.5 * (a + b);
-        try_step(restart_node, to, s);
+        try_step(from, to, s);
         const double g = gap(c, to);
         if (std::abs(g) <= tolerance) return s;
         // regula falsi, Illinois variant: if the same end point remains twice, its value is halved
@@ -357,7 +360,7 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, State& to, double 
         if (!(b - a > 1e-15 * h)) break;
     }
     // Rounding prevents a gap within the tolerance. Take the longest step known to have no overlap.
-    try_step(restart_node, to, a);
+    try_step(from, to, a);
     return a;
 }
 

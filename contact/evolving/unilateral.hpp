@@ -145,8 +145,8 @@ private:
     void restart(lie::State& x);
     bool deactivate_tensile(lie::State& x);
     TrackedContact* first_to_close(const lie::State& from, const lie::State& to);
-    double find_closing(lie::State& to, double h, TrackedContact*& first);
-    double find_zero_gap(const TrackedContact& c, lie::State& to, double h);
+    double find_closing(const lie::State& from, lie::State& to, double h, TrackedContact*& first);
+    double find_zero_gap(const TrackedContact& c, const lie::State& from, lie::State& to, double h);
     void resolve_impact(lie::State& x, TrackedContact& c, double h);
     bool force_is_determined(const TrackedContact& c, lie::State& x);
     void switch_to_fallback(const TrackedContact& c, lie::State& x, double speed);
@@ -160,11 +160,12 @@ private:
     lie::Saddle K;  ///< saddle matrix of impacts and restarts
     std::vector<TrackedContact> contact;
     std::vector<ContactEvent> event_log;
-    lie::State at_entry;                  ///< state at the call of step(); restored if the step fails
-    lie::State step_start;                ///< state from which the current attempt of the step starts
-    lie::State node, trial;               ///< begin and end of a part of the step
-    lie::State restart_node;              ///< `node`, completed by fill_node(), without a history
-    lie::State full_node, before_impact;  ///< node at t_n, completed by fill_node(); state before an impact
+    lie::State step_start;    ///< state from which the current attempt of the step starts
+    lie::State at_entry;      ///< state at the call of step(), if the step is repeated with a fallback
+    lie::State trial;         ///< end of a part of the step
+    lie::State full_node;     ///< node at t_n, completed by fill_node(), without a history
+    lie::State restart_node;  ///< the same for the beginning of a later part
+    lie::State before_impact;
     /// Impulse that the next velocity jump adds, 6 numbers per body: linear impulse [N s, global frame] and
     /// angular impulse [N m s, body frame]
     Eigen::VectorXd momentum;

@@ -97,9 +97,12 @@ inline Vec3 point(const Shape& shape, const Vec3& near, double spread, Random& r
 struct ContactPose {
     Motion bi, bj;
     Eigen::Matrix<double, 6, 1> alpha;
-    Eigen::Matrix<double, 3, 2> T;  ///< tangent basis of the normal of i
+    EvolvingContact::NodeState node = {};  ///< node.T: tangent basis of the normal of i
 
-    dae::Constraint::Arguments at() const { return {bi, bj, 0, alpha.data(), T.data(), false}; }
+    dae::Constraint::Arguments at() const
+    {
+        return {bi, bj, 0, alpha.data(), reinterpret_cast<const double*>(&node), false};
+    }
 };
 
 /// Moves body i so that the given points of the two bodies are in contact; turned by `angle` about the normal
@@ -129,7 +132,7 @@ inline ContactPose random_contact_pose(const SurfacePair& pair, Random& random)
     place_in_contact(pair.i, a_i, x.bi, pair.j, a_j, x.bj, random.number(-3, 3));
     x.alpha << a_i, a_j;
     const Vec3 n_i = x.bi.A * (pair.i.orientation * pair.i.surface->normal(pair.i.to_surface(a_i)));
-    x.T = contact::tangent_basis(n_i);
+    x.node.T = contact::tangent_basis(n_i);
     return x;
 }
 

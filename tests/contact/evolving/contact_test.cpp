@@ -79,7 +79,7 @@ TEST_CASE("the variation of an evolving contact equals central differences", "[c
             };
             const Vec3 n =
                 x.bi.A * (pair.i.orientation * pair.i.surface->normal(pair.i.to_surface(x.alpha.head<3>())));
-            const Eigen::Matrix<double, 3, 2> across = x.T - n * (n.transpose() * x.T);
+            const Eigen::Matrix<double, 3, 2> across = x.node.T - n * (n.transpose() * x.node.T);
             INFO(pair.name);
             for (int k = 0; k < 6; ++k) {
                 INFO("component " << k);
@@ -164,7 +164,7 @@ TEST_CASE("gamma of an evolving contact equals its second derivative without the
             return slip(y.bi, y.bj, y.alpha);
         });
         const Eigen::Vector2d rolling = d.C_i.bottomRows<2>() * q_i + d.C_j.bottomRows<2>() * q_j;
-        CHECK((rolling - gamma.tail<2>() - x.T.transpose() * slipping).norm() < 1e-7 * scale);
+        CHECK((rolling - gamma.tail<2>() - x.node.T.transpose() * slipping).norm() < 1e-7 * scale);
     }
 }
 

@@ -20,8 +20,6 @@
 #include "contact/compliant/contact_force.hpp"
 #include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
-#include "contact/surfaces/disk.hpp"
-#include "contact/surfaces/foot.hpp"
 #include "dae/model.hpp"
 #include "dae/model_types.hpp"
 #include "lie/settings.hpp"
@@ -103,13 +101,6 @@ std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string
     return entry.read != nullptr ? entry.read(o, p, normal) : entry.make(p);
 }
 
-std::vector<std::string> law_names()
-{
-    std::vector<std::string> names;
-    for (const FrictionLaw& law : friction_laws()) names.push_back(law.name);
-    return names;
-}
-
 std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
 {
     if (!contact.has("friction")) return frictionless();
@@ -118,7 +109,7 @@ std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const 
         law != nullptr && law->string() != nullptr && *law->string() == rolling)
         o.fail("law",
                "law \"rolling\" needs \"normal\": {\"type\": \"constraint\"}, got a compliant contact");
-    const std::string law = o.one_of("law", law_names(), slide_roll_spin);
+    const std::string law = o.one_of("law", io::Registry<FrictionLaw>::names(), slide_roll_spin);
     std::shared_ptr<const FrictionModel> model = read_law(o, law, normal);
     contact.record("friction", o.finish());
     return model;
@@ -185,7 +176,7 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
 {
     if (!contact.has("friction")) return {};
     ObjectReader o = contact.object("friction");
-    std::vector<std::string> laws = law_names();
+    std::vector<std::string> laws = io::Registry<FrictionLaw>::names();
     laws.insert(laws.begin(), {rolling, implicit});
     const std::string law = o.one_of("law", laws, slide_roll_spin);
     ConstraintFriction settings{.ideal_rolling = law == rolling, .law = nullptr, .within_step = {}};
@@ -207,8 +198,7 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
 /// Rejects surfaces with an edge or a fixed contact point: an evolving contact point needs a smooth surface.
 void check_smooth(const ObjectReader& o, std::string_view key, const Shape& shape)
 {
-    if (dynamic_cast<const Disk*>(shape.surface.get()) != nullptr ||
-        dynamic_cast<const Foot*>(shape.surface.get()) != nullptr)
+    if (!shape.surface->is_smooth())
         o.fail(key,
                "a contact of type \"constraint\" needs a smooth surface, got a " + shape.surface->name());
 }

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <limits>
 
 namespace hilda::contact {
 
@@ -52,6 +53,15 @@ Mat3 Surface::shape_operator(const Vec3& a) const
     const Vec3 u = gradient / g;
     const Mat3 P = Mat3::Identity() - u * u.transpose();
     return P * (sigma() / g * hessian) * P;
+}
+
+double Surface::bounding_radius() const
+{
+    if (!convex() || sigma() < 0) return std::numeric_limits<double>::infinity();
+    Vec3 corner;  // of the bounding box
+    for (int k = 0; k < 3; ++k)
+        corner[k] = std::max((*support(Vec3::Unit(k)))[k], -(*support(-Vec3::Unit(k)))[k]);
+    return corner.norm();
 }
 
 Vec3 Surface::project(const Vec3& a) const

@@ -13,6 +13,9 @@ namespace hilda::contact {
 using lie::Mat3;
 using lie::Vec3;
 
+struct DrawingExtent;
+struct Mesh;
+
 /// The surface of a body, in its own frame [m]. A derived class implements G, ∇G and ∇²G, which must be
 /// defined in a neighbourhood of the surface. The geometry follows from them:
 ///
@@ -73,6 +76,22 @@ public:
     /// Geodesic distance between two points at the straight distance `chord` [m], if it is a function of the
     /// chord alone. Otherwise the chord itself, which is shorter by the fraction (chord κ)²/24.
     virtual double arc(double chord) const { return chord; }
+
+    /// False for a surface with an edge or a fixed contact point. Its only partner is a plane, and it cannot be
+    /// part of an evolving contact.
+    virtual bool is_smooth() const { return true; }
+    /// Radius of a sphere about the origin of the frame that contains the body [m]; infinite if there is none.
+    /// The default is that of the bounding box of a convex body from its support points, else infinite.
+    virtual double bounding_radius() const;
+
+    /// True for a surface of which only an extent is drawn. The default is an implicit surface with a
+    /// coordinate half-axis that does not intersect it.
+    virtual bool is_unbounded() const;
+    /// Polygons that approximate the surface, at most about 500 points, outward for sigma() = 1. A point that
+    /// is not found is NaN. The default samples a convex surface by its support function, which places the
+    /// points by normal direction, an implicit surface along rays from its origin, and an unbounded one by
+    /// projection of points of the plane z = 0. For output see tessellate().
+    virtual Mesh drawing(const DrawingExtent& extent) const;
 };
 
 }  // namespace hilda::contact

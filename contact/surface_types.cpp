@@ -3,26 +3,9 @@
 
 #include "contact/tangent_basis.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace hilda::contact {
 
 namespace {
-
-// A function-local static: types are registered during static initialisation, whose order is unspecified.
-std::vector<SurfaceType>& list()
-{
-    static std::vector<SurfaceType> types;
-    return types;
-}
-
-std::vector<std::string> names()
-{
-    std::vector<std::string> all;
-    for (const SurfaceType& type : surface_types()) all.push_back(type.name);
-    return all;
-}
 
 Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
 {
@@ -37,27 +20,11 @@ Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
 
 }  // namespace
 
-const std::vector<SurfaceType>& surface_types() { return list(); }
-
-bool register_surface(SurfaceType type)
-{
-    std::vector<SurfaceType>& all = list();
-    const auto at =
-        std::lower_bound(all.begin(), all.end(), type,
-                         [](const SurfaceType& a, const SurfaceType& b) { return a.name < b.name; });
-    if (at != all.end() && at->name == type.name)
-        throw std::logic_error(
-            "contact::register_surface: a surface type is already registered under the name " + type.name);
-    all.insert(at, std::move(type));
-    return true;
-}
-
 Shape read_shape(dae::ObjectReader& parent, std::string_view key)
 {
     dae::ObjectReader o = parent.object(key);
-    const std::string name = o.one_of("type", names());
-    const SurfaceType& type = *std::find_if(surface_types().begin(), surface_types().end(),
-                                            [&](const SurfaceType& t) { return t.name == name; });
+    using Types = io::Registry<SurfaceType>;
+    const SurfaceType& type = *Types::find(o.one_of("type", Types::names()));
     Shape shape;
     shape.surface = type.read(o);
     shape.position = o.vec3("position", Vec3::Zero());

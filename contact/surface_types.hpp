@@ -5,12 +5,11 @@
 
 #include "contact/shape.hpp"
 #include "dae/object_reader.hpp"
-
-#include <vector>
+#include "io/registry.hpp"
 
 namespace hilda::contact {
 
-/// A registered surface type
+/// A surface type. The file of the surface registers it by io::Registry<SurfaceType>::add().
 struct SurfaceType {
     std::string name;
     /// Reads the keys of this type, lengths in m. Throws dae::PlacedError.
@@ -19,13 +18,6 @@ struct SurfaceType {
     /// is none.
     std::string z = {};
 };
-
-/// All registered types, sorted by name
-const std::vector<SurfaceType>& surface_types();
-
-/// Registers a surface type. Call it in the initialiser of a constant at namespace scope in the file of the
-/// surface. std::logic_error if the name is already registered.
-bool register_surface(SurfaceType type);
 
 /// Reads the shape under a key, such as
 ///

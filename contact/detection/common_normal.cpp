@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/detection/common_normal.hpp"
 
-#include "contact/surfaces/sphere.hpp"
-#include "contact/surfaces/torus.hpp"
 #include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
@@ -75,19 +73,6 @@ bool is_convex_solid(const Surface& s) { return s.convex() && s.sigma() > 0; }
 
 bool outside(const Surface& s, const Vec3& a) { return s.sigma() * s.value(a) > 0; }
 
-/// Radius of a sphere about the origin of the surface that contains the body [m]; infinite if there is none
-double bounding_radius(const Surface& s)
-{
-    if (const auto* sphere = dynamic_cast<const Sphere*>(&s)) return sphere->concave ? INFINITY : sphere->R;
-    if (const auto* torus = dynamic_cast<const Torus*>(&s))
-        return torus->concave ? INFINITY : torus->R + torus->r;
-    if (!is_convex_solid(s)) return INFINITY;
-    Vec3 corner;  // of the bounding box
-    for (int k = 0; k < 3; ++k)
-        corner[k] = std::max((*s.support(Vec3::Unit(k)))[k], -(*s.support(-Vec3::Unit(k)))[k]);
-    return corner.norm();
-}
-
 /// The point of the surface closest to x; one of them if it is not unique, such as on the axis of a torus
 Vec3 nearest_point(const Surface& s, const Vec3& x)
 {
@@ -143,8 +128,8 @@ struct CommonNormal::SearchResult {
 
 CommonNormal::CommonNormal(const Shape& i, const Shape& j)
     : i(i), j(j), smaller_size(std::min(size_or(i, j), size_or(j, i))),
-      larger_size(std::max(size_or(i, j), size_or(j, i))), bounding_radius_i(bounding_radius(*i.surface)),
-      bounding_radius_j(bounding_radius(*j.surface)),
+      larger_size(std::max(size_or(i, j), size_or(j, i))), bounding_radius_i(i.surface->bounding_radius()),
+      bounding_radius_j(j.surface->bounding_radius()),
       both_convex(is_convex_solid(*i.surface) && is_convex_solid(*j.surface))
 {}
 

@@ -61,8 +61,8 @@ private:
 
 std::unique_ptr<Detector> cylinder_cylinder(const Shape& i, const Shape& j)
 {
-    const auto* a = dynamic_cast<const Cylinder*>(i.surface.get());
-    const auto* b = dynamic_cast<const Cylinder*>(j.surface.get());
+    const auto* a = surface_as<Cylinder>(i);
+    const auto* b = surface_as<Cylinder>(j);
     if (a == nullptr || b == nullptr) return nullptr;
     if (a->concave || b->concave)
         lie::reject("contact::make_detector", "a pair of surfaces must have a single contact point",

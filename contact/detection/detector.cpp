@@ -3,8 +3,6 @@
 
 #include "contact/detection/detectors.hpp"
 #include "contact/surfaces/cylinder.hpp"
-#include "contact/surfaces/disk.hpp"
-#include "contact/surfaces/foot.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "lie/check.hpp"
 
@@ -27,12 +25,6 @@ public:
 private:
     const std::unique_ptr<Detector> ji;
 };
-
-template <class S>
-bool is(const Shape& shape)
-{
-    return dynamic_cast<const S*>(shape.surface.get()) != nullptr;
-}
 
 void check_shape(const Shape& shape)
 {
@@ -60,13 +52,13 @@ void check_pair(const Shape& i, const Shape& j)
 {
     constexpr const char* where = "contact::make_detector";
     for (const auto& [a, b] : {std::pair{&i, &j}, std::pair{&j, &i}}) {
-        if (is<Foot>(*a) && !is<Plane>(*b))
-            lie::reject(where, "a foot can be paired with a plane only", names(i, j));
-        if (is<Disk>(*a) && !is<Plane>(*b))
-            lie::reject(where, "a disk can be paired with a plane only", names(i, j));
-        if (is<Plane>(*a) && (is<Plane>(*b) || is<Cylinder>(*b)))
+        const bool a_is_plane = surface_as<Plane>(*a) != nullptr,
+                   b_is_plane = surface_as<Plane>(*b) != nullptr;
+        if (!a->surface->is_smooth() && !b_is_plane)
+            lie::reject(where, "a " + a->surface->name() + " can be paired with a plane only", names(i, j));
+        if (a_is_plane && (b_is_plane || surface_as<Cylinder>(*b) != nullptr))
             lie::reject(where, "a pair of surfaces must have a single contact point", names(i, j));
-        if (a->surface->sigma() < 0 && (is<Plane>(*b) || b->surface->sigma() < 0))
+        if (a->surface->sigma() < 0 && (b_is_plane || b->surface->sigma() < 0))
             lie::reject(where, "a concave surface can be in contact on its inside only", names(i, j));
     }
 }

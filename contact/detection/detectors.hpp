@@ -16,6 +16,13 @@ struct PlacedShape {
     {}
 };
 
+/// The surface of a shape if it is of type S, else nullptr
+template <class S>
+const S* surface_as(const Shape& shape)
+{
+    return dynamic_cast<const S*>(shape.surface.get());
+}
+
 /// The contact point of bodies i and j from a detector made for the pair j, i: the results are exchanged and
 /// n changes its sign. The numbers are bit-identical.
 ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj,

@@ -53,8 +53,8 @@ private:
 
 std::unique_ptr<Detector> disk_plane(const Shape& i, const Shape& j)
 {
-    const auto* disk = dynamic_cast<const Disk*>(i.surface.get());
-    if (disk == nullptr || dynamic_cast<const Plane*>(j.surface.get()) == nullptr) return nullptr;
+    const auto* disk = surface_as<Disk>(i);
+    if (disk == nullptr || surface_as<Plane>(j) == nullptr) return nullptr;
     return std::make_unique<DiskPlane>(i, disk->R, j);
 }
 

@@ -31,9 +31,7 @@ private:
 
 std::unique_ptr<Detector> foot_plane(const Shape& i, const Shape& j)
 {
-    if (dynamic_cast<const Foot*>(i.surface.get()) == nullptr ||
-        dynamic_cast<const Plane*>(j.surface.get()) == nullptr)
-        return nullptr;
+    if (surface_as<Foot>(i) == nullptr || surface_as<Plane>(j) == nullptr) return nullptr;
     return std::make_unique<FootPlane>(i, j);
 }
 

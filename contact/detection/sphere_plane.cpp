@@ -36,8 +36,8 @@ private:
 
 std::unique_ptr<Detector> sphere_plane(const Shape& i, const Shape& j)
 {
-    const auto* sphere = dynamic_cast<const Sphere*>(i.surface.get());
-    if (sphere == nullptr || dynamic_cast<const Plane*>(j.surface.get()) == nullptr) return nullptr;
+    const auto* sphere = surface_as<Sphere>(i);
+    if (sphere == nullptr || surface_as<Plane>(j) == nullptr) return nullptr;
     return std::make_unique<SpherePlane>(i, sphere->R, j);
 }
 

@@ -45,8 +45,8 @@ private:
 
 std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j)
 {
-    const auto* a = dynamic_cast<const Sphere*>(i.surface.get());
-    const auto* b = dynamic_cast<const Sphere*>(j.surface.get());
+    const auto* a = surface_as<Sphere>(i);
+    const auto* b = surface_as<Sphere>(j);
     if (a == nullptr || b == nullptr) return nullptr;
     const double R_i = a->sigma() * a->R, R_j = b->sigma() * b->R;
     if (!(1 / R_i + 1 / R_j > 0))

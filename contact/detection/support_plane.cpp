@@ -52,8 +52,7 @@ private:
 
 std::unique_ptr<Detector> support_plane(const Shape& i, const Shape& j)
 {
-    if (dynamic_cast<const Plane*>(j.surface.get()) == nullptr || !i.surface->support(Vec3(0.48, 0.6, 0.64)))
-        return nullptr;
+    if (surface_as<Plane>(j) == nullptr || !i.surface->support(Vec3(0.48, 0.6, 0.64))) return nullptr;
     return std::make_unique<SupportPlane>(i, j);
 }
 

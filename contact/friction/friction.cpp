@@ -9,13 +9,6 @@ namespace hilda::contact {
 
 namespace {
 
-// A function-local static: laws are registered during static initialisation, whose order is unspecified.
-std::vector<FrictionLaw>& list()
-{
-    static std::vector<FrictionLaw> laws;
-    return laws;
-}
-
 // K_i + K_j is singular if its determinant is below this fraction of its squared norm (e.g. a foot on a
 // plane).
 constexpr double singular = 1e-9;
@@ -114,27 +107,14 @@ void FrictionParameters::validate() const
         lie::reject("friction", "eta_psi and E_star exclude each other; E_star", E_star);
 }
 
-const std::vector<FrictionLaw>& friction_laws() { return list(); }
-
 const FrictionLaw& friction_law(const std::string& name)
 {
+    using Laws = io::Registry<FrictionLaw>;
+    if (const FrictionLaw* law = Laws::find(name)) return *law;
     std::string all;
-    for (const FrictionLaw& law : list()) {
-        if (law.name == name) return law;
-        all += (all.empty() ? "" : ", ") + law.name;
-    }
+    for (const std::string& law : Laws::names()) all += (all.empty() ? "" : ", ") + law;
     lie::reject("contact::friction_law", "the name must be one of the registered laws " + all,
                 "'" + name + "'");
-}
-
-bool register_friction_law(FrictionLaw law)
-{
-    std::vector<FrictionLaw>& all = list();
-    const auto at =
-        std::lower_bound(all.begin(), all.end(), law,
-                         [](const FrictionLaw& a, const FrictionLaw& b) { return a.name < b.name; });
-    all.insert(at, std::move(law));
-    return true;
 }
 
 }  // namespace hilda::contact

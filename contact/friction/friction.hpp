@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/friction/tracker.hpp"
+#include "io/registry.hpp"
 
 #include <limits>
 #include <string>
@@ -135,7 +136,7 @@ struct FrictionParameters {
     void validate() const;
 };
 
-/// A registered friction law
+/// A friction law. The file of the law registers it by io::Registry<FrictionLaw>::add().
 struct FrictionLaw {
     std::string name, what;  ///< name in model files, one-line description
     std::shared_ptr<const FrictionModel> (*make)(const FrictionParameters&) = nullptr;
@@ -144,20 +145,13 @@ struct FrictionLaw {
     std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p,
                                                  const NormalLaw& normal) = nullptr;
 };
-/// All registered laws, sorted by name
-const std::vector<FrictionLaw>& friction_laws();
+/// For FrictionLaw::make: the constructor Law(const FrictionParameters&)
+template <class Law>
+std::shared_ptr<const FrictionModel> make_law(const FrictionParameters& p)
+{
+    return std::make_shared<Law>(p);
+}
 /// The law with this name; InvalidInput with the list of names if there is none
 const FrictionLaw& friction_law(const std::string& name);
-/// Registers a friction law. Call it in the initialiser of a constant at namespace scope in the file of the
-/// law. The template sets `make` to the constructor Law(const FrictionParameters&).
-bool register_friction_law(FrictionLaw law);
-template <class Law>
-bool register_friction_law(FrictionLaw law)
-{
-    law.make = [](const FrictionParameters& p) -> std::shared_ptr<const FrictionModel> {
-        return std::make_shared<Law>(p);
-    };
-    return register_friction_law(std::move(law));
-}
 
 }  // namespace hilda::contact

@@ -206,7 +206,7 @@ Vec3 HeightMap::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "height-map", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const MatrixXd heights = read_rows(o, "heights");
          if (std::min(heights.rows(), heights.cols()) < min_samples)

@@ -54,6 +54,7 @@ public:
     Vec3 project(const Vec3& a) const override;
     /// Half the shorter side of the grid [m]
     double size() const override { return length; }
+    bool is_unbounded() const override { return true; }
 
     const Eigen::Vector2d corner, spacing;
 

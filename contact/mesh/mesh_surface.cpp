@@ -3,6 +3,7 @@
 
 #include "contact/surface_types.hpp"
 #include "contact/tangent_basis.hpp"
+#include "contact/tessellation.hpp"
 #include "lie/check.hpp"
 
 #include <Eigen/Cholesky>
@@ -233,6 +234,14 @@ Surface::Derivatives MeshSurface::distance_function(const Vec3& a, const Triangl
     return {side * near.distance, side * n, side / near.distance * bent};
 }
 
+Mesh MeshSurface::drawing(const DrawingExtent&) const
+{
+    Mesh drawn;
+    drawn.point = mesh.vertices;
+    for (const auto& [a, b, c] : mesh.triangles) drawn.polygon.push_back({a, b, c});
+    return drawn;
+}
+
 namespace {
 
 std::shared_ptr<const Surface> read(dae::ObjectReader& o)
@@ -264,7 +273,7 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
     }
 }
 
-const bool registered = register_surface({.name = "mesh", .read = read});
+const bool registered = io::Registry<SurfaceType>::add({.name = "mesh", .read = read});
 
 }  // namespace
 

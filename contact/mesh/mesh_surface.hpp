@@ -42,6 +42,9 @@ public:
     /// Half the geometric mean of the sides of the bounding box [m]: (abc)^(1/3) for an ellipsoid aligned
     /// with the axes
     double size() const override { return length; }
+    bool is_unbounded() const override { return false; }
+    /// The triangles of the mesh
+    Mesh drawing(const DrawingExtent& extent) const override;
 
     const TriangleMesh mesh;
     const bool concave;

@@ -60,7 +60,7 @@ Vec3 Cone::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "cone",
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const double beta = o.number("half_angle");

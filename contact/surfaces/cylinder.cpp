@@ -3,6 +3,9 @@
 
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
+#include "contact/tessellation.hpp"
+
+#include <numbers>
 
 namespace hilda::contact {
 
@@ -21,14 +24,27 @@ Vec3 Cylinder::project(const Vec3& a) const
     return {R / distance * a.x(), R / distance * a.y(), a.z()};
 }
 
+Mesh Cylinder::drawing(const DrawingExtent& extent) const
+{
+    constexpr double pi = std::numbers::pi;
+    const bool known = !extent.box.isEmpty();
+    const double middle = known ? extent.box.center().z() : 0;
+    const double half = std::max(R, known ? DrawingExtent::margin * 0.5 * extent.box.sizes().z() : 0);
+    return grid(around, across + 1, true, false, [&](int r, int c) {
+        return Vec3(R * std::cos(2 * pi * r / around), R * std::sin(2 * pi * r / around),
+                    middle + half * (2. * c / across - 1));
+    });
+}
+
 namespace {
 
-const bool registered = register_surface({.name = "cylinder",
-                                          .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                              const double R = o.positive("radius");
-                                              return std::make_shared<Cylinder>(R, o.flag("concave", false));
-                                          },
-                                          .z = "axis"});
+const bool registered =
+    io::Registry<SurfaceType>::add({.name = "cylinder",
+                                    .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                        const double R = o.positive("radius");
+                                        return std::make_shared<Cylinder>(R, o.flag("concave", false));
+                                    },
+                                    .z = "axis"});
 
 }  // namespace
 

@@ -3,8 +3,10 @@
 
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
+#include "contact/tessellation.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace hilda::contact {
 
@@ -23,13 +25,26 @@ Vec3 Disk::project(const Vec3& a) const
 
 double Disk::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
 
+Mesh Disk::drawing(const DrawingExtent&) const
+{
+    constexpr double pi = std::numbers::pi;
+    Mesh mesh;
+    mesh.point.push_back(Vec3::Zero());
+    for (int c = 0; c < around; ++c) {
+        mesh.point.push_back(R * Vec3(std::cos(2 * pi * c / around), std::sin(2 * pi * c / around), 0));
+        mesh.polygon.push_back({0, 1 + c, 1 + (c + 1) % around});
+    }
+    return mesh;
+}
+
 namespace {
 
-const bool registered = register_surface({.name = "disk",
-                                          .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                              return std::make_shared<Disk>(o.positive("radius"));
-                                          },
-                                          .z = "axis"});
+const bool registered =
+    io::Registry<SurfaceType>::add({.name = "disk",
+                                    .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                        return std::make_shared<Disk>(o.positive("radius"));
+                                    },
+                                    .z = "axis"});
 
 }  // namespace
 

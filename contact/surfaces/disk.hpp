@@ -32,6 +32,9 @@ public:
     double size() const override { return R; }
     /// Arc length along the rim, 2R asin(chord / 2R) [m]
     double arc(double chord) const override;
+    bool is_smooth() const override { return false; }
+    bool is_unbounded() const override { return false; }
+    Mesh drawing(const DrawingExtent& extent) const override;
 
     const double R;
 };

@@ -65,7 +65,7 @@ Vec3 Ellipsoid::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "ellipsoid", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Vec3 semi_axes = read_semi_axes(o);
          return std::make_shared<Ellipsoid>(semi_axes, o.flag("concave", false));

@@ -2,12 +2,20 @@
 #include "contact/surfaces/foot.hpp"
 
 #include "contact/surface_types.hpp"
+#include "contact/tessellation.hpp"
 
 namespace hilda::contact {
 
+Mesh Foot::drawing(const DrawingExtent& extent) const
+{
+    constexpr double half = 0.05;  // half side, relative to the size of the scene
+    return square(Vec3::Zero(), extent.scene_size > 0 ? half * extent.scene_size : 1,
+                  [](const Vec3& a) { return a; });
+}
+
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "foot",
      .read = [](dae::ObjectReader&) -> std::shared_ptr<const Surface> { return std::make_shared<Foot>(); },
      .z = "normal"});

@@ -13,6 +13,8 @@ namespace hilda::contact {
 class Foot final : public Flat {
 public:
     std::string name() const override { return "foot"; }
+    bool is_smooth() const override { return false; }
+    Mesh drawing(const DrawingExtent& extent) const override;
 };
 
 }  // namespace hilda::contact

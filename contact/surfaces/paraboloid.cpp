@@ -67,7 +67,7 @@ Vec3 Paraboloid::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "paraboloid",
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const std::vector<double> R = o.numbers("radii", 2);

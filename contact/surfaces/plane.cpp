@@ -2,12 +2,18 @@
 #include "contact/surfaces/plane.hpp"
 
 #include "contact/surface_types.hpp"
+#include "contact/tessellation.hpp"
 
 namespace hilda::contact {
 
+Mesh Plane::drawing(const DrawingExtent& extent) const
+{
+    return square(extent, [](const Vec3& a) { return a; });
+}
+
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "plane",
      .read = [](dae::ObjectReader&) -> std::shared_ptr<const Surface> { return std::make_shared<Plane>(); },
      .z = "normal"});

@@ -94,15 +94,14 @@ std::optional<Vec3> Quadric::support(const Vec3& u) const
 
 namespace {
 
-const bool registered =
-    register_surface({.name = "quadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                          const Mat3 Q = o.matrix("Q");
-                          const Vec3 b = o.vec3("b", Vec3::Zero());
-                          const double c = o.number("c");
-                          if (const std::string what = Quadric::fault(Q, b, c); !what.empty())
-                              o.fail("Q", what);
-                          return std::make_shared<Quadric>(Q, b, c, o.flag("concave", false));
-                      }});
+const bool registered = io::Registry<SurfaceType>::add(
+    {.name = "quadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const Mat3 Q = o.matrix("Q");
+         const Vec3 b = o.vec3("b", Vec3::Zero());
+         const double c = o.number("c");
+         if (const std::string what = Quadric::fault(Q, b, c); !what.empty()) o.fail("Q", what);
+         return std::make_shared<Quadric>(Q, b, c, o.flag("concave", false));
+     }});
 
 }  // namespace
 

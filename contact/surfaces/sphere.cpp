@@ -25,11 +25,11 @@ double Sphere::arc(double chord) const { return 2 * R * std::asin(std::min(chord
 
 namespace {
 
-const bool registered =
-    register_surface({.name = "sphere", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                          const double R = o.positive("radius");
-                          return std::make_shared<Sphere>(R, o.flag("concave", false));
-                      }});
+const bool registered = io::Registry<SurfaceType>::add(
+    {.name = "sphere", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         const double R = o.positive("radius");
+         return std::make_shared<Sphere>(R, o.flag("concave", false));
+     }});
 
 }  // namespace
 

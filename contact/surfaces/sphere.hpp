@@ -5,6 +5,8 @@
 
 #include "contact/surface.hpp"
 
+#include <cmath>
+
 namespace hilda::contact {
 
 /// G = (|ᾱ|² - R²) / 2R. The shape operator is K = (I - n nᵀ) / R, with the opposite sign if concave.
@@ -25,6 +27,7 @@ public:
     double size() const override { return R; }
     /// Arc length of the great circle, 2R asin(chord / 2R) [m]
     double arc(double chord) const override;
+    double bounding_radius() const override { return concave ? INFINITY : R; }
 
     const double R;
     const bool concave;

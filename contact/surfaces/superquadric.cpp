@@ -90,7 +90,7 @@ std::optional<Vec3> Superquadric::support(const Vec3& u) const
 
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "superquadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Vec3 semi_axes = read_semi_axes(o);
          const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {

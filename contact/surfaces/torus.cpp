@@ -3,6 +3,9 @@
 
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/positive.hpp"
+#include "contact/tessellation.hpp"
+
+#include <numbers>
 
 namespace hilda::contact {
 
@@ -58,9 +61,18 @@ Vec3 Torus::project(const Vec3& a) const
     return ring + r / distance * out;
 }
 
+Mesh Torus::drawing(const DrawingExtent&) const
+{
+    constexpr double pi = std::numbers::pi;
+    return grid(around, down, true, true, [&](int k, int c) {
+        const double phi = 2 * pi * k / around, theta = 2 * pi * c / down, rho = R + r * std::cos(theta);
+        return Vec3(rho * std::cos(phi), rho * std::sin(phi), r * std::sin(theta));
+    });
+}
+
 namespace {
 
-const bool registered = register_surface(
+const bool registered = io::Registry<SurfaceType>::add(
     {.name = "torus",
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const double R = o.positive("ring_radius"), r = o.positive("tube_radius");

@@ -5,6 +5,8 @@
 
 #include "contact/surface.hpp"
 
+#include <cmath>
+
 namespace hilda::contact {
 
 /// G = ((ρ - R)² + z² - r²) / 2r with ρ² = x² + y²: a tube of radius r around the circle of radius R about z.
@@ -24,6 +26,9 @@ public:
     /// NumericalFailure on the axis and on the centre line of the tube
     Vec3 project(const Vec3& a) const override;
     double size() const override { return r; }
+    double bounding_radius() const override { return concave ? INFINITY : R + r; }
+    bool is_unbounded() const override { return false; }
+    Mesh drawing(const DrawingExtent& extent) const override;
 
     const double R, r;
     const bool concave;

@@ -42,7 +42,7 @@ std::shared_ptr<const Surface> read_wave(dae::ObjectReader& o)
 
 // Registration at program start. The file needs no header and no line elsewhere: link it, and "wave" is
 // known.
-const bool registered = register_surface({.name = "wave", .read = read_wave});
+const bool registered = io::Registry<SurfaceType>::add({.name = "wave", .read = read_wave});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -159,12 +159,12 @@ std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
     std::vector<double> radius(surfaces.size(),
                                0);  // about the origin of the surface; 0 for unbounded surfaces
     for (size_t k = 0; k < surfaces.size(); ++k)
-        if (!is_unbounded(*surfaces[k].shape.surface))
+        if (!surfaces[k].shape.surface->is_unbounded())
             for (const Vec3& a : tessellate(*surfaces[k].shape.surface, {}).point)
                 radius[k] = std::max(radius[k], a.norm());
     std::vector<BodyMesh> all;
     for (const BodySurface& s : surfaces) {
-        BodyMesh p = piece(s, is_unbounded(*s.shape.surface) ? extent_of(s, radius) : DrawingExtent());
+        BodyMesh p = piece(s, s.shape.surface->is_unbounded() ? extent_of(s, radius) : DrawingExtent());
         if (std::find(all.begin(), all.end(), p) == all.end()) all.push_back(std::move(p));
     }
     return all;

@@ -4,12 +4,15 @@
 #pragma once
 
 #include "contact/compliant/contact.hpp"
-#include "studies/running/tessellation.hpp"
+#include "contact/tessellation.hpp"
 
 #include <string>
 #include <vector>
 
 namespace hilda::studies {
+
+using contact::DrawingExtent;
+using contact::Mesh;
 
 /// Selects `count` evenly spaced nodes of 0 … steps, including the first and the last. The nodes must be
 /// queried in ascending order.

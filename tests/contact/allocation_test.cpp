@@ -19,7 +19,7 @@ TEST_CASE("a step of bodies in contact does not allocate memory", "[contact][all
     const bool dissertation = GENERATE(true, false);
     FrictionParameters p{.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e5, .eta_r = 0.2, .eta_psi = 0.01, .mu_r = 0.1};
     if (dissertation) p = p.as_in_dissertation();
-    for (const FrictionLaw& law : friction_laws()) {
+    for (const FrictionLaw& law : io::Registry<FrictionLaw>::all()) {
         Scene scene;
         const Shape ball{std::make_shared<Sphere>(0.15)}, floor{std::make_shared<Plane>()};
         const Inertia inertia{1, 0.4 * 0.15 * 0.15 * lie::Mat3::Identity()};

@@ -83,8 +83,8 @@ const std::map<std::string, std::string> examples = {
 
 TEST_CASE("all surface types are read and have a stable canonical text", "[contact][surface_types]")
 {
-    REQUIRE(surface_types().size() >= examples.size());
-    for (const SurfaceType& type : surface_types()) {
+    REQUIRE(io::Registry<SurfaceType>::all().size() >= examples.size());
+    for (const SurfaceType& type : io::Registry<SurfaceType>::all()) {
         INFO(type.name);
         const auto example = examples.find(type.name);
         REQUIRE(example != examples.end());
@@ -221,5 +221,6 @@ TEST_CASE("an invalid mesh is rejected with its position", "[contact][surface_ty
 
 TEST_CASE("a second surface type with the same name is rejected", "[contact][surface_types]")
 {
-    CHECK_THROWS_AS(register_surface(SurfaceType{.name = "sphere", .read = nullptr}), std::logic_error);
+    CHECK_THROWS_AS(io::Registry<SurfaceType>::add(SurfaceType{.name = "sphere", .read = nullptr}),
+                    std::logic_error);
 }

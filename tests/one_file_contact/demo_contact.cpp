@@ -22,7 +22,7 @@ std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
     return std::make_shared<ImplicitSurface<decltype(G)>>(G, R);
 }
 
-const bool egg = register_surface({.name = "demo-egg", .read = read_egg});
+const bool egg = io::Registry<SurfaceType>::add({.name = "demo-egg", .read = read_egg});
 
 /// Viscous friction F = c ṡ, limited to μ_s N. It has no history.
 class DemoOil final : public FrictionModel {
@@ -44,12 +44,12 @@ private:
 };
 
 const bool oil =
-    register_friction_law(FrictionLaw{.name = "demo-oil",
-                                      .what = "viscous, limited to the Coulomb bound",
-                                      .read = [](dae::ObjectReader& o, FrictionParameters p,
-                                                 const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
-                                          return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
-                                      }});
+    io::Registry<FrictionLaw>::add({.name = "demo-oil",
+                                    .what = "viscous, limited to the Coulomb bound",
+                                    .read = [](dae::ObjectReader& o, FrictionParameters p,
+                                               const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
+                                        return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+                                    }});
 
 }  // namespace
 }  // namespace hilda::contact

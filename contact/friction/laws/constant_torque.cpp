@@ -51,9 +51,10 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
 }
 
 const bool registered =
-    register_friction_law<ConstantTorque>({.name = "constant-torque",
-                                           .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
-                                           .read = read});
+    io::Registry<FrictionLaw>::add({.name = "constant-torque",
+                                    .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
+                                    .make = make_law<ConstantTorque>,
+                                    .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

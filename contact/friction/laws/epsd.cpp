@@ -75,9 +75,10 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<Epsd>(p);
 }
 
-const bool registered = register_friction_law<Epsd>(
+const bool registered = io::Registry<FrictionLaw>::add(
     {.name = "epsd",
      .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
+     .make = make_law<Epsd>,
      .read = read});
 
 }  // namespace

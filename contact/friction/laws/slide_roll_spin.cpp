@@ -257,10 +257,11 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<SlideRollSpin>(p);
 }
 
-const bool registered = register_friction_law<SlideRollSpin>(
-    {.name = "slide-roll-spin",
-     .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
-     .read = read});
+const bool registered =
+    io::Registry<FrictionLaw>::add({.name = "slide-roll-spin",
+                                    .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
+                                    .make = make_law<SlideRollSpin>,
+                                    .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

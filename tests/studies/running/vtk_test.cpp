@@ -225,7 +225,7 @@ TEST_CASE("the polygons of a surface lie on it and their normals point out of th
     const studies::DrawingExtent reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .scene_size = 4};
     for (const SurfaceExample& c : examples) {
         CAPTURE(c.name);
-        const Mesh mesh = studies::tessellate(*c.surface, reach);
+        const Mesh mesh = contact::tessellate(*c.surface, reach);
         CHECK(mesh.point.size() > 10);
         CHECK(mesh.point.size() <= 500);
         if (c.name != "disk" && c.name != "mesh")
@@ -249,8 +249,8 @@ TEST_CASE("the polygons of a surface lie on it and their normals point out of th
         CHECK(once);
         CHECK(paired == c.closed);
     }
-    CHECK(studies::is_unbounded(Plane()));
-    CHECK_FALSE(studies::is_unbounded(Sphere(1)));
+    CHECK(Plane().is_unbounded());
+    CHECK_FALSE(Sphere(1).is_unbounded());
 }
 
 TEST_CASE("a plane is drawn over the region of the other bodies", "[studies][vtk]")

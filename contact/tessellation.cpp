@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/tessellation.hpp"
+
+#include "lie/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace hilda::contact {
+
+namespace {
+
+constexpr double largest_distance =
+    1e3;  // of a surface point from the origin, relative to the size of the surface
+constexpr double pi = std::numbers::pi;
+
+Vec3 missing_point() { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+
+void add_quads(Mesh& mesh, int first, int rows, int columns, bool rows_join, bool columns_join)
+{
+    const auto at = [&](int r, int c) { return first + r % rows * columns + c % columns; };
+    for (int r = 0; r < rows - !rows_join; ++r)
+        for (int c = 0; c < columns - !columns_join; ++c)
+            mesh.polygon.push_back({at(r, c), at(r + 1, c), at(r + 1, c + 1), at(r, c + 1)});
+}
+
+/// Image of the unit sphere, with a grid of latitude and longitude about z
+Mesh sphere_image(const std::function<Vec3(const Vec3&)>& image)
+{
+    Mesh mesh;
+    mesh.point.push_back(image(Vec3::UnitZ()));
+    for (int r = 1; r < down; ++r)
+        for (int c = 0; c < around; ++c) {
+            const double theta = pi * r / down, phi = 2 * pi * c / around;
+            mesh.point.push_back(
+                image({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}));
+        }
+    mesh.point.push_back(image(-Vec3::UnitZ()));
+    const int last_ring = 1 + (down - 2) * around, south = last_ring + around;
+    for (int c = 0; c < around; ++c) {
+        const int next = (c + 1) % around;
+        mesh.polygon.push_back({0, 1 + c, 1 + next});
+        mesh.polygon.push_back({south, last_ring + next, last_ring + c});
+    }
+    add_quads(mesh, 1, down - 1, around, false, true);
+    return mesh;
+}
+
+/// Intersection of the ray from the origin along u with the surface, from G < 0 to G >= 0, by bisection;
+/// empty if there is none
+std::optional<Vec3> exit_point(const Surface& surface, const Vec3& u)
+{
+    const auto inside = [&](double s) { return surface.value(s * u) < 0; };
+    double lower = 0, upper = 0.1 * surface.size();
+    if (!inside(lower)) return {};
+    while (inside(upper)) {
+        if (!(upper < largest_distance * surface.size())) return {};
+        lower = upper;
+        upper *= 1.2;
+    }
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (lower + upper);
+        (inside(middle) ? lower : upper) = middle;
+    }
+    return Vec3(upper * u);
+}
+
+}  // namespace
+
+bool Surface::is_unbounded() const
+{
+    if (convex()) return false;
+    for (const double sign : {-1., 1.})
+        for (int k = 0; k < 3; ++k)
+            if (!exit_point(*this, sign * Vec3::Unit(k))) return true;
+    return false;
+}
+
+Mesh Surface::drawing(const DrawingExtent& extent) const
+{
+    const auto or_missing = [](const auto& find) {
+        return [find](const Vec3& at) {
+            try {
+                return Vec3(find(at).value_or(missing_point()));
+            } catch (const lie::NumericalFailure&) {
+                return missing_point();
+            }
+        };
+    };
+    if (convex()) return sphere_image(or_missing([&](const Vec3& u) { return support(u); }));
+    if (!is_unbounded()) return sphere_image(or_missing([&](const Vec3& u) { return exit_point(*this, u); }));
+    return square(extent, or_missing([&](const Vec3& a) { return std::optional(project(a)); }));
+}
+
+Mesh grid(int rows, int columns, bool rows_join, bool columns_join,
+          const std::function<Vec3(int row, int column)>& point)
+{
+    Mesh mesh;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) mesh.point.push_back(point(r, c));
+    add_quads(mesh, 0, rows, columns, rows_join, columns_join);
+    return mesh;
+}
+
+Mesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image)
+{
+    return grid(across + 1, across + 1, false, false, [&](int r, int c) {
+        return image(Vec3(centre.x(), centre.y(), 0) +
+                     half * Vec3(2. * r / across - 1, 2. * c / across - 1, 0));
+    });
+}
+
+Mesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image)
+{
+    if (extent.box.isEmpty()) return square(Vec3::Zero(), 1, image);
+    const Vec3 sides = extent.box.sizes();
+    const double half = DrawingExtent::margin * 0.5 * std::max(sides.x(), sides.y());
+    return square(extent.box.center(), half > 0 ? half : 1, image);
+}
+
+Mesh tessellate(const Surface& surface, const DrawingExtent& extent)
+{
+    const Mesh all = surface.drawing(extent);
+    Mesh mesh;
+    std::vector<int> number(all.point.size(), -1);
+    for (size_t k = 0; k < all.point.size(); ++k)
+        if (all.point[k].allFinite()) {
+            number[k] = static_cast<int>(mesh.point.size());
+            mesh.point.push_back(all.point[k]);
+        }
+    for (std::vector<int> polygon : all.polygon) {
+        for (int& k : polygon) k = number[k];
+        if (std::find(polygon.begin(), polygon.end(), -1) != polygon.end()) continue;
+        if (surface.sigma() < 0) std::reverse(polygon.begin(), polygon.end());
+        mesh.polygon.push_back(polygon);
+    }
+    return mesh;
+}
+
+}  // namespace hilda::contact

@@ -253,6 +253,45 @@ TEST_CASE("a contact does not allocate memory", "[contact][force][allocation]")
     if (tests::counts_allocations) CHECK(taken == 0);
 }
 
+TEST_CASE("the contact point is found once per node", "[contact][force]")
+{
+    /// A sphere that counts the calls of support(), one for each detection of the contact with a plane
+    struct CountedSphere final : Surface {
+        double value(const Vec3& a) const override { return sphere.value(a); }
+        Vec3 gradient(const Vec3& a) const override { return sphere.gradient(a); }
+        Mat3 hessian(const Vec3& a) const override { return sphere.hessian(a); }
+        bool convex() const override { return true; }
+        std::optional<Vec3> support(const Vec3& u) const override
+        {
+            ++detections;
+            return sphere.support(u);
+        }
+        double size() const override { return R; }
+
+        const Sphere sphere = Sphere(R);
+        mutable long detections = 0;
+    };
+    const auto surface = std::make_shared<CountedSphere>();
+    dae::Model model;
+    model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
+    model.load(std::make_unique<ContactForce>("ball-floor", model, 0, Shape{.surface = surface}, dae::ground,
+                                              floor(), spring(), friction(rubber())));
+    State x;
+    x.body = {thrown(2)};
+    dae::start(model, x);
+    const auto integrator = lie::scheme("rA-half-1").make(model, {});
+    lie::March march(x, *integrator, 1e-4);
+    const long before = surface->detections;
+    constexpr int steps = 100;
+    for (int n = 0; n < steps; ++n) {
+        march.advance({});
+        model.potential_energy(march.node());
+    }
+    // the march is up to one step ahead of its node
+    CHECK(surface->detections - before >= steps);
+    CHECK(surface->detections - before <= steps + 1);
+}
+
 TEST_CASE("the stability limit is estimated before the bodies are in contact", "[contact][force]")
 {
     const OneBall resting(thrown(0));

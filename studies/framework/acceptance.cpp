@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/acceptance.hpp"
 
-#include "studies/framework/study_output.hpp"
 #include "studies/framework/table.hpp"
 
 #include <fmt/format.h>

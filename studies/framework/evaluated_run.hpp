@@ -9,7 +9,7 @@
 namespace hilda::studies {
 
 struct EvaluatedRun : Run {
-    Errors errors;                                  ///< NaN if the run failed
+    Errors errors = {};                             ///< NaN if the run failed
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes
 };
 

@@ -12,13 +12,6 @@ namespace hilda::studies {
 
 namespace {
 
-// Constructed on first use, because problems are registered by static initialisers in unspecified order.
-std::vector<Problem>& list()
-{
-    static std::vector<Problem> problems;
-    return problems;
-}
-
 /// N of n_pendulum_N; empty for other names. lie::InvalidInput for N out of range.
 std::optional<int> bars(const std::string& name)
 {
@@ -35,34 +28,18 @@ std::optional<int> bars(const std::string& name)
 
 }  // namespace
 
-const std::vector<Problem>& problems() { return list(); }
-
 Problem problem(const std::string& name)
 {
-    std::vector<std::string> names;
-    for (const Problem& p : problems()) {
-        if (p.name == name) return p;
-        names.push_back(p.name);
-    }
+    if (const Problem* known = io::Registry<Problem>::find(name)) return *known;
     if (const std::optional<int> n = bars(name)) return n_pendulum(*n, name);
 
+    const std::vector<std::string> names = io::Registry<Problem>::names();
     std::string all;
     for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
     const std::string meant = io::nearest(name, names);
     throw lie::InvalidInput("no built-in model is called '" + name + "'" +
                             (meant.empty() ? "." : "; did you mean '" + meant + "'?") + " Built-in models: " +
                             all + ", and n_pendulum_N for N from 1 to " + std::to_string(most_bars));
-}
-
-bool register_problem(Problem problem)
-{
-    std::vector<Problem>& all = list();
-    const auto at = std::lower_bound(all.begin(), all.end(), problem,
-                                     [](const Problem& a, const Problem& b) { return a.name < b.name; });
-    if (at != all.end() && at->name == problem.name)
-        throw std::logic_error("two problems are called " + problem.name);
-    all.insert(at, std::move(problem));
-    return true;
 }
 
 }  // namespace hilda::studies

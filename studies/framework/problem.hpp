@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/registry.hpp"
 #include "lie/trajectory.hpp"
 
 #include <functional>
@@ -38,8 +39,8 @@ struct Problem {
     Observable observable;                 ///< scalar shown in figures
 };
 
-/// All built-in problems, sorted by name. n_pendulum represents the family n_pendulum_N.
-const std::vector<Problem>& problems();
+/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. n_pendulum represents the family n_pendulum_N.
+inline const std::vector<Problem>& problems() { return io::Registry<Problem>::all(); }
 
 /// The problem with this name: one of the list, or n_pendulum_N with N from 1 to 100000. lie::InvalidInput
 /// with the nearest name otherwise.
@@ -49,9 +50,5 @@ Problem problem(const std::string& name);
 /// kinematic analysis if it has no degree of freedom, and the index-1 equations of motion, integrated with
 /// tolerance 1e-13, otherwise.
 Problem problem_or_file(const std::string& name_or_path);
-
-/// Adds a problem to the list; called by a static initialiser in the file of the problem. std::logic_error
-/// for a name that is registered already.
-bool register_problem(Problem problem);
 
 }  // namespace hilda::studies

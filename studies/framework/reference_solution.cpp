@@ -22,57 +22,68 @@ constexpr double slack =
 
 }  // namespace
 
-Reference::Reference(const std::string& kind, const StudyOptions& options, const Evaluated& evaluated)
-    : options(options)
+Evaluated finest(const Schemes& schemes, double step, double rtol)
 {
-    const std::string study = "study " + kind + ": ";
+    Evaluated evaluated;
+    for (const lie::Scheme* s : schemes)
+        if (s->adaptive)
+            evaluated.smallest_rtol = rtol;
+        else
+            evaluated.smallest_step = step,
+            evaluated.highest_order = std::max(evaluated.highest_order, s->order);
+    return evaluated;
+}
+
+Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
+    : context(context), options(context.options)
+{
     if (options.reference.empty()) {
         if (options.reference_step || options.reference_rtol)
-            throw io::UsageError(study + "--reference-step and --reference-rtol need --reference NAME");
+            context.refuse("--reference-step and --reference-rtol need --reference NAME");
         return;
     }
     scheme = &lie::scheme(options.reference);
     if (scheme->adaptive) {
         if (options.reference_step)
-            throw io::UsageError(study + "the reference " + scheme->name +
-                                 " chooses its own steps: use --reference-rtol instead of --reference-step");
+            context.refuse("the reference " + scheme->name +
+                           " chooses its own steps: use --reference-rtol instead of --reference-step");
         rtol = options.reference_rtol.value_or(own_rtol);
         if (!options.force && evaluated.smallest_rtol > 0 && rtol * finer > evaluated.smallest_rtol * slack)
-            throw io::UsageError(fmt::format(
-                "{}the reference {} at rtol {} is too coarse for runs with rtol {}: its rtol must be {} "
+            context.refuse(fmt::format(
+                "the reference {} at rtol {} is too coarse for runs with rtol {}: its rtol must be {} "
                 "times smaller; --force accepts it",
-                study, scheme->name, step_text(rtol), step_text(evaluated.smallest_rtol), finer));
+                scheme->name, step_text(rtol), step_text(evaluated.smallest_rtol), finer));
         if (!options.force && evaluated.smallest_step > 0 && rtol > coarsest_rtol * slack)
-            throw io::UsageError(fmt::format(
-                "{}the reference {} at rtol {} is coarser than {}, the limit for runs with a fixed "
-                "step: reduce --reference-rtol; --force accepts it",
-                study, scheme->name, step_text(rtol), step_text(coarsest_rtol)));
+            context.refuse(
+                fmt::format("the reference {} at rtol {} is coarser than {}, the limit for runs with a fixed "
+                            "step: reduce --reference-rtol; --force accepts it",
+                            scheme->name, step_text(rtol), step_text(coarsest_rtol)));
         return;
     }
     if (options.reference_rtol)
-        throw io::UsageError(study + "the reference " + scheme->name +
-                             " has a fixed step: use --reference-step instead of --reference-rtol");
+        context.refuse("the reference " + scheme->name +
+                       " has a fixed step: use --reference-step instead of --reference-rtol");
     if (!options.reference_step && !(evaluated.smallest_step > 0))
-        throw io::UsageError(study + "the reference " + scheme->name +
-                             " needs --reference-step, because no run of the study has a fixed step");
+        context.refuse("the reference " + scheme->name +
+                       " needs --reference-step, because no run of the study has a fixed step");
     if (!options.force && scheme->order < evaluated.highest_order)
-        throw io::UsageError(
-            fmt::format("{}the reference {} has order {}, lower than order {} of a run: choose another "
+        context.refuse(
+            fmt::format("the reference {} has order {}, lower than order {} of a run: choose another "
                         "integrator; --force accepts it",
-                        study, scheme->name, scheme->order, evaluated.highest_order));
+                        scheme->name, scheme->order, evaluated.highest_order));
     h = options.reference_step.value_or(evaluated.smallest_step / 10);
     if (!options.force && evaluated.smallest_step > 0 && !(h * slack < evaluated.smallest_step))
-        throw io::UsageError(
-            fmt::format("{}the reference {} at h = {} s is coarser than a run at h = {} s: its step must be "
+        context.refuse(
+            fmt::format("the reference {} at h = {} s is coarser than a run at h = {} s: its step must be "
                         "smaller; --force accepts it",
-                        study, scheme->name, step_text(h), step_text(evaluated.smallest_step)));
+                        scheme->name, step_text(h), step_text(evaluated.smallest_step)));
 }
 
-void Reference::evaluate(std::vector<Benchmark>& benchmarks) const
+void Reference::evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps) const
 {
-    const Pool pool(options.jobs, options.quiet ? "" : "reference solution",
-                    static_cast<long>(benchmarks.size()));
-    pool.run([&](long k) { evaluate(benchmarks[k]); });
+    for (const Benchmark& c : benchmarks)
+        check_steps(context.name, c, steps, c.instants.dt * c.instants.stride);
+    context.pool(benchmarks.size(), ", reference solution").run([&](long k) { evaluate(benchmarks[k]); });
 }
 
 void Reference::evaluate(Benchmark& c) const

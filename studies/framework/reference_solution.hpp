@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include "lie/schemes.hpp"
-#include "studies/framework/benchmark.hpp"
+#include "studies/framework/study_context.hpp"
 
 namespace hilda::studies {
 
@@ -14,6 +13,8 @@ struct Evaluated {
     double smallest_rtol = 0;  ///< of the integrators with adaptive steps; 0: no such integrator
     int highest_order = 0;     ///< of the integrators with a fixed step
 };
+/// The finest runs of these schemes, with this smallest step [s] and this smallest rtol
+Evaluated finest(const Schemes& schemes, double step, double rtol = 0);
 
 /// Computes the reference solutions of benchmarks.
 class Reference {
@@ -21,17 +22,19 @@ public:
     /// io::UsageError, unless --force is given, for a reference integrator that is not more accurate than the
     /// runs: its step must be smaller and its order not lower than theirs; its rtol must be ten times smaller
     /// than theirs, and at most 1e-8 for runs with a fixed step.
-    Reference(const std::string& kind, const StudyOptions& options, const Evaluated& evaluated);
+    Reference(const StudyContext& context, const Evaluated& evaluated);
 
     /// Computes the reference solution of each benchmark at its instants, with a row for each from t = 0 on.
     /// The benchmarks are computed concurrently.
-    void evaluate(std::vector<Benchmark>& benchmarks) const;
+    /// io::UsageError for steps [s] that do not have these instants as nodes.
+    void evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps = {}) const;
 
 private:
     void evaluate(Benchmark& c) const;
     lie::Trajectory by_integrator(const Benchmark& c) const;
     double step(const Benchmark& c) const;
 
+    const StudyContext& context;
     const StudyOptions& options;
     const lie::Scheme* scheme = nullptr;  ///< nullptr: the reference solution of the problem
     double h = 0;                         ///< requested step [s]; 0: the interval of the instants

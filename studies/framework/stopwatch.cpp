@@ -61,14 +61,14 @@ double seconds_of_march(const Run& run, const lie::Settings& of_study)
     return seconds / static_cast<double>(runs);
 }
 
-void time_in_turn(const std::string& label, const StudyOptions& options, const std::vector<TimedRun*>& runs,
-                  const SettingsOf& settings)
+void time_in_turn(const StudyContext& study, const std::vector<TimedRun*>& runs)
 {
-    const long count = static_cast<long>(runs.size());
-    for (TimedRun* run : runs) run->repeat.assign(run->failed() ? 0 : options.repeats, 0);
-    Pool(options.jobs, options.quiet ? "" : label, count * options.repeats).run([&](long k) {
+    const int repeats = study.options.repeats;
+    const size_t count = runs.size();
+    for (TimedRun* run : runs) run->repeat.assign(run->failed() ? 0 : repeats, 0);
+    study.pool(count * repeats).run([&](long k) {
         TimedRun& run = *runs[k % count];
-        if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, settings(k % count));
+        if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, study.options.settings);
     });
 }
 

@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include "lie/settings.hpp"
-#include "studies/framework/run.hpp"
+#include "studies/framework/sweep.hpp"
 
 namespace hilda::studies {
 
@@ -17,7 +16,8 @@ Spread spread(std::vector<double> values);
 
 /// A run with time measurements
 struct TimedRun : Run {
-    std::vector<double> repeat;  ///< thread CPU time of each integration [s]; empty if the run failed
+    std::vector<double> repeat;   ///< thread CPU time of each integration [s]; empty if the run failed
+    double ratio = std::nan("");  ///< of the time to that of a baseline, see set_ratios
 
     Spread seconds_of_repeats() const { return spread(repeat); }
     /// Time of a step [µs]
@@ -32,13 +32,41 @@ double ratio(const TimedRun& a, const TimedRun& b);
 /// until 20 ms have passed, and the mean is returned. The construction of the integrator is not included.
 double seconds_of_march(const Run& run, const lie::Settings& of_study);
 
-/// Settings of the k-th run
-using SettingsOf = std::function<lie::Settings(long k)>;
+/// Measures each run that has not failed --repeats times. All runs are measured once, then all again, so that
+/// a temporary load of the machine does not affect all repeats of one run.
+void time_in_turn(const StudyContext& study, const std::vector<TimedRun*>& runs);
+template <class Timed>
+void time_in_turn(const StudyContext& study, std::vector<Timed>& runs)
+{
+    time_in_turn(study, pointers<TimedRun*>(runs));
+}
 
-/// Measures each run that has not failed options.repeats times. All runs are measured once, then all again,
-/// so that a temporary load of the machine does not affect all repeats of one run.
-void time_in_turn(const std::string& label, const StudyOptions& options, const std::vector<TimedRun*>& runs,
-                  const SettingsOf& settings);
+/// Sets the ratio of each run to the run of the baseline scheme on the same benchmark with the same step.
+template <class Timed>
+void set_ratios(std::vector<Timed>& runs, const std::string& baseline)
+{
+    for (Timed& run : runs)
+        for (const Timed& of : runs)
+            if (of.c == run.c && of.h == run.h && of.scheme->name == baseline) run.ratio = ratio(run, of);
+}
+
+namespace column {
+
+inline const Column<TimedRun> cpu_seconds_of_repeats("cpu_seconds", [](const TimedRun& run) {
+    return run.seconds_of_repeats().median;
+});
+
+}  // namespace column
+
+/// Columns of the time of a step [µs], and of its ratio to that of the baseline
+template <class Timed = TimedRun>
+Columns<Timed> columns_of_times(const std::string& baseline, const std::string& format = "{:.3f}")
+{
+    return {{"us_per_step", "us/step", format, [](const Timed& run) { return run.microseconds().median; }},
+            {"us_per_step_min", "min", format, [](const Timed& run) { return run.microseconds().least; }},
+            {"us_per_step_max", "max", format, [](const Timed& run) { return run.microseconds().most; }},
+            {"ratio_to_full", "time / " + baseline, "{:.3f}", &Timed::ratio}};
+}
 
 /// Exponent p of y ~ x^p, by linear least squares of log y over log x
 struct Exponent {

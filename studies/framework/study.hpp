@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/registry.hpp"
 #include "lie/settings.hpp"
 
 #include <cstdint>
@@ -69,18 +70,19 @@ enum : unsigned {
 };
 }  // namespace takes
 
+class StudyContext;
+
 /// A registered study
 struct Study {
-    std::string kind;
-    std::string answers;    ///< one line: figure or table of the dissertation, or question
-    unsigned accepted = 0;  ///< flags of `takes`
-    std::function<int(const StudyOptions&)> run = {};  ///< writes to options.output, returns the exit code
+    std::string name;
+    std::string answers;                 ///< one line: figure or table of the dissertation, or question
+    unsigned accepted = 0;               ///< flags of `takes`
+    std::vector<std::string> keys = {};  ///< keys of --expect
+    std::function<void(StudyContext&)> run = {};  ///< the experiment: fills the results of the context
 };
 
-/// All registered studies, sorted by kind
+/// All registered studies, sorted by name. A file adds one by io::Registry<Study>::add.
 const std::vector<Study>& studies();
-/// Adds a study; called by a static initialiser in the file of the study.
-bool register_study(Study study);
 /// Adds a function that makes studies from another registry. It is called by the first call of studies(),
 /// when all static initialisers have run.
 bool register_studies(std::vector<Study> (*make)());

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/table.hpp"
 
+#include "io/csv.hpp"
+
 #include <fmt/format.h>
 
-#include <charconv>
 #include <ostream>
 
 namespace hilda::studies {
 
 namespace {
 
-std::string for_people(const Table::Cell& cell, const char* format)
+std::string for_people(const Table::Cell& cell, const std::string& format)
 {
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-    const double value = std::get<double>(cell);
+    const double value = number(cell);
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
-}
-
-std::string quoted(const std::string& text)
-{
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + "\"";
 }
 
 }  // namespace
@@ -54,25 +47,31 @@ void Table::print(std::ostream& out) const
 std::string Table::csv() const
 {
     std::string out;
-    for (size_t c = 0; c < columns.size(); ++c) out += (c == 0 ? "" : ",") + quoted(columns[c].name);
+    for (size_t c = 0; c < columns.size(); ++c) out += (c == 0 ? "" : ",") + io::csv_field(columns[c].name);
     out += '\n';
     for (const auto& row : cells) {
         for (size_t c = 0; c < columns.size(); ++c) {
             if (c > 0) out += ',';
             const auto* text = std::get_if<std::string>(&row[c]);
-            out += text != nullptr ? quoted(*text) : shortest(std::get<double>(row[c]));
+            out += text != nullptr ? io::csv_field(*text) : shortest(number(row[c]));
         }
         out += '\n';
     }
     return out;
 }
 
+double number(const Table::Cell& cell)
+{
+    if (const auto* integer = std::get_if<long>(&cell)) return static_cast<double>(*integer);
+    const auto* value = std::get_if<double>(&cell);
+    return value != nullptr ? *value : std::nan("");
+}
+
 std::string shortest(double value)
 {
-    if (std::isnan(value)) return "";
-    char buffer[32];
-    const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-    return {buffer, result.ptr};
+    std::string text;
+    if (!std::isnan(value)) io::append_number(text, value);
+    return text;
 }
 
 double fitted_order(const std::vector<double>& h, const std::vector<double>& e)

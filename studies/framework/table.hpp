@@ -13,14 +13,14 @@ namespace hilda::studies {
 
 /// A table with named columns and cells of texts or numbers. As text, columns are aligned and numbers
 /// rounded. As CSV, numbers are written with the least digits that read back exactly, and NaN is an empty
-/// field.
+/// field. columns.hpp makes tables from rows of any type.
 class Table {
 public:
-    using Cell = std::variant<std::string, double>;
+    using Cell = std::variant<std::string, double, long>;
 
     struct Column {
         std::string name;
-        const char* format = "{:.3e}";  ///< fmt format of numbers in text output
+        std::string format = "{:.3e}";  ///< fmt format of numbers in text output
     };
 
     explicit Table(std::vector<Column> columns) : columns(std::move(columns)) {}
@@ -35,6 +35,9 @@ private:
     std::vector<Column> columns;
     std::vector<std::vector<Cell>> cells;
 };
+
+/// The number in a cell; NaN for a text
+double number(const Table::Cell& cell);
 
 /// The shortest decimal text that reads back as the same double; empty for NaN
 std::string shortest(double value);

@@ -21,10 +21,10 @@ lie::Trajectory reference_solution(dae::Description& d, const std::vector<double
 
 constexpr const char* reference_name = "rA-rattle at h = 2e-6 s";
 
-const bool ball =
-    register_problem({.name = "rolling_ball",
-                      .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
-                      .model = R"({"hilda_model": 1, "name": "rolling_ball",
+const bool ball = io::Registry<Problem>::add(
+    {.name = "rolling_ball",
+     .what = "ball thrown on a floor: slides for 0.3 s, then rolls (Fang 2022, Sec. 4.4)",
+     .model = R"({"hilda_model": 1, "name": "rolling_ball",
   "note": "ball of 5 kg and radius 0.2 m, initially in static equilibrium on the floor; a rigid ball would roll after 2 v / 7 mu_k g = 0.29 s",
   "gravity": [0, 0, -9.81], "end": 1,
   "bodies": [
@@ -38,14 +38,15 @@ const bool ball =
   ]
 }
 )",
-                      .reference_name = reference_name,
-                      .reference_solution = reference_solution,
-                      .observable = {.body = "ball", .component = "vx"}});
+     .reference_name = reference_name,
+     .reference_solution = reference_solution,
+     .observable = {.body = "ball", .component = "vx"}});
 
-const bool ellipsoid = register_problem({.name = "bouncing_ellipsoid",
-                                         .what = "inclined ellipsoid dropped on a floor, Hertz contact with "
-                                                 "friction; smooth enough for steps of 1e-4 s",
-                                         .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
+const bool ellipsoid =
+    io::Registry<Problem>::add({.name = "bouncing_ellipsoid",
+                                .what = "inclined ellipsoid dropped on a floor, Hertz contact with "
+                                        "friction; smooth enough for steps of 1e-4 s",
+                                .model = R"({"hilda_model": 1, "name": "bouncing_ellipsoid",
   "note": "homogeneous, semi-axes 0.12, 0.1 and 0.08 m, released about 0.1 m above the floor",
   "gravity": [0, 0, -9.81], "end": 0.6,
   "bodies": [
@@ -60,14 +61,15 @@ const bool ellipsoid = register_problem({.name = "bouncing_ellipsoid",
   ]
 }
 )",
-                                         .reference_name = reference_name,
-                                         .reference_solution = reference_solution,
-                                         .observable = {.body = "egg", .component = "rz"}});
+                                .reference_name = reference_name,
+                                .reference_solution = reference_solution,
+                                .observable = {.body = "egg", .component = "rz"}});
 
-const bool mill = register_problem({.name = "edge_mill",
-                                    .what = "edge mill: ball that rolls on the floor at the end of a "
-                                            "rotating, pitching arm; its spin increases the normal force",
-                                    .model = R"({"hilda_model": 1, "name": "edge_mill",
+const bool mill =
+    io::Registry<Problem>::add({.name = "edge_mill",
+                                .what = "edge mill: ball that rolls on the floor at the end of a "
+                                        "rotating, pitching arm; its spin increases the normal force",
+                                .model = R"({"hilda_model": 1, "name": "edge_mill",
   "note": "the arm rotates about the vertical and pitches in a universal joint, the ball rotates about the axis of the arm; initially rolling at 1 rad/s",
   "gravity": [0, 0, -9.81], "end": 2,
   "bodies": [
@@ -88,9 +90,9 @@ const bool mill = register_problem({.name = "edge_mill",
   ]
 }
 )",
-                                    .reference_name = reference_name,
-                                    .reference_solution = reference_solution,
-                                    .observable = {.body = "ball", .component = "ry"}});
+                                .reference_name = reference_name,
+                                .reference_solution = reference_solution,
+                                .observable = {.body = "ball", .component = "ry"}});
 
 }  // namespace
 

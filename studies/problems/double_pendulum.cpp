@@ -58,7 +58,7 @@ Problem double_pendulum(const std::string& name, const std::string& what, const 
             .observable = {}};
 }
 
-const bool thick = register_problem(double_pendulum(
+const bool thick = io::Registry<Problem>::add(double_pendulum(
     "double_pendulum", "planar double pendulum from rest, bars of section 0.1 m (Fang 2022, Table 3.2)", R"(
   "note": "Fang (2022), Table 3.2: bars of 4 m and 2 m, section 0.1 m, 7800 kg/m3",
   "gravity": [0, 0, -9.81], "end": 3,
@@ -67,7 +67,7 @@ const bool thick = register_problem(double_pendulum(
     {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
   ],)"));
 
-const bool thin = register_problem(
+const bool thin = io::Registry<Problem>::add(
     double_pendulum("double_pendulum_w005",
                     "planar double pendulum from rest, bars of section 0.05 m (the published code)", R"(
   "note": "section 0.05 m, as in the published code of Fang (2022); the dissertation's Table 3.2 says 0.1 m",
@@ -77,7 +77,7 @@ const bool thin = register_problem(
     {"name": "bar_2", "mass": 39, "inertia": [0.01625, 13.008125, 13.008125], "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
   ],)"));
 
-const bool moving = register_problem(
+const bool moving = io::Registry<Problem>::add(
     double_pendulum("double_pendulum_moving",
                     "planar double pendulum with initial angular velocities; not in the dissertation", R"(
   "note": "double_pendulum with initial angular velocities: bar 1 1 rad/s, bar 2 -2 rad/s",

@@ -18,28 +18,28 @@ bool register_problem(const BallInBowl& ball)
 {
     const std::string friction = ball.friction.empty() ? "" : R"(,
       "friction": )" + ball.friction;
-    return studies::register_problem({.name = ball.name,
-                                      .what = ball.what,
-                                      .model = R"({"hilda_model": 1, "name": ")" + ball.name + R"(",
+    return io::Registry<Problem>::add({.name = ball.name,
+                                       .what = ball.what,
+                                       .model = R"({"hilda_model": 1, "name": ")" + ball.name + R"(",
   "note": "bowl with semi-axes 4, 3 and 2 m; ball released at the contact point )" +
-                                               ball.contact_point + ball.note + R"(",
+                                                ball.contact_point + ball.note + R"(",
   "gravity": [0, 0, -9.81], "end": 10,
   "bodies": [
     {"name": "ball", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [)" +
-                                               ball.r + R"(]}
+                                                ball.r + R"(]}
   ],
   "contacts": [
     {"name": "ball-bowl", "body_i": "ball", "body_j": "ground",
       "surface_i": {"type": "sphere", "radius": 0.5},
       "surface_j": {"type": "ellipsoid", "semi_axes": [4, 3, 2], "concave": true},
       "normal": {"type": "constraint"})" + friction +
-                                               R"(}
+                                                R"(}
   ]
 }
 )",
-                                      .reference_name = evolving_reference_name,
-                                      .reference_solution = evolving_reference,
-                                      .observable = {.body = "ball", .component = "ry"}});
+                                       .reference_name = evolving_reference_name,
+                                       .reference_solution = evolving_reference,
+                                       .observable = {.body = "ball", .component = "ry"}});
 }
 
 const std::string planar_point = "0, 1.5, -1.7321", planar_r = "0, 1.320394697973225, -1.265422544940186",
@@ -91,28 +91,28 @@ struct OnTheFloor {
 bool register_problem(const OnTheFloor& e)
 {
     const std::string friction = e.friction.empty() ? "" : R"(, "friction": )" + e.friction;
-    return studies::register_problem({.name = e.name,
-                                      .what = e.what,
-                                      .model = R"({"hilda_model": 1, "name": ")" + e.name + R"(",
+    return io::Registry<Problem>::add({.name = e.name,
+                                       .what = e.what,
+                                       .model = R"({"hilda_model": 1, "name": ")" + e.name + R"(",
   "note": ")" + e.note + R"(",
   "gravity": [0, 0, -9.81], "end": )" + e.end + R"(,
   "bodies": [
     {"name": ")" + e.body + R"(", )" + e.body_keys +
-                                               R"(}
+                                                R"(}
   ],
   "contacts": [
     {"name": ")" + e.body + R"(-floor", "body_i": ")" +
-                                               e.body + R"(", "body_j": "ground",
+                                                e.body + R"(", "body_j": "ground",
       "surface_i": {"type": "ellipsoid", "semi_axes": )" +
-                                               e.semi_axes + R"(}, "surface_j": {"type": "plane"},
+                                                e.semi_axes + R"(}, "surface_j": {"type": "plane"},
       "normal": {"type": "constraint"})" + friction +
-                                               R"(}
+                                                R"(}
   ]
 }
 )",
-                                      .reference_name = evolving_reference_name,
-                                      .reference_solution = evolving_reference,
-                                      .observable = {.body = e.body, .component = e.observable}});
+                                       .reference_name = evolving_reference_name,
+                                       .reference_solution = evolving_reference,
+                                       .observable = {.body = e.body, .component = e.observable}});
 }
 
 const bool rocking = register_problem(

@@ -72,7 +72,7 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
             .observable = {.body = "link_2", .component = "vz"}};
 }
 
-const bool code = register_problem(four_link(
+const bool code = io::Registry<Problem>::add(four_link(
     "four_link",
     "spatial four-link, rotor driven at half a revolution per second, no degree of freedom (published code "
     "of Fang 2022)",
@@ -81,7 +81,7 @@ const bool code = register_problem(four_link(
      .link_2 = R"json("mass": 1, "inertia": [12.4, 0.1, 12.4])json",
      .link_3 = R"json("mass": 1, "inertia": [4.54, 0.01, 4.54])json"}));
 
-const bool table = register_problem(four_link(
+const bool table = io::Registry<Problem>::add(four_link(
     "four_link_table33",
     "four_link with the densities and dimensions of the dissertation (Fang 2022, Table 3.3)",
     "Fang (2022), Table 3.3: 1500 kg/m3, disk of radius 2 m and thickness 0.1 m, rods as cylinders of radius "

@@ -101,9 +101,9 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
 
 namespace {
 
-const bool two = register_problem(n_pendulum(2, family));
+const bool two = io::Registry<Problem>::add(n_pendulum(2, family));
 
-const bool spin = register_problem(chain(
+const bool spin = io::Registry<Problem>::add(chain(
     "n_pendulum_2_spin",
     "two bars with spherical joints in spatial motion with initial spins; not in the dissertation",
     "n_pendulum_2 with consistent initial velocities: a spin of each bar and a spatial motion of the joints",

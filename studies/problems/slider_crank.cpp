@@ -10,11 +10,11 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered =
-    register_problem({.name = "slider_crank",
-                      .what = "spatial slider-crank, crank driven at one revolution per second, no degree of "
-                              "freedom (Fang 2022, Table 3.4)",
-                      .model = R"json({"hilda_model": 1, "name": "slider_crank",
+const bool registered = io::Registry<Problem>::add(
+    {.name = "slider_crank",
+     .what = "spatial slider-crank, crank driven at one revolution per second, no degree of "
+             "freedom (Fang 2022, Table 3.4)",
+     .model = R"json({"hilda_model": 1, "name": "slider_crank",
   "note": "Fang (2022), Table 3.4, crank mass 0.12; initial state projected onto the constraints; the D row trans_D keeps the end of the rod on the slider",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
@@ -54,12 +54,12 @@ const bool registered =
   ]
 }
 )json",
-                      .reference_name = "kinematic analysis at 1e-13",
-                      .reference_solution =
-                          [](dae::Description& d, const std::vector<double>& instants) {
-                              return reference::reference_solution(*d.model, d.x, instants);
-                          },
-                      .observable = {.body = "slider", .component = "vx"}});
+     .reference_name = "kinematic analysis at 1e-13",
+     .reference_solution =
+         [](dae::Description& d, const std::vector<double>& instants) {
+             return reference::reference_solution(*d.model, d.x, instants);
+         },
+     .observable = {.body = "slider", .component = "vx"}});
 
 }  // namespace
 

@@ -52,7 +52,7 @@ lie::Trajectory steady_precession(dae::Description& d, const std::vector<double>
                                          one_body([&](double t) { return top.at(t - d.x.t); }));
 }
 
-const bool thrown = register_problem(
+const bool thrown = io::Registry<Problem>::add(
     {.name = "free_top",
      .what =
          "free symmetric top thrown upwards, three precessions of its axis in three seconds (closed form)",
@@ -70,7 +70,7 @@ const bool thrown = register_problem(
      .reference_solution = free_flight,
      .observable = {.body = "top", .component = "wx"}});
 
-const bool on_its_tip = register_problem(
+const bool on_its_tip = io::Registry<Problem>::add(
     {.name = "heavy_top",
      .what = "heavy symmetric top with a fixed tip, in steady precession at 2 rad/s (closed form)",
      .model = R"({"hilda_model": 1, "name": "heavy_top",

@@ -114,7 +114,7 @@ int list_integrators(bool json)
 int list_studies(bool json)
 {
     std::vector<Line> lines;
-    for (const Study& s : studies()) lines.push_back({s.kind, s.answers});
+    for (const Study& s : studies()) lines.push_back({s.name, s.answers});
     show(json, {"kind", "answers"}, lines);
     return io::exit_code::done;
 }
@@ -122,7 +122,7 @@ int list_studies(bool json)
 int print_schema()
 {
     std::cout << io::written(dae::model_schema()) << '\n';
-    return io::success;
+    return io::exit_code::done;
 }
 
 }  // namespace hilda::studies

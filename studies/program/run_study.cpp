@@ -2,6 +2,7 @@
 #include "studies/program/run_study.hpp"
 
 #include "io/files.hpp"
+#include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 
 #include <unistd.h>
@@ -17,8 +18,8 @@ const Study& find(const std::string& kind)
 {
     std::vector<std::string> known;
     for (const Study& study : studies()) {
-        if (study.kind == kind) return study;
-        known.push_back(study.kind);
+        if (study.name == kind) return study;
+        known.push_back(study.name);
     }
     throw io::UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
@@ -30,8 +31,8 @@ void reject_unused_options(const Study& study, const StudyOptions& options)
         if (!given || (study.accepted & option) != 0) return;
         std::string those;
         for (const Study& other : studies())
-            if ((other.accepted & option) != 0) those += (those.empty() ? "" : ", ") + other.kind;
-        throw io::UsageError("study " + study.kind + ": " + name + " is for " +
+            if ((other.accepted & option) != 0) those += (those.empty() ? "" : ", ") + other.name;
+        throw io::UsageError("study " + study.name + ": " + name + " is for " +
                              (those.empty() ? "other studies" : those));
     };
     reject_if(!options.reference.empty(), takes::reference, "--reference");
@@ -67,7 +68,9 @@ int run_study(const std::string& kind, StudyOptions options)
         io::make_directory(options.output);
     }
     try {
-        return study.run(options);
+        StudyContext context(study, options);
+        study.run(context);
+        return context.finish();
     } catch (...) {
         if (!options.output.empty())
             rmdir(options.output.c_str());  // fails, as intended, if the directory is not empty

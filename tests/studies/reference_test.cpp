@@ -3,6 +3,7 @@
 #include "io/error.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
+#include "studies/framework/study_context.hpp"
 #include "tests/studies/adaptive_scheme.hpp"
 #include "tests/studies/csv.hpp"
 
@@ -102,7 +103,9 @@ TEST_CASE("adaptive schemes are references and evaluated runs by their tolerance
     options.end = 0.3;
     options.jobs = 1;
     std::vector<studies::Benchmark> all = studies::benchmarks("test", options, {"double_pendulum"});
-    studies::Reference("test", options, {}).evaluate(all);
+    const studies::Study study{.name = "test", .answers = "", .run = {}};
+    const studies::StudyContext context(study, options);
+    studies::Reference(context, {}).evaluate(all);
 
     studies::EvaluatedRun coarse, fine;
     for (studies::EvaluatedRun* run : {&coarse, &fine}) {
@@ -120,12 +123,12 @@ TEST_CASE("adaptive schemes are references and evaluated runs by their tolerance
 
     for (const std::string& name : adaptive_schemes()) {
         options.reference = name;
-        CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 1e-11}));
-        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_step = 1e-4, .smallest_rtol = 9e-12}),
+        CHECK_NOTHROW(studies::Reference(context, {.smallest_step = 1e-4, .smallest_rtol = 1e-11}));
+        CHECK_THROWS_AS(studies::Reference(context, {.smallest_step = 1e-4, .smallest_rtol = 9e-12}),
                         io::UsageError);
         options.reference_rtol = 1e-8;
-        CHECK_THROWS_AS(studies::Reference("test", options, {.smallest_rtol = 5e-8}), io::UsageError);
-        CHECK_NOTHROW(studies::Reference("test", options, {.smallest_step = 1e-4}));
+        CHECK_THROWS_AS(studies::Reference(context, {.smallest_rtol = 5e-8}), io::UsageError);
+        CHECK_NOTHROW(studies::Reference(context, {.smallest_step = 1e-4}));
         options.reference_rtol.reset();
     }
 }

@@ -8,14 +8,9 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/csv.hpp"
-#include "io/error.hpp"
-#include "io/json.hpp"
-#include "lie/schemes.hpp"
 #include "studies/framework/evaluated_run.hpp"
-#include "studies/framework/pool.hpp"
 #include "studies/framework/reference_solution.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
+#include "studies/framework/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +20,6 @@ namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "compare";
 constexpr long min_rows = 100, max_rows = 1000;  // limits on the number of rows of compare.csv
 constexpr std::array<const char*, 4> quantities = {"r", "A", "v", "omega"};
 
@@ -47,12 +41,12 @@ Instants choose_instants(double end, double h)
     return {.dt = static_cast<double>(stride) * h, .stride = 1, .count = steps / stride};
 }
 
-void compute(ComparedRun& run, const StudyOptions& options)
+void compute(ComparedRun& run, const lie::Settings& settings)
 {
     const dae::Model& model = *run.c->started->model;
     AtInstants nodes(model, run.c->instants, run.h);
     lie::Observer* observers[] = {&nodes};
-    march(run, options.settings, observers);
+    march(run, settings, observers);
     for (size_t k = 0; k < nodes.at.size(); ++k)
         run.difference.push_back(difference(nodes.run.row[k], run.c->reference_solution.row[nodes.at[k]]));
     run.row = std::move(nodes.run.row);
@@ -61,54 +55,6 @@ void compute(ComparedRun& run, const StudyOptions& options)
         for (size_t q = 0; q < 4; ++q) run.largest[q] = std::max(run.largest[q], run.last[q]);
     }
     if (run.failed()) run.last.fill(std::nan("")), run.largest.fill(std::nan(""));
-}
-
-Table as_table(const std::vector<ComparedRun>& runs)
-{
-    std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
-                                          {"rtol"},    {"reference"},  {"observable_scalar"}};
-    for (const char* q : quantities) columns.push_back({std::string("max_") + q});
-    for (const char* q : quantities) columns.push_back({std::string("end_") + q});
-    for (const char* name : {"steps", "iterations_per_step", "cpu_seconds", "status"})
-        columns.push_back({name});
-    Table table(columns);
-    for (const ComparedRun& run : runs) {
-        const bool adaptive = run.rtol > 0;
-        std::vector<Table::Cell> row = {run.c->problem.name,
-                                        run.scheme->name,
-                                        adaptive ? std::nan("") : run.h,
-                                        adaptive ? run.rtol : std::nan(""),
-                                        run.c->reference_name,
-                                        run.c->observable.name()};
-        for (const double d : run.largest) row.emplace_back(d);
-        for (const double d : run.last) row.emplace_back(d);
-        row.emplace_back(static_cast<double>(run.statistics.steps));
-        row.emplace_back(run.statistics.iterations_per_step());
-        row.emplace_back(run.seconds);
-        row.emplace_back(run.status);
-        table.add(row);
-    }
-    return table;
-}
-
-void print(const std::vector<ComparedRun>& runs, const Benchmark& c, std::ostream& out)
-{
-    std::vector<Table::Column> columns = {{"integrator"}, {"step or rtol"}};
-    for (const char* heading : {"max dr [m]", "max dA", "max dv [m/s]", "max domega [rad/s]", "end dr [m]",
-                                "end dA", "end dv [m/s]", "end domega [rad/s]"})
-        columns.push_back({heading});
-    columns.push_back({"status"});
-    Table table(columns);
-    for (const ComparedRun& run : runs) {
-        std::vector<Table::Cell> row = {run.scheme->name, run.resolution()};
-        for (const double d : run.largest) row.emplace_back(d);
-        for (const double d : run.last) row.emplace_back(d);
-        row.emplace_back(run.status);
-        table.add(row);
-    }
-    out << fmt::format("\n{}, end time {:g} s, {} instants; reference solution: {}\n", c.problem.name, c.end,
-                       c.instants.count + 1, c.reference_name);
-    table.print(out);
 }
 
 /// Appends the observable and the position of its body.
@@ -146,85 +92,59 @@ std::string trajectories_csv(const Benchmark& c, const std::vector<ComparedRun>&
     return csv;
 }
 
-io::Json as_json(const std::vector<ComparedRun>& runs)
+/// Columns of the largest or the last differences, for example max_r with the heading "max dr [m]"
+Columns<ComparedRun> differences(const std::string& when, std::array<double, 4> ComparedRun::*values)
 {
-    io::Json rows = io::Json::array();
-    for (const ComparedRun& run : runs) {
-        io::Json row = as_json(static_cast<const Run&>(run));
-        for (size_t q = 0; q < 4; ++q) row[std::string("max_") + quantities[q]] = run.largest[q];
-        for (size_t q = 0; q < 4; ++q) row[std::string("end_") + quantities[q]] = run.last[q];
-        row["steps"] = run.statistics.steps;
-        row["iterations_per_step"] = run.statistics.iterations_per_step();
-        rows.push_back(row);
-    }
-    return rows;
+    constexpr std::array<const char*, 4> units = {" [m]", "", " [m/s]", " [rad/s]"};
+    std::vector<Column<ComparedRun>> columns;
+    for (size_t q = 0; q < 4; ++q)
+        columns.push_back({when + '_' + quantities[q], when + " d" + quantities[q] + units[q],
+                           [=](const ComparedRun& run) { return (run.*values)[q]; }});
+    return Columns<ComparedRun>(columns);
 }
 
-std::vector<std::string> keys()
+void compare(StudyContext& s)
 {
-    std::vector<std::string> all;
-    for (const char* q : quantities)
-        for (const char* when : {"max_", "end_"}) all.push_back(std::string(when) + q);
-    return all;
-}
-
-int compare(const StudyOptions& options)
-{
-    check_keys(kind, options, keys());
-    const double h = one_step(kind, options, 1e-3);
-    const Schemes schemes = any_schemes(options, {"rA-half-1", "rA-half-2", "rA-full-1"});
-    Evaluated evaluated;
-    for (const lie::Scheme* s : schemes)
-        if (s->adaptive)
-            evaluated.smallest_rtol = options.settings.rtol;
-        else
-            evaluated.smallest_step = h,
-            evaluated.highest_order = std::max(evaluated.highest_order, s->order);
-    const Reference reference(kind, options, evaluated);
-    if (options.problems.size() > 1) throw io::UsageError("study compare: takes one problem, --problem NAME");
-    std::vector<Benchmark> all = benchmarks(kind, options, {"double_pendulum"});
+    const double h = s.one_step(1e-3), rtol = s.options.settings.rtol;
+    const Schemes schemes = s.schemes({"rA-half-1", "rA-half-2", "rA-full-1"});
+    const Reference reference(s, finest(schemes, h, rtol));
+    if (s.options.problems.size() > 1) s.refuse("takes one problem, --problem NAME");
+    std::vector<Benchmark> all = s.benchmarks({"double_pendulum"}, {h});
     Benchmark& c = all.front();
-    check_steps(kind, c, {h});
     c.instants = choose_instants(c.end, h);
     c.end = static_cast<double>(c.instants.count) * c.instants.dt;
     reference.evaluate(all);
+    Sweep<ComparedRun> runs;
+    for (const lie::Scheme* scheme : schemes)
+        runs.add(c, *scheme, scheme->adaptive ? c.instants.dt : h, scheme->adaptive ? rtol : 0);
+    runs.compute(s, [&](ComparedRun& run) { compute(run, s.options.settings); });
 
-    std::vector<ComparedRun> runs;
-    for (const lie::Scheme* s : schemes) {
-        ComparedRun run;
-        run.c = &c, run.scheme = s, run.h = s->adaptive ? c.instants.dt : h;
-        if (s->adaptive) run.rtol = options.settings.rtol;
-        runs.push_back(run);
-    }
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
-        compute(runs[k], options);
-    });
-
-    StudyOutput output{.kind = kind,
-                       .table = as_table(runs).csv(),
-                       .json = {{"reference", c.reference_name},
-                                {"observable", c.observable.name()},
-                                {"runs", as_json(runs)}},
-                       .files = {{"compare.csv", trajectories_csv(c, runs)}},
-                       .figures = {"compare.png"}};
-    print(runs, c, output.text);
-    std::vector<Measured> measurements;
-    for (const ComparedRun& run : runs) {
-        measurements.push_back({.of = run.name(), .value = {}});
-        for (size_t q = 0; q < 4; ++q) {
-            measurements.back().value[std::string("max_") + quantities[q]] = run.largest[q];
-            measurements.back().value[std::string("end_") + quantities[q]] = run.last[q];
-        }
-    }
-    return finish(options, output, run_pointers(runs), measurements);
+    const Columns<ComparedRun> columns =
+        Columns<ComparedRun>{
+            column::problem, column::integrator, column::resolution, Column<Run>(column::h).as(""),
+            column::rtol,    column::reference,  column::observable} +
+        differences("max", &ComparedRun::largest) + differences("end", &ComparedRun::last) +
+        Columns<ComparedRun>{column::steps, Column<Run>(column::iterations).as(""), column::cpu_seconds,
+                             column::status};
+    s.text << fmt::format("\n{}, end time {:g} s, {} instants; reference solution: {}\n", c.problem.name,
+                          c.end, c.instants.count + 1, c.reference_name);
+    columns.print(s.text, runs);
+    s.json = {{"reference", c.reference_name},
+              {"observable", c.observable.name()},
+              {"runs", columns.array(runs, {"max_r", "max_A", "max_v", "max_omega", "end_r", "end_A", "end_v",
+                                            "end_omega", "steps", "iterations_per_step"})}};
+    s.files = {{"compare.csv", trajectories_csv(c, runs)}};
+    s.figures = {"compare.png"};
+    s.results(columns, runs);
 }
 
-const bool registered = register_study(Study{
-    .kind = kind,
-    .answers =
-        "trajectories of several integrators on one model and their differences to the reference solution",
-    .accepted = takes::reference,
-    .run = compare});
+const bool registered = io::Registry<Study>::add(
+    {.name = "compare",
+     .answers =
+         "trajectories of several integrators on one model and their differences to the reference solution",
+     .accepted = takes::reference,
+     .keys = {"max_r", "end_r", "max_A", "end_A", "max_v", "end_v", "max_omega", "end_omega"},
+     .run = compare});
 
 }  // namespace
 

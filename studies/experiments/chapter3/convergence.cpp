@@ -10,89 +10,61 @@
 /// Without --all, --problem, --integrator and --steps the study is a subset: the schemes of the dissertation
 /// and their second-order relatives on two mechanisms, with a short table and two figures.
 
-#include "studies/experiments/chapter3/convergence.hpp"
-
-#include "io/json.hpp"
-#include "lie/schemes.hpp"
-#include "lie/settings.hpp"
+#include "studies/framework/convergence_study.hpp"
 #include "studies/framework/evaluated_run.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/reference_solution.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
 #include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 
 namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "convergence";
 // Rounding level of an error, relative to the size of the quantity; reference solutions are accurate to 1e-13
 constexpr double rounding = 2e-12;
 // An error that changes by more than this fraction with a tighter Newton tolerance is at the floor.
 constexpr double floor_change = 0.05;
-constexpr double asymptotic_step = 1e-3;  // the order is fitted through steps up to this one [s]
 
-struct ConvergenceRun : EvaluatedRun {
-    std::array<bool, norm::count> at_floor{};  ///< the error is at rounding level or at the Newton tolerance
-    std::array<double, norm::count> order{};   ///< between this step and the next larger one; NaN: unknown
-};
+const ConvergenceStudy study{.norms = {norm::names.begin(), norm::names.end()},
+                             .asymptotic_step = 1e-3,
+                             .least_points = 3,
+                             .prefix_of_errors = ""};
 
 /// Integrates with the given Newton tolerance and with a hundredth of it; errors and floor flags into `run`.
-void compute(ConvergenceRun& run, const StudyOptions& options)
+void compute(ErrorRun& run, lie::Settings settings)
 {
-    evaluate(run, options.settings);
+    EvaluatedRun with_tolerance{run}, tighter{run};
+    evaluate(with_tolerance, settings);
+    static_cast<Run&>(run) = with_tolerance;
+    run.error.assign(with_tolerance.errors.value.begin(), with_tolerance.errors.value.end());
+    run.constraint_norm = with_tolerance.constraint_norm;
+    run.orthogonality = with_tolerance.orthogonality;
+    run.instants = with_tolerance.errors.instants;
     if (run.failed()) return;
-    ConvergenceRun tighter = run;
-    lie::Settings settings = options.settings;
     settings.tolerance /= 100;
     evaluate(tighter, settings);
     if (tighter.failed()) return;  // the tighter tolerance is below rounding: no error is marked
     for (int n = 0; n < norm::count; ++n) {
-        const double e = run.errors.value[n], e_tighter = tighter.errors.value[n];
+        const double e = run.error[n], e_tighter = tighter.errors.value[n];
         run.at_floor[n] = !(e > rounding * std::max(run.c->size.value[n], 1e-3)) ||
                           std::abs(e - e_tighter) > floor_change * e;
     }
 }
 
-/// The runs of one scheme on one problem, in descending order of the step
-using Series = std::vector<const ConvergenceRun*>;
-
-/// Order of convergence in norm n: the slope fitted through the errors above the floor with steps up to
-/// asymptotic_step. If there are fewer than three of these, the three smallest steps above the floor are
-/// used. This is the case for schemes of high order, whose errors are at rounding level for small steps.
-double fit(const Series& series, int n)
-{
-    std::vector<double> h, e;
-    size_t asymptotic = 0;
-    for (const ConvergenceRun* run : series) {
-        if (run->failed() || run->at_floor[n]) continue;
-        h.push_back(run->h), e.push_back(run->errors.value[n]);
-        asymptotic += run->h <= asymptotic_step * (1 + 1e-9);
-    }
-    const size_t left_out = h.size() - std::min(h.size(), std::max<size_t>(3, asymptotic));
-    h.erase(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(left_out));
-    e.erase(e.begin(), e.begin() + static_cast<std::ptrdiff_t>(left_out));
-    return fitted_order(h, e);
-}
-
 /// The error in norm n, with a * if it is at the floor; the status of a run that failed
-std::string error_text(const ConvergenceRun& run, int n, int decimals)
+std::string error_text(const ErrorRun& run, int n, int decimals)
 {
-    const double e = run.errors.value[n];
-    return std::isnan(e) ? run.status : fmt::format("{:.{}e}{}", e, decimals, run.at_floor[n] ? "*" : " ");
+    const double e = run.error[n];
+    return std::isnan(e) ? run.status
+                         : fmt::format("{:.{}e}{}", e, decimals, run.at_floor[n] != 0 ? "*" : " ");
 }
 
 /// All steps of one scheme on one problem
 void print(const Series& series, std::ostream& out)
 {
-    const ConvergenceRun& first = *series.front();
+    const ErrorRun& first = *series.front();
     out << fmt::format("\n{}, {} (declared order {}, of lambda {}); reference solution: {}\n",
                        first.c->problem.name, first.scheme->name, first.scheme->order,
                        first.scheme->order_lambda, first.c->reference_name);
@@ -104,7 +76,7 @@ void print(const Series& series, std::ostream& out)
     }
     columns.insert(columns.end(), {{"iter", "{:.2f}"}, {"|Phi|", "{:.1e}"}, {"|A'A-I|", "{:.1e}"}});
     Table table(columns);
-    for (const ConvergenceRun* run : series) {
+    for (const ErrorRun* run : series) {
         std::vector<Table::Cell> row = {run->h};
         for (int n = norm::r; n <= norm::Q; ++n) {
             row.emplace_back(error_text(*run, n, 3));
@@ -118,7 +90,7 @@ void print(const Series& series, std::ostream& out)
     std::vector<Table::Cell> fits = {std::string("fit")};
     for (int n = norm::r; n <= norm::Q; ++n) {
         fits.emplace_back(std::string());
-        fits.emplace_back(fit(series, n));
+        fits.emplace_back(study.fit(series, n));
     }
     fits.resize(columns.size(), std::string());
     table.add(fits);
@@ -138,14 +110,14 @@ void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream
                  {"r [m] at " + step_text(all.front().back()->h) + " s"},
                  {"status"}});
     for (const Series& series : all) {
-        const ConvergenceRun& first = *series.front();
+        const ErrorRun& first = *series.front();
         if (first.c != &c) continue;
         std::vector<Table::Cell> row = {
             first.scheme->name, fmt::format("{}, {}", first.scheme->order, first.scheme->order_lambda)};
-        for (int n = norm::r; n <= norm::Q; ++n) row.emplace_back(fit(series, n));
-        row.emplace_back(series.back()->errors.value[norm::r]);
+        for (int n = norm::r; n <= norm::Q; ++n) row.emplace_back(study.fit(series, n));
+        row.emplace_back(series.back()->error[norm::r]);
         const auto failed =
-            std::find_if(series.begin(), series.end(), [](const ConvergenceRun* r) { return r->failed(); });
+            std::find_if(series.begin(), series.end(), [](const ErrorRun* r) { return r->failed(); });
         row.emplace_back(failed == series.end() ? "ok"
                                                 : (*failed)->status + " at " + step_text((*failed)->h));
         table.add(row);
@@ -159,9 +131,9 @@ void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>
 {
     const auto at = [](const Series& series, double h) {
         return *std::find_if(series.begin(), series.end(),
-                             [h](const ConvergenceRun* run) { return run->h <= h * (1 + 1e-9); });
+                             [h](const ErrorRun* run) { return run->h <= h * (1 + 1e-9); });
     };
-    const double large = asymptotic_step, small = all.front().back()->h;
+    const double large = study.asymptotic_step, small = all.front().back()->h;
     out << fmt::format(
         "r: position error, rms over {0} instants [m]. Q: relative error of constraint loads, rms.\n"
         "order: slope of log(error) over log(h), h <= {1} s. iter: Newton iterations per step, h={1} s.\n",
@@ -181,9 +153,9 @@ void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>
             if (series.front()->c != &c) continue;
             std::vector<Table::Cell> row = {series.front()->scheme->name};
             for (const int n : {norm::r, norm::Q}) {
-                row.emplace_back(fit(series, n));
+                row.emplace_back(study.fit(series, n));
                 for (const double h : {large, small}) row.emplace_back(error_text(*at(series, h), n, 1));
-                floor = floor || at(series, large)->at_floor[n] || at(series, small)->at_floor[n];
+                floor = floor || at(series, large)->at_floor[n] != 0 || at(series, small)->at_floor[n] != 0;
             }
             row.emplace_back(at(series, large)->statistics.iterations_per_step());
             table.add(row);
@@ -192,89 +164,6 @@ void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>
     }
     if (floor)
         out << "\n* at rounding, or at the floor set by the Newton tolerance: not used for the order\n";
-}
-
-/// study.csv: one row for each run
-Table as_table(const std::vector<ConvergenceRun>& runs)
-{
-    std::vector<Table::Column> columns = {
-        {"problem"}, {"integrator"}, {"h"}, {"instants"}, {"observable_scalar"}};
-    for (const char* name : norm::names) columns.push_back({name});
-    for (const char* name : norm::names) columns.push_back({std::string("order_") + name});
-    for (const char* name : norm::names) columns.push_back({std::string("floor_") + name});
-    for (const char* name : {"steps", "iterations_per_step", "factorizations", "refactorizations",
-                             "constraint_norm", "orthogonality", "cpu_seconds", "status"})
-        columns.push_back({name});
-    Table table(columns);
-    for (const ConvergenceRun& run : runs) {
-        std::vector<Table::Cell> row = {run.c->problem.name, run.scheme->name, run.h,
-                                        static_cast<double>(run.errors.instants), run.c->observable.name()};
-        for (const double e : run.errors.value) row.emplace_back(e);
-        for (const double p : run.order) row.emplace_back(p);
-        for (const bool f : run.at_floor) row.emplace_back(f ? 1.0 : 0.0);
-        row.emplace_back(static_cast<double>(run.statistics.steps));
-        row.emplace_back(run.statistics.iterations_per_step());
-        row.emplace_back(static_cast<double>(run.statistics.factorizations));
-        row.emplace_back(static_cast<double>(run.statistics.refactorizations));
-        row.emplace_back(run.constraint_norm);
-        row.emplace_back(run.orthogonality);
-        row.emplace_back(run.seconds);
-        row.emplace_back(run.status);
-        table.add(row);
-    }
-    return table;
-}
-
-/// The series of study.json
-io::Json as_json(const std::vector<Series>& all)
-{
-    io::Json out = io::Json::array();
-    for (const Series& series : all) {
-        const ConvergenceRun& first = *series.front();
-        io::Json fits = io::Json::object(), rows = io::Json::array();
-        for (int n = 0; n < norm::count; ++n) fits[norm::names[n]] = fit(series, n);
-        for (const ConvergenceRun* run : series) {
-            io::Json row = {{"h", run->h}, {"status", run->status}};
-            if (!run->message.empty()) row["message"] = run->message;
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = run->errors.value[n];
-            row["iterations_per_step"] = run->statistics.iterations_per_step();
-            row["factorizations"] = run->statistics.factorizations;
-            row["cpu_seconds"] = run->seconds;
-            rows.push_back(row);
-        }
-        out.push_back({{"problem", first.c->problem.name},
-                       {"integrator", first.scheme->name},
-                       {"declared_order", first.scheme->order},
-                       {"declared_order_lambda", first.scheme->order_lambda},
-                       {"reference", first.c->reference_name},
-                       {"observable", first.c->observable.name()},
-                       {"fitted_order", fits},
-                       {"rows", rows}});
-    }
-    return out;
-}
-
-/// Keys of --expect. For each norm X: order_X, the fitted order, and X, the error at the smallest step.
-/// `order` is the order_X of the first norm X for which a fit exists.
-std::vector<std::string> keys()
-{
-    std::vector<std::string> all = {"order"};
-    for (const char* name : norm::names) all.push_back(std::string("order_") + name);
-    all.insert(all.end(), norm::names.begin(), norm::names.end());
-    return all;
-}
-
-Measured measured(const Series& series)
-{
-    Measured m{.of = series.front()->scheme->name + " on " + series.front()->c->problem.name, .value = {}};
-    m.value["order"] = std::nan("");
-    for (int n = norm::count; n-- > 0;) {
-        const double order = fit(series, n);
-        m.value[std::string("order_") + norm::names[n]] = order;
-        m.value[norm::names[n]] = series.back()->errors.value[n];
-        if (!std::isnan(order)) m.value["order"] = order;
-    }
-    return m;
 }
 
 /// The problems, integrators and steps that are not named on the command line
@@ -312,80 +201,67 @@ std::string selection(const StudyOptions& options)
     return options.all ? "all" : "default";
 }
 
-}  // namespace
-
-int convergence(const StudyOptions& options)
+void convergence(StudyContext& s)
 {
-    check_keys(kind, options, keys());
-    const bool short_form = selection(options) == "default";
+    const bool short_form = selection(s.options) == "default";
     const Defaults defaults = short_form ? overview() : complete();
-    const std::vector<double> steps = steps_or(options, defaults.steps);
-    const Schemes schemes = fixed_step_schemes(kind, options, defaults.integrators);
-    Evaluated evaluated{.smallest_step = steps.back()};
-    for (const lie::Scheme* s : schemes)
-        evaluated.highest_order = std::max(evaluated.highest_order, s->order);
-    const Reference reference(kind, options, evaluated);
-    std::vector<Benchmark> problems = benchmarks(kind, options, defaults.problems);
-    for (const Benchmark& c : problems) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.evaluate(problems);
+    const std::vector<double> steps = s.steps(defaults.steps);
+    const Schemes schemes = s.fixed_step_schemes(defaults.integrators);
+    const Reference reference(s, finest(schemes, steps.back()));
+    std::vector<Benchmark> problems = benchmarks(s.name, s.options, defaults.problems);
+    reference.evaluate(problems, steps);
+    const Sweep<ErrorRun> runs =
+        study.runs(s, problems, schemes, steps, [&](ErrorRun& run) { compute(run, s.options.settings); });
+    const std::vector<Series> all = study.series(runs);
 
-    std::vector<ConvergenceRun> runs;
-    for (const Benchmark& c : problems)
-        for (const lie::Scheme* s : schemes)
-            for (const double h : steps) {
-                ConvergenceRun run;
-                run.c = &c, run.scheme = s, run.h = h;
-                run.order.fill(std::nan(""));
-                runs.push_back(run);
-            }
-
-    // Small steps take longest. They start first, so that no long run is alone at the end.
-    std::vector<long> queue(runs.size());
-    std::iota(queue.begin(), queue.end(), 0);
-    std::stable_sort(queue.begin(), queue.end(), [&](long a, long b) { return runs[a].h < runs[b].h; });
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
-        compute(runs[queue[k]], options);
-    });
-
-    std::vector<Series> all;
-    for (size_t k = 0; k < runs.size(); ++k) {
-        if (k % steps.size() == 0) all.emplace_back();
-        if (k % steps.size() != 0)
-            for (int n = 0; n < norm::count; ++n)
-                runs[k].order[n] =
-                    order(runs[k - 1].h, runs[k - 1].errors.value[n], runs[k].h, runs[k].errors.value[n]);
-        all.back().push_back(&runs[k]);
+    const Columns<ErrorRun> columns = Columns<ErrorRun>{column::problem,
+                                                        column::integrator,
+                                                        column::h,
+                                                        {"instants", &ErrorRun::instants},
+                                                        column::observable} +
+                                      study.errors() + study.orders() + study.floors() +
+                                      Columns<ErrorRun>{column::steps,
+                                                        column::iterations,
+                                                        column::factorizations,
+                                                        column::refactorizations,
+                                                        {"constraint_norm", &ErrorRun::constraint_norm},
+                                                        {"orthogonality", &ErrorRun::orthogonality},
+                                                        column::cpu_seconds,
+                                                        column::status};
+    s.json["selection"] = selection(s.options);
+    for (const Series& of : all) {
+        const ErrorRun& first = *of.front();
+        s.measured.push_back(study.measured(of));
+        s.json["series"].push_back(study.json(of, columns,
+                                              {"iterations_per_step", "factorizations", "cpu_seconds"},
+                                              {{"declared_order", first.scheme->order},
+                                               {"declared_order_lambda", first.scheme->order_lambda},
+                                               {"reference", first.c->reference_name},
+                                               {"observable", first.c->observable.name()}}));
     }
-
-    StudyOutput output{.kind = kind,
-                       .table = as_table(runs).csv(),
-                       .json = {{"selection", selection(options)}, {"series", as_json(all)}}};
+    s.table = columns.csv(runs);
+    s.end_of_runs(run_pointers(runs));
     if (short_form) {
-        print_overview(all, problems, output.text);
-        output.figures = {"convergence-position.png", "convergence-loads.png"};
-    } else {
-        for (const Series& series : all) print(series, output.text);
-        output.text
-            << "\n* at rounding, or at the floor set by the Newton tolerance: not in the fit, which uses the "
-               "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of "
-               "lambda\n";
-        for (const Benchmark& c : problems) {
-            print_fits(all, c, output.text);
-            output.figures.push_back("convergence-" + c.problem.name + ".png");
-        }
+        print_overview(all, problems, s.text);
+        s.figures = {"convergence-position.png", "convergence-loads.png"};
+        return;
     }
-    std::vector<Measured> results;
-    for (const Series& series : all) results.push_back(measured(series));
-    return finish(options, output, run_pointers(runs), results);
+    for (const Series& of : all) print(of, s.text);
+    s.text << "\n* at rounding, or at the floor set by the Newton tolerance: not in the fit, which uses the "
+              "steps up to 1e-3 s, or the three smallest\n\nfitted orders; declared: of the motion, of "
+              "lambda\n";
+    for (const Benchmark& c : problems) {
+        print_fits(all, c, s.text);
+        s.figures.push_back("convergence-" + c.problem.name + ".png");
+    }
 }
 
-namespace {
-
-const bool registered = register_study(Study{
-    .kind = kind,
-    .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-    .accepted = takes::reference | takes::all,
-    .run = convergence});
+const bool registered = io::Registry<Study>::add(
+    {.name = "convergence",
+     .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
+     .accepted = takes::reference | takes::all,
+     .keys = study.keys(),
+     .run = convergence});
 
 }  // namespace
 

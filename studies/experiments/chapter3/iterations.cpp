@@ -5,22 +5,14 @@
 /// have the same Newton tolerance, in the same units. iterations.csv contains mean and maximum over short
 /// time intervals. Schemes without Newton iterations count zero.
 
-#include "io/csv.hpp"
-#include "io/json.hpp"
-#include "lie/schemes.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
+#include "studies/framework/sweep.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "iterations";
 constexpr long max_bins = 300;  // limit on the rows per run in iterations.csv
 
 /// Iterations of the steps in one time interval
@@ -60,50 +52,29 @@ struct IterationsRun : Run {
     double mean() const { return failed() ? std::nan("") : statistics.iterations_per_step(); }
 };
 
-void compute(IterationsRun& run, const StudyOptions& options)
+void compute(IterationsRun& run, const lie::Settings& settings)
 {
     IterationRecorder recorder(lie::TimeGrid::over(run.c->end, run.h).steps);
     lie::Observer* observers[] = {&recorder};
-    march(run, options.settings, observers);
+    march(run, settings, observers);
     run.bins = std::move(recorder.bins);
     run.max_iterations = recorder.max_iterations;
 }
 
-Table as_table(const std::vector<IterationsRun>& runs)
-{
-    Table table({{"problem"},
-                 {"integrator"},
-                 {"h"},
-                 {"steps"},
-                 {"iterations_per_step"},
-                 {"max_iterations"},
-                 {"factorizations"},
-                 {"refactorizations"},
-                 {"status"}});
-    for (const IterationsRun& run : runs)
-        table.add({run.c->problem.name, run.scheme->name, run.h, static_cast<double>(run.statistics.steps),
-                   run.mean(), static_cast<double>(run.max_iterations),
-                   static_cast<double>(run.statistics.factorizations),
-                   static_cast<double>(run.statistics.refactorizations), run.status});
-    return table;
-}
-
 /// One row for each scheme; mean and maximum for each step size
-void print(const std::vector<IterationsRun>& runs, const Benchmark& c, const Schemes& schemes,
+void print(const Sweep<IterationsRun>& runs, const Benchmark& c, const Schemes& schemes,
            const std::vector<double>& steps, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}};
-    std::vector<std::string> headings;
-    for (const double h : steps) headings.push_back(fmt::format("h = {:.0e} s", h));
-    for (const std::string& heading : headings)
-        columns.insert(columns.end(), {{heading, "{:.2f}"}, {"max", "{:.0f}"}});
+    for (const double h : steps)
+        columns.insert(columns.end(), {{fmt::format("h = {:.0e} s", h), "{:.2f}"}, {"max", "{:.0f}"}});
     Table table(columns);
     for (const lie::Scheme* s : schemes) {
         std::vector<Table::Cell> row = {s->name};
-        for (const IterationsRun& run : runs) {
-            if (run.c != &c || run.scheme != s) continue;
-            row.emplace_back(run.failed() ? Table::Cell(run.status) : Table::Cell(run.mean()));
-            row.emplace_back(static_cast<double>(run.max_iterations));
+        for (const IterationsRun* run : runs.of(c)) {
+            if (run->scheme != s) continue;
+            row.push_back(run->failed() ? Table::Cell(run->status) : Table::Cell(run->mean()));
+            row.emplace_back(run->max_iterations);
         }
         table.add(row);
     }
@@ -114,75 +85,47 @@ void print(const std::vector<IterationsRun>& runs, const Benchmark& c, const Sch
 
 std::string over_time(const std::vector<IterationsRun>& runs)
 {
-    std::string csv = "problem,integrator,h,t,mean,max\n";
-    for (const IterationsRun& run : runs) {
-        for (const IterationBin& bin : run.bins) {
-            csv += io::csv_field(run.c->problem.name) + ',' + io::csv_field(run.scheme->name);
-            for (const double value :
-                 {run.h, bin.end, static_cast<double>(bin.sum) / static_cast<double>(bin.steps),
-                  static_cast<double>(bin.max_iterations)}) {
-                csv += ',';
-                io::append_number(csv, value);
-            }
-            csv += '\n';
-        }
-    }
-    return csv;
-}
-
-io::Json as_json(const std::vector<IterationsRun>& runs)
-{
-    io::Json rows = io::Json::array();
-    for (const IterationsRun& run : runs) {
-        io::Json row = as_json(static_cast<const Run&>(run));
-        row.update({{"steps", run.statistics.steps},
-                    {"iterations_per_step", run.mean()},
-                    {"max_iterations", run.max_iterations},
-                    {"factorizations", run.statistics.factorizations}});
-        rows.push_back(row);
-    }
-    return rows;
-}
-
-int iterations(const StudyOptions& options)
-{
-    check_keys(kind, options, std::vector<std::string>{"iterations", "max_iterations"});
-    const std::vector<double> steps = steps_or(options, {1e-2, 1e-3, 1e-4});
-    const Schemes schemes = fixed_step_schemes(kind, options);
-    const std::vector<Benchmark> all =
-        benchmarks(kind, options, {"double_pendulum", "slider_crank", "four_link"});
-    std::vector<IterationsRun> runs;
-    for (const Benchmark& c : all) {
-        check_steps(kind, c, steps);
-        for (const lie::Scheme* s : schemes)
-            for (const double h : steps) {
-                IterationsRun run;
-                run.c = &c, run.scheme = s, run.h = h;
-                runs.push_back(run);
-            }
-    }
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
-        compute(runs[k], options);
-    });
-
-    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
-    output.files = {{"iterations.csv", over_time(runs)}};
-    for (const Benchmark& c : all) {
-        print(runs, c, schemes, steps, output.text);
-        output.figures.push_back("iterations-" + c.problem.name + ".png");
-    }
-    std::vector<Measured> measurements;
+    Table table({{"problem"}, {"integrator"}, {"h"}, {"t"}, {"mean"}, {"max"}});
     for (const IterationsRun& run : runs)
-        measurements.push_back(
-            {.of = run.name(),
-             .value = {{"iterations", run.mean()}, {"max_iterations", run.max_iterations}}});
-    return finish(options, output, run_pointers(runs), measurements);
+        for (const IterationBin& bin : run.bins)
+            table.add({run.c->problem.name, run.scheme->name, run.h, bin.end,
+                       static_cast<double>(bin.sum) / static_cast<double>(bin.steps), bin.max_iterations});
+    return table.csv();
 }
 
-const bool registered = register_study(
-    Study{.kind = kind,
-          .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
-          .run = iterations});
+void iterations(StudyContext& s)
+{
+    const std::vector<double> steps = s.steps({1e-2, 1e-3, 1e-4});
+    const Schemes schemes = s.fixed_step_schemes();
+    const std::vector<Benchmark> all = s.benchmarks({"double_pendulum", "slider_crank", "four_link"}, steps);
+    Sweep<IterationsRun> runs(all, schemes, steps);
+    runs.compute(s, [&](IterationsRun& run) { compute(run, s.options.settings); });
+
+    const Columns<IterationsRun> columns = {column::problem,
+                                            column::integrator,
+                                            column::h,
+                                            column::steps,
+                                            {"iterations_per_step", &IterationsRun::mean},
+                                            {"max_iterations", &IterationsRun::max_iterations},
+                                            column::factorizations,
+                                            column::refactorizations,
+                                            column::status};
+    for (const Benchmark& c : all) {
+        print(runs, c, schemes, steps, s.text);
+        s.figures.push_back("iterations-" + c.problem.name + ".png");
+    }
+    s.json["runs"] =
+        columns.array(runs, {"steps", "iterations_per_step", "max_iterations", "factorizations"});
+    s.files = {{"iterations.csv", over_time(runs)}};
+    s.results(columns, runs);
+    for (size_t k = 0; k < runs.size(); ++k) s.measured[k].value["iterations"] = runs[k].mean();
+}
+
+const bool registered = io::Registry<Study>::add(
+    {.name = "iterations",
+     .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
+     .keys = {"iterations", "max_iterations"},
+     .run = iterations});
 
 }  // namespace
 

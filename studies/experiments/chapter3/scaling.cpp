@@ -7,13 +7,7 @@
 /// time ~ N^p, fitted for N >= 64.
 
 #include "dae/model_file.hpp"
-#include "io/error.hpp"
-#include "io/json.hpp"
-#include "lie/schemes.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
 #include "studies/framework/stopwatch.hpp"
-#include "studies/framework/study_output.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
 #include <fmt/format.h>
@@ -24,38 +18,35 @@ namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "scaling";
 const std::string baseline = "rA-full-1";
 constexpr int fit_from = 64;  // smallest N of the fit; below, the costs independent of N matter
 
 struct ScalingRun : TimedRun {
     int N = 0;
-    double start_seconds = 0;     ///< wall time to read the model and find its start [s]
-    double ratio = std::nan("");  ///< of the time per step to that of rA-full-1
+    double start_seconds = 0;  ///< wall time to read the model and find its start [s]
 };
 
-struct ChainBenchmarks {
-    std::vector<int> N;
-    std::vector<Benchmark> all;
-    std::vector<double> start_seconds;
+/// A benchmark with N bars, and the wall time to read the model and find its start [s]
+struct Chain {
+    int N = 0;
+    Benchmark benchmark = {};
+    double start_seconds = 0;
 };
 
-ChainBenchmarks chains(const StudyOptions& options)
+std::vector<Chain> chains(const StudyContext& s)
 {
-    ChainBenchmarks chains;
-    chains.N =
-        options.bars.empty() ? std::vector<int>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024} : options.bars;
-    chains.all.resize(chains.N.size());
-    chains.start_seconds.resize(chains.N.size());
+    std::vector<Chain> all;
+    for (const int N : s.options.bars.empty() ? std::vector<int>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024}
+                                              : s.options.bars)
+        all.push_back({.N = N});
     const auto end = [](const dae::Description&) { return 0.1; };
-    Pool(options.jobs, options.quiet ? "" : "reading models", static_cast<long>(chains.N.size()))
-        .run([&](long k) {
-            const auto begin = std::chrono::steady_clock::now();
-            chains.all[k] = make_benchmark(spinning_n_pendulum(chains.N[k], options.seed), options, end);
-            chains.start_seconds[k] =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        });
-    return chains;
+    s.pool(all.size(), ", reading models").run([&](long k) {
+        Chain& chain = all[static_cast<size_t>(k)];
+        const auto begin = std::chrono::steady_clock::now();
+        chain.benchmark = make_benchmark(spinning_n_pendulum(chain.N, s.options.seed), s.options, end);
+        chain.start_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    });
+    return all;
 }
 
 /// Exponent of the time per step over N of one scheme, N >= fit_from
@@ -68,53 +59,6 @@ Exponent exponent_of(const std::vector<ScalingRun>& runs, const lie::Scheme* sch
             seconds.push_back(run.microseconds().median);
         }
     return exponent(N, seconds);
-}
-
-Table as_table(const std::vector<ScalingRun>& runs)
-{
-    Table table({{"problem"},
-                 {"bars"},
-                 {"integrator"},
-                 {"h"},
-                 {"steps"},
-                 {"iterations_per_step"},
-                 {"factorizations"},
-                 {"refactorizations"},
-                 {"us_per_step"},
-                 {"us_per_step_min"},
-                 {"us_per_step_max"},
-                 {"ratio_to_full"},
-                 {"start_seconds"},
-                 {"status"}});
-    for (const ScalingRun& run : runs)
-        table.add({run.c->problem.name, static_cast<double>(run.N), run.scheme->name, run.h,
-                   static_cast<double>(run.statistics.steps), run.statistics.iterations_per_step(),
-                   static_cast<double>(run.statistics.factorizations),
-                   static_cast<double>(run.statistics.refactorizations), run.microseconds().median,
-                   run.microseconds().least, run.microseconds().most, run.ratio, run.start_seconds,
-                   run.status});
-    return table;
-}
-
-void print(const std::vector<ScalingRun>& runs, const StudyOptions& options, std::ostream& out)
-{
-    Table table({{"N", "{:.0f}"},
-                 {"integrator"},
-                 {"us/step", "{:.2f}"},
-                 {"min", "{:.2f}"},
-                 {"max", "{:.2f}"},
-                 {"us/step/N", "{:.3f}"},
-                 {"iter", "{:.2f}"},
-                 {"time / " + baseline, "{:.3f}"},
-                 {"status"}});
-    for (const ScalingRun& run : runs)
-        table.add({static_cast<double>(run.N), run.scheme->name, run.microseconds().median,
-                   run.microseconds().least, run.microseconds().most, run.microseconds().median / run.N,
-                   run.statistics.iterations_per_step(), run.ratio, run.status});
-    const ScalingRun& first = runs.front();
-    out << fmt::format("\nN-bar pendulum, h = {:g} s, end time {:g} s, seed {}: thread CPU time per step\n",
-                       first.h, first.c->end, options.seed);
-    table.print(out);
 }
 
 /// The exponents, and the mean over N of the time ratio (52 % in the dissertation)
@@ -136,82 +80,74 @@ void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std
     table.print(out);
 }
 
-io::Json as_json(const std::vector<ScalingRun>& runs)
+void scaling(StudyContext& s)
 {
-    io::Json rows = io::Json::array();
-    for (const ScalingRun& run : runs) {
-        io::Json row = as_json(static_cast<const Run&>(run));
-        row.update({{"bars", run.N},
-                    {"us_per_step", run.microseconds().median},
-                    {"us_per_step_min", run.microseconds().least},
-                    {"us_per_step_max", run.microseconds().most},
-                    {"ratio_to_full", run.ratio},
-                    {"iterations_per_step", run.statistics.iterations_per_step()},
-                    {"start_seconds", run.start_seconds}});
-        rows.push_back(row);
-    }
-    return rows;
-}
-
-int scaling(const StudyOptions& options)
-{
-    check_keys(kind, options, std::vector<std::string>{"exponent", "largest_exponent", "ratio_to_full"});
-    if (!options.problems.empty())
-        throw io::UsageError(
-            "study scaling: the model is the N-bar pendulum and --problem is not accepted; set N by --bars "
-            "N1,N2,...");
-    const double h = one_step(kind, options, 1e-3);
-    const Schemes schemes =
-        fixed_step_schemes(kind, options, {"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
-    const ChainBenchmarks chain = chains(options);
-    std::vector<ScalingRun> runs;
-    for (size_t k = 0; k < chain.N.size(); ++k) {
-        check_steps(kind, chain.all[k], {h});
-        for (const lie::Scheme* s : schemes) {
-            ScalingRun run;
-            run.c = &chain.all[k], run.scheme = s, run.h = h, run.N = chain.N[k];
-            run.start_seconds = chain.start_seconds[k];
-            runs.push_back(run);
+    if (!s.options.problems.empty())
+        s.refuse("the model is the N-bar pendulum and --problem is not accepted; set N by --bars N1,N2,...");
+    const double h = s.one_step(1e-3);
+    const Schemes schemes = s.fixed_step_schemes({"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
+    const std::vector<Chain> all = chains(s);
+    Sweep<ScalingRun> runs;
+    double longest_start = 0;
+    for (const Chain& chain : all) {
+        check_steps(s.name, chain.benchmark, {h});
+        longest_start = std::max(longest_start, chain.start_seconds);
+        for (const lie::Scheme* scheme : schemes) {
+            ScalingRun& run = runs.add(chain.benchmark, *scheme, h);
+            run.N = chain.N, run.start_seconds = chain.start_seconds;
         }
     }
-    Pool(options.jobs, options.quiet ? "" : kind + ", first runs", static_cast<long>(runs.size()))
-        .run([&](long k) { march(runs[k], options.settings); });
-    const auto timed = pointers<TimedRun*>(runs);
-    time_in_turn(kind, options, timed, [&](long) { return options.settings; });
-    for (ScalingRun& run : runs)
-        for (const ScalingRun& baseline_run : runs)
-            if (baseline_run.N == run.N && baseline_run.scheme->name == baseline)
-                run.ratio = studies::ratio(run, baseline_run);
+    runs.compute(
+        s, [&](ScalingRun& run) { march(run, s.options.settings); }, ", first runs");
+    time_in_turn(s, runs);
+    set_ratios(runs, baseline);
 
-    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"runs", as_json(runs)}}};
-    output.figures = {"scaling.png"};
-    print(runs, options, output.text);
-    print_fits(runs, schemes, output.text);
-    output.text << fmt::format(
+    const Columns<ScalingRun> columns =
+        Columns<ScalingRun>{
+            column::problem,
+            {"bars", "N", "{:.0f}", &ScalingRun::N},
+            column::integrator,
+            column::h,
+            column::steps,
+            column::iterations,
+            column::factorizations,
+            column::refactorizations,
+            {"", "us/step/N", "{:.3f}", [](const auto& run) { return run.microseconds().median / run.N; }}} +
+        columns_of_times<ScalingRun>(baseline, "{:.2f}") +
+        Columns<ScalingRun>{{"start_seconds", &ScalingRun::start_seconds}, column::status};
+    s.text << fmt::format(
+        "\nN-bar pendulum, h = {:g} s, end time {:g} s, seed {}: thread CPU time per step\n", h,
+        all.front().benchmark.end, s.options.seed);
+    columns.print(s.text, runs,
+                  {"bars", "integrator", "us_per_step", "us_per_step_min", "us_per_step_max", "us/step/N",
+                   "iterations_per_step", "ratio_to_full", "status"});
+    print_fits(runs, schemes, s.text);
+    s.text << fmt::format(
         "\nmedian, min and max of {} repeats; parallel runs: {}; longest time to read a model and find its "
         "start: {:.2f} s\n",
-        options.repeats, options.jobs,
-        *std::max_element(chain.start_seconds.begin(), chain.start_seconds.end()));
-    std::vector<Measured> measurements;
-    io::Json exponents = io::Json::object();
-    for (const lie::Scheme* s : schemes) {
-        const Exponent p = exponent_of(runs, s);
-        measurements.push_back(
-            {.of = s->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
-        exponents[s->name] = {{"fitted", p.fitted}, {"largest_local", p.largest_local}};
+        s.options.repeats, s.options.jobs, longest_start);
+    s.json["runs"] = columns.array(runs, {"bars", "us_per_step", "us_per_step_min", "us_per_step_max",
+                                          "ratio_to_full", "iterations_per_step", "start_seconds"});
+    s.figures = {"scaling.png"};
+    for (const lie::Scheme* scheme : schemes) {
+        const Exponent p = exponent_of(runs, scheme);
+        s.measured.push_back(
+            {.of = scheme->name, .value = {{"exponent", p.fitted}, {"largest_exponent", p.largest_local}}});
+        s.json["exponents"][scheme->name] = {{"fitted", p.fitted}, {"largest_local", p.largest_local}};
     }
-    output.json["exponents"] = exponents;
+    s.table = columns.csv(runs);
+    s.end_of_runs(run_pointers(runs));
     for (const ScalingRun& run : runs)
         if (run.scheme->name != baseline)
-            measurements.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
-    return finish(options, output, run_pointers(runs), measurements);
+            s.measured.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
 }
 
 const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                         .accepted = takes::repeats | takes::bars,
-                         .run = scaling});
+    io::Registry<Study>::add({.name = "scaling",
+                              .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+                              .accepted = takes::repeats | takes::bars,
+                              .keys = {"exponent", "largest_exponent", "ratio_to_full"},
+                              .run = scaling});
 
 }  // namespace
 

@@ -8,25 +8,17 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "io/json.hpp"
-#include "lie/schemes.hpp"
 #include "studies/framework/evaluated_run.hpp"
-#include "studies/framework/pool.hpp"
 #include "studies/framework/reference_solution.hpp"
-#include "studies/framework/selection.hpp"
 #include "studies/framework/stopwatch.hpp"
-#include "studies/framework/study_output.hpp"
 #include "studies/framework/work_needed.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "work-precision";
 constexpr double target_error = 1e-3;  // rms error of r for which the CPU time is interpolated [m]
 
 struct WorkRun : TimedRun {
@@ -72,59 +64,6 @@ WorkNeeded work_to_target(const WorkSeries& series)
     return work_needed(e, seconds, target_error);
 }
 
-Table as_table(const std::vector<WorkRun>& runs)
-{
-    std::vector<Table::Column> columns = {{"problem"}, {"integrator"}, {"h"},
-                                          {"rtol"},    {"end"},        {"reference"}};
-    for (const char* name : norm::names) columns.push_back({name});
-    for (const char* name : {"steps", "iterations_per_step", "factorizations", "refactorizations",
-                             "cpu_seconds", "cpu_seconds_min", "cpu_seconds_max", "status"})
-        columns.push_back({name});
-    Table table(columns);
-    for (const WorkRun& run : runs) {
-        const bool adaptive = run.rtol > 0;
-        std::vector<Table::Cell> row = {run.c->problem.name,
-                                        run.scheme->name,
-                                        adaptive ? std::nan("") : run.h,
-                                        adaptive ? run.rtol : std::nan(""),
-                                        run.c->end,
-                                        run.c->reference_name};
-        for (const double e : run.errors.value) row.emplace_back(e);
-        row.emplace_back(static_cast<double>(run.statistics.steps));
-        row.emplace_back(run.statistics.iterations_per_step());
-        row.emplace_back(static_cast<double>(run.statistics.factorizations));
-        row.emplace_back(static_cast<double>(run.statistics.refactorizations));
-        row.emplace_back(run.seconds_of_repeats().median);
-        row.emplace_back(run.seconds_of_repeats().least);
-        row.emplace_back(run.seconds_of_repeats().most);
-        row.emplace_back(run.status);
-        table.add(row);
-    }
-    return table;
-}
-
-void print(const std::vector<WorkRun>& runs, const Benchmark& c, std::ostream& out)
-{
-    Table table({{"integrator"},
-                 {"step or rtol"},
-                 {"r [m]"},
-                 {"v [m/s]"},
-                 {"Q"},
-                 {"CPU [ms]", "{:.3f}"},
-                 {"steps", "{:.0f}"},
-                 {"iter", "{:.2f}"},
-                 {"status"}});
-    for (const WorkRun& run : runs)
-        if (run.c == &c)
-            table.add({run.scheme->name, run.resolution(), run.errors.value[norm::r],
-                       run.errors.value[norm::v], run.errors.value[norm::Q],
-                       1e3 * run.seconds_of_repeats().median, static_cast<double>(run.statistics.steps),
-                       run.statistics.iterations_per_step(), run.status});
-    out << fmt::format("\n{}, end time {:g} s; reference solution: {}\n", c.problem.name, c.end,
-                       c.reference_name);
-    table.print(out);
-}
-
 void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ostream& out)
 {
     const WorkSeries* fastest = nullptr;
@@ -151,95 +90,93 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ost
                 : fmt::format("no integrator reaches an rms error of {:.0e} m\n", target_error));
 }
 
-io::Json as_json(const std::vector<WorkSeries>& all)
+void work_precision(StudyContext& s)
 {
-    io::Json out = io::Json::array();
-    for (const WorkSeries& series : all) {
-        const WorkNeeded w = work_to_target(series);
-        io::Json rows = io::Json::array();
-        for (const WorkRun* run : series) {
-            io::Json row = as_json(static_cast<const Run&>(*run));
-            for (int n = 0; n < norm::count; ++n) row[norm::names[n]] = run->errors.value[n];
-            row["steps"] = run->statistics.steps;
-            row["iterations_per_step"] = run->statistics.iterations_per_step();
-            row["factorizations"] = run->statistics.factorizations;
-            row["cpu_seconds"] = run->seconds_of_repeats().median;
-            rows.push_back(row);
-        }
-        out.push_back({{"problem", series.front()->c->problem.name},
-                       {"integrator", series.front()->scheme->name},
-                       {"reference", series.front()->c->reference_name},
-                       {"asked_r", target_error},
-                       {"cpu_seconds_needed", w.seconds},
-                       {"at_most", w.at_most},
-                       {"rows", rows}});
-    }
-    return out;
-}
-
-int work_precision(const StudyOptions& options)
-{
-    check_keys(kind, options, std::vector<std::string>{"cpu_seconds_needed"});
-    const Schemes schemes = any_schemes(options);
-    const std::vector<double> steps = steps_or(options, {1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
+    const Schemes schemes = s.schemes();
+    const std::vector<double> steps = s.steps({1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
     const std::vector<double> rtols =
-        options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
-                              : options.rtols;
-    Evaluated evaluated;
-    for (const lie::Scheme* s : schemes)
-        if (s->adaptive)
-            evaluated.smallest_rtol = rtols.back();
-        else
-            evaluated.smallest_step = steps.back(),
-            evaluated.highest_order = std::max(evaluated.highest_order, s->order);
-    const Reference reference(kind, options, evaluated);
+        s.options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
+                                : s.options.rtols;
+    const Evaluated evaluated = finest(schemes, steps.back(), rtols.back());
+    const Reference reference(s, evaluated);
     std::vector<Benchmark> all =
-        benchmarks(kind, options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
-    for (const Benchmark& c : all)
-        if (evaluated.smallest_step > 0) check_steps(kind, c, steps, c.instants.dt * c.instants.stride);
-    reference.evaluate(all);
+        benchmarks(s.name, s.options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
+    reference.evaluate(all, evaluated.smallest_step > 0 ? steps : std::vector<double>());
 
-    std::vector<WorkRun> runs;
+    Sweep<WorkRun> runs;
     for (const Benchmark& c : all)
-        for (const lie::Scheme* s : schemes)
-            for (const double resolution : s->adaptive ? rtols : steps) {
-                WorkRun run;
-                run.c = &c, run.scheme = s;
-                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each
-                // node.
-                run.h = s->adaptive ? c.instants.dt * c.instants.stride : resolution;
-                run.rtol = s->adaptive ? resolution : 0;
-                runs.push_back(run);
-            }
-    Pool(options.jobs, options.quiet ? "" : kind + ", errors", static_cast<long>(runs.size()))
-        .run([&](long k) { compute(runs[k], options); });
-    const auto timed = pointers<TimedRun*>(runs);
-    time_in_turn(kind, options, timed, [&](long) { return options.settings; });
+        for (const lie::Scheme* scheme : schemes)
+            for (const double resolution : scheme->adaptive ? rtols : steps)
+                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each node.
+                runs.add(c, *scheme, scheme->adaptive ? c.instants.dt * c.instants.stride : resolution,
+                         scheme->adaptive ? resolution : 0);
+    runs.compute(
+        s, [&](WorkRun& run) { compute(run, s.options); }, ", errors");
+    time_in_turn(s, runs);
 
+    const auto error = [](int n) { return [n](const WorkRun& run) { return run.errors.value[n]; }; };
+    Columns<WorkRun> norms{
+        {"", "CPU [ms]", "{:.3f}", [](const auto& run) { return 1e3 * run.seconds_of_repeats().median; }}};
+    for (int n = 0; n < norm::count; ++n)
+        norms = norms + Columns<WorkRun>{{norm::names[n],
+                                          n == norm::r   ? "r [m]"
+                                          : n == norm::v ? "v [m/s]"
+                                                         : norm::names[n],
+                                          error(n)}};
+    const Columns<WorkRun> columns =
+        Columns<WorkRun>{column::problem, column::integrator, column::resolution, column::h,
+                         column::rtol,    column::end,        column::reference} +
+        norms +
+        Columns<WorkRun>{Column<WorkRun>(column::steps).as("steps", "{:.0f}"),
+                         column::iterations,
+                         column::factorizations,
+                         column::refactorizations,
+                         column::cpu_seconds_of_repeats,
+                         {"cpu_seconds_min", [](const auto& run) { return run.seconds_of_repeats().least; }},
+                         {"cpu_seconds_max", [](const auto& run) { return run.seconds_of_repeats().most; }},
+                         column::status};
     const std::vector<WorkSeries> series = series_of(runs);
-    StudyOutput output{.kind = kind, .table = as_table(runs).csv(), .json = {{"series", as_json(series)}}};
-    for (const Benchmark& c : all) print(runs, c, output.text);
     for (const Benchmark& c : all) {
-        output.text << '\n' << c.problem.name << ':';
-        print_work(series, c, output.text);
-        output.figures.push_back("work-precision-" + c.problem.name + ".png");
+        s.text << fmt::format("\n{}, end time {:g} s; reference solution: {}\n", c.problem.name, c.end,
+                              c.reference_name);
+        columns.print(s.text, runs.of(c),
+                      {"integrator", "step or rtol", "r", "v", "Q", "CPU [ms]", "steps",
+                       "iterations_per_step", "status"});
     }
-    output.text << fmt::format(
-        "\nCPU time of a run: median of {} repeats; parallel runs: {}. <=: the fastest run already "
-        "reaches this accuracy\n",
-        options.repeats, options.jobs);
-    std::vector<Measured> measurements;
-    for (const WorkSeries& s : series)
-        measurements.push_back({.of = s.front()->scheme->name + " on " + s.front()->c->problem.name,
-                                .value = {{"cpu_seconds_needed", work_to_target(s).seconds}}});
-    return finish(options, output, run_pointers(runs), measurements);
+    for (const Benchmark& c : all) {
+        s.text << '\n' << c.problem.name << ':';
+        print_work(series, c, s.text);
+        s.figures.push_back("work-precision-" + c.problem.name + ".png");
+    }
+    s.text << fmt::format(
+        "\nCPU time of a run: median of {} repeats; parallel runs: {}. <=: the fastest run "
+        "already reaches this accuracy\n",
+        s.options.repeats, s.options.jobs);
+    std::vector<std::string> in_json(norm::names.begin(), norm::names.end());
+    in_json.insert(in_json.end(), {"steps", "iterations_per_step", "factorizations", "cpu_seconds"});
+    for (const WorkSeries& of : series) {
+        const WorkNeeded w = work_to_target(of);
+        const WorkRun& first = *of.front();
+        s.measured.push_back({.of = first.scheme->name + " on " + first.c->problem.name,
+                              .value = {{"cpu_seconds_needed", w.seconds}}});
+        s.json["series"].push_back({{"problem", first.c->problem.name},
+                                    {"integrator", first.scheme->name},
+                                    {"reference", first.c->reference_name},
+                                    {"asked_r", target_error},
+                                    {"cpu_seconds_needed", w.seconds},
+                                    {"at_most", w.at_most},
+                                    {"rows", columns.array(of, in_json)}});
+    }
+    s.table = columns.csv(runs);
+    s.end_of_runs(run_pointers(runs));
 }
 
-const bool registered = register_study(
-    Study{.kind = kind,
-          .answers = "error against CPU time of all integrators, including those with step-size control",
-          .accepted = takes::reference | takes::rtols | takes::repeats,
-          .run = work_precision});
+const bool registered = io::Registry<Study>::add(
+    {.name = "work-precision",
+     .answers = "error against CPU time of all integrators, including those with step-size control",
+     .accepted = takes::reference | takes::rtols | takes::repeats,
+     .keys = {"cpu_seconds_needed"},
+     .run = work_precision});
 
 }  // namespace
 

@@ -10,16 +10,13 @@
 /// run with the smallest difference is marked. --check adds the runs that only the criteria need, and returns
 /// exit code 6 if a criterion fails.
 
-#include "io/json.hpp"
 #include "studies/experiments/chapter4/friction/experiment.hpp"
+#include "studies/framework/columns.hpp"
+#include "studies/framework/csv_table.hpp"
+#include "studies/framework/study_context.hpp"
 
 #include "io/csv.hpp"
 #include "io/error.hpp"
-#include "studies/framework/csv_table.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
-#include "studies/program/arguments.hpp"
 
 #include <fmt/format.h>
 
@@ -31,53 +28,37 @@ namespace {
 
 using namespace friction;
 
-const std::string kind = "friction";
 constexpr size_t max_rows = 2000;  // limit on the rows per run in NAME.csv
 
 /// A selected experiment with its runs and their results
 struct SelectedExperiment {
     const Experiment* experiment = nullptr;
-    std::vector<ExperimentRun> runs;
-    std::vector<Series> series;
-    std::vector<std::string> failures;
-    std::vector<Check> checks;
+    std::vector<ExperimentRun> runs = {};
+    std::vector<Series> series = {};
+    std::vector<std::string> failures = {};
 };
 
-std::vector<SelectedExperiment> selected(const StudyOptions& options)
+std::vector<SelectedExperiment> selected(const StudyContext& s)
 {
-    std::vector<std::string> known;
-    for (const Experiment& e : experiments()) known.push_back(e.name);
-    for (const std::string& name : options.problems)
-        if (std::find(known.begin(), known.end(), name) == known.end())
-            throw io::UsageError("study friction: unknown experiment" + with_nearest(name, known));
     std::vector<SelectedExperiment> all;
-    for (const Experiment& e : experiments()) {
-        const auto& names = options.problems;
-        if (!names.empty() && std::find(names.begin(), names.end(), e.name) == names.end()) continue;
-        SelectedExperiment c;
-        c.experiment = &e, c.runs = e.runs();
-        std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.check_only && !options.check; });
+    for (const Experiment* e : selected_parts(s, "experiment", experiments())) {
+        SelectedExperiment& c = all.emplace_back(SelectedExperiment{.experiment = e, .runs = e->runs()});
+        std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.check_only && !s.options.check; });
         c.series.resize(c.runs.size());
         c.failures.resize(c.runs.size());
-        all.push_back(std::move(c));
+    }
+    if (s.options.vtk > 0 && std::none_of(all.begin(), all.end(), [](const SelectedExperiment& c) {
+            return c.experiment->has_frames;
+        })) {
+        std::string names;
+        for (const Experiment& e : experiments())
+            if (e.has_frames) names += (names.empty() ? "" : ", ") + e.name;
+        s.refuse("--vtk is available for " + names);
     }
     return all;
 }
 
-/// io::UsageError if --vtk is given and no selected experiment writes frames
-void check_vtk(const StudyOptions& options, const std::vector<SelectedExperiment>& all)
-{
-    if (options.vtk == 0) return;
-    studies::check_vtk(kind, options);
-    if (std::any_of(all.begin(), all.end(),
-                    [](const SelectedExperiment& c) { return c.experiment->has_frames; }))
-        return;
-    std::string names;
-    for (const Experiment& e : experiments())
-        if (e.has_frames) names += (names.empty() ? "" : ", ") + e.name;
-    throw io::UsageError("study friction: --vtk is available for " + names);
-}
-
+/// The curves of all runs. The runs of an experiment may record different columns; the header is that of the first.
 std::string curves(const SelectedExperiment& c)
 {
     std::string csv = "run";
@@ -200,137 +181,135 @@ double largest_difference(const std::vector<ColumnMatch>& found)
     return largest;
 }
 
-Table as_table(const std::vector<ColumnMatch>& found)
+const Columns<ColumnMatch> columns_of_matches = {
+    {"column", "column", &ColumnMatch::column},
+    {"experiment", "experiment", &ColumnMatch::experiment},
+    {"run", "run", &ColumnMatch::run},
+    {"nearest", "nearest", [](const ColumnMatch& m) { return m.nearest ? "*" : ""; }},
+    {"largest difference", "largest difference", [](const ColumnMatch& m) { return m.difference.largest; }},
+    {"at t [s]", "at t [s]", "{:.4f}", [](const ColumnMatch& m) { return m.difference.t; }},
+    {"of size", "of size", "{:.4g}", [](const ColumnMatch& m) { return m.difference.size; }},
+    {"rows later", "rows later", "{:.0f}", [](const ColumnMatch& m) { return m.difference.shift; }},
+    {"sign", "sign", "{:+.0f}", &ColumnMatch::sign}};
+
+/// A criterion of an experiment
+struct CheckedExperiment : Check {
+    const Experiment* experiment = nullptr;
+};
+const Columns<CheckedExperiment> columns_of_checks = {
+    {"experiment", [](const CheckedExperiment& k) { return k.experiment->name; }},
+    {"figure", [](const CheckedExperiment& k) { return k.experiment->figure; }},
+    {"what", "what", &CheckedExperiment::what},
+    {"measured", "measured", "{:.8g}", &CheckedExperiment::measured},
+    {"required", "required", "{:.8g}", &CheckedExperiment::required},
+    {"tolerance", "+-", "{:.1e}", &CheckedExperiment::tolerance},
+    {"by", "by", &CheckedExperiment::source},
+    {"passed", "passed", [](const CheckedExperiment& k) { return k.passed() ? "yes" : "NO"; }}};
+
+/// Evaluates the criteria of an experiment. A run that failed is a criterion that failed.
+std::vector<CheckedExperiment> checks_of(const SelectedExperiment& c)
 {
-    Table out({{"column"},
-               {"experiment"},
-               {"run"},
-               {"nearest"},
-               {"largest difference"},
-               {"at t [s]", "{:.4f}"},
-               {"of size", "{:.4g}"},
-               {"rows later", "{:.0f}"},
-               {"sign", "{:+.0f}"}});
-    for (const ColumnMatch& m : found)
-        out.add({m.column, m.experiment, m.run, m.nearest ? "*" : "", m.difference.largest, m.difference.t,
-                 m.difference.size, static_cast<double>(m.difference.shift), m.sign});
-    return out;
+    std::vector<Check> checks;
+    if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), checks);
+    for (size_t r = 0; r < c.runs.size(); ++r)
+        if (!c.failures[r].empty())
+            checks.push_back({.what = "run " + c.runs[r].name + " ends",
+                              .measured = std::nan(""),
+                              .source = "failed: " + c.failures[r]});
+    std::vector<CheckedExperiment> all;
+    for (const Check& check : checks) all.push_back({check, c.experiment});
+    return all;
 }
 
-std::string figure_of(const Experiment& e) { return e.figure.empty() ? "" : " (Fig. " + e.figure + ")"; }
-
-int study(const StudyOptions& options)
+/// Computes one run of an experiment and writes its frames.
+void compute(SelectedExperiment& c, size_t r, const StudyOptions& options)
 {
-    const std::vector<std::string> keys = {"difference"};
-    check_keys(kind, options, keys);
-    if (!options.expect.empty() && options.against.empty())
-        throw io::UsageError("study friction: --expect difference needs --against FILE");
-    refuse_schemes(kind, options);
-    if (!options.steps.empty() || options.end)
-        throw io::UsageError(
-            "study friction: --steps and --end are not accepted, each experiment sets its own");
-    std::vector<SelectedExperiment> all = selected(options);
-    check_vtk(options, all);
-    struct Job {
-        SelectedExperiment* c;
-        size_t run;
-    };
-    std::vector<Job> jobs;
-    for (SelectedExperiment& c : all)
-        for (size_t r = 0; r < c.runs.size(); ++r) jobs.push_back({&c, r});
-    const bool remove_old_frames = options.force && !options.output.empty();
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(jobs.size())).run([&](long k) {
-        const Job& job = jobs[k];
-        const ExperimentRun& run = job.c->runs[job.run];
-        const std::string name = job.c->experiment->name + '-' + run.name;
-        if (remove_old_frames) Snapshots::remove(options.output, name);
-        Frames frames{.count = options.vtk};
-        const bool with_frames = options.vtk > 0 && job.c->experiment->has_frames;
-        try {
-            job.c->series[job.run] = run.compute(with_frames ? &frames : nullptr);
-        } catch (const lie::NumericalFailure& e) {
-            job.c->failures[job.run] = e.what();
-        }
-        if (with_frames) frames.snapshots.write(options.output, name);
-    });
+    const ExperimentRun& run = c.runs[r];
+    const std::string name = c.experiment->name + '-' + run.name;
+    if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
+    Frames frames{.count = options.vtk};
+    const bool with_frames = options.vtk > 0 && c.experiment->has_frames;
+    try {
+        c.series[r] = run.compute(with_frames ? &frames : nullptr);
+    } catch (const io::NumericalFailure& e) {
+        c.failures[r] = e.what();
+    }
+    if (with_frames) frames.snapshots.write(options.output, name);
+}
 
-    StudyOutput output{.kind = kind};
-    Table table({{"experiment"},
-                 {"figure"},
-                 {"what"},
-                 {"measured", "{:.8g}"},
-                 {"required", "{:.8g}"},
-                 {"tolerance", "{:.1e}"},
-                 {"by"},
-                 {"passed"}});
+void compare_with_file(StudyContext& s, const std::vector<SelectedExperiment>& all)
+{
+    const std::vector<ColumnMatch> found = matches(s.options.against, all);
+    s.measured.push_back({.of = s.options.against, .value = {{"difference", largest_difference(found)}}});
+    s.text << fmt::format(
+        "\ncomparison with {}: each column with every run that has the quantity; * marks the nearest "
+        "run\n",
+        s.options.against);
+    columns_of_matches.print(s.text, found);
+    s.text << fmt::format("largest difference of the nearest runs, relative to the column size: {:.2e}\n",
+                          s.measured.back().value.at("difference"));
+    s.files.emplace_back("against.csv", columns_of_matches.csv(found));
+}
+
+void friction_experiments(StudyContext& s)
+{
+    const StudyOptions& options = s.options;
+    if (!options.expect.empty() && options.against.empty())
+        s.refuse("--expect difference needs --against FILE");
+    s.refuse_models(true);
+    if (!options.steps.empty() || options.end)
+        s.refuse("--steps and --end are not accepted, each experiment sets its own");
+    std::vector<SelectedExperiment> all = selected(s);
+    std::vector<std::pair<SelectedExperiment*, size_t>> jobs;
+    for (SelectedExperiment& c : all)
+        for (size_t r = 0; r < c.runs.size(); ++r) jobs.emplace_back(&c, r);
+    s.pool(jobs.size()).run([&](long k) { compute(*jobs[k].first, jobs[k].second, options); });
+
+    std::vector<CheckedExperiment> checks;
     io::Json rows = io::Json::array();
-    size_t criteria = 0, failed = 0;
-    for (SelectedExperiment& c : all) {
-        if (c.experiment->checks != nullptr) c.experiment->checks(Results(c.runs, c.series), c.checks);
-        Table printed(
-            {{"measured", "{:.8g}"}, {"required", "{:.8g}"}, {"+-", "{:.1e}"}, {"passed"}, {"by"}, {"what"}});
-        for (size_t r = 0; r < c.runs.size(); ++r)  // a run that failed is a criterion that failed
-            if (!c.failures[r].empty())
-                c.checks.push_back({.what = "run " + c.runs[r].name + " ends",
-                                    .measured = std::nan(""),
-                                    .source = "failed: " + c.failures[r]});
-        criteria += c.checks.size();
-        for (const Check& k : c.checks) {
-            const std::string passed = k.passed() ? "yes" : "NO";
-            if (!k.passed()) ++failed;
-            table.add({c.experiment->name, c.experiment->figure, k.what, k.measured, k.required, k.tolerance,
-                       k.source, passed});
-            printed.add({k.measured, k.required, k.tolerance, passed, k.source, k.what});
-            rows.push_back({{"experiment", c.experiment->name},
-                            {"what", k.what},
-                            {"measured", k.measured},
-                            {"required", k.required},
-                            {"tolerance", k.tolerance},
-                            {"by", k.source},
-                            {"passed", k.passed()}});
+    for (const SelectedExperiment& c : all) {
+        const Experiment& e = *c.experiment;
+        s.text << fmt::format("\n{}{}: {}\n", e.name, e.figure.empty() ? "" : " (Fig. " + e.figure + ")",
+                              e.what);
+        const std::vector<CheckedExperiment> of_this = checks_of(c);
+        if (!of_this.empty())
+            columns_of_checks.print(s.text, of_this,
+                                    {"measured", "required", "tolerance", "passed", "by", "what"});
+        for (const CheckedExperiment& k : of_this) {
+            io::Json row =
+                columns_of_checks.json(k, {"experiment", "what", "measured", "required", "tolerance", "by"});
+            row["passed"] = k.passed();
+            rows.push_back(row);
+            checks.push_back(k);
         }
-        output.text << fmt::format("\n{}{}: {}\n", c.experiment->name, figure_of(*c.experiment),
-                                   c.experiment->what);
-        if (!c.checks.empty()) printed.print(output.text);
-        output.files.emplace_back(c.experiment->name + ".csv", curves(c));
-        output.figures.push_back(fmt::format("{}-{}.png", kind, c.experiment->name));
+        s.files.emplace_back(e.name + ".csv", curves(c));
+        s.figures.push_back(fmt::format("{}-{}.png", s.name, e.name));
     }
-    output.text << fmt::format("\n{} of {} criteria passed{}\n", criteria - failed, criteria,
-                               options.check ? "" : "; --check adds the long runs and their criteria");
-    std::vector<Measured> measurements;
-    if (!options.against.empty()) {
-        const std::vector<ColumnMatch> found = matches(options.against, all);
-        const Table differences = as_table(found);
-        measurements.push_back({.of = options.against, .value = {{"difference", largest_difference(found)}}});
-        output.text << fmt::format(
-            "\ncomparison with {}: each column with every run that has the quantity; * marks the nearest "
-            "run\n",
-            options.against);
-        differences.print(output.text);
-        output.text << fmt::format(
-            "largest difference of the nearest runs, relative to the column size: {:.2e}\n",
-            measurements.back().value.at("difference"));
-        output.files.emplace_back("against.csv", differences.csv());
-    }
-    if (options.vtk > 0)
+    const auto passed = static_cast<size_t>(
+        std::count_if(checks.begin(), checks.end(), [](const Check& k) { return k.passed(); }));
+    s.criteria_passed = passed == checks.size();
+    s.text << fmt::format("\n{} of {} criteria passed{}\n", passed, checks.size(),
+                          options.check ? "" : "; --check adds the long runs and their criteria");
+    if (!options.against.empty()) compare_with_file(s, all);
+    if (options.vtk > 0) {
         for (const SelectedExperiment& c : all)
             if (c.experiment->has_frames)
-                output.text << fmt::format("\nframes for ParaView: {}/{}-*.pvd", options.output,
-                                           c.experiment->name);
-    if (options.vtk > 0) output.text << '\n';
-    output.table = table.csv();
-    output.json = {{"criteria", criteria}, {"passed", criteria - failed}, {"checks", rows}};
-    const int code = finish(options, output, {}, measurements);
-    if (options.check && failed > 0) return io::exit_code::expectation_failed;
-    return code;
+                s.text << fmt::format("\nframes for ParaView: {}/{}-*.pvd", options.output,
+                                      c.experiment->name);
+        s.text << '\n';
+    }
+    s.table = columns_of_checks.csv(checks);
+    s.json = {{"criteria", checks.size()}, {"passed", passed}, {"checks", rows}};
 }
 
-const bool registered = register_study(Study{
-    .kind = kind,
-    .answers = "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
-               "4.15-4.18, Table 4.7)",
-    .accepted = takes::against | takes::check | takes::vtk,
-    .run = study});
+const bool registered = io::Registry<Study>::add(
+    {.name = "friction",
+     .answers =
+         "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
+         "4.15-4.18, Table 4.7)",
+     .accepted = takes::against | takes::check | takes::vtk,
+     .keys = {"difference"},
+     .run = friction_experiments});
 
 }  // namespace
 

@@ -7,15 +7,10 @@
 /// The default preset is `dissertation`, which reproduces the published figure. --check evaluates the
 /// differences and returns exit code 6 if a criterion fails.
 
-#include "io/error.hpp"
-#include "io/json.hpp"
 #include "studies/experiments/chapter4/incline.hpp"
-#include "studies/framework/acceptance.hpp"
 #include "studies/framework/csv_table.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
-#include "studies/program/arguments.hpp"
+#include "studies/framework/study_context.hpp"
+#include "studies/framework/table.hpp"
 
 #include "lie/check.hpp"
 
@@ -30,7 +25,6 @@ namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "incline-sweep";
 constexpr double degree = std::numbers::pi / 180;
 const std::array<const char*, 4> state_names = {"rest", "rolling", "rolling with slip", "slip"};
 
@@ -56,14 +50,6 @@ struct InclineGrid {
 const std::vector<InclineGrid> grids = {{"published", {40, 120, 1, 200}, {10, 300, 1, 10}},
                                         {"dissertation", {20, 50, 1, 100}, {10, 300, 1, 10}},
                                         {"coarse", {20, 60, 5, 100}, {1, 30, 1, 1}}};
-
-const InclineGrid& grid(const StudyOptions& options)
-{
-    std::vector<std::string> known;
-    for (const InclineGrid& g : grids) known.push_back(g.name);
-    const std::string name = options.grid.empty() ? known.front() : one_of("--grid", options.grid, known);
-    return grids[std::find(known.begin(), known.end(), name) - known.begin()];
-}
 
 struct InclineCell {
     int state = -1;
@@ -227,7 +213,7 @@ std::string as_csv(const StateMap& map, const std::vector<int>& published)
         for (size_t a = 0; a < map.angle.size(); ++a) {
             const InclineCell& cell = map.at(e, a);
             const int reference_state = published.empty() ? -1 : published[e * map.angle.size() + a];
-            table.add({map.eta[e], map.angle[a], static_cast<double>(cell.state),
+            table.add({map.eta[e], map.angle[a], cell.state,
                        reference_state < 0 ? std::nan("") : static_cast<double>(reference_state), cell.v,
                        cell.R_omega});
         }
@@ -269,15 +255,13 @@ void print(const StateAgreement& a, const std::string& file, std::ostream& out)
                                    state_names[state], a.count[reference_state][state]);
 }
 
-int incline_sweep(const StudyOptions& options)
+void incline_sweep(StudyContext& s)
 {
-    check_keys(kind, options,
-               std::vector<std::string>{"agreement", "far", "rest_limit", "rolling_limit_least",
-                                        "rolling_limit_most", "slip_from"});
-    refuse_models(kind, options);
-    const double h = one_step(kind, options, 1e-4), end = options.end.value_or(1);
+    s.refuse_models();
+    const StudyOptions& options = s.options;
+    const double h = s.one_step(1e-4), end = options.end.value_or(1);
     const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const InclineGrid& g = grid(options);
+    const InclineGrid& g = one_of_list("--grid", options.grid, grids);
     StateMap map{.eta = g.eta.values(), .angle = g.angle.values(), .cells = {}};
     map.cells.resize(map.eta.size() * map.angle.size());
     const auto incline = [&](size_t e, size_t a) {
@@ -288,61 +272,60 @@ int incline_sweep(const StudyOptions& options)
     const std::vector<int> published =
         options.against.empty() ? std::vector<int>() : read_published(map, options.against);
     const long steps = std::max(1L, std::lround(end / h));
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(map.cells.size())).run([&](long k) {
+    s.pool(map.cells.size()).run([&](long k) {
         run(map.cells[k], incline(k / map.angle.size(), k % map.angle.size()), h, steps);
     });
 
     const Boundaries b = boundaries(map);
-    StudyOutput output{.kind = kind, .table = as_csv(map, published), .figures = {"incline-sweep.png"}};
-    output.text << fmt::format(
+    s.table = as_csv(map, published);
+    s.figures = {"incline-sweep.png"};
+    s.text << fmt::format(
         "\nfinal state of a sphere pushed up an incline at 0.5 m/s, after {:g} s; {} friction, h = {:g} s\n",
         end, preset, h);
-    print(map, output.text);
-    output.text << fmt::format(
+    print(map, s.text);
+    s.text << fmt::format(
         "boundary minus limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} deg; slip without "
         "rolling "
         "{}\n",
         b.rest.least, b.rest.most, b.rolling.least, b.rolling.most,
         std::isfinite(b.slip_from) ? fmt::format("from eta_r = {:.3f}", b.slip_from) : "does not occur");
-    output.json = {{"preset", preset},
-                   {"h", h},
-                   {"end", end},
-                   {"grid", g.name},
-                   {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
-                   {"rest_limit", {{"least", b.rest.least}, {"most", b.rest.most}}},
-                   {"rolling_limit", {{"least", b.rolling.least}, {"most", b.rolling.most}}},
-                   {"slip_from", b.slip_from}};
-    std::vector<Measured> measurements = {{.of = kind,
-                                           .value = {{"rest_limit", b.rest.largest()},
-                                                     {"rolling_limit_least", b.rolling.least},
-                                                     {"rolling_limit_most", b.rolling.most},
-                                                     {"slip_from", b.slip_from}}}};
-    std::vector<Criterion> checks;
-    if (options.check) checks = criteria(map, b, preset == "dissertation");
+    s.json = {{"preset", preset},
+              {"h", h},
+              {"end", end},
+              {"grid", g.name},
+              {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
+              {"rest_limit", {{"least", b.rest.least}, {"most", b.rest.most}}},
+              {"rolling_limit", {{"least", b.rolling.least}, {"most", b.rolling.most}}},
+              {"slip_from", b.slip_from}};
+    s.measured = {{.of = s.name,
+                   .value = {{"rest_limit", b.rest.largest()},
+                             {"rolling_limit_least", b.rolling.least},
+                             {"rolling_limit_most", b.rolling.most},
+                             {"slip_from", b.slip_from}}}};
+    std::vector<Criterion> checks = criteria(map, b, preset == "dissertation");
     if (!published.empty()) {
         const StateAgreement a = agreement(map, published);
         checks.push_back(between("agreement with the file [%]", a.percent(), 99.7, 100));
-        print(a, options.against, output.text);
-        measurements.push_back(
+        print(a, options.against, s.text);
+        s.measured.push_back(
             {.of = options.against,
              .value = {{"agreement", a.percent()}, {"far", static_cast<double>(a.not_adjacent)}}});
-        output.json["against"] = {{"file", options.against},
-                                  {"compared", a.compared},
-                                  {"agreement", a.percent()},
-                                  {"far", a.not_adjacent}};
+        s.json["against"] = {{"file", options.against},
+                             {"compared", a.compared},
+                             {"agreement", a.percent()},
+                             {"far", a.not_adjacent}};
     }
-    const bool passed = !options.check || evaluate(checks, output.text, output.json);
-    const int code = finish(options, output, {}, measurements);
-    return code == io::exit_code::done && !passed ? io::exit_code::expectation_failed : code;
+    if (options.check) s.evaluate(checks);
 }
 
-const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "final state of a sphere pushed up an incline, over slope and rolling "
-                                    "resistance (Fig. 4.13); default "
-                                    "preset: dissertation",
-                         .accepted = takes::preset | takes::against | takes::grid | takes::check,
-                         .run = incline_sweep});
+const bool registered = io::Registry<Study>::add(
+    {.name = "incline-sweep",
+     .answers = "final state of a sphere pushed up an incline, over slope and rolling resistance (Fig. "
+                "4.13); default "
+                "preset: dissertation",
+     .accepted = takes::preset | takes::against | takes::grid | takes::check,
+     .keys = {"agreement", "far", "rest_limit", "rolling_limit_least", "rolling_limit_most", "slip_from"},
+     .run = incline_sweep});
 
 }  // namespace
 

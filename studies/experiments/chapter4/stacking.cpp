@@ -8,15 +8,10 @@
 /// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
 /// fails.
 
-#include "io/error.hpp"
-#include "io/json.hpp"
 #include "studies/experiments/chapter4/stack.hpp"
-#include "studies/framework/acceptance.hpp"
+#include "studies/framework/columns.hpp"
 #include "studies/framework/csv_table.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
-#include "studies/program/arguments.hpp"
+#include "studies/framework/study_context.hpp"
 
 #include "lie/check.hpp"
 
@@ -29,7 +24,6 @@ namespace hilda::studies {
 
 namespace {
 
-const std::string kind = "stacking";
 constexpr double kilogram = 1000;  // [g]
 constexpr int refinement = 5;      // ratio of the steps of the cell that --check computes again
 // Bounds of the bisection [g]. A lighter upper sphere is unstable with the normal damping of the mean mass.
@@ -52,18 +46,10 @@ std::vector<double> etas()
 const std::vector<StackGrid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
                                       {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
 
-const StackGrid& grid(const StudyOptions& options)
-{
-    std::vector<std::string> names;
-    for (const StackGrid& g : grids) names.push_back(g.name);
-    const std::string name = options.grid.empty() ? names.front() : one_of("--grid", options.grid, names);
-    return grids[std::find(names.begin(), names.end(), name) - names.begin()];
-}
-
 struct StackCell {
-    Stack stack;                      ///< the upper sphere has the critical mass
-    StackOutcome below, at_critical;  ///< outcomes one gram below and at the critical mass
-    bool found = false;               ///< the critical mass is within the bounds of the bisection
+    Stack stack = {};                           ///< the upper sphere has the critical mass
+    StackOutcome below = {}, at_critical = {};  ///< outcomes one gram below and at the critical mass
+    bool found = false;                         ///< the critical mass is within the bounds of the bisection
     double published = std::nan("");
     int runs = 0, undecided = 0;
 
@@ -161,24 +147,17 @@ MassCurve curve(const std::vector<StackCell>& cells, double gap)
     return c;
 }
 
-Table as_table(const std::vector<StackCell>& cells)
-{
-    Table table({{"gap"},
-                 {"eta_r"},
-                 {"critical_mass"},
-                 {"collapse_mode"},
-                 {"published"},
-                 {"difference"},
-                 {"t_stands"},
-                 {"t_collapses"},
-                 {"runs"},
-                 {"undecided"}});
-    for (const StackCell& c : cells)
-        table.add({c.stack.gap, c.stack.eta_r, c.m_c(), collapse_mode(c), c.published, c.m_c() - c.published,
-                   c.below.t, c.at_critical.t, static_cast<double>(c.runs),
-                   static_cast<double>(c.undecided)});
-    return table;
-}
+const Columns<StackCell> columns_of_cells = {
+    {"gap", [](const StackCell& c) { return c.stack.gap; }},
+    {"eta_r", [](const StackCell& c) { return c.stack.eta_r; }},
+    {"critical_mass", &StackCell::m_c},
+    {"collapse_mode", collapse_mode},
+    {"published", &StackCell::published},
+    {"difference", [](const StackCell& c) { return c.m_c() - c.published; }},
+    {"t_stands", [](const StackCell& c) { return c.below.t; }},
+    {"t_collapses", [](const StackCell& c) { return c.at_critical.t; }},
+    {"runs", &StackCell::runs},
+    {"undecided", &StackCell::undecided}};
 
 void print(const std::vector<StackCell>& cells, const StackGrid& g, std::ostream& out)
 {
@@ -247,89 +226,87 @@ std::vector<Criterion> criteria(const std::vector<StackCell>& cells, const Stack
     return all;
 }
 
-int stacking(const StudyOptions& options)
+std::vector<std::string> keys()
 {
-    std::vector<std::string> keys = {"rms", "largest", "undecided"};
+    std::vector<std::string> all = {"rms", "largest", "undecided"};
     for (const double gap : grids.front().gaps)
-        for (const char* what : {"peak_eta_", "peak_mass_", "plateau_"}) keys.push_back(what + gap_text(gap));
-    check_keys(kind, options, keys);
-    refuse_models(kind, options);
-    const double h = one_step(kind, options, 1e-4), end = options.end.value_or(10);
+        for (const char* what : {"peak_eta_", "peak_mass_", "plateau_"}) all.push_back(what + gap_text(gap));
+    return all;
+}
+
+void stacking(StudyContext& s)
+{
+    s.refuse_models();
+    const StudyOptions& options = s.options;
+    const double h = s.one_step(1e-4), end = options.end.value_or(10);
     const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const StackGrid& g = grid(options);
+    const StackGrid& g = one_of_list("--grid", options.grid, grids);
     std::vector<StackCell> cells;
     for (const double gap : g.gaps)
-        for (const double eta : g.etas) {
-            cells.emplace_back();
-            cells.back().stack = {.gap = gap, .eta_r = eta, .dissertation = preset == "dissertation"};
-        }
+        for (const double eta : g.etas)
+            cells.push_back({.stack = {.gap = gap, .eta_r = eta, .dissertation = preset == "dissertation"}});
     if (!options.against.empty()) read_published(cells, options.against);
-    StackCell refined;
-    refined.stack = refined_cell_of(cells, g).stack;
+    StackCell refined{.stack = refined_cell_of(cells, g).stack};
     const auto jobs = static_cast<long>(cells.size());
-    Pool(options.jobs, options.quiet ? "" : kind, jobs + options.check).run([&](long k) {
+    s.pool(cells.size() + options.check).run([&](long k) {
         if (k < jobs)
             bisect(cells[k], h, end);
         else
             bisect(refined, h / refinement, end);
     });
 
-    StudyOutput output{.kind = kind};
-    std::vector<Measured> measurements;
-    output.json = {{"preset", preset}, {"h", h}, {"end", end}, {"grid", g.name}};
-    output.text << fmt::format(
+    s.json = {{"preset", preset}, {"h", h}, {"end", end}, {"grid", g.name}};
+    s.text << fmt::format(
         "\ncritical mass [kg] of the upper sphere and collapse mode of the lower spheres; "
         "{} friction, h = {:g} s\n",
         preset, h);
-    print(cells, g, output.text);
+    print(cells, g, s.text);
     std::vector<Criterion> checks;
     if (options.check) checks = criteria(cells, g, refined, h);
     int undecided = 0;
     for (const StackCell& c : cells) undecided += c.undecided;
     io::Json curves = io::Json::array();
-    output.text << '\n';
+    s.text << '\n';
     for (const double gap : g.gaps) {
         const MassCurve c = curve(cells, gap);
-        output.text << fmt::format(
+        s.text << fmt::format(
             "gap {0}: maximum {2:.3f} kg at eta_r = {1:.2f}; {4:.3f} kg at eta_r = {3:.2f}\n", gap_text(gap),
             c.peak_eta, c.peak_mass, g.etas.back(), c.plateau);
-        measurements.push_back({.of = "gap " + gap_text(gap),
-                                .value = {{"peak_eta_" + gap_text(gap), c.peak_eta},
-                                          {"peak_mass_" + gap_text(gap), c.peak_mass},
-                                          {"plateau_" + gap_text(gap), c.plateau}}});
+        s.measured.push_back({.of = "gap " + gap_text(gap),
+                              .value = {{"peak_eta_" + gap_text(gap), c.peak_eta},
+                                        {"peak_mass_" + gap_text(gap), c.peak_mass},
+                                        {"plateau_" + gap_text(gap), c.plateau}}});
         curves.push_back(
             {{"gap", gap}, {"peak_eta", c.peak_eta}, {"peak_mass", c.peak_mass}, {"plateau", c.plateau}});
     }
     if (undecided > 0)
-        output.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,
-                                   end);
-    measurements.push_back({.of = kind, .value = {{"undecided", undecided}}});
-    output.json.update({{"undecided", undecided}, {"curves", curves}});
+        s.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided, end);
+    s.measured.push_back({.of = s.name, .value = {{"undecided", undecided}}});
+    s.json.update({{"undecided", undecided}, {"curves", curves}});
     if (!options.against.empty()) {
         const MassAgreement a = agreement(cells);
-        output.text << fmt::format(
+        s.text << fmt::format(
             "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n",
             options.against, a.compared, a.rms, a.largest);
-        measurements.push_back({.of = options.against, .value = {{"rms", a.rms}, {"largest", a.largest}}});
-        output.json["against"] = {
+        s.measured.push_back({.of = options.against, .value = {{"rms", a.rms}, {"largest", a.largest}}});
+        s.json["against"] = {
             {"file", options.against}, {"compared", a.compared}, {"rms", a.rms}, {"largest", a.largest}};
         checks.push_back(between("rms difference to the file [kg]", a.rms, 0, 0.01));
         checks.push_back(between("largest difference to the file [kg]", a.largest, 0, 0.02));
     }
-    const bool passed = !options.check || evaluate(checks, output.text, output.json);
-    output.table = as_table(cells).csv();
-    output.figures = {"stacking.png"};
-    const int code = finish(options, output, {}, measurements);
-    return code == io::exit_code::done && !passed ? io::exit_code::expectation_failed : code;
+    if (options.check) s.evaluate(checks);
+    s.table = columns_of_cells.csv(cells);
+    s.figures = {"stacking.png"};
 }
 
-const bool registered = register_study(Study{
-    .kind = kind,
-    .answers =
-        "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
-        "dissertation",
-    .accepted = takes::preset | takes::against | takes::grid | takes::check,
-    .run = stacking});
+const bool registered = io::Registry<Study>::add(
+    {.name = "stacking",
+     .answers =
+         "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
+         "dissertation",
+     .accepted = takes::preset | takes::against | takes::grid | takes::check,
+     .keys = keys(),
+     .run = stacking});
 
 }  // namespace
 

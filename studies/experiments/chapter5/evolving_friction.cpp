@@ -12,22 +12,13 @@
 /// The step of the dissertation, 5e-3 s, is above 4.64e-3 s, the stability limit of the friction springs of a
 /// homogeneous ball. The default step is therefore 2.5e-3 s.
 
-#include "io/csv.hpp"
-#include "io/error.hpp"
-#include "studies/framework/acceptance.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/run.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/study_output.hpp"
-#include "studies/program/arguments.hpp"
+#include "studies/experiments/chapter5/model_with_frames.hpp"
+#include "studies/framework/sweep.hpp"
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/diagnosis.hpp"
-#include "studies/running/model_frames.hpp"
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "lie/schemes.hpp"
-#include "lie/settings.hpp"
 #include "reference/motions/planar_bowl.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +32,6 @@ namespace {
 using reference::ContactInstant;
 using reference::PlanarBowl;
 
-const std::string kind = "evolving-friction";
 const std::string dissertation_scheme = "rA-half-1", recommended_scheme = "rA-half-1-momentum";
 constexpr double default_step = 2.5e-3, default_end = 10;
 constexpr double y_start = 1.5;       // y of the contact point at the start [m]
@@ -70,8 +60,8 @@ const std::vector<BrakedVariant> variants = {
 
 /// Quantities recorded at every node, in the order of the columns of curves.csv
 enum : int { t, y, z, F_N, F_f, torque, speed, omega, sample_size };
-constexpr std::array<const char*, sample_size> columns = {"t",   "y",      "z", "F_N",
-                                                          "F_f", "torque", "v", "omega"};
+constexpr std::array<const char*, sample_size> quantities = {"t",   "y",      "z", "F_N",
+                                                             "F_f", "torque", "v", "omega"};
 using BrakedSample = std::array<double, sample_size>;
 
 /// Reversal of motion: time [s] and y of the contact point [m]
@@ -163,22 +153,12 @@ void compare_with_reference(BrakedRun& run)
 
 void compute(BrakedRun& run, const StudyOptions& options)
 {
-    const dae::Model& model = *run.c->started->model;
-    run.bound = model.stable_step(run.c->started->x).h;
+    run.bound = run.c->started->model->stable_step(run.c->started->x).h;
     BrakedSampler sampler(run);
-    std::vector<lie::Observer*> observers = {&sampler};
-    std::optional<ModelFrames> frames;
-    if (options.vtk > 0 && !run.for_check) {
-        frames.emplace(model, EvenSelection(options.vtk, std::lround(run.c->end / run.h)));
-        observers.push_back(&*frames);
-    }
-    lie::Settings settings = options.settings;
-    settings.tolerance = std::min(settings.tolerance, 1e-13);  // below the errors in the table
-    march(run, settings, observers);
-    if (options.set.empty()) compare_with_reference(run);
     const std::string name = fmt::format("{}-{}-{}", run.variant->name, run.scheme->name, step_text(run.h));
-    if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
-    if (frames) frames->snapshots.write(options.output, name);
+    march_with_frames(run, options, 1e-13, {&sampler}, name,
+                      !run.for_check);  // below the errors in the table
+    if (options.set.empty()) compare_with_reference(run);
 }
 
 std::string label(const BrakedRun& run)
@@ -218,27 +198,23 @@ void check_run(const BrakedRun& run, const BrakedRun* half, std::vector<Criterio
                                    1e-3));
 }
 
-void add_row(std::string& csv, double eta_r, const std::string& run, double h, const BrakedSample& s)
+/// Rows of curves.csv; h is NaN for the ideal limit
+void add_row(Table& table, double eta_r, const std::string& run, double h, const BrakedSample& sample)
 {
-    io::append_number(csv, eta_r);
-    csv += ',' + io::csv_field(run) + ',';
-    if (h > 0) io::append_number(csv, h);
-    for (const double value : s) {
-        csv += ',';
-        io::append_number(csv, value);
-    }
-    csv += '\n';
+    std::vector<Table::Cell> row = {eta_r, run, h};
+    row.insert(row.end(), sample.begin(), sample.end());
+    table.add(row);
 }
 
 /// Ideal limit: rolling without slip, the rolling resistance has its kinetic value as soon as the ball rolls
-void add_ideal(std::string& csv, const BrakedVariant& variant, double end)
+void add_ideal(Table& table, const BrakedVariant& variant, double end)
 {
     std::vector<double> instants;
     for (size_t k = 0; k < ideal_rows; ++k)
         instants.push_back(end * static_cast<double>(k) / static_cast<double>(ideal_rows - 1));
     for (const ContactInstant& at :
          PlanarBowl{}.resist({.y = y_start}, {.eta = variant.eta_r}, instants).instant)
-        add_row(csv, variant.eta_r, "ideal", 0,
+        add_row(table, variant.eta_r, "ideal", std::nan(""),
                 {at.t, at.p.y(), at.p.z(), at.F_N, at.F_t.norm(), at.moment.norm(), at.body.rdot.norm(),
                  at.body.omega_bar.norm()});
 }
@@ -246,104 +222,55 @@ void add_ideal(std::string& csv, const BrakedVariant& variant, double end)
 std::string curves(const std::vector<BrakedRun>& runs, const std::vector<const BrakedVariant*>& selected,
                    double end, bool with_ideal)
 {
-    std::string csv = "eta_r,run,h";
-    for (const char* column : columns) csv += std::string(",") + column;
-    csv += '\n';
-    for (const BrakedVariant* s : selected) {
+    std::vector<Table::Column> titles = {{"eta_r"}, {"run"}, {"h"}};
+    for (const char* name : quantities) titles.push_back({name});
+    Table table(titles);
+    for (const BrakedVariant* variant : selected) {
         for (const BrakedRun& run : runs)
-            if (run.variant == s && !run.for_check)
+            if (run.variant == variant && !run.for_check)
                 for (const BrakedSample& node : run.sample)
-                    add_row(csv, s->eta_r, run.scheme->name, run.h, node);
-        if (with_ideal) add_ideal(csv, *s, end);
+                    add_row(table, variant->eta_r, run.scheme->name, run.h, node);
+        if (with_ideal) add_ideal(table, *variant, end);
     }
-    return csv;
+    return table.csv();
 }
 
-Table as_table(const std::vector<BrakedRun>& runs)
-{
-    Table table({{"eta_r"},
-                 {"integrator"},
-                 {"h"},
-                 {"bound"},
-                 {"y_end"},
-                 {"stops"},
-                 {"turns"},
-                 {"F_f_most"},
-                 {"error_r"},
-                 {"error_F_f"},
-                 {"iterations_per_step"},
-                 {"cpu_seconds"},
-                 {"status"}});
-    for (const BrakedRun& run : runs)
-        table.add({run.variant->eta_r, run.scheme->name, run.h, run.bound, run.y_at_end(), run.stop_time(),
-                   static_cast<double>(run.reversals().size()), run.max_friction(), run.error_r,
-                   run.error_F_f, run.statistics.iterations_per_step(), run.seconds, run.status});
-    return table;
-}
+const Columns<BrakedRun> columns = {
+    {"eta_r", "eta_r", "{:g}", [](const BrakedRun& run) { return run.variant->eta_r; }},
+    column::integrator,
+    Column<BrakedRun>(column::h).as("h [s]", "{:.2e}"),
+    {"bound", "stability limit [s]", "{:.2e}", &BrakedRun::bound},
+    {"y_end", "y at end [m]", "{:.4f}", &BrakedRun::y_at_end},
+    {"stops", "stop time [s]", "{:.3f}", &BrakedRun::stop_time},
+    {"turns", [](const BrakedRun& run) { return static_cast<long>(run.reversals().size()); }},
+    {"F_f_most", "max F_f [N]", "{:.4f}", &BrakedRun::max_friction},
+    {"error_r", "error r [m]", "{:.2e}", &BrakedRun::error_r},
+    {"error_F_f", &BrakedRun::error_F_f},
+    column::iterations,
+    column::cpu_seconds,
+    column::status};
 
-void print(const std::vector<BrakedRun>& runs, std::ostream& out)
+void evolving_friction(StudyContext& s)
 {
-    Table table({{"eta_r", "{:g}"},
-                 {"integrator"},
-                 {"h [s]", "{:.2e}"},
-                 {"stability limit [s]", "{:.2e}"},
-                 {"y at end [m]", "{:.4f}"},
-                 {"stop time [s]", "{:.3f}"},
-                 {"max F_f [N]", "{:.4f}"},
-                 {"error r [m]", "{:.2e}"},
-                 {"iter", "{:.2f}"},
-                 {"status"}});
-    for (const BrakedRun& run : runs)
-        table.add({run.variant->eta_r, run.scheme->name, run.h, run.bound, run.y_at_end(), run.stop_time(),
-                   run.max_friction(), run.error_r, run.statistics.iterations_per_step(), run.status});
-    out << "\nBall in a bowl with friction and rolling resistance. max F_f: largest friction force after 0.1 "
-           "s; "
-           "error r: largest position error over the first 3 s (eta_r = 0)\n";
-    table.print(out);
-}
-
-std::vector<const BrakedVariant*> selected_variants(const StudyOptions& options)
-{
-    std::vector<std::string> known;
-    known.reserve(variants.size());
-    for (const BrakedVariant& s : variants) known.push_back(s.name);
-    for (const std::string& name : options.problems)
-        if (std::find(known.begin(), known.end(), name) == known.end())
-            throw io::UsageError("study " + kind + ": unknown scene" + with_nearest(name, known));
-    std::vector<const BrakedVariant*> selected;
-    for (const BrakedVariant& s : variants)
-        if (options.problems.empty() ||
-            std::find(options.problems.begin(), options.problems.end(), s.name) != options.problems.end())
-            selected.push_back(&s);
-    return selected;
-}
-
-int study(const StudyOptions& options)
-{
-    check_keys(kind, options, std::vector<std::string>{"r", "F_f", "rest", "stops"});
-    check_vtk(kind, options);
-    const std::vector<double> steps = steps_or(options, {default_step});
-    const Schemes schemes = fixed_step_schemes(kind, options, {recommended_scheme});
-    const std::vector<const BrakedVariant*> selected = selected_variants(options);
+    const StudyOptions& options = s.options;
+    const std::vector<double> steps = s.steps({default_step});
+    const Schemes schemes = s.fixed_step_schemes({recommended_scheme});
+    const std::vector<const BrakedVariant*> selected = selected_parts(s, "scene", variants);
     std::vector<Benchmark> benchmarks;
-    for (const BrakedVariant* s : selected) {
+    for (const BrakedVariant* variant : selected) {
         Problem p = problem("braked_ball_in_bowl");
-        p.model =
-            dae::read_model(p.model, p.name,
-                            std::vector<std::string>{fmt::format("/contacts/0/friction/eta_r={}", s->eta_r)})
-                .text;
-        p.name = s->name;
+        const std::string eta_r = fmt::format("/contacts/0/friction/eta_r={}", variant->eta_r);
+        p.model = dae::read_model(p.model, p.name, std::vector<std::string>{eta_r}).text;
+        p.name = variant->name;
         benchmarks.push_back(
             make_benchmark(std::move(p), options, [](const dae::Description&) { return default_end; }));
-        check_steps(kind, benchmarks.back(), steps);
+        check_steps(s.name, benchmarks.back(), steps);
     }
 
-    std::vector<BrakedRun> runs;
+    Sweep<BrakedRun> runs;
     const auto add = [&](size_t k, const lie::Scheme& scheme, double h, bool for_check) {
-        BrakedRun run;
-        run.c = &benchmarks[k], run.scheme = &scheme, run.h = h;
+        BrakedRun& run = runs.add(benchmarks[k], scheme, h);
         run.variant = selected[k], run.for_check = for_check;
-        runs.push_back(std::move(run));
     };
     for (size_t k = 0; k < selected.size(); ++k)
         for (const lie::Scheme* scheme : schemes)
@@ -352,48 +279,48 @@ int study(const StudyOptions& options)
                 if (options.check && selected[k]->eta_r == 0 && h == default_step)
                     add(k, *scheme, h / 2, true);
             }
-    Pool(options.jobs, options.quiet ? "" : kind, static_cast<long>(runs.size())).run([&](long k) {
-        compute(runs[k], options);
-    });
+    runs.compute(s, [&](BrakedRun& run) { compute(run, options); });
 
+    s.text
+        << "\nBall in a bowl with friction and rolling resistance. max F_f: largest friction force after 0.1 "
+           "s; "
+           "error r: largest position error over the first 3 s (eta_r = 0)\n";
+    columns.print(s.text, runs);
     const double end = benchmarks.front().end;
     const bool published_setup = options.set.empty() && end == default_end;
-    StudyOutput output{.kind = kind, .table = as_table(runs).csv()};
-    print(runs, output.text);
     std::vector<Criterion> checks;
-    std::vector<Measured> measurements;
     for (const BrakedRun& run : runs) {
         if (run.for_check) continue;
-        const auto half = std::find_if(runs.begin(), runs.end(), [&](const BrakedRun& other) {
+        const auto half = those(runs, [&](const BrakedRun& other) {
             return other.for_check && other.variant == run.variant && other.scheme == run.scheme;
         });
-        if (published_setup) check_run(run, half == runs.end() ? nullptr : &*half, checks);
-        Measured measured{.of = run.name(), .value = {}};
+        if (published_setup) check_run(run, half.empty() ? nullptr : half.front(), checks);
+        Measured& measured = s.measured.emplace_back(Measured{.of = run.name(), .value = {}});
         if (run.variant->eta_r == 0)
             measured.value = {{"r", run.error_r}, {"F_f", run.max_friction()}};
         else
             measured.value = {{"rest", run.y_at_end()}, {"stops", run.stop_time()}};
-        measurements.push_back(std::move(measured));
     }
-    const bool passed = evaluate(checks, output.text, output.json);
+    s.evaluate(checks);
     if (!published_setup)
-        output.text << "no acceptance criteria are evaluated, because --end or --set changes the runs of the "
-                       "dissertation\n";
+        s.text << "no acceptance criteria are evaluated, because --end or --set changes the runs of the "
+                  "dissertation\n";
     if (published_setup && !options.check)
-        output.text << "--check adds a run with half of the step and evaluates all acceptance criteria\n";
-    if (options.vtk > 0) output.text << fmt::format("frames for ParaView: {}/eta-*.pvd\n", options.output);
-    output.files.emplace_back("curves.csv", curves(runs, selected, end, options.set.empty()));
-    output.figures = {kind + "-point.png", kind + "-forces.png"};
-    const int code = finish(options, output, run_pointers(runs), measurements);
-    return code == io::exit_code::done && options.check && !passed ? io::exit_code::expectation_failed : code;
+        s.text << "--check adds a run with half of the step and evaluates all acceptance criteria\n";
+    if (options.vtk > 0) s.text << fmt::format("frames for ParaView: {}/eta-*.pvd\n", options.output);
+    s.table = columns.csv(runs);
+    s.files.emplace_back("curves.csv", curves(runs, selected, end, options.set.empty()));
+    s.figures = {s.name + "-point.png", s.name + "-forces.png"};
+    s.end_of_runs(run_pointers(runs));
 }
 
-const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "ball in a bowl with friction and rolling resistance: motion, forces and "
-                                    "rest position (Figs. 5.7, 5.8)",
-                         .accepted = takes::check | takes::vtk,
-                         .run = study});
+const bool registered = io::Registry<Study>::add(
+    {.name = "evolving-friction",
+     .answers = "ball in a bowl with friction and rolling resistance: motion, forces and "
+                "rest position (Figs. 5.7, 5.8)",
+     .accepted = takes::check | takes::vtk,
+     .keys = {"r", "F_f", "rest", "stops"},
+     .run = evolving_friction});
 
 }  // namespace
 

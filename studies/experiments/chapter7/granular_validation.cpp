@@ -5,8 +5,8 @@
 
 #include "io/error.hpp"
 #include "io/progress.hpp"
-#include "studies/framework/acceptance.hpp"
-#include "studies/framework/study_output.hpp"
+#include "studies/framework/study_context.hpp"
+#include "studies/framework/table.hpp"
 #include "studies/program/arguments.hpp"
 
 #include "granular/validations/validation.hpp"
@@ -27,78 +27,75 @@ Table as_table(const ValidationTable& validation_table)
     std::vector<Table::Column> columns;
     for (const std::string& name : validation_table.columns) columns.push_back({name, "{:.6g}"});
     Table table(columns);
-    for (const auto& row : validation_table.rows) table.add(row);
+    for (const auto& row : validation_table.rows) {
+        std::vector<Table::Cell> cells;
+        for (const auto& cell : row) std::visit([&](const auto& value) { cells.emplace_back(value); }, cell);
+        table.add(cells);
+    }
     return table;
 }
 
 /// io::UsageError for options that a validation does not have.
-void reject_unused_options(const std::string& kind, const StudyOptions& options)
+void reject_unused_options(const StudyContext& study)
 {
-    const auto reject_if = [&](bool given, const std::string& name) {
-        if (given) throw io::UsageError("study " + kind + ": " + name + " is not an option of this study");
-    };
-    reject_if(!options.problems.empty(), "--problem");
-    reject_if(!options.integrators.empty(), "--integrator");
-    reject_if(!options.steps.empty(), "--steps");
-    reject_if(options.end.has_value(), "--end");
-    reject_if(!options.set.empty(), "--set");
-    reject_if(!options.expect.empty(), "--expect");
+    const StudyOptions& options = study.options;
+    for (const auto& [given, option] :
+         {std::pair(!options.problems.empty(), "--problem"),
+          std::pair(!options.integrators.empty(), "--integrator"),
+          std::pair(!options.steps.empty(), "--steps"), std::pair(options.end.has_value(), "--end"),
+          std::pair(!options.set.empty(), "--set")})
+        if (given) study.refuse(std::string(option) + " is not an option of this study");
     if (!options.grid.empty()) one_of("--grid", options.grid, std::vector<std::string>{"full"});
 }
 
-granular::ValidationResult result_of(const Validation& validation, const std::string& kind,
-                                     const StudyOptions& options)
+granular::ValidationResult result_of(const Validation& validation, const StudyContext& study)
 {
-    granular::ValidationOptions validation_options;
-    validation_options.full = options.grid == "full";
-    io::ProgressLine line(options.quiet);
-    validation_options.progress = [&](double share) {
-        if (line.is_due()) line.show(fmt::format("{} {:.0f} %, {:.1f} s", kind, 100 * share, line.seconds()));
+    granular::ValidationOptions options;
+    options.full = study.options.grid == "full";
+    io::ProgressLine line(study.options.quiet);
+    options.progress = [&](double share) {
+        if (line.is_due())
+            line.show(fmt::format("{} {:.0f} %, {:.1f} s", study.name, 100 * share, line.seconds()));
     };
     try {
-        return validation.run(validation_options);
+        return validation.run(options);
     } catch (const io::NumericalFailure& e) {
-        throw io::NumericalFailure(e.status, "study " + kind + ": " + e.what());
+        throw io::NumericalFailure(e.status, "study " + study.name + ": " + e.what());
     }
 }
 
-int study(const Validation& validation, const StudyOptions& options)
+void validate(const Validation& validation, StudyContext& s)
 {
-    StudyOutput output;
-    output.kind = "granular-" + validation.name;
-    reject_unused_options(output.kind, options);
-    const granular::ValidationResult result = result_of(validation, output.kind, options);
-
-    output.json["grid"] = options.grid.empty() ? "quick" : options.grid;
-    output.text << validation.description << '\n';
+    reject_unused_options(s);
+    const granular::ValidationResult result = result_of(validation, s);
+    s.json["grid"] = s.options.grid.empty() ? "quick" : s.options.grid;
+    s.text << validation.description << '\n';
     for (const ValidationTable& t : result.tables) {
         const Table table = as_table(t);
         const bool first = &t == &result.tables.front();
         if (first)
-            output.table = table.csv();
+            s.table = table.csv();
         else
-            output.files.emplace_back(t.name + ".csv", table.csv());
+            s.files.emplace_back(t.name + ".csv", table.csv());
         if (!first && table.rows() > most_rows) continue;
-        output.text << '\n' << (first ? "" : t.name + '\n');
-        table.print(output.text);
+        s.text << '\n' << (first ? "" : t.name + '\n');
+        table.print(s.text);
     }
     std::vector<Criterion> criteria;
     for (const granular::ValidationCheck& c : result.checks)
         criteria.push_back(between(c.what, c.measured, c.lower, c.upper));
-    const bool passed = evaluate(criteria, output.text, output.json);
-    output.figures = {output.kind + ".png"};
-    const int code = finish(options, output, {}, {});
-    return code == io::exit_code::done && options.check && !passed ? io::exit_code::expectation_failed : code;
+    s.evaluate(criteria);
+    s.figures = {s.name + ".png"};
 }
 
 std::vector<Study> all()
 {
     std::vector<Study> studies;
     for (const Validation& v : granular::validations())
-        studies.push_back({.kind = "granular-" + v.name,
+        studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
                            .accepted = takes::check | takes::grid,
-                           .run = [v](const StudyOptions& options) { return study(v, options); }});
+                           .run = [v](StudyContext& study) { validate(v, study); }});
     return studies;
 }
 

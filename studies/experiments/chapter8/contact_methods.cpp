@@ -13,15 +13,8 @@
 /// pile    Balls fall into a bowl without friction: contacts close and lift off, and the number of contacts
 ///         may exceed the number of degrees of freedom.
 
-#include "io/error.hpp"
 #include "studies/experiments/chapter8/method.hpp"
-#include "studies/framework/acceptance.hpp"
-#include "studies/framework/pool.hpp"
-#include "studies/framework/selection.hpp"
-#include "studies/framework/stopwatch.hpp"
-#include "studies/framework/study_output.hpp"
-#include "studies/framework/table.hpp"
-#include "studies/program/arguments.hpp"
+#include "studies/framework/sweep.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
@@ -39,9 +32,6 @@ namespace {
 
 using lie::Vec3;
 using methods::Method;
-
-const std::string kind = "contact-methods";
-const std::vector<std::string> parts = {"bowl", "many", "chain", "pile"};
 
 /// One method on one scene at one step
 struct MethodRun {
@@ -231,120 +221,87 @@ void add_pile(std::vector<MethodRun>& runs)
     }
 }
 
+/// A scene with its runs
+struct Part {
+    std::string name, title;
+    void (*add)(std::vector<MethodRun>& runs);
+};
+const std::vector<Part> parts = {
+    {"bowl", "Ball sliding in a bowl for 2 s: largest position error", add_bowl},
+    {"many", "Independent balls in a bowl: CPU time per step", add_many},
+    {"chain", "Chain of balls at rest in an inclined groove, 0.05 s: largest displacement", add_chain},
+    {"pile", "Balls falling into a bowl, 1 s", add_pile}};
+
 /// Runs one method from start to end. The measured time excludes the error evaluation and the first step,
 /// which allocates and sets up.
 void compute(MethodRun& run)
 {
     run.steps = std::lround(run.end / run.h);
-    try {
-        const std::unique_ptr<Method> method = run.make();
-        double largest = 0;
-        for (long n = 1; n <= run.steps; ++n) {
-            const double before = thread_seconds();
-            method->step(run.h);
-            if (n > 1) run.seconds += thread_seconds() - before;
-            if (run.error) largest = std::max(largest, run.error(*method, static_cast<double>(n) * run.h));
-        }
-        run.seconds *= static_cast<double>(run.steps) / static_cast<double>(std::max(1L, run.steps - 1));
-        if (run.error) run.largest_error = largest;
-        run.contacts = method->contacts();
-        run.iterations = method->iterations();
-        run.events = method->events();
-    } catch (const lie::NumericalFailure& e) {
-        run.status = e.status;
-        run.message = e.what();
-        run.seconds = run.largest_error = std::nan("");
+    run.seconds = run.largest_error = std::nan("");
+    const std::unique_ptr<Method> method = run.make();
+    double largest = 0, seconds = 0;
+    for (long n = 1; n <= run.steps; ++n) {
+        const double before = thread_seconds();
+        method->step(run.h);
+        if (n > 1) seconds += thread_seconds() - before;
+        if (run.error) largest = std::max(largest, run.error(*method, static_cast<double>(n) * run.h));
     }
+    run.seconds = seconds * static_cast<double>(run.steps) / static_cast<double>(std::max(1L, run.steps - 1));
+    if (run.error) run.largest_error = largest;
+    run.contacts = method->contacts();
+    run.iterations = method->iterations();
+    run.events = method->events();
 }
 
-Table as_table(const std::vector<MethodRun>& runs)
-{
-    std::vector<Table::Column> columns;
-    for (const char* name :
-         {"part", "method", "h", "stiffness", "bodies", "end", "steps", "contacts", "iterations", "events",
-          "error", "cpu_seconds", "us_per_step", "us_per_step_and_contact", "status"})
-        columns.push_back({name});
-    Table table(columns);
-    for (const MethodRun& run : runs)
-        table.add({run.part, run.method, run.h, run.stiffness, static_cast<double>(run.bodies), run.end,
-                   static_cast<double>(run.steps), static_cast<double>(run.contacts),
-                   static_cast<double>(run.iterations), static_cast<double>(run.events), run.largest_error,
-                   run.seconds, run.microseconds(), run.microseconds_per_contact(), run.status});
-    return table;
-}
+const Columns<MethodRun> columns = {
+    {"part", &MethodRun::part},
+    {"method", "method", &MethodRun::method},
+    {"h", "h [s]", "{:g}", &MethodRun::h},
+    {"stiffness", "k [N/m]", "{:g}", &MethodRun::stiffness},
+    {"bodies", "bodies", "{:.0f}", &MethodRun::bodies},
+    {"end", &MethodRun::end},
+    {"steps", &MethodRun::steps},
+    {"contacts", "contacts", "{:.0f}", &MethodRun::contacts},
+    {"", "events", "{:.0f}", &MethodRun::events},
+    {"iterations", &MethodRun::iterations},
+    {"events", &MethodRun::events},
+    {"", "iter/step", "{:.1f}",
+     [](const auto& run) { return static_cast<double>(run.iterations) / static_cast<double>(run.steps); }},
+    {"error", "error [m]", "{:.1e}", &MethodRun::largest_error},
+    {"", "CPU [ms]", "{:.2f}", [](const auto& run) { return 1e3 * run.seconds; }},
+    {"cpu_seconds", &MethodRun::seconds},
+    {"us_per_step", &MethodRun::microseconds},
+    {"us_per_step_and_contact", "us/step/contact", "{:.2f}", &MethodRun::microseconds_per_contact},
+    {"status", "status", &MethodRun::status}};
 
-void print(const std::vector<MethodRun>& runs, std::ostream& out)
+void contact_methods(StudyContext& s)
 {
-    static const std::map<std::string, std::string> title = {
-        {"bowl", "Ball sliding in a bowl for 2 s: largest position error"},
-        {"many", "Independent balls in a bowl: CPU time per step"},
-        {"chain", "Chain of balls at rest in an inclined groove, 0.05 s: largest displacement"},
-        {"pile", "Balls falling into a bowl, 1 s"}};
-    for (const std::string& part : parts) {
-        Table table({{"method"},
-                     {"h [s]", "{:g}"},
-                     {"k [N/m]", "{:g}"},
-                     {"bodies", "{:.0f}"},
-                     {"contacts", "{:.0f}"},
-                     {"events", "{:.0f}"},
-                     {"iter/step", "{:.1f}"},
-                     {"error [m]", "{:.1e}"},
-                     {"CPU [ms]", "{:.2f}"},
-                     {"us/step/contact", "{:.2f}"},
-                     {"status"}});
-        for (const MethodRun& run : runs)
-            if (run.part == part)
-                table.add({run.method, run.h, run.stiffness, static_cast<double>(run.bodies),
-                           static_cast<double>(run.contacts), static_cast<double>(run.events),
-                           static_cast<double>(run.iterations) / static_cast<double>(run.steps),
-                           run.largest_error, 1e3 * run.seconds, run.microseconds_per_contact(), run.status});
-        if (table.rows() == 0) continue;
-        out << '\n' << title.at(part) << '\n';
-        table.print(out);
+    const std::vector<const Part*> selected = selected_parts(s, "part", parts);
+    Sweep<MethodRun> runs;
+    for (const Part* part : selected) part->add(runs);
+    runs.compute_in_turn(s, compute);
+
+    for (const Part* part : selected) {
+        s.text << '\n' << part->title << '\n';
+        columns.print(s.text, those(runs, [&](const MethodRun& run) { return run.part == part->name; }));
+        s.figures.push_back(s.name + '-' + part->name + ".png");
     }
-}
-
-int contact_methods(const StudyOptions& options)
-{
-    check_keys(kind, options, std::vector<std::string>{"error"});
-    for (const std::string& name : options.problems)
-        if (std::find(parts.begin(), parts.end(), name) == parts.end())
-            throw io::UsageError("study contact-methods: unknown part" + with_nearest(name, parts));
-    const auto is_selected = [&](const std::string& part) {
-        return options.problems.empty() ||
-               std::find(options.problems.begin(), options.problems.end(), part) != options.problems.end();
-    };
-    std::vector<MethodRun> runs;
-    if (is_selected("bowl")) add_bowl(runs);
-    if (is_selected("many")) add_many(runs);
-    if (is_selected("chain")) add_chain(runs);
-    if (is_selected("pile")) add_pile(runs);
-    const Pool pool(1, options.quiet ? "" : "contact-methods", static_cast<long>(runs.size()));
-    pool.run([&](long k) { compute(runs[k]); });
-
-    StudyOutput output{.kind = kind};
-    print(runs, output.text);
-    for (const MethodRun& run : runs)
+    for (const MethodRun& run : runs) {
         if (run.status != "ok")
-            output.text << fmt::format("{}, {}, {} bodies: {}\n", run.part, run.method, run.bodies,
-                                       run.message);
-    output.table = as_table(runs).csv();
-    output.figures = {};
-    for (const std::string& part : parts)
-        if (is_selected(part)) output.figures.push_back("contact-methods-" + part + ".png");
-    std::vector<Measured> measurements;
-    for (const MethodRun& run : runs)
+            s.text << fmt::format("{}, {}, {} bodies: {}\n", run.part, run.method, run.bodies, run.message);
         if (!std::isnan(run.largest_error))
-            measurements.push_back({fmt::format("{} of {} at h = {:g} s", run.method, run.part, run.h),
-                                    {{"error", run.largest_error}}});
-    return finish(options, output, {}, measurements);
+            s.measured.push_back({fmt::format("{} of {} at h = {:g} s", run.method, run.part, run.h),
+                                  {{"error", run.largest_error}}});
+    }
+    s.table = columns.csv(runs);
 }
 
-const bool registered =
-    register_study(Study{.kind = kind,
-                         .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
-                                    "number of contacts (Sec. 8.2)",
-                         .run = contact_methods});
+const bool registered = io::Registry<Study>::add(
+    {.name = "contact-methods",
+     .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
+                "number of contacts (Sec. 8.2)",
+     .keys = {"error"},
+     .run = contact_methods});
 
 }  // namespace
 

@@ -202,7 +202,7 @@ TEST_CASE("problems are found by name, and the message of an unknown name contai
                       Catch::Contains("from 1 to 100000"));
     CHECK_THROWS_WITH(studies::problem("n_pendulum_x"), Catch::Contains("no built-in model"));
     CHECK(studies::problem("n_pendulum").reference_solution);
-    CHECK_THROWS_AS(studies::register_problem(studies::problem("n_pendulum")), std::logic_error);
+    CHECK_THROWS_AS(io::Registry<Problem>::add(studies::problem("n_pendulum")), std::logic_error);
 }
 
 TEST_CASE("Andrews' squeezer agrees with the reference solution of Hairer and Wanner", "[studies][problems]")

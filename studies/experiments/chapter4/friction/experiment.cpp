@@ -8,12 +8,6 @@ namespace hilda::studies::friction {
 
 namespace {
 
-std::vector<Experiment>& list()
-{
-    static std::vector<Experiment> all;
-    return all;
-}
-
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
     std::vector<Snapshots::ContactData> contacts;
@@ -78,18 +72,6 @@ const Series* Results::find(const std::string& run) const
     for (size_t k = 0; k < runs.size(); ++k)
         if (runs[k].name == run) return series[k].rows() > 0 ? &series[k] : nullptr;
     return nullptr;
-}
-
-const std::vector<Experiment>& experiments() { return list(); }
-
-bool register_experiment(Experiment experiment)
-{
-    std::vector<Experiment>& all = list();
-    const auto at =
-        std::lower_bound(all.begin(), all.end(), experiment,
-                         [](const Experiment& a, const Experiment& b) { return a.name < b.name; });
-    all.insert(at, std::move(experiment));
-    return true;
 }
 
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p)

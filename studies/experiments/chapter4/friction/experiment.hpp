@@ -5,6 +5,7 @@
 #pragma once
 
 #include "contact/scenes/scene.hpp"
+#include "io/registry.hpp"
 #include "studies/running/vtk.hpp"
 
 #include <functional>
@@ -87,10 +88,12 @@ struct Experiment {
     bool has_frames = false;  ///< the experiment writes frames with --vtk
 };
 
-/// All experiments, sorted by name
-const std::vector<Experiment>& experiments();
-/// Adds an experiment to the list.
-bool register_experiment(Experiment experiment);
+/// All experiments, sorted by name; a file adds one by register_experiment.
+inline const std::vector<Experiment>& experiments() { return io::Registry<Experiment>::all(); }
+inline bool register_experiment(Experiment experiment)
+{
+    return io::Registry<Experiment>::add(std::move(experiment));
+}
 
 /// Friction parameters with the choices of a preset: "dissertation" or "balanced"
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p);

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/framework/study_context.hpp"
+
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
+#include "studies/program/plot.hpp"
+#include "studies/running/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+namespace hilda::studies {
+
+StudyContext::StudyContext(const Study& study, const StudyOptions& options)
+    : name(study.name), keys(study.keys), options(options)
+{
+    for (const Expectation& e : options.expect) {
+        if (std::find(keys.begin(), keys.end(), e.key) != keys.end()) continue;
+        if (keys.empty()) refuse("--expect is not an option of this study");
+        std::string all;
+        for (const std::string& key : keys) all += (all.empty() ? "" : ", ") + key;
+        refuse("--expect: unknown key" + with_nearest(e.key, keys) + "; known keys: " + all);
+    }
+    if (options.vtk > 0 && options.output.empty())
+        refuse("--vtk writes files: with --json it needs --output");
+}
+
+void StudyContext::refuse(const std::string& what) const
+{
+    throw io::UsageError("study " + name + ": " + what);
+}
+
+void StudyContext::refuse_models(bool has_parts) const
+{
+    const auto refuse_if = [&](bool given, const std::string& option) {
+        if (given) refuse(option + " is for studies of models; this study defines its own bodies");
+    };
+    refuse_if(!has_parts && !options.problems.empty(), "--problem");
+    refuse_if(!options.integrators.empty(), "--integrator");
+    refuse_if(!options.set.empty(), "--set");
+}
+
+Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
+{
+    Schemes selected;
+    for (const std::string& scheme : options.integrators) selected.push_back(&lie::scheme(scheme));
+    if (!selected.empty()) return selected;
+    for (const std::string& scheme : defaults)
+        for (const lie::Scheme& s : lie::schemes())
+            if (s.name == scheme) selected.push_back(&s);
+    if (defaults.empty())
+        for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
+    return selected;
+}
+
+Schemes StudyContext::fixed_step_schemes(const std::vector<std::string>& defaults) const
+{
+    Schemes fixed;
+    for (const lie::Scheme* s : schemes(defaults)) {
+        if (!s->adaptive)
+            fixed.push_back(s);
+        else if (!options.integrators.empty())
+            refuse(s->name +
+                   " chooses its own steps by --rtol and --atol; hilda study work-precision compares it with "
+                   "the "
+                   "others");
+    }
+    return fixed;
+}
+
+std::vector<double> StudyContext::steps(std::vector<double> defaults) const
+{
+    std::vector<double> all = options.steps.empty() ? std::move(defaults) : options.steps;
+    std::sort(all.rbegin(), all.rend());
+    return all;
+}
+
+double StudyContext::one_step(double defaults) const
+{
+    if (options.steps.size() > 1)
+        refuse("--steps takes one step, got " + std::to_string(options.steps.size()));
+    return options.steps.empty() ? defaults : options.steps.front();
+}
+
+std::vector<Benchmark> StudyContext::benchmarks(const std::vector<std::string>& defaults,
+                                                const std::vector<double>& steps, const DefaultEnd& end) const
+{
+    std::vector<Benchmark> all = studies::benchmarks(name, options, defaults, end);
+    for (const Benchmark& c : all) check_steps(name, c, steps);
+    return all;
+}
+
+Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) const
+{
+    return {threads > 0 ? threads : options.jobs, options.quiet ? "" : name + label, static_cast<long>(jobs)};
+}
+
+void StudyContext::evaluate(const std::vector<Criterion>& criteria)
+{
+    criteria_passed = studies::evaluate(criteria, text, json);
+}
+
+void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
+{
+    failed_runs = failures(runs);
+    if (runs.empty() || !std::all_of(runs.begin(), runs.end(), [](const Run* run) { return run->failed(); }))
+        return;
+    const Run& first = *runs.front();
+    all_failed = fmt::format("hilda: error[{}]: study {}: all {} runs failed; {}: {}\n", first.status, name,
+                             runs.size(), first.name(), first.message);
+}
+
+io::Json StudyContext::whole() const
+{
+    const lie::Settings& s = options.settings;
+    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
+    io::Json all = {{"study", name},
+                    {"tolerance", s.tolerance},
+                    {"settings",
+                     {{"tolerance", s.tolerance},
+                      {"linear_solver", solvers[static_cast<int>(s.linear_solver)]},
+                      {"rho_infinity", s.rho_infinity},
+                      {"reparametrise", s.reparametrise},
+                      {"rtol", s.rtol},
+                      {"atol", s.atol > 0 ? io::Json(s.atol) : io::Json("as rtol")}}},
+                    {"seed", options.seed},
+                    {"set", options.set},
+                    {"provenance", provenance(options.command_line, options.jobs)}};
+    if (options.repeats > 0) all["repeats"] = options.repeats;
+    all.update(json);
+    return all;
+}
+
+void StudyContext::write(const io::Json& whole_json) const
+{
+    const std::string in = options.output + "/";
+    std::vector<std::string> written = {"study.csv", "study.json"};
+    io::write_file(in + "study.csv", table);
+    io::write_file(in + "study.json", whole_json.text());
+    for (const auto& [file, content] : files) {
+        io::write_file(in + file, content);
+        written.push_back(file);
+    }
+    for (const std::string& figure : figures) std::remove((in + figure).c_str());  // those of an earlier run
+    if (options.plot && plot(name + ".py", options.output))
+        written.insert(written.end(), figures.begin(), figures.end());
+    if (options.json || options.quiet) return;
+    std::cout << "\nwritten to " << options.output << ":";
+    for (const std::string& file : written) std::cout << ' ' << file;
+    std::cout << '\n';
+}
+
+/// Compares all expectations with all measured values of their keys. Prints a line on stderr for each difference
+/// above the tolerance and for each key that was not measured.
+bool StudyContext::as_expected() const
+{
+    bool passed = true;
+    const auto fails = [&](const std::string& message) {
+        passed = false;
+        io::message("hilda: error: expected " + message + "\n");
+    };
+    for (const Expectation& e : options.expect) {
+        bool seen = false;
+        for (const Measured& m : measured) {
+            const auto found = m.value.find(e.key);
+            if (found == m.value.end()) continue;
+            seen = true;
+            if (!(std::abs(found->second - e.value) <= e.tolerance))
+                fails(fmt::format("{}, got {:.6g} for {}", e.text, found->second, m.of));
+        }
+        if (!seen) fails(fmt::format("{}, but no run has a value of '{}'", e.text, e.key));
+    }
+    return passed;
+}
+
+int StudyContext::finish()
+{
+    const io::Json all = whole();
+    if (options.json)
+        std::cout << all.text();
+    else if (!options.quiet)
+        std::cout << text.str() << failed_runs;
+    if (!options.output.empty()) write(all);
+    if (!all_failed.empty()) {
+        io::message(all_failed);
+        return io::exit_code::numerical_failure;
+    }
+    const bool passed = as_expected() && (criteria_passed || !options.check);
+    return passed ? io::exit_code::done : io::exit_code::expectation_failed;
+}
+
+void check_parts(const StudyContext& study, const std::string& what, const std::vector<std::string>& known)
+{
+    for (const std::string& name : study.options.problems)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            study.refuse("unknown " + what + with_nearest(name, known));
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a study receives when it runs: its options, its selection of benchmarks, integrators and steps, and the
+/// place for its results.
+
+#pragma once
+
+#include "io/json.hpp"
+#include "studies/framework/acceptance.hpp"
+#include "studies/framework/pool.hpp"
+#include "studies/framework/run.hpp"
+#include "studies/framework/study.hpp"
+#include "studies/program/arguments.hpp"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <utility>
+
+namespace hilda::studies {
+
+using Schemes = std::vector<const lie::Scheme*>;
+
+/// Results of one part of a study, by the keys of --expect
+struct Measured {
+    std::string of;  ///< for messages: "rA-half-1 on double_pendulum"
+    std::map<std::string, double> value;
+};
+
+class StudyContext {
+public:
+    /// io::UsageError for a key of --expect that the study does not have, and for --vtk without a directory
+    StudyContext(const Study& study, const StudyOptions& options);
+
+    const std::string& name;
+    const std::vector<std::string>& keys;  ///< of --expect
+    const StudyOptions& options;
+
+    /// io::UsageError "study NAME: what"
+    [[noreturn]] void refuse(const std::string& what) const;
+    /// Refuses options of studies of models: those of --problem (unless it selects parts of the study),
+    /// --integrator and --set.
+    void refuse_models(bool has_parts = false) const;
+
+    /// The integrators of --integrator; without it those of `defaults` that are registered, in this order, or
+    /// all if `defaults` is empty
+    Schemes schemes(const std::vector<std::string>& defaults = {}) const;
+    /// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive scheme.
+    Schemes fixed_step_schemes(const std::vector<std::string>& defaults = {}) const;
+    /// The steps of --steps, or `defaults`, in descending order [s]
+    std::vector<double> steps(std::vector<double> defaults) const;
+    /// The step of --steps, or the default [s]. io::UsageError for more than one step.
+    double one_step(double defaults) const;
+    /// The benchmarks of --problem or of `defaults`. io::UsageError for a step that check_steps rejects.
+    std::vector<Benchmark> benchmarks(const std::vector<std::string>& defaults,
+                                      const std::vector<double>& steps,
+                                      const DefaultEnd& end = end_of_model) const;
+    /// A pool with this number of threads, or that of --jobs, whose progress line shows the name of the study and
+    /// the label
+    Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
+
+    // Results
+    std::ostringstream text;                                 ///< for stdout
+    std::string table;                                       ///< contents of study.csv
+    io::Json json = io::Json::object();                      ///< of study.json, after the common keys
+    std::vector<std::pair<std::string, std::string>> files;  ///< further files: name and contents
+    std::vector<std::string> figures;                        ///< files that plots/NAME.py draws
+    std::vector<Measured> measured;                          ///< compared with --expect
+    bool criteria_passed = true;                             ///< set by evaluate()
+
+    /// study.csv of runs, and their values of the columns that are keys of --expect
+    template <class Columns, class Runs>
+    void results(const Columns& columns, const Runs& all)
+    {
+        table = columns.csv(all);
+        end_of_runs(run_pointers(all));
+        for (const auto& run : all) measured.push_back({run.name(), columns.numbers(run, keys)});
+    }
+    /// Records which runs failed. If all of them failed, so has the study.
+    void end_of_runs(const std::vector<const Run*>& runs);
+    /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
+    void evaluate(const std::vector<Criterion>& criteria);
+
+    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed, 6
+    /// if an expectation or, with --check, a criterion failed. The common keys of study.json are study,
+    /// tolerance, settings, seed, set, provenance and, if options.repeats > 0, repeats.
+    int finish();
+
+private:
+    io::Json whole() const;
+    void write(const io::Json& whole_json) const;
+    bool as_expected() const;
+
+    std::string failed_runs, all_failed;  ///< texts; empty if no run, or not all runs failed
+};
+
+/// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known
+void check_parts(const StudyContext& study, const std::string& what, const std::vector<std::string>& known);
+
+/// The entries of a list that --problem selects, by their member `name`; all without --problem. io::UsageError for an
+/// unknown name.
+template <class Part>
+std::vector<const Part*> selected_parts(const StudyContext& study, const std::string& what,
+                                        const std::vector<Part>& parts)
+{
+    std::vector<std::string> known;
+    for (const Part& part : parts) known.push_back(part.name);
+    check_parts(study, what, known);
+    std::vector<const Part*> selected;
+    const std::vector<std::string>& names = study.options.problems;
+    for (const Part& part : parts)
+        if (names.empty() || std::find(names.begin(), names.end(), part.name) != names.end())
+            selected.push_back(&part);
+    return selected;
+}
+
+/// The entry of a list with this name, an argument of an option such as --grid; the first entry for "". io::UsageError
+/// for another name.
+template <class Named>
+const Named& one_of_list(const std::string& option, const std::string& name, const std::vector<Named>& list)
+{
+    std::vector<std::string> known;
+    for (const Named& entry : list) known.push_back(entry.name);
+    if (!name.empty()) one_of(option, name, known);
+    const auto at = std::find(known.begin(), known.end(), name);
+    return name.empty() ? list.front() : list[static_cast<size_t>(at - known.begin())];
+}
+
+}  // namespace hilda::studies

@@ -8,10 +8,7 @@ Reads DIR/study.csv and DIR/study.json. For the default selection of the study i
 for each problem: DIR/convergence-position.png and DIR/convergence-loads.png. For any other selection it writes one
 figure for each problem, DIR/convergence-PROBLEM.png, with one panel for each error norm.
 """
-import json
-import os
-
-from drawing import Line2D, directory, distinct, grid, legend, plt, read, save, style, where
+from drawing import SLOPES, Line2D, directory, distinct, grid, legend, plt, read, record, save, slopes, style, where
 
 # The schemes of the dissertation are drawn on top of the others and come first in the legends.
 OF_THE_TEXT = ("rA-full-1", "rA-half-1", "rA-half-2")
@@ -112,17 +109,6 @@ def overview(folder, rows, norm, name, title, label):
 
 # The figures of any other selection
 
-def slopes(axes, points):
-    """Thin lines of slope 1 and 2 that end above the largest error"""
-    h = sorted({p[0] for p in points})
-    if len(h) < 2:
-        return
-    top = max(p[1] for p in points)
-    for slope, line in ((1, ":"), (2, "--")):
-        at_end = 1.8 * top
-        axes.plot([h[0], h[-1]], [at_end * (h[0] / h[-1]) ** slope, at_end], line, color="0.6", lw=1, zorder=0)
-
-
 def draw(folder, problem, rows):
     """All error norms of one problem; a norm whose errors are all at rounding or Newton tolerance has no panel"""
     schemes = text_first(distinct(rows, "integrator"))
@@ -146,8 +132,9 @@ def draw(folder, problem, rows):
                     curve(axes, points, colour, marker, 60 + place, size=8 - place, width=2.2 - 0.3 * place)
                 else:
                     curve(axes, points, colour, marker, 50 - place, size=5, width=1)
-            if clean:
-                slopes(axes, clean)
+            h = sorted({x for x, _ in clean})
+            if len(h) > 1:
+                slopes(axes, h, 1.8 * max(error for _, error in clean))
             axes.set_title(title or f"${component[0]}_{component[1]}$ of {body} [{UNITS[component[0]]}], norm of Fig. 3.4",
                            fontsize=10)
             axes.set_xlabel("step $h$ [s]")
@@ -155,20 +142,10 @@ def draw(folder, problem, rows):
     all_axes[0][0].set_ylabel("error, rms over the instants")
     all_axes[1][0].set_ylabel(f"error at the end, {body}")
     left_out = [norm for panels in PANELS for norm, _ in panels if not any((norm, _) in p for p in shown)]
-    more = [Line2D([], [], color="0.6", ls=":", label="slope 1"), Line2D([], [], color="0.6", ls="--", label="slope 2"),
-            Line2D([], [], color="0.3", marker="o", mfc="white", ls="", label=AT_FLOOR)]
+    more = SLOPES + [Line2D([], [], color="0.3", marker="o", mfc="white", ls="", label=AT_FLOOR)]
     figure.suptitle(f"{problem}: error against step size" +
                     (f" (no panel, {AT_FLOOR}: {', '.join(left_out)})" if left_out else ""))
     save(figure, folder, f"convergence-{problem}.png", legend(figure, schemes, more=more, columns=int(1.8 * columns)))
-
-
-def selection(folder):
-    """What the study was of; "" in results of earlier versions"""
-    try:
-        with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
-            return json.load(file).get("selection", "")
-    except FileNotFoundError:
-        return ""
 
 
 def main():
@@ -176,7 +153,7 @@ def main():
     # "observable" is "watched" in results of earlier versions
     rows = [{column.replace("watched", "observable"): value for column, value in row.items()}
             for row in read(folder, "study.csv")]
-    if selection(folder) == "default":
+    if record(folder).get("selection") == "default":
         overview(folder, rows, "r", "convergence-position.png", "Error of the positions against step size",
                  "position error, rms [m]")
         overview(folder, rows, "Q", "convergence-loads.png",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Functions shared by the figures: reading tables, and the same colour and marker for a scheme in all figures."""
 import csv
+import json
 import os
 import sys
 
@@ -10,6 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 
+DASHES = ["-", "--", ":", "-."]
 # distinguishable with red-green colour blindness
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6bb1"]
 MARKERS = "osD^vP*X"
@@ -48,6 +50,15 @@ def read(*path):
     """The rows of a CSV file as dictionaries of strings"""
     with open(os.path.join(*path), newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def record(folder):
+    """The contents of study.json of the result directory; empty if there is no such file"""
+    try:
+        with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
+            return json.load(file)
+    except FileNotFoundError:
+        return {}
 
 
 def distinct(rows, column):
@@ -89,8 +100,29 @@ def legend(figure, schemes, markers=True, more=(), columns=8):
                for s in schemes] + list(more)
     lines = -(-len(handles) // columns)
     columns = -(-len(handles) // lines)
-    figure.legend(handles=handles, loc="lower center", ncol=columns, frameon=False, fontsize=9)
+    lines_below(figure, handles, columns)
     return 0.26 * lines / figure.get_figheight() + 0.01
+
+
+def lines_below(figure, handles, columns=None):
+    """Draws a legend of these lines below the figure, in one row unless a number of columns is given"""
+    figure.legend(handles=handles, loc="lower center", ncol=columns or len(handles), frameon=False, fontsize=9)
+
+
+def bars(rows, column):
+    """Lengths of error bars from the columns COLUMN_min and COLUMN_max"""
+    values = numbers(rows, column)
+    return ([v - low for v, low in zip(values, numbers(rows, column + "_min"))],
+            [high - v for v, high in zip(values, numbers(rows, column + "_max"))])
+
+
+def slopes(axes, h, top):
+    """Reference lines of slope 1 and 2 over the steps h that end at the error `top`"""
+    for slope, line in ((1, ":"), (2, "--")):
+        axes.plot([h[0], h[-1]], [top * (h[0] / h[-1]) ** slope, top], line, color="0.6", lw=1, zorder=0)
+
+
+SLOPES = [Line2D([], [], color="0.6", ls=":", label="slope 1"), Line2D([], [], color="0.6", ls="--", label="slope 2")]
 
 
 def save(figure, folder, name, below=0.0, top=0.97):

@@ -4,9 +4,7 @@
 
     energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where, width
-
-DASHES = ["-", "--", ":", "-."]
+from drawing import DASHES, Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where, width
 
 
 def draw(folder, problem, rows, runs):

@@ -6,9 +6,7 @@
 """
 import os
 
-from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
-
-DASHES = ["-", "--", ":", "-."]
+from drawing import COLOURS, DASHES, Line2D, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
 
 
 def positive(values):
@@ -49,7 +47,7 @@ def draw(folder, scene, rows):
     for ax in (axes[0][2], *axes[1]):
         ax.set_xlabel("$t$ [s]")
     figure.suptitle(f"{scene}: ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
-    figure.legend(handles=lines, loc="lower center", ncol=len(lines), frameon=False, fontsize=9)
+    lines_below(figure, lines)
     save(figure, folder, f"evolving-contact-{scene}.png", 0.04)
 
 

@@ -4,7 +4,7 @@
 
     evolving-friction.py DIR    reads DIR/curves.csv, writes DIR/evolving-friction-point.png and -forces.png
 """
-from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
 
 DASHES = ["-", "--", "-.", (0, (1, 1))]
 IDEAL = {"color": "black", "lw": 0.7, "ls": ":"}
@@ -22,7 +22,7 @@ def legend(figure, rows, etas):
               for k, (run, h) in enumerate(of)]
     if any(row["run"] == "ideal" for row in rows):
         lines.append(Line2D([], [], label="ideal limit: rolling without slip, no friction springs", **IDEAL))
-    figure.legend(handles=lines, loc="lower center", ncol=len(lines) if len(lines) < 8 else 5, frameon=False, fontsize=9)
+    lines_below(figure, lines, len(lines) if len(lines) < 8 else 5)
 
 
 def draw(axes, rows, etas, across, up):

@@ -6,7 +6,7 @@
 """
 import os
 
-from drawing import COLOURS, Line2D, directory, grid, number, plt, read, save
+from drawing import COLOURS, Line2D, directory, grid, lines_below, number, plt, read, save
 
 # EXPERIMENT: rows of panels; a panel is (column, label, limits of t or None)
 PANELS = {
@@ -52,7 +52,7 @@ def curve(rows, column):
 def below(figure, lines, columns=4):
     """Draws a legend below the figure and returns its height as a fraction of the figure height"""
     handles = [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in lines.items()]
-    figure.legend(handles=handles, loc="lower center", ncol=min(columns, len(handles)), frameon=False, fontsize=9)
+    lines_below(figure, handles, min(columns, len(handles)))
     return 0.22 * -(-len(handles) // columns) / figure.get_figheight() + 0.01
 
 

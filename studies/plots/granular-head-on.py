@@ -4,7 +4,7 @@
 
     granular-head-on.py DIR     reads DIR/study.csv, refinement.csv and clamped.csv, writes DIR/granular-head-on.png
 """
-from drawing import COLOURS, Line2D, directory, distinct, grid, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, directory, distinct, grid, lines_below, numbers, plt, read, save, where
 
 # symplectic Euler and velocity Verlet give the same results; their markers are nested
 STYLES = {"symplectic-euler": (COLOURS[0], "o", 4.5, COLOURS[0]), "velocity-verlet": (COLOURS[5], "o", 9, "none"),
@@ -61,7 +61,7 @@ def main():
     for ax in axes:
         grid(ax)
     handles = [Line2D([], [], label=scheme, **points(scheme, "-")) for scheme in schemes]
-    figure.legend(handles=handles, loc="lower center", ncol=5, frameon=False, fontsize=9)
+    lines_below(figure, handles, 5)
     save(figure, folder, "granular-head-on.png", below=0.065, top=1)
 
 

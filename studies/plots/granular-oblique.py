@@ -4,7 +4,7 @@
 
     granular-oblique.py DIR     reads DIR/study.csv and DIR/reference.csv, writes DIR/granular-oblique.png
 """
-from drawing import COLOURS, Line2D, directory, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, directory, grid, lines_below, number, numbers, plt, read, save, where
 
 LAWS = {"mindlin": ("o", COLOURS[0], "force from the total displacement (Eq. 2.45)"),
         "mindlin-incremental": ("s", COLOURS[1], "force by increments (Eq. 2.44)")}
@@ -40,7 +40,7 @@ def main():
     handles = [Line2D([], [], color="k", lw=1.4, label="sliding during the whole impact, Eqs. 7.2, 7.3")] + [
         Line2D([], [], color=colour, ls="--", lw=0.9, marker=marker, mfc=colour if marker == "o" else "none", label=label)
         for marker, colour, label in LAWS.values()]
-    figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=9)
+    lines_below(figure, handles, 3)
     save(figure, folder, "granular-oblique.png", below=0.07, top=1)
 
 

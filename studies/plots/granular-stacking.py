@@ -4,7 +4,7 @@
 
     granular-stacking.py DIR     reads DIR/study.csv and DIR/friction.csv, writes DIR/granular-stacking.png
 """
-from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
 
 TORQUE, SPRING = "constant torque, R/2", "EPSD, R*"
 
@@ -50,7 +50,7 @@ def main():
                       label=r"spring and dashpot, $\mu_r N R^*$ ($R$ on the ground)"),
                Line2D([], [], color="0.3", ls=":", lw=1, label="static equilibrium, first and last gap"),
                Line2D([], [], color="0.5", lw=5, alpha=0.35, label="plateaus of the dissertation")]
-    figure.legend(handles=handles, loc="lower center", ncol=4, frameon=False, fontsize=9)
+    lines_below(figure, handles, 4)
     save(figure, folder, "granular-stacking.png", below=0.06, top=1)
 
 

@@ -4,7 +4,7 @@
 
     granular-waves.py DIR     reads DIR/study.csv and DIR/profiles.csv, writes DIR/granular-waves.png
 """
-from drawing import COLOURS, Line2D, MARKERS, directory, distinct, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, MARKERS, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
 
 NAMES = {"scaled": r"$F_n = k_n\sqrt{\delta/R}\,\delta$" "\n" r"$k_n = 30000\,mg/R$",
          "linear": r"$F_n = k_n\,\delta$" "\n" r"$k_n = 3000\,mg/R$"}
@@ -49,7 +49,7 @@ def main():
         grid(last)
     handles = [Line2D([], [], color=colours[F], lw=1.5, marker=".", label=rf"$F_{{\mathrm{{ext}}}} = {number(F):g}\,mg$")
                for F in forces]
-    figure.legend(handles=handles, loc="lower center", ncol=len(forces), frameon=False, fontsize=9)
+    lines_below(figure, handles, len(forces))
     save(figure, folder, "granular-waves.png", below=0.045, top=1)
 
 

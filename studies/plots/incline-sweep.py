@@ -6,11 +6,9 @@
 
 Lines: limits from the Coulomb bounds (A.7), with mu_s = 0.25 and mu_k = 0.2.
 """
-import json
 import math
-import os
 
-from drawing import Line2D, directory, number, plt, read, save
+from drawing import Line2D, directory, lines_below, number, plt, read, record, save
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
@@ -26,8 +24,7 @@ def degrees(tangent):
 def main():
     folder = directory()
     rows = read(folder, "study.csv")
-    with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
-        study = json.load(file)
+    study = record(folder)
     etas = sorted({number(row["eta_r"]) for row in rows})
     angles = sorted({number(row["angle_deg"]) for row in rows})
     place = {(number(row["eta_r"]), number(row["angle_deg"])): row for row in rows}
@@ -64,7 +61,7 @@ def main():
         label = f"published state differs: {len(differ)} of {len(rows)}"
         handles.append(Line2D([], [], color="#d1001f", ls="", marker="x", ms=5, label=label) if few else
                        Patch(fill=False, hatch="...", lw=0, label=label))
-    figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=9)
+    lines_below(figure, handles, 3)
     axes.set_title(f"State {study['end']:g} s after a start with 0.5 m/s up the slope: {study['preset']} friction, "
                    f"{len(etas)} x {len(angles)} runs", fontsize=11)
     save(figure, folder, "incline-sweep.png", below=0.125, top=1)

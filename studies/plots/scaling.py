@@ -4,7 +4,7 @@
 
     scaling.py DIR      reads DIR/study.csv, writes DIR/scaling.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import Line2D, bars, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
 
 
 def main():
@@ -16,9 +16,7 @@ def main():
         colour, marker = style(scheme, schemes)
         mine = where(rows, integrator=scheme)
         N, us = numbers(mine, "bars"), numbers(mine, "us_per_step")
-        bars = ([u - number(row["us_per_step_min"]) for u, row in zip(us, mine)],
-                [number(row["us_per_step_max"]) - u for u, row in zip(us, mine)])
-        time.errorbar(N, us, yerr=bars, fmt="-", marker=marker, color=colour, lw=1.2, ms=5, capsize=2, elinewidth=0.8)
+        time.errorbar(N, us, yerr=bars(mine, "us_per_step"), fmt="-", marker=marker, color=colour, lw=1.2, ms=5, capsize=2, elinewidth=0.8)
         ratio.plot(N, numbers(mine, "ratio_to_full"), "-", marker=marker, color=colour, lw=1.2, ms=5)
         iterations.plot(N, numbers(mine, "iterations_per_step"), "-", marker=marker, color=colour, lw=1.2, ms=5)
     N = sorted(set(numbers(rows, "bars")))

@@ -4,10 +4,8 @@
 
     stacking.py DIR     reads DIR/study.csv and DIR/study.json, writes DIR/stacking.png
 """
-import json
-import os
 
-from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, record, save, where
 
 MODES = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
 
@@ -15,8 +13,7 @@ MODES = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
 def main():
     folder = directory()
     rows = read(folder, "study.csv")
-    with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
-        study = json.load(file)
+    study = record(folder)
     compared = any(row["published"] for row in rows)
     column = "collapse_mode" if "collapse_mode" in rows[0] else "gives_way"  # name in results of earlier versions
     figure, axes = plt.subplots(figsize=(8.6, 6.2))

@@ -4,7 +4,7 @@
 
     timing.py DIR       reads DIR/study.csv, writes DIR/timing.png
 """
-from drawing import directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import bars, directory, distinct, grid, legend, numbers, plt, read, save, style, where
 
 
 def main():
@@ -17,9 +17,7 @@ def main():
             colour, marker = style(scheme, schemes)
             mine = where(rows, problem=problem, integrator=scheme)
             h, us = numbers(mine, "h"), numbers(mine, "us_per_step")
-            bars = ([u - number(row["us_per_step_min"]) for u, row in zip(us, mine)],
-                    [number(row["us_per_step_max"]) - u for u, row in zip(us, mine)])
-            time.errorbar(h, us, yerr=bars, fmt="-", marker=marker, color=colour, lw=1.2, ms=6, capsize=2, elinewidth=0.8)
+            time.errorbar(h, us, yerr=bars(mine, "us_per_step"), fmt="-", marker=marker, color=colour, lw=1.2, ms=6, capsize=2, elinewidth=0.8)
             ratio.plot(h, numbers(mine, "ratio_to_full"), "-", marker=marker, color=colour, lw=1.2, ms=6)
         time.set_xscale("log")
         time.set_title(problem, fontsize=10)

@@ -3,9 +3,22 @@
 
 #include "io/error.hpp"
 
+#include <cstdarg>
 #include <new>
 
 namespace hilda::io {
+
+std::string formatted(const char* format, ...)
+{
+    va_list values, again;
+    va_start(values, format);
+    va_copy(again, values);
+    std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, values)), '\0');
+    std::vsnprintf(text.data(), text.size() + 1, format, again);
+    va_end(again);
+    va_end(values);
+    return text;
+}
 
 int report(const std::exception& error)
 {

@@ -20,6 +20,9 @@ inline void message(const std::string& text) noexcept
 /// Writes the line "hilda: warning: WHAT".
 inline void warning(const std::string& what) { message("hilda: warning: " + what + '\n'); }
 
+/// The text that printf() would print
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
 /// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their errors here.
 int report(const std::exception& error);
 

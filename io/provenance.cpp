@@ -14,6 +14,16 @@ std::string processor()
     return "unknown";
 }
 
+Json provenance(const Build& build, const std::vector<std::pair<std::string, std::string>>& libraries,
+                const std::string& command_line, int threads)
+{
+    Json all = Json::object();
+    for (const auto& [library, number] : libraries) all[library] = number;
+    return {{"version", build.number},      {"git", build.git},           {"build_type", build.build_type},
+            {"flags", build.flags},         {"compiler", build.compiler}, {"libraries", all},
+            {"command_line", command_line}, {"cpu", processor()},         {"threads", threads}};
+}
+
 std::string shell_quoted(int argc, char** argv)
 {
     std::string line;

@@ -2,7 +2,7 @@
 #include "granular/case/fill.hpp"
 
 #include "granular/case/split_mix.hpp"
-#include "io/checksum.hpp"
+#include "io/archive.hpp"
 #include "io/files.hpp"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include "granular/program/arguments.hpp"
 
 #include "granular/program/provenance.hpp"
+#include "granular/program/sink.hpp"
 #include "io/error.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
@@ -92,7 +93,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
               o.device = *device;
               o.device_name = text;
           });
-    app.add_flag("--no-vtk", o.no_vtk, "write no frames for ParaView");
+    io::add_sink_options<CaseSetup>(app, o.outputs);
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
     app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
     app.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");

@@ -4,19 +4,21 @@
 #pragma once
 
 #include "granular/case/case_file.hpp"
+#include "io/sink.hpp"
 
 namespace hilda::granular {
 
 struct Options {
     std::string file, output, device_name = "cpu", command_line;
     Device device = {};
-    double checkpoint = 0;  ///< wall time between checkpoints [s]; 0: none are written
+    io::SinkOptions outputs;  ///< options of the output formats, such as --no-vtk
+    double checkpoint = 0;    ///< wall time between checkpoints [s]; 0: none are written
     int threads = 1;
     std::vector<Setting> settings;  ///< changes of entries of the case
     std::optional<std::uint64_t> seed;
     std::string case_only_option;  ///< the first given option that is valid for cases only; empty if none
     bool full = false;             ///< full grid of a validation
-    bool quiet = false, verbose = false, json = false, force = false, resume = false, no_vtk = false;
+    bool quiet = false, verbose = false, json = false, force = false, resume = false;
 };
 
 /// Reads the command line into `options`. Returns the exit code if the program must end: after --help,

@@ -7,12 +7,9 @@
 #include "granular/program/validate.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
-#include "io/interrupt.hpp"
-#include "io/message.hpp"
+#include "io/program.hpp"
 
 #include <omp.h>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -36,42 +33,32 @@ int run_case(const Options& o)
     return run(o, read_case(text, o.file, here));
 }
 
-int fail(int code, const std::string& what)
-{
-    io::message("hilda: error: " + what + '\n');
-    return code;
-}
-
-}  // namespace
-
-int main(int argc, char** argv)
+int run_program(int argc, char** argv)
 {
     Options o;
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
     const Validation* const validation = find_validation(o.file);
     if (validation != nullptr && !o.case_only_option.empty())
-        return fail(io::exit_code::wrong_command_line, "granular: " + o.case_only_option +
-                                                           ": is valid for cases only, but " + o.file +
-                                                           " is a validation");
+        throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
+                             " is a validation");
     if (o.full && validation == nullptr && std::filesystem::exists(o.file))
-        return fail(io::exit_code::wrong_command_line,
-                    "granular: --full: is valid for validations only, but " + o.file + " is a file");
+        throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
     try {
-        std::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit is then an io::IoError
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();
-        const int code = validation != nullptr
-                             ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet)
-                             : run_case(o);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw io::IoError("standard output: cannot be written");
-        return code;
+        return validation != nullptr ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet)
+                                     : run_case(o);
     } catch (const DeviceError& e) {
-        return fail(io::exit_code::not_available, "--device " + o.device_name + ": " + e.what());
+        throw io::NotAvailable("--device " + o.device_name + ": " + e.what());
     } catch (const std::bad_alloc&) {
-        return fail(io::exit_code::invalid_input, "the memory is not sufficient for this case");
-    } catch (const std::exception& e) {
-        return io::report(e);
+        throw io::InvalidInput("the memory is not sufficient for this case");
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    return io::run_program([&] { return run_program(argc, argv); });
 }

@@ -30,18 +30,13 @@ std::string version_line()
 
 io::Json provenance(const std::string& command_line, int threads, const std::string& device)
 {
-    io::Json libraries = {{"Thrust", build::thrust}, {"OpenMP", build::openmp}, {"CLI11", CLI11_VERSION}};
-    if (*build::cuda != '\0') libraries["CUDA"] = build::cuda;
-    return {{"version", build::number},
-            {"git", git},
-            {"build_type", build::build_type},
-            {"flags", build::flags},
-            {"compiler", build::compiler},
-            {"libraries", libraries},
-            {"command_line", command_line},
-            {"cpu", io::processor()},
-            {"threads", threads},
-            {"device", device}};
+    std::vector<std::pair<std::string, std::string>> libraries = {
+        {"Thrust", build::thrust}, {"OpenMP", build::openmp}, {"CLI11", CLI11_VERSION}};
+    if (*build::cuda != '\0') libraries.emplace_back("CUDA", build::cuda);
+    io::Json all = io::provenance({build::number, git, build::build_type, build::flags, build::compiler},
+                                  libraries, command_line, threads);
+    all["device"] = device;
+    return all;
 }
 
 }  // namespace hilda::granular

@@ -2,12 +2,12 @@
 #include "granular/program/run.hpp"
 
 #include "granular/program/provenance.hpp"
-#include "granular/program/rows.hpp"
-#include "granular/world/output.hpp"
+#include "granular/program/sink.hpp"
+#include "io/archive.hpp"
 #include "io/files.hpp"
-#include "io/interrupt.hpp"
 #include "io/json_source.hpp"
 #include "io/message.hpp"
+#include "io/program.hpp"
 #include "io/progress.hpp"
 
 #include <chrono>
@@ -25,41 +25,40 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
-
-class CaseRun {
+class CaseRun : private io::Verbosity {
 public:
     CaseRun(const Options& o, Case from)
-        : o(o), c(std::move(from)), text(c.source.current_text()), interval(steps_in(c.interval, c.h)),
-          frame_interval(o.no_vtk ? 0 : steps_in(c.frame_interval, c.h)),
-          checkpoint_interval(steps_in(c.checkpoint_interval, c.h)), steps(std::lround(c.end / c.h)),
-          rows(o.output, c, interval, frame_interval)
+        : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)), setup{c, o.output, o.outputs},
+          text(c.source.current_text()), interval(setup.steps_in(c.interval)),
+          checkpoint_interval(setup.steps_in(c.checkpoint_interval)), steps(std::lround(c.end / c.h)),
+          files(o.output), sinks(setup)
     {}
 
     int execute()
     {
-        if (!io::is_missing_or_empty(o.output) && !o.force && !o.resume)
-            throw io::UsageError(o.output +
-                                 ": is not empty; --force overwrites it, --resume continues its run");
+        io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
         for (const std::string& n : c.notices) warn(n);
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written
-        log("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(), c.boundaries.size(), steps,
-            c.h);
+        log(io::formatted("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(),
+                          c.boundaries.size(), steps, c.h));
         io::make_directory(o.output);
         if (o.resume && done()) {
             if (!o.quiet) io::message("hilda: " + o.output + ": the run is complete already\n");
             if (o.json) std::fputs(io::read_file(file("summary.json"), most_of_summary).c_str(), stdout);
             return io::exit_code::done;
         }
-        if (!o.resume || !load()) {
-            for (const char* old : {"checkpoint", "checkpoint.1", "summary.json"})
-                std::remove(file(old).c_str());
+        const bool resumed = o.resume && load();
+        if (!resumed) {
+            files.remove();
+            io::Sinks<CaseSetup>::remove(o.output);
+            std::remove(file("summary.json").c_str());
             io::write_file(file("case.json"), text);
+            sinks.open();
         }
         resumed_at = c.world->steps();
         begin = saved = Clock::now();
-        const int code = run_steps();
+        const int code = run_steps(resumed);
         finish(code);
         return code;
     }
@@ -69,19 +68,6 @@ private:
 
     std::string file(const std::string& name) const { return o.output + '/' + name; }
 
-    void warn(const std::string& what) const
-    {
-        if (!o.quiet) io::warning(what);
-    }
-    template <class... Values>
-    void log(const char* format, const Values&... values) const
-    {
-        if (!o.verbose || o.quiet) return;
-        std::fputs("hilda: ", stderr);
-        std::fprintf(stderr, format, values...);
-        std::fputc('\n', stderr);
-    }
-
     /// Compares the step with World::step_limits. Warns above 1/5 of the Rayleigh time or 1/15 of the
     /// collision time. Rejects a step above the stability limit, the smaller of the Rayleigh time and 2/π of
     /// the collision time, unless --force is given.
@@ -89,17 +75,15 @@ private:
     {
         const World::StepLimits limits = c.world->step_limits();
         const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
-        char what[160];
         if (c.h > stable) {
-            std::snprintf(what, sizeof what, "step must not be above %.3g s, the stability limit, got %g",
-                          stable, c.h);
-            if (!o.force) c.source.fail("/step", std::string(what) + "; --force overrides");
+            const std::string what =
+                io::formatted("step must not be above %.3g s, the stability limit, got %g", stable, c.h);
+            if (!o.force) c.source.fail("/step", what + "; --force overrides");
             warn(c.source.place("/step") + ": " + what);
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
-            std::snprintf(what, sizeof what,
-                          "%g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
-                          c.h / limits.rayleigh, c.h / limits.collision);
-            warn(c.source.place("/step") + ": " + what);
+            warn(c.source.place("/step") + ": " +
+                 io::formatted("%g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
+                               c.h / limits.rayleigh, c.h / limits.collision));
         }
         if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
     }
@@ -112,7 +96,7 @@ private:
         if (io::read_file(file("case.json"), std::size_t{1} << 28) != text)
             throw io::IoError(file("case.json") +
                               ": is another case, or this case with other options; --force overwrites it");
-        if (fs::exists(file("checkpoint")) || !fs::exists(file("summary.json"))) return false;
+        if (files.exist() || !fs::exists(file("summary.json"))) return false;
         try {
             const io::JsonSource summary(io::read_file(file("summary.json"), most_of_summary),
                                          file("summary.json"), most_of_summary);
@@ -126,46 +110,37 @@ private:
     /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.
     bool load()
     {
-        std::string damage;
-        for (const char* name : {"checkpoint", "checkpoint.1"}) {
-            if (!fs::exists(file(name))) continue;
-            try {
-                c.world->from_bytes(io::read_file(file(name), std::size_t{1} << 40), text + c.files_read,
-                                    file(name));
-            } catch (const io::IoError& e) {
-                if (damage.empty()) damage = e.what();
-                continue;
-            }
-            if (!damage.empty()) warn(damage + "; the run continues from the one before");
-            rows.load();
-            log("continues from %s at t = %g s", file(name).c_str(), c.world->t());
-            return true;
-        }
-        if (!damage.empty()) throw io::IoError(damage);
-        return false;
+        return files.load([&](const std::string& bytes, const std::string& from) {
+            c.world->from_bytes(bytes, text + c.files_read, from, [&](io::Archive& a) {
+                io::Sinks<CaseSetup>::Saved saved_sinks;
+                a.map(saved_sinks);
+                sinks.open(saved_sinks, from);
+            });
+            rows = c.world->steps() / interval + 1;  // including t = 0
+            log(io::formatted("continues from %s at t = %g s", from.c_str(), c.world->t()));
+        });
     }
 
     /// Computes the steps. Checkpoint files are written by wall time, but they hold the state at multiples of
     /// checkpoint_interval. At each of these instants the neighbour list is rebuilt, whether or not a file is
     /// written, as in a world that is restored. Neither the clock nor a signal therefore changes the results.
     /// A snapshot of the last instant is held in memory, for a signal that arrives between two instants.
-    int run_steps()
+    int run_steps(bool resumed)
     {
         io::ProgressLine line(o.quiet);
         World& w = *c.world;
         try {
-            if (rows.count() == 0) rows.record();
+            if (!resumed) record();
             take_snapshot();
             while (w.steps() < steps && io::Interrupt::caught() == 0) {
-                long next = steps;
-                for (const long between : {interval, frame_interval, checkpoint_interval})
-                    if (between > 0) next = std::min(next, (w.steps() / between + 1) * between);
+                const long instant = (w.steps() / checkpoint_interval + 1) * checkpoint_interval,
+                           next = std::min({steps, instant, sinks.next(w.steps())});
                 while (w.steps() < next && io::Interrupt::caught() == 0) {
                     w.step();
                     if (line.is_due()) line.show(progress());
                 }
                 if (w.steps() < next) break;
-                rows.record();
+                record();
                 if (w.steps() % checkpoint_interval == 0 && w.steps() < steps) checkpoint_instant();
             }
         } catch (const io::NumericalFailure& e) {
@@ -187,11 +162,17 @@ private:
         status = "interrupted";
         save();
         if (!o.quiet)
-            std::fprintf(stderr,
-                         "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint at t = "
-                         "%.6g s in %s\n",
-                         w.t(), snapshot_time, o.output.c_str());
+            io::message(
+                io::formatted("hilda: interrupted at t = %.6g s; --resume continues from the checkpoint at t "
+                              "= %.6g s in %s\n",
+                              w.t(), snapshot_time, o.output.c_str()));
         return io::exit_code::signal + io::Interrupt::caught();
+    }
+
+    void record()
+    {
+        sinks.node(c.world->steps(), *c.world);
+        if (c.world->steps() % interval == 0) ++rows;
     }
 
     void checkpoint_instant()
@@ -211,7 +192,10 @@ private:
         snapshot.clear();
         snapshot.shrink_to_fit();  // so that at most one snapshot is in memory
         const Clock::time_point from = Clock::now();
-        snapshot = c.world->to_bytes(text + c.files_read);
+        snapshot = c.world->to_bytes(text + c.files_read, [&](io::Archive& a) {
+            auto saved_sinks = sinks.save();
+            a.map(saved_sinks);
+        });
         snapshot_time = c.world->t();
         snapshot_taken = Clock::now();
         snapshot_seconds = seconds_since(from);
@@ -220,12 +204,10 @@ private:
     void save()
     {
         if (snapshot.empty()) return;  // no valid snapshot: the files on the disk remain
-        rows.write();
-        std::rename(file("checkpoint").c_str(),
-                    file("checkpoint.1").c_str());  // fails the first time, as intended
-        io::write_file(file("checkpoint"), snapshot);
+        sinks.sync();
+        files.save(snapshot);
         saved = Clock::now();
-        log("checkpoint at t = %g s, %zu bytes", snapshot_time, snapshot.size());
+        log(io::formatted("checkpoint at t = %g s, %zu bytes", snapshot_time, snapshot.size()));
     }
 
     /// Text of the progress line
@@ -235,11 +217,8 @@ private:
         const double rate_now = rate();
         const double left =
             rate_now > 0 ? (c.end - w.t()) / c.h * static_cast<double>(w.count()) / rate_now : 0;
-        char text_of_line[160];
-        std::snprintf(text_of_line, sizeof text_of_line,
-                      "t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left", w.t(), c.end,
-                      1e-6 * rate_now, left);
-        return text_of_line;
+        return io::formatted("t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left", w.t(), c.end,
+                             1e-6 * rate_now, left);
     }
 
     double rate() const  ///< [particle-steps/s]
@@ -254,15 +233,10 @@ private:
         const double speed = rate(), seconds = seconds_since(begin);
         snapshot.clear();
         snapshot.shrink_to_fit();
-        rows.write();
-        io::write_file(file("particles.csv"), particles_csv(w));
-        io::write_file(file("contacts.csv"), contacts_csv(w));
-        rows.write_frames();
+        sinks.close();
         const std::string text_of_summary = summary(code, speed, seconds);
         io::write_file(file("summary.json"), text_of_summary);
-        if (code == io::exit_code::done)
-            for (const char* old : {"checkpoint", "checkpoint.1", "checkpoint.tmp"})
-                std::remove(file(old).c_str());
+        if (code == io::exit_code::done) files.remove();
         if (o.json)
             std::fputs(text_of_summary.c_str(), stdout);
         else if (code == io::exit_code::done && !o.quiet)
@@ -285,10 +259,10 @@ private:
                      {"checkpoint_interval", c.checkpoint_interval},
                      {"set", c.source.changes},
                      {"warnings", c.notices}};
-        s["counters"] = {
-            {"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows.count()}, {"t", w.t()}};
+        s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows}, {"t", w.t()}};
         if (status == "interrupted") s["counters"]["t_checkpoint"] = snapshot_time;
         s["kinetic_energy"] = w.kinetic_energy();
+        s["files"] = sinks.files();
         s["timing"] = {{"wall_seconds", seconds},
                        {"steps_per_second", static_cast<double>(w.steps() - resumed_at) / seconds},
                        {"particle_steps_per_second", speed}};
@@ -301,9 +275,12 @@ private:
 
     const Options& o;
     const Case c;
+    const CaseSetup setup;
     const std::string text;
-    const long interval, frame_interval, checkpoint_interval, steps;
-    Rows rows;
+    const long interval, checkpoint_interval, steps;
+    const io::CheckpointFiles files;
+    io::Sinks<CaseSetup> sinks;
+    long rows = 0;  ///< of run.csv
     long resumed_at = 0;
     std::string snapshot;                            ///< state at the last instant of a possible checkpoint
     double snapshot_time = 0, snapshot_seconds = 0;  ///< its time, and the wall time to take it [s]

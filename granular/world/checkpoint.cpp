@@ -2,164 +2,177 @@
 // Serialisation of a world between two steps. Writing a checkpoint invalidates the neighbour list, so that
 // the world that continues and a world that is restored build it at the same step and give bitwise identical
 // results from then on.
-//
-// Layout, little endian: magic, format, length in bytes; run id, scalars, lists (length and elements);
-// checksum.
-#include "granular/world/world.hpp"
-#include "io/checksum.hpp"
-#include "io/error.hpp"
+#include "granular/world/world_impl.hpp"
+#include "io/archive.hpp"
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace hilda::granular {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "checkpoints are little endian");
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 6};
 
-constexpr char magic[8] = {'H', 'I', 'L', 'D', 'A', 'G', 'R', 'N'};
-constexpr std::uint64_t format = 5;
-constexpr std::size_t header_size = sizeof magic + 2 * sizeof(std::uint64_t),
-                      trailer_size = sizeof(std::uint64_t);
+bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
+bool finite(const Vec3& a) { return std::isfinite(a.x + a.y + a.z); }
+template <class Array>
+bool all_finite(const Array& list)
+{
+    return std::all_of(list.data(), list.data() + list.size(), [](const auto& a) { return finite(a); });
+}
 
-struct Writer {
-    std::string bytes;
-    template <class T>
-    void operator()(const T& value)
-    {
-        static_assert(std::is_trivially_copyable_v<T>);
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+/// The domain is one that World can have: the neighbour search uses it as an index range.
+bool valid(const Domain& d, const WorldOptions& options)
+{
+    const double low[] = {options.low.x, options.low.y, options.low.z};
+    const std::int32_t most[] = {1 << CellGrid::bits_x, 1 << CellGrid::bits_y, 1 << CellGrid::bits_z};
+    for (int k = 0; k < 3; ++k)
+        if (d.grid.low[k] != low[k] || d.grid.cells[k] < 1 || d.grid.cells[k] > most[k] ||
+            d.grid.width[k] < 1 || d.grid.width[k] > CellGrid::widest || d.grid.last[k] < 0 ||
+            d.grid.last[k] > d.grid.width[k] || d.grid.periodic[k] != (options.periodic[k] ? 1 : 0))
+            return false;
+    const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+    return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
+           d.replicas >= 1;
+}
+
+/// All members are equal except those that change during a run: r, axis, v, omega and F, which are finite.
+bool same_boundary(const Boundary& now, Boundary saved)
+{
+    for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F})
+        if (!finite(v)) return false;
+    saved.r = now.r, saved.axis = now.axis, saved.v = now.v, saved.omega = now.omega, saved.F = now.F;
+    return std::memcmp(&now, &saved, sizeof saved) == 0;
+}
+
+bool inside(const CellGrid& g, std::uint32_t cell)
+{
+    return CellGrid::x_of(cell) < g.cells[0] && CellGrid::y_of(cell) < g.cells[1] &&
+           CellGrid::z_of(cell) < g.cells[2];
+}
+
+/// The ids are the numbers 0 … n - 1.
+bool is_permutation(const std::uint32_t* id, std::size_t n)
+{
+    std::vector<bool> seen(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        if (id[k] >= n || seen[id[k]]) return false;
+        seen[id[k]] = true;
     }
-    template <class T>
-    void list(const T* values, std::size_t n)
+    return true;
+}
+
+/// The pairs in contact. Only they have a history; the others are found when the neighbour list is rebuilt.
+struct SavedPairs {
+    std::vector<std::uint32_t> i, j;
+    std::vector<Float4> history, rotation_history;
+
+    explicit SavedPairs(const Pairs<par::Cpu>& pairs)
     {
-        (*this)(static_cast<std::uint64_t>(n));
-        if (n > 0) bytes.append(reinterpret_cast<const char*>(values), n * sizeof(T));
+        for (std::uint32_t k = 0; k < pairs.count; ++k) {
+            if (pairs.in_contact.data()[k] == 0) continue;
+            i.push_back(pairs.i.data()[k]), j.push_back(pairs.j.data()[k]);
+            history.push_back(pairs.history.data()[k]);
+            if (pairs.rotation_history.size() > 0)
+                rotation_history.push_back(pairs.rotation_history.data()[k]);
+        }
     }
 };
 
-struct Reader {
-    const char *at, *end;
-    const std::string& file;
-
-    void raw(void* to, std::size_t n)
-    {
-        if (static_cast<std::size_t>(end - at) < n)
-            throw io::IoError(file + ": the checkpoint is damaged: it is truncated");
-        if (n > 0) std::memcpy(to, at, n);
-        at += n;
+template <class Pairs>
+void transfer_pairs(io::Archive& a, Pairs& pairs, std::size_t particles, std::size_t boundaries)
+{
+    const std::size_t n = a.list(pairs.i);
+    a.check(a.list(pairs.j) == n && a.list(pairs.history) == n, "wrong number of pairs");
+    const std::size_t rotation = a.list(pairs.rotation_history);
+    a.check(rotation == 0 || rotation == n, "wrong number of pairs");
+    if (!a.reads()) return;
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::uint32_t j = pairs.j.data()[k];
+        const bool valid_j =
+            (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) < boundaries : j < particles;
+        a.check(pairs.i.data()[k] < particles && valid_j, "unknown particle of a pair");
     }
-    template <class T>
-    T one()
-    {
-        T value;
-        raw(&value, sizeof value);
-        return value;
-    }
-    template <class Array>
-    std::size_t list(Array& to)
-    {
-        using T = std::remove_reference_t<decltype(*to.data())>;
-        const auto n = one<std::uint64_t>();
-        if (n > static_cast<std::size_t>(end - at) / sizeof(T))
-            throw io::IoError(file + ": the checkpoint is damaged: a list is longer than the file");
-        to.resize(n);
-        raw(static_cast<void*>(to.data()), n * sizeof(T));
-        return n;
-    }
-};
+    a.check(all_finite(pairs.history) && all_finite(pairs.rotation_history), "a history that is not finite");
+}
 
 }  // namespace
 
-std::string World::to_bytes(const std::string& run_id)
+void World::transfer(io::Archive& a)
 {
-    insert_pending();
-    Writer a;
-    a.bytes.append(magic, sizeof magic);
-    a(format), a(std::uint64_t{0});
-    a.list(run_id.data(), run_id.size());
-    a(step_count), a(rebuild_count), a(max_speed), a(domain);
-    a.list(boundaries.data(), boundaries.size());
-    a.list(forces.data(), forces.size());
-    const Arrays<par::Cpu>& all = engine->arrays();
-    const Particles<par::Cpu>& particle = all.particle;
-    const Pairs<par::Cpu>& pairs = all.pairs;
-    const auto array = [&](const auto& values, std::size_t n) { a.list(values.data(), n); };
-    const std::uint32_t n = particle.count;
-    array(particle.position, n), array(particle.velocity, n), array(particle.omega, n),
-        array(particle.compensation, n), array(particle.species, n);
-    array(particle.id, n), array(particle.acc, particle.acc.size()),
-        array(particle.alpha, particle.alpha.size());
-    array(particle.orientation, particle.orientation.size());
-    array(particle.orientation_compensation, particle.orientation_compensation.size());
-    // Only pairs in contact have a history. The others are found when the neighbour list is rebuilt.
-    std::vector<std::uint32_t> i, j;
-    std::vector<Float4> history, rotation_history;
-    for (std::uint32_t k = 0; k < pairs.count; ++k) {
-        if (pairs.in_contact.data()[k] == 0) continue;
-        i.push_back(pairs.i.data()[k]), j.push_back(pairs.j.data()[k]);
-        history.push_back(pairs.history.data()[k]);
-        if (pairs.rotation_history.size() > 0) rotation_history.push_back(pairs.rotation_history.data()[k]);
+    a.value(step_count), a.value(rebuild_count), a.value(max_speed), a.value(domain);
+    a.check(step_count >= 0 && std::isfinite(max_speed) && valid(domain, options), "invalid domain or time");
+    std::vector<Boundary> now = boundaries;
+    a.list(boundaries), a.list(forces);
+    a.check(std::equal(now.begin(), now.end(), boundaries.begin(), boundaries.end(), same_boundary),
+            "other boundaries than in this world");
+    Arrays<par::Cpu>& all = engine->arrays();
+    Particles<par::Cpu>& p = all.particle;
+    std::size_t n = p.count;
+    const auto list = [&](auto& values) { a.check(a.list(values, n) == n, "wrong number of particles"); };
+    /// An array that only some schemes use
+    const auto list_if = [&](bool used, auto& values) {
+        a.check(a.list(values) == (used ? n : 0) && all_finite(values), "an array of another integrator");
+    };
+    n = a.list(p.position, n);
+    list(p.velocity), list(p.omega), list(p.compensation), list(p.species), list(p.id);
+    const bool previous = detail::uses_previous_acceleration(options.scheme);
+    list_if(previous, p.acc), list_if(previous, p.alpha);
+    const std::size_t oriented = a.list(p.orientation);
+    if (a.list(p.orientation_compensation) != oriented || oriented != (options.orientation ? n : 0))
+        throw io::IoError(a.name() + ": the checkpoint " + (options.orientation ? "has no" : "has") +
+                          " orientations, but /orientation of this case is " +
+                          (options.orientation ? "true" : "false"));
+    if (!a.reads()) {
+        SavedPairs pairs(all.pairs);
+        return transfer_pairs(a, pairs, n, boundaries.size());
     }
-    array(i, i.size()), array(j, j.size()), array(history, history.size()),
-        array(rotation_history, rotation_history.size());
-    const std::uint64_t length = a.bytes.size() + trailer_size;
-    std::memcpy(a.bytes.data() + sizeof magic + sizeof format, &length, sizeof length);
-    a(io::checksum(a.bytes.data(), a.bytes.size()));
-    invalidate_neighbours();
-    return std::move(a.bytes);
+    for (std::size_t k = 0; k < n; ++k)
+        a.check(inside(domain.grid, p.position.data()[k].cell) &&
+                    p.species.data()[k].material < materials.size() &&
+                    p.species.data()[k].replica < domain.replicas && p.velocity.data()[k].w > 0,
+                "invalid cell, material or radius of a particle");
+    a.check(is_permutation(p.id.data(), n), "invalid ids of the particles");
+    a.check(forces.empty() || forces.size() == n, "wrong number of forces");
+    a.check(all_finite(p.velocity) && all_finite(p.omega) && all_finite(p.orientation) && all_finite(forces),
+            "a velocity or force that is not finite");
+    transfer_pairs(a, all.pairs, n, boundaries.size());
+    p.count = static_cast<std::uint32_t>(n);
+    inserted_count = n;
+    all.pairs.count = static_cast<std::uint32_t>(all.pairs.i.size());
 }
 
-void World::from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file)
+std::string World::to_bytes(const std::string& run_id, const std::function<void(io::Archive&)>& more)
 {
-    const auto damaged = [&](const std::string& how) {
-        return io::IoError(file + ": the checkpoint is damaged: " + how);
-    };
-    if (bytes.size() < header_size + trailer_size || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-        throw damaged("the header is missing");
-    Reader a{bytes.data() + sizeof magic, bytes.data() + bytes.size() - trailer_size, file};
-    std::uint64_t sum = 0;
-    std::memcpy(&sum, a.end, sizeof sum);
-    const auto version = a.one<std::uint64_t>(), length = a.one<std::uint64_t>();
-    if (length != bytes.size())
-        throw damaged("it must have " + std::to_string(length) + " bytes, got " +
-                      std::to_string(bytes.size()));
-    if (sum != io::checksum(bytes.data(), bytes.size() - trailer_size))
-        throw damaged("the checksum is wrong");
-    if (version != format)
-        throw io::IoError(file + ": the checkpoint has format " + std::to_string(version) +
-                          "; this program reads format " + std::to_string(format));
+    insert_pending();
+    io::Archive a(format);
+    std::string run = run_id;
+    a.list(run);
+    transfer(a);
+    more(a);
+    invalidate_neighbours();
+    return a.bytes();
+}
+
+void World::from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file,
+                       const std::function<void(io::Archive&)>& more)
+{
+    io::Archive a(format, bytes, file);
     std::string run;
     a.list(run);
     if (run != run_id) throw io::IoError(file + ": the checkpoint belongs to another run");
     insert_pending();
-    step_count = a.one<long>(), rebuild_count = a.one<long>();
-    max_speed = a.one<float>(), domain = a.one<Domain>();
-    a.list(boundaries), a.list(forces);
+    transfer(a);
+    more(a);
+    a.end();
     forces_changed = true;
-    Arrays<par::Cpu>& all = engine->arrays();
-    Particles<par::Cpu>& particle = all.particle;
-    Pairs<par::Cpu>& pairs = all.pairs;
-    const auto n = a.list(particle.position);
-    a.list(particle.velocity), a.list(particle.omega), a.list(particle.compensation),
-        a.list(particle.species), a.list(particle.id);
-    a.list(particle.acc), a.list(particle.alpha);
-    a.list(particle.orientation);
-    if (a.list(particle.orientation_compensation) != (options.orientation ? n : 0))
-        throw io::IoError(file + ": the checkpoint " + (options.orientation ? "has no" : "has") +
-                          " orientations, but /orientation of this case is " +
-                          (options.orientation ? "true" : "false"));
-    particle.count = static_cast<std::uint32_t>(n);
-    inserted_count = n;
-    pairs.count = static_cast<std::uint32_t>(a.list(pairs.i));
-    a.list(pairs.j), a.list(pairs.history);
-    const bool rotation_laws = a.list(pairs.rotation_history) > 0;
-    if (a.at != a.end) throw damaged("it has trailing bytes");
+    Pairs<par::Cpu>& pairs = engine->arrays().pairs;
     pairs.in_contact.resize(pairs.count), pairs.load.resize(pairs.count);
     par::fill(par::Cpu(), pairs.in_contact.data(), pairs.count, std::uint8_t{1});
     par::fill(par::Cpu(), pairs.load.data(), pairs.count, Load{});
-    if (rotation_laws) {
+    if (pairs.rotation_history.size() > 0) {
         pairs.torque.resize(pairs.count);
         par::fill(par::Cpu(), pairs.torque.data(), pairs.count, Float4{});
     }

@@ -15,8 +15,6 @@ std::string contacts_csv(const World& world);
 /// The particles as points with radius, velocity, angular velocity, material, id and, if integrated,
 /// orientation. VTK XML PolyData with raw appended data.
 std::string particles_vtp(const World& world);
-/// A ParaView collection. `frames`: time [s] and file name of each frame.
-std::string pvd(const std::vector<std::pair<double, std::string>>& frames);
 
 /// Love-Weber stress of the contacts over a volume V [m³]:
 ///

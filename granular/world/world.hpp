@@ -18,6 +18,10 @@
 #include <utility>
 #include <vector>
 
+namespace hilda::io {
+class Archive;
+}
+
 namespace hilda::granular {
 
 /// A particle has left the domain, has moved by more than a cell in one step, or has a velocity that is not
@@ -146,11 +150,14 @@ public:
     /// Serialises the state after the insertion of pending particles. from_bytes() accepts the result only
     /// with the same `run_id`. Both this world and a restored one rebuild the neighbour list before the
     /// next step and then continue with bitwise identical results. Throws io::InvalidInput if a pending
-    /// particle cannot be inserted.
-    std::string to_bytes(const std::string& run_id);
+    /// particle cannot be inserted. `more` adds values to the archive.
+    std::string to_bytes(
+        const std::string& run_id, const std::function<void(io::Archive&)>& more = [](io::Archive&) {});
     /// Restores the state into a world that was constructed by the same calls. `file` is the file name in
-    /// messages. Throws io::IoError.
-    void from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file);
+    /// messages; `more` reads the values that the `more` of to_bytes() has added. Throws io::IoError.
+    void from_bytes(
+        const std::string& bytes, const std::string& run_id, const std::string& file,
+        const std::function<void(io::Archive&)>& more = [](io::Archive&) {});
 
     double kinetic_energy() const;  ///< translational and rotational, of the particles [J]
     /// Volume of the domain [m³]
@@ -203,6 +210,7 @@ public:
 private:
     static constexpr std::uint8_t no_law = 255;
 
+    void transfer(io::Archive& a);
     void insert_pending();
     Domain domain_of(const std::vector<Particle>& all) const;
     struct CellPosition {

@@ -11,6 +11,7 @@
 #include "studies/program/plot.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
+#include "studies/running/sink.hpp"
 
 #include "io/nearest.hpp"
 #include "io/provenance.hpp"
@@ -198,14 +199,9 @@ private:
             "overwrite an output directory that is not empty; accept a step above the stability limit");
         c->add_flag("--resume", o.resume,
                     "continue the run in the output directory from its last checkpoint");
-        value(c, "--vtk", "DT",
-              "time between ParaView frames of the bodies in contact [s]; default: no frames",
-              assign(o.vtk, positive_number));
         value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
               assign(o.checkpoint, nonnegative_number));
-        c->add_flag("--reactions", o.reactions,
-                    "write constraint forces and multipliers to trajectory.csv as well");
-        c->add_flag("--log-steps", o.log_steps, "write steps.csv as well, a row for each step");
+        io::add_sink_options<RunSetup>(*c, o.outputs);
         c->add_flag("--plot", o.plot, "draw trajectory.png as well");
         value(c, "--threads", "N", "accepted for compatibility; a run uses one thread",
               assign(o.threads, positive_count));
@@ -240,7 +236,8 @@ private:
         CLI::App* c = add("models", "list the built-in models, or print one as a model file",
                           [this] { return name.empty() ? list_models(json) : write_model(name, write_to); });
         c->add_option("NAME", name, "name of a built-in model; default: print the list")->type_name("");
-        value(c, "--write", "FILE", "write the model to this file; default: stdout", assign(write_to, io::path));
+        value(c, "--write", "FILE", "write the model to this file; default: stdout",
+              assign(write_to, io::path));
         c->add_flag("--json", json, "print the list as JSON");
     }
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The program hilda.
 
-#include "io/error.hpp"
-#include "io/message.hpp"
+#include "io/program.hpp"
 #include "studies/program/command_line.hpp"
 
-#include <csignal>
-#include <iostream>
+#include <stdexcept>
 
 namespace {
 
@@ -23,16 +21,9 @@ bool keeps_denormals()
 
 int main(int argc, char** argv)
 {
-    using namespace hilda::studies;
-    std::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG, and the message names the file
-    try {
+    return hilda::io::run_program([&] {
         if (!keeps_denormals())
             throw std::runtime_error("a library of this process flushes denormal numbers to zero");
-        const int code = command_line(argc, argv);
-        if (!std::cout.flush()) throw hilda::io::IoError("standard output: cannot be written");
-        return code;
-    } catch (const std::exception& error) {
-        std::cout.flush();
-        return hilda::io::report(error);
-    }
+        return hilda::studies::command_line(argc, argv);
+    });
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/run_model.hpp"
 
-#include "io/files.hpp"
-#include "io/interrupt.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
+#include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "studies/program/named_model.hpp"
 #include "studies/running/single_run.hpp"
@@ -23,9 +22,7 @@ std::vector<std::string> directories(const RunOptions& options)
     std::vector<std::string> all;
     for (const std::string& name : options.integrators) {
         all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
-        if (!io::is_missing_or_empty(all.back()) && !options.force && !options.resume)
-            throw io::UsageError(all.back() +
-                                 ": is not empty; --force overwrites it, --resume continues its run");
+        io::check_output_directory(all.back(), options.force || options.resume, io::force_or_resume);
     }
     return all;
 }
@@ -50,9 +47,6 @@ void refuse_for_adaptive(const RunOptions& options)
 
 int run_model(const RunOptions& options)
 {
-    if (options.vtk && (options.resume || options.checkpoint > 0))
-        throw io::UsageError(
-            "run: --vtk writes its frames at the end of the run; --checkpoint and --resume exclude it");
     refuse_for_adaptive(options);
     const std::vector<std::string> directory = directories(options);
     const io::Interrupt interrupt;

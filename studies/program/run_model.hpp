@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/sink.hpp"
 #include "lie/settings.hpp"
 
 #include <optional>
@@ -23,9 +24,9 @@ struct RunOptions {
 
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
-    bool reactions = false, log_steps = false, plot = false;
-    std::optional<double> vtk;  ///< time between frames for ParaView [s]
-    double checkpoint = 0;      ///< wall time between checkpoints [s]; 0: no checkpoints
+    bool plot = false;
+    io::SinkOptions outputs;  ///< options of the output formats, such as --reactions
+    double checkpoint = 0;    ///< wall time between checkpoints [s]; 0: no checkpoints
 
     bool json = false, quiet = false, verbose = false;
     int threads = 1;

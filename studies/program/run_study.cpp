@@ -2,6 +2,7 @@
 #include "studies/program/run_study.hpp"
 
 #include "io/files.hpp"
+#include "io/program.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 
@@ -63,8 +64,7 @@ int run_study(const std::string& kind, StudyOptions options)
         options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json) options.output = "out/" + kind;
     if (!options.output.empty()) {
-        if (!io::is_missing_or_empty(options.output) && !options.force)
-            throw io::UsageError(options.output + ": is not empty; --force overwrites it");
+        io::check_output_directory(options.output, options.force, io::force_overwrites);
         io::make_directory(options.output);
     }
     try {

@@ -6,11 +6,10 @@
 
 #include "contact/evolving/unilateral.hpp"
 #include "lie/statistics.hpp"
-#include "studies/running/csv_steps.hpp"
-#include "studies/running/csv_trajectory.hpp"
+#include "studies/running/invariants.hpp"
+#include "studies/running/sink.hpp"
 
-#include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
 
 namespace hilda::studies {
@@ -25,29 +24,18 @@ struct Checkpoint {
     lie::Statistics statistics;
     Invariants invariants;
     contact::UnilateralStep::History contacts;  ///< of unilateral contacts
-    StepsCsv::Cost last_step;
-    std::uint64_t trajectory_bytes = 0, steps_bytes = 0;
+    StepCost last_step;
+    std::map<std::string, std::string> sinks;  ///< see io::Sinks
     double wall_seconds = 0;
 };
 
-/// Serialises a checkpoint, little endian: magic, format version, total length [byte], content, CRC-32 of all
-/// preceding bytes.
-std::string to_bytes(const Checkpoint& checkpoint);
-/// Inverse of to_bytes(). `file` is for the message. io::IoError if length, checksum or format version is wrong.
+/// Serialises a checkpoint.
+std::string to_bytes(Checkpoint checkpoint);
+/// Inverse of to_bytes(). `file` is for the message. io::IoError if the bytes are damaged or of another version.
 Checkpoint from_bytes(const std::string& bytes, const std::string& file);
 
-/// Writes DIRECTORY/checkpoint; the previous checkpoint becomes checkpoint.1. At any time at least one of the
-/// two files is complete. io::IoError.
-void save(const Checkpoint& checkpoint, const std::string& directory);
-
-/// Reads the last checkpoint; if it is damaged, the previous one, with a warning on stderr. Empty if there is
-/// no checkpoint. io::IoError if none can be read.
-std::optional<Checkpoint> load(const std::string& directory);
-
-/// Removes all checkpoint files of a directory.
-void remove_checkpoints(const std::string& directory);
-
-/// FNV-1a hash of a text, 64 bits
-std::uint64_t hash(const std::string& text);
+/// io::IoError if the checkpoint does not fit the model and its initial state x.
+void check_fits(const Checkpoint& checkpoint, const dae::Model& model, const lie::State& x,
+                const std::string& file);
 
 }  // namespace hilda::studies

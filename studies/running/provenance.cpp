@@ -23,12 +23,9 @@ std::vector<std::pair<std::string, std::string>> libraries()
 
 io::Json provenance(const std::string& command_line, int threads)
 {
-    io::Json all = io::Json::object();
-    for (const auto& [library, number] : libraries()) all[library] = number;
-    return {
-        {"version", version::number},   {"git", version::git},           {"build_type", version::build_type},
-        {"flags", version::flags},      {"compiler", version::compiler}, {"libraries", all},
-        {"command_line", command_line}, {"cpu", io::processor()},        {"threads", threads}};
+    return io::provenance(
+        {version::number, version::git, version::build_type, version::flags, version::compiler}, libraries(),
+        command_line, threads);
 }
 
 }  // namespace hilda::studies

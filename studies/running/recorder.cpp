@@ -2,6 +2,8 @@
 #include "studies/running/recorder.hpp"
 
 #include "dae/model.hpp"
+#include "dae/start.hpp"
+#include "lie/integrator.hpp"
 
 namespace hilda::studies {
 
@@ -40,67 +42,71 @@ void PivotNode::restore(const lie::State& from, double h)
     last_count = integrator.statistics().factorizations;
 }
 
-Recorder::Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
-                   const std::string& directory, const Options& options,
-                   const std::optional<Checkpoint>& from)
-    : integrator(integrator),
-      trajectory_file(directory + "/trajectory.csv", from ? from->trajectory_bytes : 0, from.has_value()),
-      trajectory(model, grid, trajectory_file, options.reactions), pivots(integrator)
+Recorder::Recorder(const RunSetup& run, lie::Integrator& integrator)
+    : model(run.model), grid(run.grid), integrator(integrator), sinks(run),
+      contacts(evolving_contacts(model)), pivots(integrator)
 {
-    if (options.log_steps) {
-        steps_file.emplace(directory + "/steps.csv", from ? from->steps_bytes : 0, from.has_value());
-        steps.emplace(model, integrator, grid.h, *steps_file);
-    }
+    invariants.contact.resize(contacts.size());
+}
+
+void Recorder::open(const std::optional<Checkpoint>& from)
+{
     if (from) {
-        trajectory.invariants = from->invariants;
-        if (steps) steps->last = from->last_step;
+        invariants = from->invariants;
+        last = from->last_step;
         pivots.restore(from->pivots, grid.h);
         if (auto* unilateral = dynamic_cast<contact::UnilateralStep*>(&integrator))
             unilateral->restore(from->contacts);
         earlier_statistics = sum(from->statistics, integrator.statistics(), -1);
+        sinks.open(from->sinks, "checkpoint");
     } else {
-        trajectory.write_header();
-        if (steps) steps->write_header();
+        sinks.open();
     }
+    factorizations = integrator.statistics().factorizations;
+    since = Clock::now();
 }
 
-std::vector<lie::Observer*> Recorder::observers()
+void Recorder::accepted(const lie::State& x, long n, int iterations)
 {
-    std::vector<lie::Observer*> all = {&trajectory, &pivots};
-    if (steps) {
-        steps->begin();
-        all.push_back(&*steps);
-    }
-    return all;
+    const Clock::time_point now = Clock::now();
+    const double energy = lie::energy(model, x), constraint_norm = model.largest_residual(x).value;
+    invariants.update(model, contacts, x, energy, constraint_norm);
+    const bool is_row = grid.is_row(n);
+    if (is_row) ++invariants.rows;
+    sinks.node(n, {.x = x,
+                   .n = n,
+                   .is_row = is_row,
+                   .energy = energy,
+                   .constraint_norm = constraint_norm,
+                   .iterations = iterations,
+                   .cost = last});
+    dae::check_dropped_rows(model, x);
+    // lie::March reports a node after the following step; the counters since the last call are those of that
+    // step.
+    const lie::Statistics counted = integrator.statistics();
+    last = {counted.factorizations - factorizations, std::chrono::nanoseconds(now - since).count(),
+            counted.correction};
+    factorizations = counted.factorizations;
+    since = Clock::now();
 }
 
 lie::Statistics Recorder::statistics() const { return sum(earlier_statistics, integrator.statistics(), 1); }
 
 Checkpoint Recorder::checkpoint(const lie::March& march)
 {
-    trajectory_file.sync();
-    if (steps) steps_file->sync();
+    sinks.sync();
     Checkpoint c;
     c.node = march.node();
     c.number = march.number();
     c.iterations = march.iterations_of_last_step();
     c.pivots = pivots.node;
     c.statistics = statistics();
-    c.invariants = invariants();
+    c.invariants = invariants;
     if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))
         c.contacts = unilateral->history();
-    c.trajectory_bytes = trajectory_file.size();
-    if (steps) {
-        c.last_step = steps->last;
-        c.steps_bytes = steps_file->size();
-    }
+    c.last_step = last;
+    c.sinks = sinks.save();
     return c;
-}
-
-void Recorder::flush()
-{
-    trajectory_file.flush();
-    if (steps) steps_file->flush();
 }
 
 }  // namespace hilda::studies

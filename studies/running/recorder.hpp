@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The output files of a run during the time integration, and the contents of its checkpoints.
+/// The outputs of a run during the time integration, and the contents of its checkpoints.
 
 #pragma once
 
-#include "io/output_file.hpp"
-#include "lie/statistics.hpp"
 #include "studies/running/checkpoint.hpp"
-#include "studies/running/csv_steps.hpp"
-#include "studies/running/csv_trajectory.hpp"
+#include "studies/running/sink.hpp"
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,40 +38,48 @@ private:
     long last_count = 0;
 };
 
-/// Writes trajectory.csv and, on request, steps.csv, and collects the contents of checkpoints.
-class Recorder {
+/// Passes the nodes of a run to its sinks, with their energy and residual; collects extreme values and the contents
+/// of checkpoints.
+class Recorder final : public lie::Observer {
 public:
-    struct Options {
-        bool reactions = false, log_steps = false;
-    };
+    /// Makes the sinks that the options of the run request. io::UsageError.
+    Recorder(const RunSetup& run, lie::Integrator& integrator);
 
-    /// Creates the files in the directory. With a checkpoint, truncates them to the lengths stated there and
-    /// restores the counters and the pivots of the integrator. io::IoError.
-    Recorder(const dae::Model& model, lie::Integrator& integrator, const lie::TimeGrid& grid,
-             const std::string& directory, const Options& options, const std::optional<Checkpoint>& from);
-    Recorder(const Recorder&) = delete;
-    Recorder& operator=(const Recorder&) = delete;
+    /// Opens the sinks and starts to measure times. With a checkpoint, continues the sinks and restores the counters
+    /// and the pivots of the integrator. io::IoError.
+    void open(const std::optional<Checkpoint>& from);
+    /// lie::NumericalFailure "constraint_drift" at the first node where a constraint row that was dropped as
+    /// redundant is violated.
+    void accepted(const lie::State& x, long n, int iterations) override;
+    /// PivotNode, and this object
+    std::vector<lie::Observer*> observers() { return {&pivots, this}; }
 
-    /// The observers of the time integration. To be called directly before it starts.
-    std::vector<lie::Observer*> observers();
     /// Counters of the whole run, including the part before the checkpoint
     lie::Statistics statistics() const;
-    const Invariants& invariants() const { return trajectory.invariants; }
-
     /// Synchronises the files with the disk and returns a checkpoint of the current node. The caller sets the
     /// members `settings` and `wall_seconds`.
     Checkpoint checkpoint(const lie::March& march);
-    /// Writes all buffered rows. io::IoError.
-    void flush();
+    /// Ends all files. io::IoError.
+    void close() { sinks.close(); }
+    std::vector<std::string> files() const { return sinks.files(); }
+
+    Invariants invariants;
 
 private:
+    using Clock = std::chrono::steady_clock;
+
+    const dae::Model& model;
+    const lie::TimeGrid& grid;
     lie::Integrator& integrator;
-    io::OutputFile trajectory_file;
-    std::optional<io::OutputFile> steps_file;
-    TrajectoryCsv trajectory;
-    std::optional<StepsCsv> steps;
+    io::Sinks<RunSetup> sinks;
+    std::vector<const contact::EvolvingContact*> contacts;
     PivotNode pivots;
     lie::Statistics earlier_statistics;  ///< of the part of the run before the checkpoint
+    /// Cost of the step that ends at the current node. The node is passed on after the following step, because
+    /// schemes with staggered velocities fill the node only then.
+    StepCost last;
+    long factorizations = 0;
+    Clock::time_point since;
 };
 
 }  // namespace hilda::studies

@@ -2,9 +2,10 @@
 #include "studies/running/single_run.hpp"
 
 #include "contact/evolving/unilateral.hpp"
+#include "io/archive.hpp"
 #include "io/files.hpp"
-#include "io/interrupt.hpp"
 #include "io/message.hpp"
+#include "io/program.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
@@ -59,16 +60,15 @@ std::string rounded_down(double positive)
 }  // namespace
 
 SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory)
-    : options(options), scheme(scheme), directory(std::move(directory))
+    : Verbosity{options.quiet, options.verbose}, options(options), scheme(scheme),
+      directory(std::move(directory))
 {}
 
 bool SingleRun::has_ended(const std::string& directory)
 {
     std::error_code error;
-    const std::filesystem::path in(directory);
-    return std::filesystem::exists(in / "summary.json", error) &&
-           !std::filesystem::exists(in / "checkpoint", error) &&
-           !std::filesystem::exists(in / "checkpoint.1", error);
+    return std::filesystem::exists(directory + "/summary.json", error) &&
+           !io::CheckpointFiles(directory).exist();
 }
 
 RunResult SingleRun::execute()
@@ -79,18 +79,26 @@ RunResult SingleRun::execute()
     integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
     const std::unique_ptr<lie::Integrator> integrator =
         contact::make_integrator(*description.model, scheme, integrator_settings);
+    Recorder recorder({.model = *description.model,
+                       .model_name = description.name,
+                       .grid = grid,
+                       .end = result.end,
+                       .directory = directory,
+                       .options = options.outputs,
+                       .warn = [this](const std::string& what) { warn(what); }},
+                      *integrator);
     const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
     check_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
-    march(*integrator, from);
+    march(*integrator, recorder, from);
     if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
         for (const contact::ContactEvent& e : events->events())
             if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
                      event_name(e.type), e.speed});
-    finish();
+    finish(recorder);
     return std::move(result);
 }
 
@@ -134,32 +142,15 @@ void SingleRun::read()
     result.command_line = options.command_line;
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
-    result.files = {"model.json", "trajectory.csv"};
-    if (options.log_steps) result.files.emplace_back("steps.csv");
-    if (options.vtk) prepare_frames();
     settings = fmt::format(
         "model {:016x}, integrator {}, step {}, end {}, interval {}, tolerance {}, linear solver {}, rho "
-        "{}{}{}{}{}",
-        hash(description.text), scheme.name, grid.h, result.end, result.interval, options.settings.tolerance,
-        static_cast<int>(options.settings.linear_solver), options.settings.rho_infinity,
-        options.settings.reparametrise ? ", --reparametrise" : "",
-        options.fix_initial ? ", --fix-initial" : "", options.reactions ? ", --reactions" : "",
-        options.log_steps ? ", --log-steps" : "");
-}
-
-void SingleRun::prepare_frames()
-{
-    const lie::TimeGrid at = lie::TimeGrid::over(result.end, grid.h, *options.vtk);
-    if (at.steps / at.interval + 2 > Snapshots::max_frames)
-        throw io::UsageError(fmt::format("run: --vtk {} gives {} frames, more than {}", *options.vtk,
-                                         at.steps / at.interval + 1, Snapshots::max_frames));
-    const double spacing = static_cast<double>(at.interval) * at.h;
-    if (spacing > *options.vtk * (1 + 1e-9))
-        warn(fmt::format("--vtk {} is not a multiple of the step: frames are {:.12g} s apart", *options.vtk,
-                         spacing));
-    frames.emplace(*description.model, at);
-    if (!frames->has_contacts())
-        throw io::UsageError("run: --vtk shows bodies in contact; " + description.name + " has no contacts");
+        "{}{}{}",
+        io::checksum(description.text.data(), description.text.size()), scheme.name, grid.h, result.end,
+        result.interval, options.settings.tolerance, static_cast<int>(options.settings.linear_solver),
+        options.settings.rho_infinity, options.settings.reparametrise ? ", --reparametrise" : "",
+        options.fix_initial ? ", --fix-initial" : "");
+    for (const auto& [option, text] : options.outputs)
+        settings += ", " + option + (text.empty() ? "" : ' ' + text);
 }
 
 // A resumed run was checked when it started: it only gives a warning.
@@ -189,12 +180,16 @@ std::optional<Checkpoint> SingleRun::load_checkpoint() const
     if (has_ended(directory))
         throw io::UsageError(directory +
                              ": has no checkpoint, and its run is complete; --force starts it again");
-    std::optional<Checkpoint> found = load(directory);
+    std::optional<Checkpoint> found;
+    io::CheckpointFiles(directory).load([&](const std::string& bytes, const std::string& file) {
+        found = from_bytes(bytes, file);
+        if (found->settings != settings)
+            throw io::UsageError(
+                fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})",
+                            directory, found->settings, settings));
+        check_fits(*found, *description.model, description.x, file);
+    });
     if (!found) warn(directory + ": has no checkpoint; starting from the initial state");
-    if (found && found->settings != settings)
-        throw io::UsageError(
-            fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})", directory,
-                        found->settings, settings));
     return found;
 }
 
@@ -202,31 +197,29 @@ std::optional<Checkpoint> SingleRun::load_checkpoint() const
 void SingleRun::clear_directory() const
 {
     io::make_directory(directory);
-    remove_checkpoints(directory);
-    Snapshots::remove(directory, "run");
-    for (const char* file : {"summary.json", "trajectory.csv", "steps.csv", "trajectory.png"})
-        std::remove(path(file).c_str());
+    io::CheckpointFiles(directory).remove();
+    io::Sinks<RunSetup>::remove(directory);
+    for (const char* file : {"summary.json", "trajectory.png"}) std::remove(path(file).c_str());
     io::write_file(path("model.json"),
                    description.text.ends_with('\n') ? description.text : description.text + '\n');
 }
 
-void SingleRun::march(lie::Integrator& integrator, const std::optional<Checkpoint>& from)
+void SingleRun::march(lie::Integrator& integrator, Recorder& recorder, const std::optional<Checkpoint>& from)
 {
-    Recorder recorder(*description.model, integrator, grid, directory,
-                      {.reactions = options.reactions, .log_steps = options.log_steps}, from);
     lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
                             : lie::March(description.x, integrator, grid.h);
     if (from) {
         earlier_seconds = from->wall_seconds;
         result.resumed_at = from->number;
     }
+    recorder.open(from);
     begin = Clock::now();
     // A checkpoint at the start, so that the run can be resumed at any time.
     if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
     advance(march, integrator, recorder);
     last_node = march.node().t;
-    result.invariants = recorder.invariants();
-    recorder.flush();
+    result.invariants = recorder.invariants;
+    recorder.close();
     check_contacts();
 }
 
@@ -259,8 +252,7 @@ void SingleRun::check_contacts()
 
 void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
 {
-    std::vector<lie::Observer*> observers = recorder.observers();
-    if (frames) observers.push_back(&*frames);
+    const std::vector<lie::Observer*> observers = recorder.observers();
     Progress line(options.quiet, result.end, grid.steps, march.number());
     const bool watch_clock = line.shown() || options.checkpoint > 0;
     Clock::time_point saved = Clock::now();
@@ -306,7 +298,7 @@ void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
     Checkpoint c = recorder.checkpoint(march);
     c.settings = settings;
     c.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
-    save(c, directory);
+    io::CheckpointFiles(directory).save(to_bytes(std::move(c)));
     log(fmt::format("checkpoint at step {}", march.number()));
 }
 
@@ -328,27 +320,15 @@ void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& m
     if (!d.detail.empty()) io::message("  " + d.detail + '\n');
 }
 
-void SingleRun::finish()
+void SingleRun::finish(const Recorder& recorder)
 {
+    result.files = recorder.files();
+    result.files.insert(result.files.begin(), "model.json");
     result.files.emplace_back("summary.json");
-    if (result.status == "ok") remove_checkpoints(directory);
+    if (result.status == "ok") io::CheckpointFiles(directory).remove();
     if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
-    if (frames) {
-        frames->snapshots.write(directory, "run");
-        result.files.emplace_back("run.pvd");
-    }
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
     io::write_file(path("summary.json"), summary(result).text());
-}
-
-void SingleRun::log(const std::string& what) const
-{
-    if (options.verbose && !options.quiet) io::message("hilda: " + what + '\n');
-}
-
-void SingleRun::warn(const std::string& what) const
-{
-    if (!options.quiet) io::warning(what);
 }
 
 }  // namespace hilda::studies

@@ -4,11 +4,11 @@
 #pragma once
 
 #include "dae/model_file.hpp"
+#include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/running/checkpoint.hpp"
-#include "studies/running/model_frames.hpp"
 #include "studies/running/progress.hpp"
 #include "studies/running/recorder.hpp"
 #include "studies/running/summary.hpp"
@@ -22,7 +22,7 @@ class Integrator;
 
 namespace hilda::studies {
 
-class SingleRun {
+class SingleRun : private io::Verbosity {
 public:
     /// Options and scheme must outlive this object.
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
@@ -39,29 +39,25 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void read();
-    void prepare_frames();
     /// io::UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
     /// force has internal state variables.
     void check_step(bool resumed) const;
     std::optional<Checkpoint> load_checkpoint() const;
     void clear_directory() const;
-    void march(lie::Integrator& integrator, const std::optional<Checkpoint>& from);
+    void march(lie::Integrator& integrator, Recorder& recorder, const std::optional<Checkpoint>& from);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
     void check_contacts();
     void failed(const lie::NumericalFailure& failure, const lie::March& march);
-    void finish();
+    void finish(const Recorder& recorder);
 
     std::string path(const std::string& file) const { return directory + '/' + file; }
-    void log(const std::string& what) const;
-    void warn(const std::string& what) const;
 
     const RunOptions& options;
     const lie::Scheme& scheme;
     const std::string directory;
     dae::Description description;
-    std::optional<ModelFrames> frames;
     lie::TimeGrid grid;
     std::string settings;
     double last_node = 0;  ///< time of the last accepted node [s]

@@ -6,7 +6,7 @@
 #include "dae/start.hpp"
 #include "io/json.hpp"
 #include "lie/statistics.hpp"
-#include "studies/running/csv_trajectory.hpp"
+#include "studies/running/invariants.hpp"
 
 #include <iosfwd>
 #include <string>

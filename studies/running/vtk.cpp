@@ -2,13 +2,12 @@
 #include "studies/running/vtk.hpp"
 
 #include "dae/body.hpp"
-#include "io/csv.hpp"
 #include "io/files.hpp"
+#include "io/vtk.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -26,60 +25,34 @@ const Motion& motion(const std::vector<Motion>& bodies, int b)
     return b < 0 ? at_rest : bodies[b];
 }
 
-std::string escaped(const std::string& name)
-{
-    constexpr std::string_view special = "&<>\"";
-    constexpr std::string_view as[] = {"&amp;", "&lt;", "&gt;", "&quot;"};
-    std::string xml;
-    for (const char& c : name) {
-        const size_t k = special.find(c);
-        xml += k < special.size() ? as[k] : std::string_view(&c, 1);
-    }
-    return xml;
-}
-
 std::string frame_file(const std::string& name, size_t k) { return fmt::format("vtk/{}-{:06}.vtp", name, k); }
 
-/// A <DataArray> element
-template <class Number>
-struct Array {
-    std::string name;
-    int components;
-    std::string text = {};
+/// The components of vectors. Some readers fail at denormal numbers.
+struct Vectors {
+    std::vector<float> components;
 
-    void add(Number x)
-    {
-        char digits[32];
-        text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr) += ' ';
-    }
     void add(const Vec3& v)
     {
-        constexpr double least = std::numeric_limits<Number>::min();  // some readers fail at denormal numbers
-        for (const double x : v) add(std::abs(x) < least ? 0 : static_cast<Number>(x));
-    }
-    std::string xml() const
-    {
-        return fmt::format(
-            "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n{}\n"
-            "</DataArray>\n",
-            std::is_integral_v<Number> ? "Int32" : "Float32", name, components, text);
+        for (const double x : v)
+            components.push_back(std::abs(x) < std::numeric_limits<float>::min() ? 0 : static_cast<float>(x));
     }
 };
-using Numbers = Array<int>;
-using Vectors = Array<float>;
 
 /// Cells, by the numbers of their points
 struct Cells {
-    Numbers connectivity = {"connectivity", 1}, offsets = {"offsets", 1};
-    int count = 0, ends = 0;
+    std::vector<int> connectivity, offsets;
 
     void add(const std::vector<int>& points, int first)
     {
-        for (const int k : points) connectivity.add(first + k);
-        offsets.add(ends += static_cast<int>(points.size()));
-        ++count;
+        for (const int k : points) connectivity.push_back(first + k);
+        offsets.push_back(static_cast<int>(connectivity.size()));
     }
-    std::string xml() const { return connectivity.xml() + offsets.xml(); }
+    void write(const char* section, io::VtkPolyData& to) const
+    {
+        to.section(section);
+        to.array("connectivity", 1, connectivity);
+        to.array("offsets", 1, offsets);
+    }
 };
 
 }  // namespace
@@ -172,8 +145,8 @@ std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
 
 std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes)
 {
-    Vectors points{"Points", 3}, velocities{"velocity", 3}, N{"normal_force", 3}, F{"friction", 3};
-    Numbers slipping{"slipping", 1}, rolling{"rolling", 1}, body{"body", 1}, contact{"contact", 1};
+    Vectors points, velocities, N, F;
+    std::vector<int> slipping, rolling, body, contact;
     Cells vertices, polygons;  // VTK expects cell data in this order
     int count = 0;
     for (const ContactData& t : now.contacts) {
@@ -182,10 +155,10 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
         velocities.add(dae::velocity_at(b, t.C - b.r));
         N.add(t.N);
         F.add(t.F);
-        slipping.add(t.slipping);
-        rolling.add(t.rolling);
-        body.add(t.i);
-        contact.add(t.contact);
+        slipping.push_back(t.slipping);
+        rolling.push_back(t.rolling);
+        body.push_back(t.i);
+        contact.push_back(t.contact);
         vertices.add({0}, count++);
     }
     for (const BodyMesh& piece : body_meshes) {
@@ -196,42 +169,69 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
             velocities.add(dae::velocity_at(b, p - b.r));
             N.add(Vec3::Zero());
             F.add(Vec3::Zero());
-            slipping.add(0);
-            rolling.add(0);
+            slipping.push_back(0);
+            rolling.push_back(0);
         }
         for (const std::vector<int>& polygon : piece.mesh.polygon) {
-            body.add(piece.body);
-            contact.add(-1);
+            body.push_back(piece.body);
+            contact.push_back(-1);
             polygons.add(polygon, count);
         }
         count += static_cast<int>(piece.mesh.point.size());
     }
-    return fmt::format(
-        "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
-        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-        "NumberOfPolys=\"{}\">\n"
-        "<PointData>\n{}{}{}{}{}</PointData>\n<CellData>\n{}{}</CellData>\n<Points>\n{}</Points>\n"
-        "<Verts>\n{}</Verts>\n<Polys>\n{}</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n",
-        count, vertices.count, polygons.count, velocities.xml(), N.xml(), F.xml(), slipping.xml(),
-        rolling.xml(), body.xml(), contact.xml(), points.xml(), vertices.xml(), polygons.xml());
+    io::VtkPolyData file(io::VtkEncoding::ascii, {{"NumberOfPoints", static_cast<size_t>(count)},
+                                                  {"NumberOfVerts", vertices.offsets.size()},
+                                                  {"NumberOfLines", 0},
+                                                  {"NumberOfStrips", 0},
+                                                  {"NumberOfPolys", polygons.offsets.size()}});
+    file.section("PointData");
+    file.array("velocity", 3, velocities.components);
+    file.array("normal_force", 3, N.components);
+    file.array("friction", 3, F.components);
+    file.array("slipping", 1, slipping);
+    file.array("rolling", 1, rolling);
+    file.section("CellData");
+    file.array("body", 1, body);
+    file.array("contact", 1, contact);
+    file.section("Points");
+    file.array("Points", 3, points.components);
+    vertices.write("Verts", file);
+    polygons.write("Polys", file);
+    return file.text();
 }
 
 void Snapshots::write(const std::string& directory, const std::string& name) const
 {
     io::make_directory(directory + "/vtk");
     const std::vector<BodyMesh> all = body_meshes();
-    std::string list =
-        "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+    std::vector<std::pair<double, std::string>> files;
     for (size_t k = 0; k < frames.size(); ++k) {
-        const std::string file = frame_file(name, k);
-        io::write_file(directory + '/' + file, poly_data(frames[k], all));
-        list += "<DataSet timestep=\"";
-        io::append_number(list, frames[k].t);
-        list += "\" part=\"0\" file=\"" + escaped(file) + "\"/>\n";
+        files.emplace_back(frames[k].t, frame_file(name, k));
+        io::write_file(directory + '/' + files.back().second, poly_data(frames[k], all));
     }
-    io::write_file(directory + '/' + name + ".pvd", list + "</Collection>\n</VTKFile>\n");
+    io::write_file(directory + '/' + name + ".pvd", io::vtk_collection(io::VtkEncoding::ascii, files));
+}
+
+void Snapshots::transfer(io::Archive& a)
+{
+    size_t count = frames.size();
+    a.count(count, sizeof(double));
+    frames.resize(count);
+    for (Frame& frame : frames) {
+        a.value(frame.t);
+        a.list(frame.body);
+        for (const BodySurface& s : surfaces)
+            a.check(s.body < static_cast<int>(frame.body.size()), "a frame with too few bodies");
+        size_t contacts = frame.contacts.size();
+        a.count(contacts, 2 * sizeof(int));
+        frame.contacts.resize(contacts);
+        for (ContactData& c : frame.contacts) {
+            a.value(c.contact), a.value(c.i), a.value(c.slipping), a.value(c.rolling);
+            for (Vec3* v : {&c.C, &c.N, &c.F})
+                for (double& x : *v) a.value(x);
+            a.check(c.i >= -1 && c.i < static_cast<int>(frame.body.size()), "unknown body in a frame");
+        }
+    }
 }
 
 void Snapshots::remove(const std::string& directory, const std::string& name)

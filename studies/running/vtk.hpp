@@ -5,6 +5,7 @@
 
 #include "contact/compliant/contact.hpp"
 #include "contact/tessellation.hpp"
+#include "io/archive.hpp"
 
 #include <string>
 #include <vector>
@@ -59,6 +60,8 @@ public:
     /// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., then DIR/NAME.pvd with the list of files and times.
     /// io::IoError.
     void write(const std::string& directory, const std::string& name) const;
+    /// Writes the frames to a checkpoint, or reads them.
+    void transfer(io::Archive& a);
     /// Removes the files of an earlier write() with this name.
     static void remove(const std::string& directory, const std::string& name);
 

@@ -115,6 +115,14 @@ def main():
                                          stderr=subprocess.PIPE, text=True, env=runs.environment)
                 expect(process.returncode == 5 and "standard output: cannot be written" in process.stderr, f"{process.returncode}: {process.stderr}")
 
+        # standard output on a full disk
+        for arguments in (("short.json", "--output", "stdout", "--force", "--json"), ("head-on",)):
+            with open("/dev/full", "w") as full:
+                process = subprocess.run([sys.argv[1], *arguments], cwd=here, stdout=full, stderr=subprocess.PIPE, text=True,
+                                         env=runs.environment)
+            expect(process.returncode == 5 and process.stderr.endswith("hilda: error: standard output: cannot be written\n"),
+                   f"{process.returncode}: {process.stderr}")
+
         # a full disk
         process = subprocess.run([sys.argv[1], "short.json", "--output", "full", "--quiet", "--threads", "1"], cwd=here,
                                  capture_output=True, text=True, env=runs.environment,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Text of numbers, names and command lines, and the checksum.
-#include "io/checksum.hpp"
+#include "io/archive.hpp"
 #include "io/csv.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"

@@ -4,9 +4,12 @@
 #include "tests/support/grains.hpp"
 
 #include "granular/case/case_file.hpp"
+#include "io/archive.hpp"
 #include "io/error.hpp"
 
 #include <catch2/catch.hpp>
+
+#include <cstring>
 
 using namespace hilda;
 using namespace hilda::tests;
@@ -75,4 +78,35 @@ TEST_CASE("a checkpoint with a wrong bit or a wrong length is rejected", "[granu
         CHECK_THROWS_AS(c.world->from_bytes(wrong, "run", "checkpoint"), io::IoError);
     }
     CHECK_NOTHROW(c.world->from_bytes(bytes, "run", "checkpoint"));
+}
+
+// The checksum of such a file is right: only the validation of the values rejects it.
+TEST_CASE("a checkpoint with an invalid index, number or length is rejected", "[granular][checkpoint]")
+{
+    auto c = granular::read_case(bed, "bed");
+    c.world->step(4000);
+    const std::string bytes = c.world->to_bytes("run");
+    constexpr std::size_t header = 24, sum_bytes = 8;
+    unsigned seed = 3;
+    const auto random = [&] { return seed = seed * 1664525u + 1013904223u; };
+    int rejected = 0;
+    for (int k = 0; k < 300; ++k) {
+        std::string wrong = bytes;
+        const std::size_t words = (bytes.size() - header - sum_bytes) / 4;
+        const std::size_t at =
+            header + 4 * ((random() >> 4) % (k < 150 ? std::min<std::size_t>(words, 200) : words));
+        const std::uint32_t value = k % 3 == 0 ? 0xffffffffu : k % 3 == 1 ? 0x7fc00000u : 0x7fffffffu;
+        std::memcpy(wrong.data() + at, &value, sizeof value);
+        const std::uint64_t sum = io::checksum(wrong.data(), wrong.size() - sum_bytes);
+        std::memcpy(wrong.data() + wrong.size() - sum_bytes, &sum, sum_bytes);
+        auto other = granular::read_case(bed, "bed");
+        try {
+            other.world->from_bytes(wrong, "run", "checkpoint");
+            other.world->step(2);
+        } catch (const io::IoError&) {
+            ++rejected;
+        } catch (const io::NumericalFailure&) {  // a valid state that is not the saved one
+        }
+    }
+    CHECK(rejected > 100);
 }

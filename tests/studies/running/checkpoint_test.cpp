@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/checkpoint.hpp"
+
+#include "dae/model_file.hpp"
+#include "io/archive.hpp"
+#include "studies/framework/problem.hpp"
 #include "tests/studies/program.hpp"
 
 #include <catch2/catch.hpp>
@@ -28,8 +32,7 @@ Checkpoint some_checkpoint()
     c.statistics = {100, 250, 3, 97, 0};
     c.invariants = {100, 11, 1.5, 1.25, 0.25, 1e-12, 1e-15, {{1, 2, 3e-15}, {-4, 5, 6}}};
     c.last_step = {1, 2000, 3e-11};
-    c.trajectory_bytes = 12345;
-    c.steps_bytes = 678;
+    c.sinks = {{"trajectory", "12345"}, {"steps", std::string("67\0", 3)}};
     c.wall_seconds = 0.5;
     return c;
 }
@@ -54,7 +57,7 @@ TEST_CASE("a checkpoint is read as it was written", "[studies][checkpoint]")
     REQUIRE(back.invariants.contact.size() == 2);
     CHECK(back.invariants.contact[1].F_N_least == -4);
     CHECK(back.last_step.correction == c.last_step.correction);
-    CHECK(back.trajectory_bytes == c.trajectory_bytes);
+    CHECK(back.sinks == c.sinks);
     CHECK(back.wall_seconds == c.wall_seconds);
 }
 
@@ -82,17 +85,51 @@ TEST_CASE("the last two checkpoints are stored", "[studies][checkpoint]")
 {
     const tests::Scratch in;
     const std::string directory = in.path.string();
-    CHECK_FALSE(load(directory));
+    const io::CheckpointFiles files(directory);
+    long loaded = 0;
+    const auto load = [&] {
+        return files.load([&](const std::string& bytes, const std::string& file) {
+            loaded = from_bytes(bytes, file).number;
+        });
+    };
+    CHECK_FALSE(load());
     Checkpoint c = some_checkpoint();
     for (const long number : {1, 2, 3}) {
         c.number = number;
-        save(c, directory);
-        CHECK(load(directory)->number == number);
+        files.save(to_bytes(c));
+        CHECK(load());
+        CHECK(loaded == number);
     }
     CHECK(from_bytes(tests::read(in / "checkpoint.1"), "file").number == 2);
 
     tests::fs::remove(in / "checkpoint");  // as after a kill between the two renamings
-    CHECK(load(directory)->number == 2);
-    remove_checkpoints(directory);
+    CHECK(load());
+    CHECK(loaded == 2);
+    files.remove();
     CHECK(tests::fs::is_empty(in.path));
+}
+
+TEST_CASE("a checkpoint that does not fit the model is rejected", "[studies][checkpoint]")
+{
+    dae::Description d = dae::read_model(problem("ball_in_bowl").model, "ball_in_bowl");
+    dae::start(d);
+    Checkpoint good;
+    good.node = d.x;
+    const auto check = [&](const Checkpoint& c) { check_fits(c, *d.model, d.x, "file"); };
+    CHECK_NOTHROW(check(good));
+    Checkpoint c = good;
+    c.node.body.emplace_back();
+    CHECK_THROWS_WITH(check(c), "file: the checkpoint does not fit the model: wrong length of the state");
+    c = good;
+    c.contacts.events = {{.contact = 1}};
+    CHECK_THROWS_AS(check(c), io::IoError);
+    c = good;
+    c.pivots.body.resize(3);
+    CHECK_THROWS_AS(check(c), io::IoError);
+    c = good;
+    c.number = -1;
+    CHECK_THROWS_AS(check(c), io::IoError);
+    c = good;
+    c.invariants.contact.resize(2);
+    CHECK_THROWS_AS(check(c), io::IoError);
 }

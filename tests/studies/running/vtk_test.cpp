@@ -424,6 +424,27 @@ TEST_CASE("a run rejects --vtk if it would write no frames", "[studies][vtk][run
         refused({"run", "rolling_ball", "--vtk", text}, "--vtk: must be a positive, finite number");
     refused({"run", "double_pendulum", "--vtk", "0.1"}, "double_pendulum has no contacts");
     refused({"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, "more than 1000000");
-    refused({"run", "rolling_ball", "--vtk", "0.1", "--checkpoint", "1"},
-            "--checkpoint and --resume exclude");
+}
+
+TEST_CASE("a killed and resumed run writes the frames of an uninterrupted run", "[studies][vtk][resume]")
+{
+    const Scratch in;
+    const std::vector<std::string> run = {"run", "rolling_ball", "--step", "1e-5",    "--end",
+                                          "0.5", "--vtk",        "0.05",   "--quiet", "--output"};
+    const auto with = [&](std::initializer_list<std::string> more) {
+        std::vector<std::string> all = run;
+        all.insert(all.end(), more);
+        return all;
+    };
+    REQUIRE(call(in, with({"whole"})).code == 0);
+    const tests::Program killed(in, with({"parts", "--checkpoint", "0.01"}));
+    REQUIRE(tests::appears(in / "parts/checkpoint.1"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    killed.send(SIGKILL);
+    if (killed.wait().code == 137) REQUIRE(call(in, with({"parts", "--resume"})).code == 0);
+    REQUIRE(files(in / "whole/vtk") == 11);
+    CHECK(files(in / "parts/vtk") == 11);
+    CHECK(tests::read(in / "parts/run.pvd") == tests::read(in / "whole/run.pvd"));
+    for (const auto& entry : tests::fs::directory_iterator(in / "whole/vtk"))
+        CHECK(tests::read(in / "parts/vtk" / entry.path().filename()) == tests::read(entry.path()));
 }

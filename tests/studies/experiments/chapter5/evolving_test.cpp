@@ -7,7 +7,7 @@
 #include "lie/schemes.hpp"
 #include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/running/contact_rows.hpp"
-#include "studies/running/csv_trajectory.hpp"
+#include "studies/running/invariants.hpp"
 #include "tests/studies/csv.hpp"
 #include "tests/studies/program.hpp"
 

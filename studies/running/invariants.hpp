@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// trajectory.csv, and extreme values over all nodes of a run.
+/// Extreme values over all nodes of a run.
 
 #pragma once
 
-#include "dae/start.hpp"
-#include "io/output_file.hpp"
-#include "lie/trajectory.hpp"
+#include "dae/model.hpp"
 #include "studies/running/contact_rows.hpp"
 
 #include <limits>
@@ -42,34 +40,10 @@ struct Invariants {
     double constraint_norm = 0;               ///< largest scaled residual, also of dropped rows [m or rad]
     double orthogonality = 0;                 ///< largest ‖AᵀA - I‖
     std::vector<ContactExtremes> contact;     ///< for each contact constraint
-};
 
-/// Writes the nodes that are output rows of the time grid, and updates the extreme values at each node.
-/// lie::NumericalFailure "constraint_drift" at the first node where a constraint row that was dropped as
-/// redundant is violated.
-class TrajectoryCsv final : public lie::Observer {
-public:
-    TrajectoryCsv(const dae::Model& model, const lie::TimeGrid& grid, io::OutputFile& file,
-                  bool with_reactions);
-
-    void write_header();
-    void accepted(const lie::State& x, long n, int iterations) override;
-
-    Invariants invariants;
-
-private:
-    void update_invariants(const lie::State& x, double energy, double constraint_norm);
-    void write_contacts(const lie::State& x);
-    bool has_friction(size_t k) const;
-
-    const dae::Model& model;
-    const lie::TimeGrid& grid;
-    io::OutputFile& file;
-    const bool with_reactions;
-    std::vector<const contact::EvolvingContact*> contacts;
-    std::vector<ContactForceElements> force_elements;  ///< of these contacts
-    lie::Rows C;
-    std::vector<dae::Reaction> reactions;
+    /// Includes a node. contacts: those of the model
+    void update(const dae::Model& model, const std::vector<const contact::EvolvingContact*>& contacts,
+                const lie::State& x, double energy, double constraint_norm);
 };
 
 }  // namespace hilda::studies

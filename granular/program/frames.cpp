@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// vtk/particles-*.vtp and vtk/run.pvd: the particles, for ParaView.
+
+#include "granular/program/sink.hpp"
+#include "granular/world/output.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
+#include "io/vtk.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::granular {
+
+namespace {
+
+std::string frame(long k) { return io::formatted("particles-%06ld.vtp", k); }
+
+class Frames final : public Sink {
+public:
+    explicit Frames(const CaseSetup& run)
+        : c(run.c), folder(run.directory + "/vtk/"), steps(run.steps_in(c.frame_interval))
+    {}
+
+    long interval() const override { return steps; }
+
+    void node(const World& w) override
+    {
+        io::make_directory(folder);
+        io::write_file(folder + frame(w.steps() / steps), particles_vtp(w));
+    }
+
+    /// Frames are missing if an earlier part of the run used --no-vtk.
+    void close() override
+    {
+        std::vector<std::pair<double, std::string>> frames;
+        for (long k = 0; k * steps <= c.world->steps(); ++k)
+            if (std::filesystem::exists(folder + frame(k)))
+                frames.emplace_back(static_cast<double>(k * steps) * c.h, frame(k));
+        if (!frames.empty())
+            io::write_file(folder + "run.pvd", io::vtk_collection(io::VtkEncoding::raw, frames));
+    }
+
+    std::vector<std::string> files() const override { return {"vtk/run.pvd"}; }
+
+private:
+    const Case& c;
+    const std::string folder;
+    const long steps;
+};
+
+const bool registered =
+    io::Registry<SinkType>::add({.name = "frames",
+                                 .options = {{.name = "--no-vtk", .help = "write no frames for ParaView"}},
+                                 .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
+                                     if (run.options.contains("--no-vtk")) return nullptr;
+                                     return std::make_unique<Frames>(run);
+                                 },
+                                 .remove =
+                                     [](const std::string& directory) {
+                                         const std::string folder = directory + "/vtk/";
+                                         std::remove((folder + "run.pvd").c_str());
+                                         for (long k = 0; std::remove((folder + frame(k)).c_str()) == 0;) ++k;
+                                     }});
+
+}  // namespace
+
+}  // namespace hilda::granular

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Checkpoints: binary archives of typed values, and the files of an output directory that hold them.
+
+#pragma once
+
+#include "io/error.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace hilda::io {
+
+/// 64-bit checksum: a variant of FNV-1a over words of eight bytes and the remaining single bytes, with an additional
+/// shift
+std::uint64_t checksum(const char* bytes, std::size_t count);
+
+/// Writes or reads values in a fixed order. One function serves both directions:
+///
+///     a.value(t), a.list(positions), a.value(count)
+///
+/// An archive with a format begins with eight letters, the version and the total length [byte], and ends with the
+/// checksum of all preceding bytes. Little endian. An archive without a format consists of the values alone.
+class Archive {
+public:
+    struct Format {
+        const char* letters;    ///< eight
+        std::uint64_t version;  ///< a file of another version is refused
+    };
+
+    /// Writes.
+    Archive() = default;
+    explicit Archive(const Format& format);
+    /// Reads. `file` is for the messages; the bytes must outlive the archive. IoError if the letters, the version,
+    /// the length or the checksum are wrong.
+    Archive(std::string_view bytes, std::string file) : in(bytes), file(std::move(file)), reading(true) {}
+    Archive(const Format& format, std::string_view bytes, std::string file);
+
+    bool reads() const { return reading; }
+    /// Name of the file in messages
+    const std::string& name() const { return file; }
+
+    template <class T>
+    void value(T& v)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        raw(&v, sizeof v);
+    }
+
+    /// The first n elements of a list; reading sets its length. Returns the length. The elements are plain data
+    /// without padding.
+    template <class List>
+    std::size_t list(List& values, std::size_t n)
+    {
+        using T = std::remove_reference_t<decltype(*values.data())>;
+        static_assert(std::is_trivially_destructible_v<T>);
+        count(n, sizeof(T));
+        if (reading) values.resize(static_cast<decltype(values.size())>(n));
+        raw(const_cast<void*>(static_cast<const void*>(values.data())), n * sizeof(T));
+        return n;
+    }
+    template <class List>
+    std::size_t list(List& values)
+    {
+        return list(values, static_cast<std::size_t>(values.size()));
+    }
+    void map(std::map<std::string, std::string>& entries);
+    /// The length of a list whose elements of at least `bytes` bytes follow
+    void count(std::size_t& n, std::size_t bytes);
+
+    /// IoError "FILE: the checkpoint is damaged: WHAT" if it reads and `valid` is false
+    void check(bool valid, const std::string& what) const
+    {
+        if (reading && !valid) throw damaged(what);
+    }
+    /// Ends reading: IoError if values are left.
+    void end() const { check(in.empty(), "unread bytes after the content"); }
+    /// Ends writing and returns the bytes.
+    std::string bytes();
+
+private:
+    void raw(void* at, std::size_t n);
+    IoError damaged(const std::string& what) const
+    {
+        return IoError(file + ": the checkpoint is damaged: " + what);
+    }
+
+    std::string out;      ///< written so far
+    std::string_view in;  ///< not yet read
+    std::string file;
+    bool reading = false, has_format = false;
+};
+
+/// The last checkpoint, `checkpoint`, and the one before it, `checkpoint.1`. At any time at least one of them is
+/// complete.
+class CheckpointFiles {
+public:
+    explicit CheckpointFiles(const std::string& directory)
+        : last(directory + "/checkpoint"), before(last + ".1")
+    {}
+
+    bool exist() const;
+    /// Writes `checkpoint`; the previous one becomes checkpoint.1. IoError.
+    void save(const std::string& bytes) const;
+    /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one before, with
+    /// a warning. Returns false if there is no checkpoint. IoError if none can be read.
+    bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
+    void remove() const;
+
+private:
+    std::string last, before;
+};
+
+}  // namespace hilda::io

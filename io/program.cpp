@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/program.hpp"
+
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <initializer_list>
+#include <iostream>
+
+namespace hilda::io {
+
+namespace {
+
+volatile std::sig_atomic_t signal_caught = 0;
+
+extern "C" void record_signal(int signal)
+{
+    if (signal_caught != 0) _exit(128 + signal);
+    signal_caught = signal;
+}
+
+void handle(void (*handler)(int))
+{
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+int run_program(const std::function<int()>& program)
+{
+    std::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG, and the message names the file
+    try {
+        const int code = program();
+        if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw IoError("standard output: cannot be written");
+        return code;
+    } catch (const std::exception& error) {
+        std::cout.flush();
+        return report(error);
+    }
+}
+
+void check_output_directory(const std::string& directory, bool accepted, const std::string& remedies)
+{
+    if (!is_missing_or_empty(directory) && !accepted)
+        throw UsageError(directory + ": is not empty; " + remedies);
+}
+
+void Verbosity::warn(const std::string& what) const
+{
+    if (!quiet) warning(what);
+}
+
+void Verbosity::log(const std::string& what) const
+{
+    if (verbose && !quiet) message("hilda: " + what + '\n');
+}
+
+Interrupt::Interrupt() { handle(record_signal); }
+Interrupt::~Interrupt() { handle(SIG_DFL); }
+int Interrupt::caught() { return signal_caught; }
+
+}  // namespace hilda::io

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What the main functions of the programs have in common.
+
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace hilda::io {
+
+/// Runs the program and returns its exit code. Reports an exception on stderr. IoError if standard output cannot be
+/// written. A file above the size limit of the process is an IoError as well, not a signal.
+int run_program(const std::function<int()>& program);
+
+/// Rejects an output directory that is not empty: UsageError unless `accepted`; IoError if it is not a directory.
+/// `remedies` is the end of the message.
+void check_output_directory(const std::string& directory, bool accepted, const std::string& remedies);
+inline constexpr const char* force_overwrites = "--force overwrites it";
+inline constexpr const char* force_or_resume = "--force overwrites it, --resume continues its run";
+
+/// Messages on stderr that --quiet and --verbose select
+struct Verbosity {
+    bool quiet = false, verbose = false;
+
+    void warn(const std::string& what) const;
+    /// Writes "hilda: WHAT" if `verbose`.
+    void log(const std::string& what) const;
+};
+
+/// Handling of SIGINT (Ctrl-C) and SIGTERM: the first signal requests the end of the run, the second
+/// terminates the process.
+///
+/// During the lifetime of an object of this class, the first SIGINT or SIGTERM is recorded and does not end
+/// the program.
+class Interrupt {
+public:
+    Interrupt();
+    ~Interrupt();
+    Interrupt(const Interrupt&) = delete;
+    Interrupt& operator=(const Interrupt&) = delete;
+
+    /// Number of the recorded signal, or 0
+    static int caught();
+};
+
+}  // namespace hilda::io

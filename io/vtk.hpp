@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// VTK XML files, for ParaView.
+
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hilda::io {
+
+enum class VtkEncoding {
+    ascii,  ///< the numbers within the XML elements, version 0.1
+    raw     ///< the bytes of the numbers after the XML elements, version 1.0
+};
+
+/// A file of the type PolyData (.vtp) with one piece
+class VtkPolyData {
+public:
+    /// counts: attributes of the piece, such as {"NumberOfPoints", 3}
+    VtkPolyData(VtkEncoding encoding, std::initializer_list<std::pair<const char*, std::size_t>> counts);
+
+    /// Begins a section: PointData, CellData, Points, Verts, Polys.
+    void section(const std::string& name);
+    /// Adds an array to the section, with `components` numbers for each point or cell.
+    /// Number: float, double or std::int32_t
+    template <class Number>
+    void array(const std::string& name, int components, const std::vector<Number>& values);
+    /// Ends the file and returns it.
+    std::string text();
+
+private:
+    void end_section();
+
+    const VtkEncoding encoding;
+    std::string xml, open_section, blocks;
+};
+
+/// A list of files with their times [s] (.pvd)
+std::string vtk_collection(VtkEncoding encoding, const std::vector<std::pair<double, std::string>>& files);
+
+}  // namespace hilda::io

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/archive.hpp"
+#include "io/files.hpp"
+#include "io/vtk.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+using namespace hilda;
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+constexpr io::Archive::Format format = {.letters = "HILDATST", .version = 3};
+
+struct Content {
+    double t = 0;
+    std::vector<int> list;
+    std::map<std::string, std::string> map;
+
+    void transfer(io::Archive& a) { a.value(t), a.list(list), a.map(map); }
+    bool operator==(const Content&) const = default;
+};
+
+std::string written()
+{
+    Content c{.t = 0.1, .list = {1, 2, 3}, .map = {{"a", "first"}, {"b", std::string("\0\1", 2)}, {"c", ""}}};
+    io::Archive a(format);
+    c.transfer(a);
+    return a.bytes();
+}
+
+Content read(const std::string& bytes, const io::Archive::Format& of = format)
+{
+    io::Archive a(of, bytes, "file");
+    Content c;
+    c.transfer(a);
+    a.end();
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("an archive is read as it was written, and a damaged one is rejected", "[io][archive]")
+{
+    const std::string good = written();
+    const Content c = read(good);
+    CHECK(c.t == 0.1);
+    CHECK(c.list == std::vector<int>{1, 2, 3});
+    CHECK(c.map.at("b") == std::string("\0\1", 2));
+    for (size_t k = 0; k < 8 * good.size(); ++k) {
+        std::string bad = good;
+        bad[k / 8] = static_cast<char>(bad[k / 8] ^ (1 << k % 8));
+        CHECK_THROWS_AS(read(bad), io::IoError);
+    }
+    for (size_t length = 0; length < good.size(); ++length)
+        CHECK_THROWS_AS(read(good.substr(0, length)), io::IoError);
+    CHECK_THROWS_WITH(read(good + "x"), Contains("file: the checkpoint is damaged: its length must be"));
+}
+
+TEST_CASE("an archive of another program or version is rejected with its version", "[io][archive]")
+{
+    CHECK_THROWS_WITH(read(written(), {.letters = "HILDATST", .version = 4}),
+                      "file: the checkpoint has format 3; this program reads format 4");
+    CHECK_THROWS_WITH(read(written(), {.letters = "HILDAXYZ", .version = 3}),
+                      Contains("the header is not that"));
+}
+
+TEST_CASE("a length in an archive is compared with its size, and unread values are an error", "[io][archive]")
+{
+    io::Archive wrong(format);
+    Content c;
+    wrong.value(c.t);
+    std::uint64_t most = ~std::uint64_t{0} / 4;  // the product with the size of an element overflows
+    wrong.value(most);
+    CHECK_THROWS_WITH(read(wrong.bytes()), Contains("invalid length of a list"));
+    io::Archive more(format);
+    c.transfer(more);
+    more.value(c.t);
+    CHECK_THROWS_WITH(read(more.bytes()), Contains("unread bytes"));
+}
+
+TEST_CASE("of two checkpoints the last complete one is read", "[io][archive]")
+{
+    const fs::path in = fs::temp_directory_path() / ("hilda-checkpoints-" + std::to_string(getpid()));
+    fs::create_directories(in);
+    const io::CheckpointFiles files(in.string());
+    std::string got;
+    const auto load = [&] {
+        return files.load([&](const std::string& bytes, const std::string& file) {
+            if (bytes == "damaged") throw io::IoError(file + ": is damaged");
+            got = bytes;
+        });
+    };
+    CHECK_FALSE(load());
+    for (const char* bytes : {"first", "second", "damaged"}) files.save(bytes);
+    CHECK((load() && got == "second"));
+    fs::remove(in / "checkpoint");  // as after a kill between the two renamings
+    CHECK((files.exist() && load() && got == "second"));
+    files.save("damaged"), files.save("damaged");
+    CHECK_THROWS_WITH(load(), Contains("/checkpoint: is damaged"));
+    files.remove();
+    CHECK(fs::is_empty(in));
+    fs::remove(in);
+}
+
+TEST_CASE("VTK files are written as text or with raw blocks", "[io][vtk]")
+{
+    const auto file = [](io::VtkEncoding encoding) {
+        io::VtkPolyData f(encoding, {{"NumberOfPoints", 1}});
+        f.section("PointData");
+        f.array("id", 1, std::vector<std::int32_t>{7});
+        f.section("Points");
+        f.array("Points", 3, std::vector<float>{0.5, 1, -2});
+        return f.text();
+    };
+    CHECK(
+        file(io::VtkEncoding::ascii) ==
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+        "<PolyData>\n<Piece NumberOfPoints=\"1\">\n<PointData>\n"
+        "<DataArray type=\"Int32\" Name=\"id\" NumberOfComponents=\"1\" format=\"ascii\">\n7 \n</DataArray>\n"
+        "</PointData>\n<Points>\n"
+        "<DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">\n0.5 1 -2 \n"
+        "</DataArray>\n</Points>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    const std::string raw = file(io::VtkEncoding::raw);
+    CHECK_THAT(raw, Contains("header_type=\"UInt64\""));
+    CHECK_THAT(raw, Contains("Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" offset=\"12\"/>"));
+    CHECK(raw.find(std::string("\n_\4\0\0\0\0\0\0\0\7\0\0\0\14\0\0\0", 18)) != std::string::npos);
+    CHECK_THAT(io::vtk_collection(io::VtkEncoding::raw, {{0.1, "a&b.vtp"}}),
+               Contains("<DataSet timestep=\"0.1\" file=\"a&amp;b.vtp\"/>"));
+}

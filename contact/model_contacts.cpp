@@ -122,7 +122,7 @@ struct ConstraintNormal {
     std::shared_ptr<const NormalLaw> fallback;  ///< nullptr if there is none
 };
 
-ConstraintNormal read_constraint_normal(ObjectReader& o)
+ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair& pair)
 {
     ConstraintNormal settings;
     Unilateral& unilateral = settings.unilateral;
@@ -140,8 +140,13 @@ ConstraintNormal read_constraint_normal(ObjectReader& o)
         unilateral.impact = Unilateral::Impact::poisson;
     if (!unilateral.enabled && o.has("impact"))
         o.fail("impact", "impact needs \"unilateral\": true, got a bilateral contact");
-    if (o.one_of("rows", {"tangent", "fixed-xy"}, "tangent") == "fixed-xy")
-        settings.rows = EvolvingContact::NormalRows::fixed_xy;
+    std::string rows = o.one_of("rows", {"tangent", "fixed-xy"}, "tangent");
+    if (!pair.normal_rows.empty()) {
+        rows = pair.normal_rows;
+        o.record("rows", rows);
+        pair.changes.push_back(o.pointer("rows") + '=' + rows);
+    }
+    if (rows == "fixed-xy") settings.rows = EvolvingContact::NormalRows::fixed_xy;
     if (o.has("fallback")) {
         ObjectReader law = o.object("fallback");
         settings.fallback = read_normal(law, law.one_of("type", {"hertz", "hooke"}));
@@ -206,7 +211,7 @@ void check_smooth(const ObjectReader& o, std::string_view key, const Shape& shap
 void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& pair, const Shape& i,
                   const Shape& j)
 {
-    const ConstraintNormal settings = read_constraint_normal(normal);
+    const ConstraintNormal settings = read_constraint_normal(normal, pair);
     o.record("normal", normal.finish());
     const ConstraintFriction friction = read_constraint_friction(o, settings);
     check_smooth(o, "surface_i", i);

@@ -30,7 +30,9 @@ Mat3 inertia(ObjectReader& o)
 
 class ModelReader final : public BodyFinder {
 public:
-    ModelReader(const JsonSource& source, Description& out) : source(source), out(out), model(*out.model) {}
+    ModelReader(const JsonSource& source, const std::string& normal_rows, Description& out)
+        : source(source), normal_rows(normal_rows), out(out), model(*out.model)
+    {}
 
     void read()
     {
@@ -254,14 +256,22 @@ private:
         ObjectReader o(source, v, at);
         const std::string name = unique_name(o, "contact", contact_names);
         const auto [i, j] = pair(o);
-        o.located(
-            [&, i = i, j = j] { read(o, {.name = name, .i = i, .j = j, .model = model, .start = out.x}); });
+        o.located([&, i = i, j = j] {
+            read(o, {.name = name,
+                     .i = i,
+                     .j = j,
+                     .model = model,
+                     .start = out.x,
+                     .normal_rows = normal_rows,
+                     .changes = out.changes});
+        });
         out.force_place.resize(model.forces().size(), o.place());
         out.general_place.resize(model.general_constraints().size(), o.place());
         return o.finish();
     }
 
     const JsonSource& source;
+    const std::string& normal_rows;
     Description& out;
     Model& model;
     std::map<std::string, int> by_name;
@@ -274,17 +284,20 @@ private:
 
 }  // namespace
 
-Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set)
+Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set,
+                       const std::string& normal_rows)
 {
     JsonSource source{std::string(text), file};
     for (const std::string& change : set) source.set(change);
     Description description;
     description.model = std::make_unique<Model>();
-    ModelReader(source, description).read();
+    description.changes.assign(set.begin(), set.end());
+    ModelReader(source, normal_rows, description).read();
     return description;
 }
 
-Description load_model(const std::string& path, std::span<const std::string> set)
+Description load_model(const std::string& path, std::span<const std::string> set,
+                       const std::string& normal_rows)
 {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -300,7 +313,7 @@ Description load_model(const std::string& path, std::span<const std::string> set
     if (error || !in.read(text.data(), static_cast<std::streamsize>(size)))
         throw lie::InvalidInput(
             path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
-    return read_model(text, path, set);
+    return read_model(text, path, set, normal_rows);
 }
 
 StartReport start(Description& description, const StartOptions& options)

@@ -18,6 +18,9 @@ struct Description {
     std::unique_ptr<Model> model;
     State x;
     std::string text;  ///< canonical form of the model: JSON with defaults filled in and --set applied
+    /// Changes of the text by the arguments of the reader: `set`, then /contacts/K/normal/rows=ROWS for each contact K
+    /// to which `normal_rows` applies
+    std::vector<std::string> changes;
     std::vector<std::string> warnings;  ///< one line each, with the location
     std::vector<std::string>
         constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint
@@ -27,15 +30,18 @@ struct Description {
 
 /// Reads a model from a text. `file` is the file name used in messages. Each element of `set` has the form
 /// "/json/pointer=VALUE" and changes one value, or adds a key, before the model is built. A VALUE that is not
-/// valid JSON is taken as a string.
+/// valid JSON is taken as a string. `normal_rows` replaces the key "rows" of all contact constraints: tangent or
+/// fixed-xy; "": as in the text.
 ///
 /// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for invalid
 /// syntax, for unknown, missing and duplicate keys, and for invalid types, ranges, names and expressions.
-Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {});
+Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {},
+                       const std::string& normal_rows = "");
 
 /// Reads a model from a regular file of at most 64 MiB. Throws lie::InvalidInput without a line number if the
 /// file cannot be read.
-Description load_model(const std::string& path, std::span<const std::string> set = {});
+Description load_model(const std::string& path, std::span<const std::string> set = {},
+                       const std::string& normal_rows = "");
 
 /// Calls start() for the model and adds the location in the file to the messages of its exceptions.
 StartReport start(Description& description, const StartOptions& options = {});

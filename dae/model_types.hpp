@@ -92,6 +92,8 @@ struct ContactPair {
     int i, j;
     Model& model;
     const State& start;
+    const std::string& normal_rows;     ///< argument of read_model()
+    std::vector<std::string>& changes;  ///< of Description, for each contact to which normal_rows applies
 };
 
 /// Reads an element of "contacts", except for the keys name, body_i and body_j, and adds its forces and

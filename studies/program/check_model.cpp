@@ -234,8 +234,7 @@ io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body
 
 int check_model(const CheckOptions& options)
 {
-    dae::Description d =
-        named_model(options.model, normal_rows(options.model, options.set, options.normal_rows));
+    dae::Description d = named_model(options.model, options.set, options.normal_rows);
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
     const dae::Model& model = *d.model;

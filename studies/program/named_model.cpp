@@ -4,7 +4,6 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
-#include "io/json_source.hpp"
 #include "studies/framework/problem.hpp"
 
 #include <algorithm>
@@ -31,28 +30,20 @@ bool is_model_path(const std::string& name_or_path)
            (!is_built_in(name_or_path) && fs::exists(name_or_path, error));
 }
 
-dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set)
+dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set,
+                             const std::string& normal_rows)
 {
-    if (is_model_path(name_or_path)) return dae::load_model(name_or_path, set);
-    const Problem built_in = problem(name_or_path);
-    return dae::read_model(built_in.model, built_in.name, set);
-}
-
-std::vector<std::string> normal_rows(const std::string& name_or_path, const std::vector<std::string>& set,
-                                     const std::string& rows)
-{
-    std::vector<std::string> with = set;
-    if (rows.empty()) return with;
-    const dae::Description d = named_model(name_or_path, set);
-    const io::JsonSource model(d.text, d.name);
-    const io::Json::Member* contacts = model.root.member("contacts");
-    for (size_t k = 0; contacts != nullptr && k < contacts->value.size(); ++k)
-        if (*contacts->value.at(k).member("normal")->value.member("type")->value.string() == "constraint")
-            with.push_back("/contacts/" + std::to_string(k) + "/normal/rows=" + rows);
-    if (with.size() == set.size())
+    dae::Description d;
+    if (is_model_path(name_or_path)) {
+        d = dae::load_model(name_or_path, set, normal_rows);
+    } else {
+        const Problem built_in = problem(name_or_path);
+        d = dae::read_model(built_in.model, built_in.name, set, normal_rows);
+    }
+    if (!normal_rows.empty() && d.changes.size() == set.size())
         throw io::UsageError("--normal-rows applies to contacts whose normal is a constraint; model " +
                              d.name + " has none");
-    return with;
+    return d;
 }
 
 std::string short_name(const std::string& name_or_path)

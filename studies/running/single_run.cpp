@@ -104,8 +104,7 @@ RunResult SingleRun::execute()
 
 void SingleRun::read()
 {
-    const std::vector<std::string> set = normal_rows(options.model, options.set, options.normal_rows);
-    description = named_model(options.model, set);
+    description = named_model(options.model, options.set, options.normal_rows);
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
@@ -138,7 +137,7 @@ void SingleRun::read()
     for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
         result.contacts.push_back(c->name);
     result.warnings = description.warnings;
-    result.set = set;
+    result.set = description.changes;
     result.command_line = options.command_line;
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;

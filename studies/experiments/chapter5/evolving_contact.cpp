@@ -17,7 +17,7 @@
 #include "studies/experiments/chapter5/model_with_frames.hpp"
 #include "studies/framework/reference_solution.hpp"
 #include "studies/framework/sweep.hpp"
-#include "studies/program/named_model.hpp"
+#include "studies/running/model_frames.hpp"
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
@@ -350,7 +350,7 @@ Columns<BowlRun> columns_of(const std::string& variant = "run")
 Benchmark benchmark_of(const BowlVariant& s, const StudyOptions& options, const std::string& rows)
 {
     Problem p = problem(s.problem);
-    p.model = dae::read_model(p.model, p.name, normal_rows(s.problem, s.set, rows)).text;
+    p.model = dae::read_model(p.model, p.name, s.set, rows).text;
     return make_benchmark(std::move(p), options, [&](const dae::Description&) { return s.end; });
 }
 

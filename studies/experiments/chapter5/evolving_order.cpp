@@ -14,7 +14,6 @@
 #include "dae/model_file.hpp"
 #include "studies/experiments/chapter5/evolving_errors.hpp"
 #include "studies/framework/convergence_study.hpp"
-#include "studies/program/named_model.hpp"
 
 #include <fmt/format.h>
 
@@ -109,11 +108,7 @@ std::vector<Benchmark> selected_benchmarks(const StudyContext& s)
     const std::vector<std::string> otherwise = {"ball_in_bowl", "ball_in_bowl_xy", "rolling_ball_in_bowl",
                                                 "rolling_ball_in_bowl_xy", "wobbling_ellipsoid"};
     for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
-        Problem p = problem_or_file(name);
-        if (!options.normal_rows.empty())
-            p.model =
-                dae::read_model(p.model, p.name, normal_rows(name, options.set, options.normal_rows)).text;
-        all.push_back(make_benchmark(std::move(p), options));
+        all.push_back(make_benchmark(problem_or_file(name), options));
         if (evolving_contacts(*all.back().started->model).empty())
             s.refuse(name + " has no evolving contact, which this study needs");
     }

@@ -6,6 +6,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/inotify.h>
+#include <unistd.h>
+
 using namespace hilda;
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
@@ -145,4 +148,23 @@ TEST_CASE("missing Python is reported in one line and leaves the run successful"
         return;
     }
     CHECK(fs::file_size(in / "a/trajectory.png") > 10000);
+}
+
+// The kernel counts how often the file is opened.
+TEST_CASE("a model file is read once per run, with --set and --normal-rows as well", "[studies][run]")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"models", "ball_in_bowl", "--write", "ball.json"}).code == 0);
+    for (const char* command : {"run", "check"}) {
+        const int watch = inotify_init1(IN_NONBLOCK);
+        REQUIRE(inotify_add_watch(watch, (in / "ball.json").c_str(), IN_OPEN) >= 0);
+        std::vector<std::string> arguments = {command,    "ball.json", "--normal-rows",
+                                              "fixed-xy", "--set",     "/name=read once"};
+        if (command == std::string("run"))
+            arguments.insert(arguments.end(), {"--end", "1e-3", "--output", "a"});
+        CHECK(call(in, arguments).code == 0);
+        inotify_event events[8];
+        CHECK(read(watch, events, sizeof events) == sizeof(inotify_event));  // one event
+        close(watch);
+    }
 }

@@ -14,13 +14,21 @@
 
 namespace hilda::io {
 
+/// A member of an object, with the value type Json. It is a template because Json is not yet complete here.
+template <class Value>
+struct JsonMember {
+    std::string key;
+    std::uint32_t offset = 0;  ///< position of the key in the text
+    Value value;
+};
+
 /// A JSON value. The members of an object have the order of the text, or of their insertion.
 ///
 /// Values are constructed as those of nlohmann::ordered_json: Json x = {{"name", "bar"}, {"r", {0, 0, 1}}}.
 /// A braced list of pairs {"key", value} is an object, any other braced list is an array.
 class Json {
 public:
-    struct Member;
+    using Member = JsonMember<Json>;
     using List = std::vector<Json>;
     using Object = std::vector<Member>;
 
@@ -72,12 +80,6 @@ public:
     /// line, a double has a decimal point or an exponent, and one that is not finite is null. Bytes that are
     /// not UTF-8 are replaced by U+FFFD.
     std::string text() const;
-};
-
-struct Json::Member {
-    std::string key;
-    std::uint32_t offset = 0;  ///< position of the key in the text
-    Json value;
 };
 
 /// Canonical text of a value, indented by two spaces. A list without objects is written in one line, and

@@ -36,17 +36,22 @@ struct PackMask {
     PackMask operator~() const { return {~v}; }
 };
 
-/// 32-bit integers
+/// 32-bit integers. Sums wrap: the particles of a run that diverges may move by more than 2³¹ units in the
+/// step after which it is stopped.
 struct Ints {
     using V __attribute__((vector_size(4 * lanes))) = std::int32_t;
+    using Unsigned __attribute__((vector_size(4 * lanes))) = std::uint32_t;
     V v;
 
     Ints operator<<(int n) const { return {v << n}; }
     Ints operator>>(int n) const { return {v >> n}; }
     Ints operator|(Ints o) const { return {v | o.v}; }
     Ints operator&(std::int32_t o) const { return {v & o}; }
-    Ints operator+(std::int32_t o) const { return {v + o}; }
-    Ints operator+(Ints o) const { return {v + o.v}; }
+    Ints operator+(std::int32_t o) const { return *this + Ints{o - V{}}; }
+    Ints operator+(Ints o) const
+    {
+        return {reinterpret_cast<V>(reinterpret_cast<Unsigned>(v) + reinterpret_cast<Unsigned>(o.v))};
+    }
 };
 
 /// 64-bit integers

@@ -138,7 +138,7 @@ struct AdvancePack {
         }
         if (arrays.step.part == Part::whole || arrays.step.part == Part::before_loads) {
             load4(arrays.position, first, valid, at);
-            at[1].v += units.x.v, at[2].v += units.y.v, at[3].v += units.z.v;
+            at[1] = at[1] + units.x, at[2] = at[2] + units.y, at[3] = at[3] + units.z;
             store4(arrays.position, first, valid, at);
             if (arrays.orientation != nullptr) rotate_pack(first, valid, moved.rotation);
         }

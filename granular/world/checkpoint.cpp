@@ -47,10 +47,13 @@ bool same_boundary(const Boundary& now, Boundary saved)
     return std::memcmp(&now, &saved, sizeof saved) == 0;
 }
 
-bool inside(const CellGrid& g, std::uint32_t cell)
+/// The cell exists, and the particle is less than two cell widths away from its low corner: it was inside
+/// when the neighbour list was built, and has moved by less than a cell since then.
+bool inside(const CellGrid& g, const Position& p)
 {
-    return CellGrid::x_of(cell) < g.cells[0] && CellGrid::y_of(cell) < g.cells[1] &&
-           CellGrid::z_of(cell) < g.cells[2];
+    const auto near = [](std::int32_t x) { return x >= -CellGrid::widest && x < 2 * CellGrid::widest; };
+    return CellGrid::x_of(p.cell) < g.cells[0] && CellGrid::y_of(p.cell) < g.cells[1] &&
+           CellGrid::z_of(p.cell) < g.cells[2] && near(p.x) && near(p.y) && near(p.z);
 }
 
 /// The ids are the numbers 0 … n - 1.
@@ -130,10 +133,10 @@ void World::transfer(io::Archive& a)
         return transfer_pairs(a, pairs, n, boundaries.size());
     }
     for (std::size_t k = 0; k < n; ++k)
-        a.check(inside(domain.grid, p.position.data()[k].cell) &&
+        a.check(inside(domain.grid, p.position.data()[k]) &&
                     p.species.data()[k].material < materials.size() &&
                     p.species.data()[k].replica < domain.replicas && p.velocity.data()[k].w > 0,
-                "invalid cell, material or radius of a particle");
+                "invalid position, material or radius of a particle");
     a.check(is_permutation(p.id.data(), n), "invalid ids of the particles");
     a.check(forces.empty() || forces.size() == n, "wrong number of forces");
     a.check(all_finite(p.velocity) && all_finite(p.omega) && all_finite(p.orientation) && all_finite(forces),

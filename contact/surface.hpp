@@ -14,7 +14,7 @@ using lie::Mat3;
 using lie::Vec3;
 
 struct DrawingExtent;
-struct Mesh;
+struct PolygonMesh;
 
 /// The surface of a body, in its own frame [m]. A derived class implements G, ∇G and ∇²G, which must be
 /// defined in a neighbourhood of the surface. The geometry follows from them:
@@ -91,7 +91,7 @@ public:
     /// is not found is NaN. The default samples a convex surface by its support function, which places the
     /// points by normal direction, an implicit surface along rays from its origin, and an unbounded one by
     /// projection of points of the plane z = 0. For output see tessellate().
-    virtual Mesh drawing(const DrawingExtent& extent) const;
+    virtual PolygonMesh drawing(const DrawingExtent& extent) const;
 };
 
 }  // namespace hilda::contact

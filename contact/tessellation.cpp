@@ -19,7 +19,7 @@ constexpr double pi = std::numbers::pi;
 
 Vec3 missing_point() { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
-void add_quads(Mesh& mesh, int first, int rows, int columns, bool rows_join, bool columns_join)
+void add_quads(PolygonMesh& mesh, int first, int rows, int columns, bool rows_join, bool columns_join)
 {
     const auto at = [&](int r, int c) { return first + r % rows * columns + c % columns; };
     for (int r = 0; r < rows - !rows_join; ++r)
@@ -28,9 +28,9 @@ void add_quads(Mesh& mesh, int first, int rows, int columns, bool rows_join, boo
 }
 
 /// Image of the unit sphere, with a grid of latitude and longitude about z
-Mesh sphere_image(const std::function<Vec3(const Vec3&)>& image)
+PolygonMesh sphere_image(const std::function<Vec3(const Vec3&)>& image)
 {
-    Mesh mesh;
+    PolygonMesh mesh;
     mesh.point.push_back(image(Vec3::UnitZ()));
     for (int r = 1; r < down; ++r)
         for (int c = 0; c < around; ++c) {
@@ -79,7 +79,7 @@ bool Surface::is_unbounded() const
     return false;
 }
 
-Mesh Surface::drawing(const DrawingExtent& extent) const
+PolygonMesh Surface::drawing(const DrawingExtent& extent) const
 {
     const auto or_missing = [](const auto& find) {
         return [find](const Vec3& at) {
@@ -95,17 +95,17 @@ Mesh Surface::drawing(const DrawingExtent& extent) const
     return square(extent, or_missing([&](const Vec3& a) { return std::optional(project(a)); }));
 }
 
-Mesh grid(int rows, int columns, bool rows_join, bool columns_join,
-          const std::function<Vec3(int row, int column)>& point)
+PolygonMesh grid(int rows, int columns, bool rows_join, bool columns_join,
+                 const std::function<Vec3(int row, int column)>& point)
 {
-    Mesh mesh;
+    PolygonMesh mesh;
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) mesh.point.push_back(point(r, c));
     add_quads(mesh, 0, rows, columns, rows_join, columns_join);
     return mesh;
 }
 
-Mesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image)
+PolygonMesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image)
 {
     return grid(across + 1, across + 1, false, false, [&](int r, int c) {
         return image(Vec3(centre.x(), centre.y(), 0) +
@@ -113,7 +113,7 @@ Mesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3
     });
 }
 
-Mesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image)
+PolygonMesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image)
 {
     if (extent.box.isEmpty()) return square(Vec3::Zero(), 1, image);
     const Vec3 sides = extent.box.sizes();
@@ -121,10 +121,10 @@ Mesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>&
     return square(extent.box.center(), half > 0 ? half : 1, image);
 }
 
-Mesh tessellate(const Surface& surface, const DrawingExtent& extent)
+PolygonMesh tessellate(const Surface& surface, const DrawingExtent& extent)
 {
-    const Mesh all = surface.drawing(extent);
-    Mesh mesh;
+    const PolygonMesh all = surface.drawing(extent);
+    PolygonMesh mesh;
     std::vector<int> number(all.point.size(), -1);
     for (size_t k = 0; k < all.point.size(); ++k)
         if (all.point[k].allFinite()) {

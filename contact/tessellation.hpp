@@ -12,11 +12,11 @@
 
 namespace hilda::contact {
 
-struct Mesh {
+struct PolygonMesh {
     std::vector<Vec3> point;                ///< [m]
     std::vector<std::vector<int>> polygon;  ///< vertices, counterclockwise seen from outside the body
 
-    bool operator==(const Mesh&) const = default;
+    bool operator==(const PolygonMesh&) const = default;
 };
 
 /// The part of an unbounded surface that is drawn
@@ -30,7 +30,7 @@ struct DrawingExtent {
 
 /// Polygons of a surface, in the frame of the surface: those of Surface::drawing() without the points that
 /// were not found and the polygons that contain them, and with the opposite orientation for a concave surface
-Mesh tessellate(const Surface& surface, const DrawingExtent& extent);
+PolygonMesh tessellate(const Surface& surface, const DrawingExtent& extent);
 
 // The parts of which surfaces compose their drawings
 
@@ -39,12 +39,12 @@ constexpr int around = 24, down = 12, across = 8;
 
 /// Quadrilaterals of a grid of points; rows and columns may be closed to rings. The normal is row direction ×
 /// column direction.
-Mesh grid(int rows, int columns, bool rows_join, bool columns_join,
-          const std::function<Vec3(int row, int column)>& point);
+PolygonMesh grid(int rows, int columns, bool rows_join, bool columns_join,
+                 const std::function<Vec3(int row, int column)>& point);
 
 /// Square of half side `half` in the plane z = 0
-Mesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image);
+PolygonMesh square(const Vec3& centre, double half, const std::function<Vec3(const Vec3&)>& image);
 /// Image of the square in the plane z = 0 that covers the extent
-Mesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image);
+PolygonMesh square(const DrawingExtent& extent, const std::function<Vec3(const Vec3&)>& image);
 
 }  // namespace hilda::contact

@@ -234,9 +234,9 @@ Surface::Derivatives MeshSurface::distance_function(const Vec3& a, const Triangl
     return {side * near.distance, side * n, side / near.distance * bent};
 }
 
-Mesh MeshSurface::drawing(const DrawingExtent&) const
+PolygonMesh MeshSurface::drawing(const DrawingExtent&) const
 {
-    Mesh drawn;
+    PolygonMesh drawn;
     drawn.point = mesh.vertices;
     for (const auto& [a, b, c] : mesh.triangles) drawn.polygon.push_back({a, b, c});
     return drawn;

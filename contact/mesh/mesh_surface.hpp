@@ -44,7 +44,7 @@ public:
     double size() const override { return length; }
     bool is_unbounded() const override { return false; }
     /// The triangles of the mesh
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 
     const TriangleMesh mesh;
     const bool concave;

@@ -24,7 +24,7 @@ Vec3 Cylinder::project(const Vec3& a) const
     return {R / distance * a.x(), R / distance * a.y(), a.z()};
 }
 
-Mesh Cylinder::drawing(const DrawingExtent& extent) const
+PolygonMesh Cylinder::drawing(const DrawingExtent& extent) const
 {
     constexpr double pi = std::numbers::pi;
     const bool known = !extent.box.isEmpty();

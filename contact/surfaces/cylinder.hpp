@@ -22,7 +22,7 @@ public:
     Vec3 project(const Vec3& a) const override;
     double size() const override { return R; }
     /// The drawn length is at least the diameter.
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 
     const double R;
     const bool concave;

@@ -25,10 +25,10 @@ Vec3 Disk::project(const Vec3& a) const
 
 double Disk::arc(double chord) const { return 2 * R * std::asin(std::min(chord / (2 * R), 1.0)); }
 
-Mesh Disk::drawing(const DrawingExtent&) const
+PolygonMesh Disk::drawing(const DrawingExtent&) const
 {
     constexpr double pi = std::numbers::pi;
-    Mesh mesh;
+    PolygonMesh mesh;
     mesh.point.push_back(Vec3::Zero());
     for (int c = 0; c < around; ++c) {
         mesh.point.push_back(R * Vec3(std::cos(2 * pi * c / around), std::sin(2 * pi * c / around), 0));

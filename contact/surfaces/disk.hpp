@@ -34,7 +34,7 @@ public:
     double arc(double chord) const override;
     bool is_smooth() const override { return false; }
     bool is_unbounded() const override { return false; }
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 
     const double R;
 };

@@ -6,7 +6,7 @@
 
 namespace hilda::contact {
 
-Mesh Foot::drawing(const DrawingExtent& extent) const
+PolygonMesh Foot::drawing(const DrawingExtent& extent) const
 {
     constexpr double half = 0.05;  // half side, relative to the size of the scene
     return square(Vec3::Zero(), extent.scene_size > 0 ? half * extent.scene_size : 1,

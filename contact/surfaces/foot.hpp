@@ -14,7 +14,7 @@ class Foot final : public Flat {
 public:
     std::string name() const override { return "foot"; }
     bool is_smooth() const override { return false; }
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 };
 
 }  // namespace hilda::contact

@@ -6,7 +6,7 @@
 
 namespace hilda::contact {
 
-Mesh Plane::drawing(const DrawingExtent& extent) const
+PolygonMesh Plane::drawing(const DrawingExtent& extent) const
 {
     return square(extent, [](const Vec3& a) { return a; });
 }

@@ -21,7 +21,7 @@ public:
 class Plane final : public Flat {
 public:
     std::string name() const override { return "plane"; }
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 };
 
 }  // namespace hilda::contact

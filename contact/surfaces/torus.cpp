@@ -61,7 +61,7 @@ Vec3 Torus::project(const Vec3& a) const
     return ring + r / distance * out;
 }
 
-Mesh Torus::drawing(const DrawingExtent&) const
+PolygonMesh Torus::drawing(const DrawingExtent&) const
 {
     constexpr double pi = std::numbers::pi;
     return grid(around, down, true, true, [&](int k, int c) {

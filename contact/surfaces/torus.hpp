@@ -28,7 +28,7 @@ public:
     double size() const override { return r; }
     double bounding_radius() const override { return concave ? INFINITY : R + r; }
     bool is_unbounded() const override { return false; }
-    Mesh drawing(const DrawingExtent& extent) const override;
+    PolygonMesh drawing(const DrawingExtent& extent) const override;
 
     const double R, r;
     const bool concave;

@@ -13,7 +13,7 @@
 namespace hilda::studies {
 
 using contact::DrawingExtent;
-using contact::Mesh;
+using contact::PolygonMesh;
 
 /// Selects `count` evenly spaced nodes of 0 … steps, including the first and the last. The nodes must be
 /// queried in ascending order.
@@ -80,7 +80,7 @@ private:
     /// A mesh, in the frame of its body
     struct BodyMesh {
         int body;
-        Mesh mesh;
+        PolygonMesh mesh;
 
         bool operator==(const BodyMesh&) const = default;
     };

@@ -24,7 +24,7 @@
 using namespace hilda;
 using Catch::Matchers::Contains;
 using lie::Vec3;
-using studies::Mesh;
+using studies::PolygonMesh;
 using studies::Snapshots;
 using tests::call;
 using tests::Ended;
@@ -225,7 +225,7 @@ TEST_CASE("the polygons of a surface lie on it and their normals point out of th
     const studies::DrawingExtent reach{.box = {Vec3(-1, -2, 0), Vec3(1, 1, 1)}, .scene_size = 4};
     for (const SurfaceExample& c : examples) {
         CAPTURE(c.name);
-        const Mesh mesh = contact::tessellate(*c.surface, reach);
+        const PolygonMesh mesh = contact::tessellate(*c.surface, reach);
         CHECK(mesh.point.size() > 10);
         CHECK(mesh.point.size() <= 500);
         if (c.name != "disk" && c.name != "mesh")

@@ -60,11 +60,7 @@ public:
 
 protected:
     /// Motion of body b. The ground is at rest at the origin.
-    static const Motion& motion(const State& x, int b)
-    {
-        static const Motion at_rest;
-        return b == ground ? at_rest : x.body[b];
-    }
+    static const Motion& motion(const State& x, int b) { return dae::motion(x, b); }
 
     /// Adds a force F [N, global frame] that acts at the point s_bar [m, body frame] of body b, and its
     /// moment about the centre of mass. Does nothing for the ground.

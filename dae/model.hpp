@@ -196,8 +196,6 @@ private:
     void add_to_pattern(const Constraint& c, int first, int rows);
     std::string name_of(const Constraint& c, int k) const;  ///< name of its row k
 
-    const Motion& motion(const State& x, int b) const { return b == ground ? ground_motion : x.body[b]; }
-
     std::vector<Body> body;
     std::vector<std::string> constraint_names;
     std::unordered_set<std::string> used_names;  ///< names of all constraints
@@ -209,7 +207,6 @@ private:
 
     lie::Mass inertia;
     lie::Rows rows_pattern;
-    const Motion ground_motion{};
 };
 
 /// Resultant constraint force F = -Φ_rᵀ λ [N, global frame] and torque T = -Π̄ᵀ λ [N m, body frame] on one

@@ -42,7 +42,7 @@ public:
         model.gravity = o.vec3("gravity", model.gravity);
         out.end = o.positive("end", out.end);
         o.record("bodies", each(o, "bodies", true,
-                                [this](const Json& v, const std::string& at) { return body(v, at); }));
+                                [this](const Json& v, const std::string& at) { return read_body(v, at); }));
         if (model.all_bodies().empty())
             o.fail("bodies", "a model must have at least one body with mass, got none");
         o.record("constraints", each(o, "constraints", false, [this](const Json& v, const std::string& at) {
@@ -86,7 +86,7 @@ private:
         return recorded;
     }
 
-    Json body(const Json& v, const std::string& at)
+    Json read_body(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
         const std::string name = o.name("name");

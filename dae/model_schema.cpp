@@ -7,6 +7,7 @@
 #include "io/json_source.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace hilda::dae {
 

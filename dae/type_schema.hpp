@@ -17,10 +17,12 @@ struct KeySchema {
 
 /// Schema of the objects of one type
 struct TypeSchema {
-    std::string description;              ///< complete sentences, with the number of rows
-    std::vector<std::string> parts = {};  ///< shared definitions: "points", "axes", "derivatives"
-    std::vector<KeySchema> keys = {};     ///< the keys besides name, type, bodies and those of `parts`
-    std::string example;                  ///< members of a JSON object, without "type"
+    std::string description;  ///< complete sentences, with the number of rows
+    /// Shared definitions: "points", "axes", "derivatives". The keys body_i and body_j of "pair" are included,
+    /// unless the type has "on_one_body".
+    std::vector<std::string> parts = {};
+    std::vector<KeySchema> keys = {};  ///< the keys besides name, type, bodies and those of `parts`
+    std::string example;               ///< members of a JSON object, without "type"
 };
 
 }  // namespace hilda::dae

@@ -52,13 +52,14 @@ public:
     Mat12 second_variation(const Arguments& x) const override
     {
         const Vec3 d_ij = x.bj.r + x.bj.A * s_bar_j - x.bi.r - x.bi.A * s_bar_i;
+        const Vec3 d_bar_i = x.bi.A.transpose() * d_ij, d_bar_j = x.bj.A.transpose() * d_ij;
         const Mat3 si = tilde(s_bar_i), sj = tilde(s_bar_j), A_si = x.bi.A * si, A_sj = x.bj.A * sj;
         Mat12 H;
         // clang-format off
-        H <<  Mat3::Identity(),                                       -A_si, -Mat3::Identity(),                                         A_sj,
-             -A_si.transpose(), -si * (tilde(x.bi.A.transpose() * d_ij) + si),  A_si.transpose(),                     -A_si.transpose() * A_sj,
-             -Mat3::Identity(),                                        A_si,  Mat3::Identity(),                                        -A_sj,
-              A_sj.transpose(),                    -A_sj.transpose() * A_si, -A_sj.transpose(), sj * (tilde(x.bj.A.transpose() * d_ij) - sj);
+        H <<  Mat3::Identity(),                       -A_si, -Mat3::Identity(),                       A_sj,
+             -A_si.transpose(), -si * (tilde(d_bar_i) + si),  A_si.transpose(),   -A_si.transpose() * A_sj,
+             -Mat3::Identity(),                        A_si,  Mat3::Identity(),                      -A_sj,
+              A_sj.transpose(),    -A_sj.transpose() * A_si, -A_sj.transpose(), sj * (tilde(d_bar_j) - sj);
         // clang-format on
         return 2 * H;
     }

@@ -14,21 +14,21 @@ namespace hilda::dae {
 /// The nearest point of the curve, with derivatives by s
 struct PointOnCurve::Foot {
     double s = 0;
-    Vec3 p, c, c1, c2;       ///< P, c(s), c'(s), c''(s)
-    Vec3 n[2], n1[2];        ///< normals and their derivatives
+    Vec3 p, c, c_s, c_ss;    ///< P, c(s), c'(s), c''(s)
+    Vec3 n[2], n_s[2];       ///< normals and their derivatives
     double denominator = 0;  ///< ds = c' · dp / denominator
-    Vec3 gradient(int k) const { return n[k] + (n1[k].dot(p - c) / denominator) * c1; }
+    Vec3 gradient(int k) const { return n[k] + (n_s[k].dot(p - c) / denominator) * c_s; }
 
     /// Normals, of which the first is the projection of e
     void set_normals(const Vec3& e)
     {
-        const double length = c1.norm();
-        const Vec3 T = c1 / length, dT = (c2 - T * T.dot(c2)) / length;
-        const Vec3 N = e - T * T.dot(e), dN = -dT * T.dot(e) - T * dT.dot(e);
+        const double length = c_s.norm();
+        const Vec3 T = c_s / length, T_s = (c_ss - T * T.dot(c_ss)) / length;
+        const Vec3 N = e - T * T.dot(e), N_s = -T_s * T.dot(e) - T * T_s.dot(e);
         n[0] = N.normalized();
-        n1[0] = (dN - n[0] * n[0].dot(dN)) / N.norm();
+        n_s[0] = (N_s - n[0] * n[0].dot(N_s)) / N.norm();
         n[1] = T.cross(n[0]);
-        n1[1] = dT.cross(n[0]) + T.cross(n1[0]);
+        n_s[1] = T_s.cross(n[0]) + T.cross(n_s[0]);
     }
 };
 
@@ -47,11 +47,11 @@ PointOnCurve::Foot PointOnCurve::nearest(const Vec3& p, double guess) const
     for (int k = 0; k < max_iterations; ++k) {
         for (int axis = 0; axis < 3; ++axis) {
             const io::Jet jet = c[axis].jet(f.s);
-            f.c[axis] = jet.f, f.c1[axis] = jet.fdot, f.c2[axis] = jet.fddot;
+            f.c[axis] = jet.f, f.c_s[axis] = jet.fdot, f.c_ss[axis] = jet.fddot;
         }
-        f.denominator = f.c1.squaredNorm() - f.c2.dot(p - f.c);
-        if (!(f.c1.norm() > 0) || !(f.denominator > 0)) break;
-        const double correction = f.c1.dot(p - f.c) / f.denominator;
+        f.denominator = f.c_s.squaredNorm() - f.c_ss.dot(p - f.c);
+        if (!(f.c_s.norm() > 0) || !(f.denominator > 0)) break;
+        const double correction = f.c_s.dot(p - f.c) / f.denominator;
         // Converged: the correction is at rounding level, or no longer decreases near it.
         const double size = std::abs(correction) / (1 + std::abs(f.s));
         if (size < tolerance || (size < 1e-11 && size >= last)) return f;
@@ -94,9 +94,9 @@ void PointOnCurve::gamma(const Arguments& x, double* out) const
     const Vec3 pdot = v - omega.cross(f.p);
     const Vec3 pddot =
         x.bj.A.transpose() * s_i.centripetal - 2 * omega.cross(v) + omega.cross(omega.cross(f.p));
-    const double sdot = f.c1.dot(pdot) / f.denominator;
-    const Vec3 off = pdot - sdot * f.c1;  // zero if the velocities satisfy the constraint
-    for (int k = 0; k < 2; ++k) out[k] = -f.gradient(k).dot(pddot) - sdot * f.n1[k].dot(pdot + off);
+    const double sdot = f.c_s.dot(pdot) / f.denominator;
+    const Vec3 off = pdot - sdot * f.c_s;  // zero if the velocities satisfy the constraint
+    for (int k = 0; k < 2; ++k) out[k] = -f.gradient(k).dot(pddot) - sdot * f.n_s[k].dot(pdot + off);
 }
 
 std::string PointOnCurve::start_error(const Arguments& x) const
@@ -112,7 +112,7 @@ std::string PointOnCurve::start_error(const Arguments& x) const
 int PointOnCurve::update_internal_state(const Arguments& x, bool start, double* saved) const
 {
     Foot f = nearest(position(x), start ? s : saved[0]);
-    Vec3::Map(saved + 1) = start ? f.c1.unitOrthogonal() : Vec3(Vec3::Map(saved + 1));
+    Vec3::Map(saved + 1) = start ? f.c_s.unitOrthogonal() : Vec3(Vec3::Map(saved + 1));
     f.set_normals(Vec3::Map(saved + 1));
     saved[0] = f.s;
     Vec3::Map(saved + 1) = f.n[0];

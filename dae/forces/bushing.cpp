@@ -9,13 +9,8 @@ namespace hilda::dae {
 
 Bushing::Bushing(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, const Coefficients& coefficients,
                  const State& start)
-    : Bushing(coefficients)
-{
-    this->i = i, this->j = j, this->s_bar_i = s_bar_i, this->s_bar_j = s_bar_j;
-    R_0 = motion(start, i).A.transpose() * motion(start, j).A;
-}
-
-Bushing::Bushing(const Coefficients& coefficients) : coefficients(coefficients)
+    : i(i), j(j), s_bar_i(s_bar_i), s_bar_j(s_bar_j),
+      R_0(motion(start, i).A.transpose() * motion(start, j).A), coefficients(coefficients)
 {
     for (const Vec3& k : {coefficients.stiffness, coefficients.damping, coefficients.rotational_stiffness,
                           coefficients.rotational_damping})
@@ -41,8 +36,7 @@ void Bushing::add(const State& x, lie::Loads& out) const
                                     label() + ": the relative rotation must be below 3 rad, got " +
                                         std::to_string(at.psi.norm()) + " rad");
     const Vec3 s_bar_q = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);  // Q in the frame of body i
-    const Vec3 ddot = bi.A.transpose() * (bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot) -
-                      bi.omega_bar.cross(s_bar_q);
+    const Vec3 ddot = bi.A.transpose() * (velocity_at(bj, bj.A * s_bar_j) - velocity_at(bi, bi.A * s_bar_q));
     const Vec3 F =
         -bi.A * (coefficients.stiffness.cwiseProduct(at.d) + coefficients.damping.cwiseProduct(ddot));
     apply_force(j, F, s_bar_j, x, out);

@@ -34,15 +34,14 @@ public:
     int last_body() const override { return std::max(i, j); }
 
 private:
-    explicit Bushing(const Coefficients& coefficients);
     struct Deflection {
         Vec3 d, psi;
     };
     Deflection deflection(const State& x) const;
 
-    int i = ground, j = ground;
-    Vec3 s_bar_i, s_bar_j;
-    Mat3 R_0;
+    const int i, j;
+    const Vec3 s_bar_i, s_bar_j;
+    const Mat3 R_0;
     const Coefficients coefficients;
 };
 

@@ -5,13 +5,12 @@
 #include "dae/constraints/angle.hpp"
 #include "lie/check.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace hilda::dae {
 
-namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-}  // namespace
+using std::numbers::pi;
 
 HingeForce::HingeForce(const char* type, int i, const Vec3& axis_i, int j, const Vec3& axis_j,
                        const State& start)

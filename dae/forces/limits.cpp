@@ -3,6 +3,7 @@
 #include "dae/forces/limits.hpp"
 
 #include "dae/model_types.hpp"
+#include "lie/check.hpp"
 
 namespace hilda::dae {
 
@@ -17,10 +18,11 @@ void DistanceLimit::add(const State& x, lie::Loads& out) const
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Vec3 d = d_ij(x);
     const double l = d.norm();
-    if (!(l > 0))
-        return;  // without a direction; only a positive minimum can be violated here, for an instant
-    const Vec3 ddot =
-        bj.rdot + bj.A * bj.omega_bar.cross(s_bar_j) - bi.rdot - bi.A * bi.omega_bar.cross(s_bar_i);
+    if (!(l > 0)) {
+        if (stop.force(l, 0) == 0) return;
+        throw lie::NonFinite(label() + ": the two points coincide, so that the force has no direction");
+    }
+    const Vec3 ddot = velocity_at(bj, bj.A * s_bar_j) - velocity_at(bi, bi.A * s_bar_i);
     const Vec3 along = d / l, F = stop.force(l, along.dot(ddot)) * along;
     apply_force(i, F, s_bar_i, x, out);
     apply_force(j, -F, s_bar_j, x, out);

@@ -10,9 +10,9 @@ namespace hilda::dae {
 
 Blocks fixed(int i, int j, const State& x)
 {
-    const Mat3 A_ij = orientation(x, i).transpose() * orientation(x, j);
+    const Mat3 A_ij = motion(x, i).A.transpose() * motion(x, j).A;
     Blocks blocks;
-    coincide(blocks, i, orientation(x, i).transpose() * (position(x, j) - position(x, i)), j, Vec3::Zero());
+    coincide(blocks, i, motion(x, i).A.transpose() * (motion(x, j).r - motion(x, i).r), j, Vec3::Zero());
     for (int k = 0; k < 3; ++k)
         add<DP1>(blocks, i, Vec3::Unit(k), j, A_ij.transpose() * Vec3::Unit((k + 1) % 3));
     return blocks;

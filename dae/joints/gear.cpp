@@ -95,13 +95,13 @@ Blocks gear(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, double R_i, int 
         if (R == 0 || !std::isfinite(R)) lie::reject("gear pair", "a pitch radius must not be zero [m]", R);
     if (R_i + R_j == 0)
         lie::reject("gear pair", "the gears of an internal pair must have different radii", R_i);
-    const Vec3 axis_i = orientation(x, i) * unit(axis_bar_i), axis_j = orientation(x, j) * unit(axis_bar_j);
+    const Vec3 axis_i = motion(x, i).A * unit(axis_bar_i), axis_j = motion(x, j).A * unit(axis_bar_j);
     const double cosine = axis_i.dot(axis_j);
     if (!(std::abs(cosine) > 0.999))
         lie::reject("gear pair", "the two axes must be parallel at the start; cosine of their angle", cosine);
     const Perpendicular p_i(axis_bar_i), p_j(cosine > 0 ? axis_bar_j : Vec3(-axis_bar_j));
     GearRow row(i, s_bar_i, {p_i.first, p_i.second}, R_i, j, s_bar_j, {p_j.first, p_j.second}, R_j);
-    row.C = row.phi({i == ground ? Motion() : x.body[i], j == ground ? Motion() : x.body[j], x.t});
+    row.C = row.phi({motion(x, i), motion(x, j), x.t});
     return single_row(std::move(row));
 }
 

@@ -13,11 +13,11 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
                     const State& x)
 {
     const Perpendicular p(axis_bar_i);
-    const Vec3 axis = orientation(x, i) * unit(axis_bar_i);
+    const Vec3 axis = motion(x, i).A * unit(axis_bar_i);
     const double c = std::cos(g.f(x.t)), s = std::sin(g.f(x.t));
-    const Vec3 towards = orientation(x, i) * (c * p.first + s * p.second);
+    const Vec3 towards = motion(x, i).A * (c * p.first + s * p.second);
     // w is perpendicular to the axis of body j, also if the initial data are not exact
-    const Vec3 axis_j = orientation(x, j) * unit(axis_bar_j);
+    const Vec3 axis_j = motion(x, j).A * unit(axis_bar_j);
     if (axis.dot(axis_j) < 0.9)
         lie::reject("hinge driver",
                     "the two axes must be parallel at the start and point in the same direction; "
@@ -25,7 +25,7 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
                     axis.dot(axis_j));
     const Vec3 w = (towards - axis_j * axis_j.dot(towards)).normalized();
     Blocks blocks;
-    add<DrivenHinge>(blocks, i, p.first, p.second, j, orientation(x, j).transpose() * w, g);
+    add<DrivenHinge>(blocks, i, p.first, p.second, j, motion(x, j).A.transpose() * w, g);
     return blocks;
 }
 

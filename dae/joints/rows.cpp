@@ -28,9 +28,6 @@ Perpendicular::Perpendicular(const Vec3& axis)
     second = a.cross(first);
 }
 
-Mat3 orientation(const State& x, int b) { return b == ground ? Mat3::Identity() : x.body[b].A; }
-Vec3 position(const State& x, int b) { return b == ground ? Vec3::Zero() : x.body[b].r; }
-
 void coincide(Blocks& blocks, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j)
 {
     for (int k = 0; k < 3; ++k) add<CD>(blocks, Vec3::Unit(k), i, s_bar_i, j, s_bar_j);

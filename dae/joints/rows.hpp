@@ -25,10 +25,6 @@ struct Perpendicular {
     explicit Perpendicular(const Vec3& axis);
 };
 
-/// Pose of body b in the state x; that of the global frame for the ground
-Mat3 orientation(const State& x, int b);
-Vec3 position(const State& x, int b);
-
 /// Adds the rows of coinciding points: 3 CD
 void coincide(Blocks& blocks, int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j);
 /// Adds the rows of parallel axes: 2 DP1

@@ -17,7 +17,7 @@ namespace {
 Blocks coupled(const char* name, int i, const Vec3& s_bar_i, const Vec3& e_bar, const Vec3& axis_bar_i, int j,
                const Vec3& s_bar_j, const Vec3& axis_bar_j, double rho, const State& x)
 {
-    const Mat3 A_i = orientation(x, i), A_j = orientation(x, j);
+    const Mat3 A_i = motion(x, i).A, A_j = motion(x, j).A;
     const double cosine = (A_i * unit(axis_bar_i)).dot(A_j * unit(axis_bar_j));
     if (!(cosine > 0.999))
         lie::reject(
@@ -28,7 +28,7 @@ Blocks coupled(const char* name, int i, const Vec3& s_bar_i, const Vec3& e_bar, 
     const Perpendicular p(axis_bar_i);
     RotationToTranslation row(i, s_bar_i, e_bar, {p.first, p.second}, j, s_bar_j,
                               A_j.transpose() * (A_i * p.first), rho);
-    row.C = row.phi({i == ground ? Motion() : x.body[i], j == ground ? Motion() : x.body[j], x.t});
+    row.C = row.phi({motion(x, i), motion(x, j), x.t});
     return single_row(std::move(row));
 }
 

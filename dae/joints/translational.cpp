@@ -13,7 +13,7 @@ Blocks translational(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, 
 {
     Blocks blocks = cylindrical(i, s_bar_i, axis_bar_i, j, s_bar_j, axis_bar_j);
     const Perpendicular p(axis_bar_i);
-    add<DP1>(blocks, i, p.first, j, orientation(x, j).transpose() * (orientation(x, i) * p.second));
+    add<DP1>(blocks, i, p.first, j, motion(x, j).A.transpose() * (motion(x, i).A * p.second));
     return blocks;
 }
 

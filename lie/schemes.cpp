@@ -6,31 +6,13 @@
 #include "lie/settings.hpp"
 #include "lie/system.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace hilda::lie {
-
-namespace {
-
-// A local static: the schemes are registered before main(), in an unspecified order of the translation units.
-std::vector<Scheme>& list()
-{
-    static std::vector<Scheme> schemes;
-    return schemes;
-}
-
-}  // namespace
-
-const std::vector<Scheme>& schemes() { return list(); }
 
 const Scheme& scheme(const std::string& name)
 {
+    if (const Scheme* found = io::Registry<Scheme>::find(name)) return *found;
     std::string names;
-    for (const Scheme& s : schemes()) {
-        if (s.name == name) return s;
-        names += (names.empty() ? "" : ", ") + s.name;
-    }
+    for (const Scheme& s : schemes()) names += (names.empty() ? "" : ", ") + s.name;
     reject("lie::scheme", "an integrator must be one of " + names, name);
 }
 
@@ -48,17 +30,6 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
     if (!rows.regularised.empty()) require(&Scheme::regularised, "implicit friction");
     if (rows.velocity_rows > 0) require(&Scheme::nonholonomic, "rolling without slip");
     return construct(system, settings);
-}
-
-bool register_scheme(Scheme scheme)
-{
-    std::vector<Scheme>& all = list();
-    const auto at = std::lower_bound(all.begin(), all.end(), scheme,
-                                     [](const Scheme& a, const Scheme& b) { return a.name < b.name; });
-    if (at != all.end() && at->name == scheme.name)
-        throw std::logic_error("two schemes are called " + scheme.name);
-    all.insert(at, std::move(scheme));
-    return true;
 }
 
 }  // namespace hilda::lie

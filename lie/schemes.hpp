@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "io/registry.hpp"
+
 #include <memory>
 #include <string>
 #include <utility>
@@ -37,13 +39,10 @@ struct Scheme {
 };
 
 /// All schemes, sorted by name
-const std::vector<Scheme>& schemes();
+inline const std::vector<Scheme>& schemes() { return io::Registry<Scheme>::all(); }
 
 /// The scheme with this name. Throws InvalidInput with the list of names if there is none.
 const Scheme& scheme(const std::string& name);
-
-/// Adds a scheme to the list. Throws std::logic_error if the name is already in the list.
-bool register_scheme(Scheme scheme);
 
 /// Adds the scheme of the class Method, which has the constructor Method(const System&, const Settings&). The
 /// file of a scheme ends with this call.
@@ -53,7 +52,7 @@ bool register_scheme(Scheme scheme)
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<Method>(system, settings);
     };
-    return register_scheme(std::move(scheme));
+    return io::Registry<Scheme>::add(std::move(scheme));
 }
 
 }  // namespace hilda::lie

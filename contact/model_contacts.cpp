@@ -32,50 +32,18 @@ using dae::ObjectReader;
 
 constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
 
-double from_zero_to_one(ObjectReader& o, std::string_view key, double fallback)
+/// Names of the registered normal laws; of those that can be a fallback
+std::vector<std::string> normal_laws(bool elastic)
 {
-    const double x = o.number(key, fallback);
-    if (!(x >= 0 && x <= 1)) o.fail(key, std::string(key) + " must be from 0 to 1, got " + dae::shortest(x));
-    return x;
-}
-
-double poisson_ratio(ObjectReader& o, std::string_view key)
-{
-    const double nu = o.number(key);
-    if (!(nu > -1 && nu <= 0.5))
-        o.fail(key, std::string(key) + " must be above -1 and at most 0.5, got " + dae::shortest(nu));
-    return nu;
-}
-
-std::shared_ptr<const NormalLaw> read_hertz(ObjectReader& o)
-{
-    for (const char* key : {"E_i", "nu_i", "E_j", "nu_j"}) o.exclude("E_star", key);
-    double E_star = 0;
-    if (o.has("E_i") || o.has("E_j")) {
-        const double E_i = o.positive("E_i"), nu_i = poisson_ratio(o, "nu_i");
-        const double E_j = o.positive("E_j"), nu_j = poisson_ratio(o, "nu_j");
-        E_star = effective_modulus(E_i, nu_i, E_j, nu_j);
-    } else {
-        E_star = o.positive("E_star");
-    }
-    return std::make_shared<Hertz>(E_star, from_zero_to_one(o, "restitution", 1));
-}
-
-std::shared_ptr<const NormalLaw> read_hooke(ObjectReader& o)
-{
-    o.exclude("damping", "restitution");
-    const double stiffness = o.positive("stiffness");
-    if (o.has("restitution"))
-        return std::make_shared<Hooke>(
-            Hooke::with_restitution(stiffness, from_zero_to_one(o, "restitution", 1)));
-    return std::make_shared<Hooke>(stiffness, o.not_negative("damping", 0));
+    std::vector<std::string> names;
+    for (const NormalLawType& law : io::Registry<NormalLawType>::all())
+        if (law.elastic || !elastic) names.push_back(law.name);
+    return names;
 }
 
 std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string& type)
 {
-    if (type == "hertz") return read_hertz(o);
-    if (type == "hooke") return read_hooke(o);
-    return std::make_shared<GivenForce>(o.not_negative("force"));
+    return io::Registry<NormalLawType>::find(type)->read(o);
 }
 
 /// Reads the keys of a friction law. `law` is its name, which has been read before.
@@ -131,7 +99,7 @@ ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair&
         const bool given = o.find(key) != nullptr;
         return unilateral.enabled || given;
     };
-    if (is_unilateral_or_given("restitution")) unilateral.restitution = from_zero_to_one(o, "restitution", 0);
+    if (is_unilateral_or_given("restitution")) unilateral.restitution = o.fraction("restitution", 0);
     if (!unilateral.enabled && o.has("restitution"))
         o.fail("restitution",
                "restitution needs \"unilateral\": true, got a bilateral contact with restitution " +
@@ -149,7 +117,7 @@ ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair&
     if (rows == "fixed-xy") settings.rows = EvolvingContact::NormalRows::fixed_xy;
     if (o.has("fallback")) {
         ObjectReader law = o.object("fallback");
-        settings.fallback = read_normal(law, law.one_of("type", {"hertz", "hooke"}));
+        settings.fallback = read_normal(law, law.one_of("type", normal_laws(true)));
         o.record("fallback", law.finish());
     }
     return settings;
@@ -241,7 +209,9 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
 {
     const Shape i = read_shape(o, "surface_i"), j = read_shape(o, "surface_j");
     ObjectReader normal = o.object("normal");
-    const std::string type = normal.one_of("type", {"hertz", "hooke", "given", "constraint"});
+    std::vector<std::string> types = normal_laws(false);
+    types.emplace_back("constraint");
+    const std::string type = normal.one_of("type", types);
     if (type == "constraint") return add_evolving(o, std::move(normal), pair, i, j);
     const std::shared_ptr<const NormalLaw> law = read_normal(normal, type);
     o.record("normal", normal.finish());

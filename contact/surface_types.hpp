@@ -5,13 +5,20 @@
 
 #include "contact/shape.hpp"
 #include "dae/object_reader.hpp"
+#include "dae/type_schema.hpp"
 #include "io/registry.hpp"
 
 namespace hilda::contact {
 
+/// The key "concave" of many surfaces
+inline const dae::KeySchema concave_key = {
+    "concave", "If true, the material is outside of the surface and the other body touches it from inside.",
+    R"("type": "boolean", "default": false, "examples": [true])"};
+
 /// A surface type. The file of the surface registers it by io::Registry<SurfaceType>::add().
 struct SurfaceType {
     std::string name;
+    dae::TypeSchema schema = {};
     /// Reads the keys of this type, lengths in m. Throws dae::PlacedError.
     std::shared_ptr<const Surface> (*read)(dae::ObjectReader& o);
     /// Key for the direction of the z axis of the surface frame, such as "normal" or "axis". Empty if there

@@ -273,7 +273,31 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
     }
 }
 
-const bool registered = io::Registry<SurfaceType>::add({.name = "mesh", .read = read});
+const bool registered = io::Registry<SurfaceType>::add(
+    {.name = "mesh",
+     .schema =
+         {.description = "Closed triangle mesh, smoothed by cubic patches fitted at its vertices, so that "
+                         "normal and curvature are continuous. The mesh must be fine enough: sharp edges and "
+                         "too few vertices are rejected, and the message names the vertex. The example shows "
+                         "the format only; it has too few vertices.",
+          .parts = {"pose"},
+          .keys =
+              {{"vertices", "Vertices of the mesh [m], in the surface frame.",
+                R"("type": "array", "minItems": 1, "items": {"$ref": "#/$defs/vector"}, "examples": [[[1, )"
+                R"(0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]])",
+                true},
+               {"triangles",
+                "Triangles as triples of vertex numbers counted from 0, counterclockwise seen from outside.",
+                R"("type": "array", "minItems": 1, "items": {"type": "array", "items": {"type": )"
+                R"("integer", "minimum": 0}, "minItems": 3, "maxItems": 3}, "examples": [[[0, 1, 2], [1, )"
+                R"(3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]])",
+                true},
+               concave_key},
+          .example =
+              R"("vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], )"
+              R"("triangles": [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, )"
+              R"(5], [0, 4, 5]])"},
+     .read = read});
 
 }  // namespace
 

@@ -4,6 +4,14 @@
 #pragma once
 
 #include "contact/detection/detector.hpp"
+#include "dae/type_schema.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace hilda::dae {
+class ObjectReader;
+}
 
 namespace hilda::contact {
 
@@ -28,6 +36,17 @@ public:
     /// Elastic energy ∫ N dδ without damping [J]; zero for a law without a spring
     virtual double energy(const NormalInput&) const { return 0; }
     virtual bool needs_curvature() const { return false; }  ///< true if force() depends on the curvature
+    /// Effective modulus E* [Pa] of the bodies, for laws that know it
+    virtual std::optional<double> modulus() const { return {}; }
+};
+
+/// A normal law of model files. The file of the law registers it by io::Registry<NormalLawType>::add().
+struct NormalLawType {
+    std::string name;  ///< value of the key "type"
+    dae::TypeSchema schema;
+    /// Reads the keys of the law. Throws dae::PlacedError.
+    std::shared_ptr<const NormalLaw> (*read)(dae::ObjectReader& o);
+    bool elastic = true;  ///< has a stiffness, so that it can be the fallback of a constraint
 };
 
 /// Prescribed normal force, independent of the overlap, such as m g cos α. No stiffness, no energy.
@@ -92,11 +111,10 @@ public:
         return p.overlap > 0 ? 4. / 15 * stiffness(p) * p.overlap * p.overlap : 0;
     }
     bool needs_curvature() const override { return true; }
-
-    const double E_star;  ///< [Pa]
+    std::optional<double> modulus() const override { return E_star; }
 
 private:
-    double zeta, m;
+    double E_star, zeta, m;
 };
 
 /// Damping ratio ζ of a linear spring-damper with N ≥ 0 for a coefficient of restitution e. The bodies

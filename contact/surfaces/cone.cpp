@@ -62,6 +62,16 @@ namespace {
 
 const bool registered = io::Registry<SurfaceType>::add(
     {.name = "cone",
+     .schema =
+         {.description = "Infinite circular cone. Its apex is at the origin of the surface frame and it "
+                         "opens along z. The apex itself cannot be a contact point.",
+          .parts = {"pose_by_axis"},
+          .keys = {{"half_angle", "Angle between axis and side [rad].",
+                    R"("type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966, )"
+                    R"("examples": [0.5])",
+                    true},
+                   concave_key},
+          .example = R"("half_angle": 0.5, "concave": true, "axis": [0, 0, 1])"},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const double beta = o.number("half_angle");
          if (!angle_allowed(beta))

@@ -39,12 +39,18 @@ PolygonMesh Disk::drawing(const DrawingExtent&) const
 
 namespace {
 
-const bool registered =
-    io::Registry<SurfaceType>::add({.name = "disk",
-                                    .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-                                        return std::make_shared<Disk>(o.positive("radius"));
-                                    },
-                                    .z = "axis"});
+const bool registered = io::Registry<SurfaceType>::add(
+    {.name = "disk",
+     .schema = {.description = "Thin disk that touches with its rim: the circle about z in the plane z = 0 "
+                               "of the surface frame. The other surface must be a plane.",
+                .parts = {"pose_by_axis"},
+                .keys = {{"radius", "Radius [m].",
+                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true}},
+                .example = R"("radius": 0.25, "axis": [1, 0, 0])"},
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+         return std::make_shared<Disk>(o.positive("radius"));
+     },
+     .z = "axis"});
 
 }  // namespace
 

@@ -69,6 +69,16 @@ namespace {
 
 const bool registered = io::Registry<SurfaceType>::add(
     {.name = "paraboloid",
+     .schema =
+         {.description = "Paraboloid z = (x^2/R_x + y^2/R_y)/2 with its vertex at the origin of the surface "
+                         "frame. It opens along z.",
+          .parts = {"pose_by_axis"},
+          .keys = {{"radii", "Radii of curvature R_x and R_y at the vertex [m].",
+                    R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 2, )"
+                    R"("maxItems": 2, "examples": [[1, 1.5]])",
+                    true},
+                   concave_key},
+          .example = R"("radii": [1, 1.5], "concave": true)"},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const std::vector<double> R = o.numbers("radii", 2);
          if (!(R[0] > 0 && R[1] > 0))

@@ -95,7 +95,22 @@ std::optional<Vec3> Quadric::support(const Vec3& u) const
 namespace {
 
 const bool registered = io::Registry<SurfaceType>::add(
-    {.name = "quadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+    {.name = "quadric",
+     .schema = {.description = "Surface G = a^T Q a + 2 b . a + c = 0 of the second degree, with a in the "
+                               "surface frame. The material is where G is negative.",
+                .parts = {"pose"},
+                .keys = {{"Q",
+                          "Symmetric matrix Q, in the surface frame. It must not be zero. Its unit is free; "
+                          "it determines the units of b and c.",
+                          R"("$ref": "#/$defs/matrix", "examples": [[[1, 0, 0], [0, 1, 0], [0, 0, -1]]])",
+                          true},
+                         {"b", "Vector b, in the surface frame. Its unit is the unit of Q times m.",
+                          R"("$ref": "#/$defs/vector", "default": [0, 0, 0], "examples": [[0, 0, 0]])"},
+                         {"c", "Constant c. Its unit is the unit of Q times m^2.",
+                          R"("type": "number", "examples": [-0.01])", true},
+                         concave_key},
+                .example = R"("Q": [[1, 0, 0], [0, 1, 0], [0, 0, -1]], "c": -0.01)"},
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Mat3 Q = o.matrix("Q");
          const Vec3 b = o.vec3("b", Vec3::Zero());
          const double c = o.number("c");

@@ -26,7 +26,14 @@ double Sphere::arc(double chord) const { return 2 * R * std::asin(std::min(chord
 namespace {
 
 const bool registered = io::Registry<SurfaceType>::add(
-    {.name = "sphere", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+    {.name = "sphere",
+     .schema = {.description = "Sphere with its centre at the origin of the surface frame.",
+                .parts = {"pose"},
+                .keys = {{"radius", "Radius [m].",
+                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
+                         concave_key},
+                .example = R"("radius": 0.1)"},
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const double R = o.positive("radius");
          return std::make_shared<Sphere>(R, o.flag("concave", false));
      }});

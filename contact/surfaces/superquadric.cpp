@@ -91,7 +91,21 @@ std::optional<Vec3> Superquadric::support(const Vec3& u) const
 namespace {
 
 const bool registered = io::Registry<SurfaceType>::add(
-    {.name = "superquadric", .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+    {.name = "superquadric",
+     .schema =
+         {.description = "Superquadric |x/a|^p + |y/b|^p + |z/c|^q = 1: an ellipsoid for p = q = 2; a box "
+                         "with rounded edges for large p and q.",
+          .parts = {"pose"},
+          .keys = {{"semi_axes", "Semi-axes along x, y and z of the surface frame [m].",
+                    R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, )"
+                    R"("maxItems": 3, "examples": [[2.5, 3, 2]])",
+                    true},
+                   {"exponent", "Exponent p in the x-y plane [-].",
+                    R"("type": "number", "minimum": 2, "maximum": 100, "examples": [8])", true},
+                   {"exponent_z", "Exponent q along z [-]. By default equal to exponent.",
+                    R"("type": "number", "minimum": 2, "maximum": 100, "examples": [2])"}},
+          .example = R"("semi_axes": [0.3, 0.2, 0.1], "exponent": 8, "exponent_z": 4)"},
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Vec3 semi_axes = read_semi_axes(o);
          const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {
              const double p = o.number(key, fallback);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A user-defined surface and a user-defined friction law in one file. Both register themselves and have
-/// their own keys in the model file.
+/// A user-defined surface, a user-defined friction law and a user-defined normal law in one file. They register
+/// themselves and have their own keys in the model file.
 
 #include "contact/friction/friction.hpp"
 #include "contact/implicit_surface.hpp"
+#include "contact/normal/normal_law.hpp"
 #include "contact/surface_types.hpp"
+
+#include <cmath>
 
 namespace hilda::contact {
 namespace {
@@ -22,7 +25,17 @@ std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
     return std::make_shared<ImplicitSurface<decltype(G)>>(G, R);
 }
 
-const bool egg = io::Registry<SurfaceType>::add({.name = "demo-egg", .read = read_egg});
+const bool egg = io::Registry<SurfaceType>::add(
+    {.name = "demo-egg",
+     .schema = {.description = "Egg-shaped surface with its long axis along z of the surface frame.",
+                .parts = {"pose"},
+                .keys = {{"radius", "Radius R in the plane z = 0 [m].",
+                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
+                         {"point", "Taper [-].",
+                          R"("type": "number", "minimum": -0.3, "maximum": 0.3, "default": 0.1, )"
+                          R"("examples": [0.2])"}},
+                .example = R"("radius": 0.1)"},
+     .read = read_egg});
 
 /// Viscous friction F = c ṡ, limited to μ_s N. It has no history.
 class DemoOil final : public FrictionModel {
@@ -43,13 +56,46 @@ private:
     const double c, mu_s;
 };
 
-const bool oil =
-    io::Registry<FrictionLaw>::add({.name = "demo-oil",
-                                    .what = "viscous, limited to the Coulomb bound",
-                                    .read = [](dae::ObjectReader& o, FrictionParameters p,
-                                               const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
-                                        return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
-                                    }});
+const bool oil = io::Registry<FrictionLaw>::add(
+    {.name = "demo-oil",
+     .what = "viscous, limited to the Coulomb bound",
+     .schema = {.description = "Viscous friction, limited to mu_s N.",
+                .parts = {"friction_parameters"},
+                .keys = {{"viscosity", "Coefficient c [N s/m].",
+                          R"("type": "number", "exclusiveMinimum": 0, "examples": [3])", true}},
+                .example = R"("mu_s": 0.3, "K_E": 1e4, "viscosity": 3)"},
+     .read = [](dae::ObjectReader& o, FrictionParameters p,
+                const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
+         return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+     }});
+
+/// A normal force N = k δ^p of the overlap δ
+class DemoPower final : public NormalLaw {
+public:
+    DemoPower(double k, double p) : k(k), p(p) {}
+
+    double force(const NormalInput& in) const override { return k * std::pow(in.overlap, p); }
+    double stiffness(const NormalInput& in) const override { return p * k * std::pow(in.overlap, p - 1); }
+    double energy(const NormalInput& in) const override { return k / (p + 1) * std::pow(in.overlap, p + 1); }
+
+private:
+    const double k, p;
+};
+
+const bool power = io::Registry<NormalLawType>::add(
+    {.name = "demo-power",
+     .schema = {.description = "Power law N = k delta^p of the overlap delta.",
+                .keys = {{"k", "Coefficient k [N/m^p].",
+                          R"("type": "number", "exclusiveMinimum": 0, "examples": [1e6])", true},
+                         {"p", "Exponent p [-].", R"("type": "number", "minimum": 1, "examples": [1.5])",
+                          true},
+                         dae::note_key},
+                .example = R"("k": 1e6, "p": 1.5)"},
+     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const NormalLaw> {
+         const double k = o.positive("k"), p = o.number("p");
+         if (!(p >= 1)) o.fail("p", "p must be at least 1, got " + dae::shortest(p));
+         return std::make_shared<DemoPower>(k, p);
+     }});
 
 }  // namespace
 }  // namespace hilda::contact

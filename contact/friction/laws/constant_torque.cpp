@@ -50,11 +50,20 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<ConstantTorque>(p);
 }
 
-const bool registered =
-    io::Registry<FrictionLaw>::add({.name = "constant-torque",
-                                    .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
-                                    .make = make_law<ConstantTorque>,
-                                    .read = read});
+const bool registered = io::Registry<FrictionLaw>::add(
+    {.name = "constant-torque",
+     .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
+     .schema = {.description = "Sliding friction as in slide-roll-spin. Rolling friction is a torque of "
+                               "constant magnitude that opposes the rolling velocity (Fang 2022, Eq. 2.48). "
+                               "It has no static regime: a body at rest shows small oscillations.",
+                .parts = {"friction_parameters"},
+                .keys = {{"mu_r",
+                          "Coefficient of rolling resistance mu_r [-]. The magnitude of the torque is mu_r R "
+                          "N, with the effective radius R.",
+                          R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
+                .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
+     .make = make_law<ConstantTorque>,
+     .read = read});
 
 }  // namespace
 }  // namespace hilda::contact

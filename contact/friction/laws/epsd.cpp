@@ -78,6 +78,16 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
 const bool registered = io::Registry<FrictionLaw>::add(
     {.name = "epsd",
      .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
+     .schema =
+         {.description =
+              "Sliding friction as in slide-roll-spin. Rolling friction is an elastic-plastic spring and "
+              "damper on the relative rolling rotation (Fang 2022, Sec. 2.2.1.4; Ai et al. 2011, model C).",
+          .parts = {"friction_parameters"},
+          .keys = {{"mu_r",
+                    "Coefficient of rolling resistance mu_r [-]. The elastic torque is at most mu_r R N, "
+                    "with the effective radius R.",
+                    R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
+          .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
      .make = make_law<Epsd>,
      .read = read});
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Definitions of the registered surfaces, normal laws and friction laws in the schema of model files.
+
+#include "contact/friction/friction.hpp"
+#include "contact/normal/normal_law.hpp"
+#include "contact/surface_types.hpp"
+#include "io/json.hpp"
+
+#include <algorithm>
+
+namespace hilda::contact {
+
+namespace {
+
+/// A definition that selects one of several definitions by a key of the object
+struct Group {
+    std::string name;         ///< of the definition: "surface"
+    dae::TypeKind kind;       ///< its key is the one that selects
+    std::string prefix = {};  ///< of the names of the definitions of the types
+    /// Further values of the key, with a definition of the same name in dae/model.schema.json
+    std::vector<std::string> others = {};
+    std::string fallback = {};      ///< value of the key if it is not given; "": it must be given
+    std::string unregistered = {};  ///< definition for other values of the key; "": they are rejected
+};
+
+std::string definition_of(const Group& group, std::string name)
+{
+    std::replace(name.begin(), name.end(), '-', group.prefix.empty() ? '-' : '_');
+    return group.prefix + name;
+}
+
+/// {"if": the key satisfies the condition, "then": the definition}
+io::Json selection(const std::string& key, const io::Json& condition, bool given,
+                   const std::string& definition)
+{
+    io::Json has_value = io::Json::object();
+    if (given) has_value["required"] = io::Json::List{key};
+    has_value["properties"][key] = condition;
+    io::Json both = io::Json::object();
+    both["if"] = has_value;
+    both["then"]["$ref"] = "#/$defs/" + definition;
+    return both;
+}
+
+/// Adds the definitions of the registered types, and the selection among them
+template <class Type>
+void add_group(io::Json& definitions, const Group& group)
+{
+    std::vector<std::string> names;
+    for (const Type& type : io::Registry<Type>::all()) {
+        definitions[definition_of(group, type.name)] = dae::definition(group.kind, type.name, type.schema);
+        names.push_back(type.name);
+    }
+    names.insert(names.end(), group.others.begin(), group.others.end());
+    const std::string& key = group.kind.key;
+    const bool has_default = !group.fallback.empty();
+    io::Json selections = io::Json::array(), value = io::Json::object(), other = io::Json::object();
+    for (const std::string& name : names) {
+        value["const"] = name;
+        selections.push_back(
+            selection(key, value, has_default && name != group.fallback, definition_of(group, name)));
+    }
+    io::Json& definition = definitions[group.name];
+    if (group.unregistered.empty()) {
+        definition["properties"][key]["enum"] = names;
+    } else {
+        other["not"]["enum"] = names;
+        selections.push_back(selection(key, other, has_default, group.unregistered));
+    }
+    definition["allOf"] = selections;
+}
+
+/// The fallback of a constraint is one of the elastic normal laws.
+void add_fallback(io::Json& definitions)
+{
+    io::Json references = io::Json::array();
+    for (const NormalLawType& law : io::Registry<NormalLawType>::all())
+        if (law.elastic) references.push_back({{"$ref", "#/$defs/" + law.name}});
+    definitions["constraint"]["properties"]["fallback"]["oneOf"] = references;
+}
+
+void add_contacts(io::Json& definitions)
+{
+    add_group<SurfaceType>(definitions, {.name = "surface",
+                                         .kind = {"Surface", "type", "Type of the surface."},
+                                         .prefix = "surface_",
+                                         .unregistered = "pose"});
+    add_group<NormalLawType>(definitions, {.name = "normal",
+                                           .kind = {"Normal law", "type", "Type of the normal law."},
+                                           .others = {"constraint"}});
+    add_group<FrictionLaw>(definitions, {.name = "friction",
+                                         .kind = {"Friction law", "law", "Name of the friction law."},
+                                         .others = {"rolling", "implicit"},
+                                         .fallback = "slide-roll-spin",
+                                         .unregistered = "friction_parameters"});
+    add_fallback(definitions);
+}
+
+const bool registered = io::Registry<dae::SchemaPart>::add({.name = "contacts", .add = add_contacts});
+
+}  // namespace
+
+}  // namespace hilda::contact

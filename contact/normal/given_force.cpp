@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/normal/normal_law.hpp"
+
+#include "contact/normal/check.hpp"
+#include "dae/object_reader.hpp"
+
+namespace hilda::contact {
+
+GivenForce::GivenForce(double N) : N(N)
+{
+    check_parameter("GivenForce", "a given normal force must not be negative", N, N >= 0);
+}
+
+namespace {
+
+std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
+{
+    return std::make_shared<GivenForce>(o.not_negative("force"));
+}
+
+const bool registered = io::Registry<NormalLawType>::add(
+    {.name = "given",
+     .schema = {.description = "Prescribed constant normal force, independent of the overlap. It models "
+                               "surfaces that are pressed together by a known force.",
+                .keys = {{"force", "Normal force N [N].",
+                          R"("type": "number", "minimum": 0, "examples": [9.81])", true},
+                         dae::note_key},
+                .example = R"("force": 9.81)"},
+     .read = read,
+     .elastic = false});
+
+}  // namespace
+
+}  // namespace hilda::contact

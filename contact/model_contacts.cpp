@@ -46,6 +46,16 @@ std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string&
     return io::Registry<NormalLawType>::find(type)->read(o);
 }
 
+/// Reads the coefficients of friction.
+void read_coefficients(ObjectReader& o, double& mu_s, double& mu_k)
+{
+    mu_s = o.not_negative("mu_s");
+    mu_k = o.not_negative("mu_k", mu_s);
+    if (mu_k > mu_s)
+        o.fail("mu_k",
+               "mu_k must not be above mu_s, " + dae::shortest(mu_s) + ", got " + dae::shortest(mu_k));
+}
+
 /// Reads the keys of a friction law. `law` is its name, which has been read before.
 std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string& law,
                                               const NormalLaw& normal)
@@ -54,11 +64,7 @@ std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string
     FrictionParameters p;
     if (preset == "dissertation") p = p.as_in_dissertation();
 
-    p.mu_s = o.not_negative("mu_s");
-    p.mu_k = o.not_negative("mu_k", p.mu_s);
-    if (p.mu_k > p.mu_s)
-        o.fail("mu_k",
-               "mu_k must not be above mu_s, " + dae::shortest(p.mu_s) + ", got " + dae::shortest(p.mu_k));
+    read_coefficients(o, p.mu_s, p.mu_k);
     p.K_E = o.positive("K_E");
     p.zeta = o.not_negative("zeta", p.zeta);
     for (const auto& [key, D] :
@@ -133,11 +139,7 @@ struct ConstraintFriction {
 ImplicitFriction read_implicit(ObjectReader& o)
 {
     ImplicitFriction f;
-    f.mu_s = o.not_negative("mu_s");
-    f.mu_k = o.not_negative("mu_k", f.mu_s);
-    if (f.mu_k > f.mu_s)
-        o.fail("mu_k",
-               "mu_k must not be above mu_s, " + dae::shortest(f.mu_s) + ", got " + dae::shortest(f.mu_k));
+    read_coefficients(o, f.mu_s, f.mu_k);
     f.K_E = o.positive("K_E");
     f.K_D = o.not_negative("D_slide", 0);
     f.eta_r = o.not_negative("eta_r", 0);

@@ -37,9 +37,14 @@ bool same(const lie::State& a, const lie::State& b)
 // chooses new pivots during the run.
 TEST_CASE("each scheme continues from a checkpoint with the same digits", "[studies][resume]")
 {
-    const std::string name =
-        GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill", "ball_in_bowl_xy", "rattleback");
-    dae::Description d = dae::read_model(studies::problem(name).model, name);
+    const std::string name = GENERATE("slider_crank", "n_pendulum_2_spin", "edge_mill", "ball_in_bowl_xy",
+                                      "rattleback", "braked_ball_in_bowl");
+    // Implicit friction: the pivots and scales of KLU depend on the compliance of the regularised rows.
+    const std::vector<std::string> implicit = {
+        R"(/contacts/0/friction={"law": "implicit", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100})"};
+    const bool regularised = name == "braked_ball_in_bowl";
+    dae::Description d = dae::read_model(studies::problem(name).model, name,
+                                         regularised ? implicit : std::vector<std::string>());
     const int last = d.model->bodies() - 1;
     d.model->load(tests::Bristle(dae::ground, last, 0.5, 10));
     if (last > 0) d.model->load(tests::Bristle(0, last, 2, 1e-4));
@@ -47,7 +52,10 @@ TEST_CASE("each scheme continues from a checkpoint with the same digits", "[stud
     for (const lie::Scheme& scheme : lie::schemes()) {
         if (scheme.adaptive) continue;
         if (!d.model->general_constraints().empty() && !(scheme.algebraic && scheme.nonholonomic)) continue;
-        const lie::Settings settings{.reparametrise = true};
+        if (regularised && !scheme.regularised) continue;
+        const lie::Settings settings{
+            .linear_solver = regularised ? lie::LinearSolver::klu : lie::LinearSolver::automatic,
+            .reparametrise = true};
         constexpr double h = 2e-3;
         constexpr long half = 150;
         const auto integrator = scheme.make(*d.model, settings);

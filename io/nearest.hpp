@@ -60,4 +60,11 @@ inline std::string did_you_mean(std::string_view word, std::span<const std::stri
     return meant.empty() ? "" : "; did you mean '" + meant + "'?";
 }
 
+/// The text " 'x'; did you mean 'y'?", where y is the known word nearest to x; without the question if no
+/// known word is near.
+inline std::string with_nearest(const std::string& word, std::span<const std::string> known)
+{
+    return " '" + word + "'" + did_you_mean(word, known);
+}
+
 }  // namespace hilda::io

@@ -80,6 +80,15 @@ std::vector<std::string> list(const std::string& option, const std::string& text
     return parts;
 }
 
+std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words)
+{
+    if (std::find(words.begin(), words.end(), text) != words.end()) return text;
+    std::string all;
+    for (size_t k = 0; k < words.size(); ++k)
+        all += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
+    refuse_option(option, "must be " + all, text);
+}
+
 std::string path(const std::string& option, const std::string& text)
 {
     if (text.empty()) throw UsageError(option + ": must not be empty");

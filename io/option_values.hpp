@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,8 @@ int count_up_to(int most, const std::string& option, const std::string& text);
 std::uint64_t seed(const std::string& option, const std::string& text);
 /// The parts of A,B,C. No part may be empty.
 std::vector<std::string> list(const std::string& option, const std::string& text);
+/// One of the words; the error lists them.
+std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words);
 /// A text that is not empty
 std::string path(const std::string& option, const std::string& text);
 /// The text of a --set. It must have the form /json/pointer=VALUE.

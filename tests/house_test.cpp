@@ -78,6 +78,8 @@ std::string include_error(const std::string& file, const std::string& header)
     if (const auto out = forbidden_libraries.find(room);
         out != forbidden_libraries.end() && out->second.count(other) != 0)
         return room + " must not include " + other;
+    if (file.starts_with("studies/framework/") && header.starts_with("studies/program/"))
+        return "studies/framework must not include studies/program";
     if (rooms.count(other) == 0 || other == room) return "";
     if (room == "tests" && other == "studies" && header.ends_with(".cpp"))
         return "is a source file of studies, not a header";
@@ -135,6 +137,8 @@ TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
     CHECK(include_error("granular/world/world.hpp", "dae/model.hpp") == "granular must not include dae");
     CHECK(include_error("studies/program/main.cpp", "tests/support/random_motion.hpp") ==
           "studies must not include tests");
+    CHECK(include_error("studies/framework/study.hpp", "studies/program/arguments.hpp") ==
+          "studies/framework must not include studies/program");
     CHECK(include_error("tests/lie/so3_test.cpp", "studies/program/main.cpp") ==
           "is a source file of studies, not a header");
     CHECK(include_error("dae/start.cpp", "gsl/gsl_odeiv2.h") == "dae must not include gsl");

@@ -51,13 +51,6 @@ public:
         ((name == Laws::name ? void((*this = Laws::read(keys), found = true)) : void()), ...);
         return found;
     }
-    /// Names of all laws, separated by commas
-    static std::string names()
-    {
-        std::string all;
-        ((all += (all.empty() ? "" : ", ") + std::string(Laws::name)), ...);
-        return all;
-    }
 
 private:
     int index = 0;

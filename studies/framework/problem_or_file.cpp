@@ -3,7 +3,7 @@
 #include "io/files.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
-#include "studies/program/named_model.hpp"
+#include "studies/running/named_model.hpp"
 
 #include <filesystem>
 

@@ -4,7 +4,8 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
-#include "studies/program/plot.hpp"
+#include "io/nearest.hpp"
+#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options)
         if (keys.empty()) refuse("--expect is not an option of this study");
         std::string all;
         for (const std::string& key : keys) all += (all.empty() ? "" : ", ") + key;
-        refuse("--expect: unknown key" + with_nearest(e.key, keys) + "; known keys: " + all);
+        refuse("--expect: unknown key" + io::with_nearest(e.key, keys) + "; known keys: " + all);
     }
     if (options.vtk > 0 && options.output.empty())
         refuse("--vtk writes files: with --json it needs --output");
@@ -197,7 +198,7 @@ void check_parts(const StudyContext& study, const std::string& what, const std::
 {
     for (const std::string& name : study.options.problems)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            study.refuse("unknown " + what + with_nearest(name, known));
+            study.refuse("unknown " + what + io::with_nearest(name, known));
 }
 
 }  // namespace hilda::studies

@@ -5,11 +5,11 @@
 #pragma once
 
 #include "io/json.hpp"
+#include "io/option_values.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/program/arguments.hpp"
 
 #include <algorithm>
 #include <map>
@@ -120,7 +120,7 @@ const Named& one_of_list(const std::string& option, const std::string& name, con
 {
     std::vector<std::string> known;
     for (const Named& entry : list) known.push_back(entry.name);
-    if (!name.empty()) one_of(option, name, known);
+    if (!name.empty()) io::one_of(option, name, known);
     const auto at = std::find(known.begin(), known.end(), name);
     return name.empty() ? list.front() : list[static_cast<size_t>(at - known.begin())];
 }

@@ -2,6 +2,7 @@
 #include "studies/framework/table.hpp"
 
 #include "io/csv.hpp"
+#include "io/json.hpp"
 
 #include <fmt/format.h>
 
@@ -52,12 +53,18 @@ std::string Table::csv() const
     for (const auto& row : cells) {
         for (size_t c = 0; c < columns.size(); ++c) {
             if (c > 0) out += ',';
-            const auto* text = std::get_if<std::string>(&row[c]);
-            out += text != nullptr ? io::csv_field(*text) : shortest(number(row[c]));
+            out += csv_text(row[c]);
         }
         out += '\n';
     }
     return out;
+}
+
+std::string csv_text(const Table::Cell& cell)
+{
+    if (const auto* text = std::get_if<std::string>(&cell)) return io::csv_field(*text);
+    const double value = number(cell);
+    return std::isnan(value) ? "" : io::shortest(value);
 }
 
 double number(const Table::Cell& cell)
@@ -65,13 +72,6 @@ double number(const Table::Cell& cell)
     if (const auto* integer = std::get_if<long>(&cell)) return static_cast<double>(*integer);
     const auto* value = std::get_if<double>(&cell);
     return value != nullptr ? *value : std::nan("");
-}
-
-std::string shortest(double value)
-{
-    std::string text;
-    if (!std::isnan(value)) io::append_number(text, value);
-    return text;
 }
 
 double fitted_order(const std::vector<double>& h, const std::vector<double>& e)

@@ -39,8 +39,8 @@ private:
 /// The number in a cell; NaN for a text
 double number(const Table::Cell& cell);
 
-/// The shortest decimal text that reads back as the same double; empty for NaN
-std::string shortest(double value);
+/// The field of a cell in a CSV file
+std::string csv_text(const Table::Cell& cell);
 
 /// Observed order of convergence log(e₁/e₂) / log(h₁/h₂); NaN unless both errors are positive
 inline double order(double h_1, double e_1, double h_2, double e_2)

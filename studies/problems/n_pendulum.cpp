@@ -5,8 +5,8 @@
 #include "studies/problems/n_pendulum.hpp"
 
 #include "dae/model_file.hpp"
+#include "io/json.hpp"
 #include "reference/solvers/reference_solution.hpp"
-#include "studies/framework/table.hpp"
 
 #include <random>
 
@@ -92,7 +92,7 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
     std::string bodies, constraints;
     for (int i = 1; i <= N; ++i) {
         const char* before = i == 1 ? "" : ",\n";
-        bodies += before + bar(i, R"(, "omega": [)" + shortest(spin[i - 1]) + ", 0, 0]");
+        bodies += before + bar(i, R"(, "omega": [)" + io::shortest(spin[i - 1]) + ", 0, 0]");
         constraints += before + ball(i);
     }
     return chain(name, "chain of " + std::to_string(N) + " spinning bars",

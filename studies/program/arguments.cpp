@@ -2,7 +2,6 @@
 #include "studies/program/arguments.hpp"
 
 #include "io/error.hpp"
-#include "io/nearest.hpp"
 #include "lie/schemes.hpp"
 #include "studies/problems/n_pendulum.hpp"
 #include "studies/running/vtk.hpp"
@@ -48,15 +47,6 @@ lie::LinearSolver linear_solver(const std::string& option, const std::string& te
     if (text == "klu") return lie::LinearSolver::klu;
     if (text == "condensed") return lie::LinearSolver::condensed;
     refuse_option(option, "must be auto, klu or condensed", text);
-}
-
-std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words)
-{
-    if (std::find(words.begin(), words.end(), text) != words.end()) return text;
-    std::string all;
-    for (size_t k = 0; k < words.size(); ++k)
-        all += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
-    refuse_option(option, "must be " + all, text);
 }
 
 std::string preset(const std::string& option, const std::string& text)
@@ -111,11 +101,6 @@ Expectation expectation(const std::string& option, const std::string& text)
         e.tolerance = io::finite_number_in(std::string_view(text).substr(plus_minus + 2));
     if (std::isnan(e.value) || !(e.tolerance >= 0)) refuse_option(option, form, text);
     return e;
-}
-
-std::string with_nearest(const std::string& word, std::span<const std::string> known)
-{
-    return " '" + word + "'" + io::did_you_mean(word, known);
 }
 
 std::vector<std::string> integrators(const std::string& option, const std::string& text)

@@ -3,13 +3,12 @@
 
 #pragma once
 
+#include "io/nearest.hpp"
 #include "io/option_values.hpp"
 #include "lie/solver/linear_solver.hpp"
 #include "studies/framework/study.hpp"
 
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hilda::studies {
@@ -18,11 +17,13 @@ using io::fraction;
 using io::list;
 using io::nonnegative_number;
 using io::number;
+using io::one_of;
 using io::positive_count;
 using io::positive_number;
 using io::refuse_option;
 using io::seed;
 using io::setting;
+using io::with_nearest;
 
 /// A relative tolerance: 1e-14 <= value < 1. Smaller tolerances are below the rounding errors of double
 /// precision.
@@ -31,8 +32,6 @@ double relative_tolerance(const std::string& option, const std::string& text);
 double absolute_tolerance(const std::string& option, const std::string& text);
 /// auto, klu or condensed
 lie::LinearSolver linear_solver(const std::string& option, const std::string& text);
-/// One of the words; the error lists them.
-std::string one_of(const std::string& option, const std::string& text, std::span<const std::string> words);
 /// balanced or dissertation
 std::string preset(const std::string& option, const std::string& text);
 /// tangent or fixed-xy
@@ -49,10 +48,6 @@ std::vector<int> bars(const std::string& option, const std::string& text);
 
 /// KEY=VALUE[+-TOL]
 Expectation expectation(const std::string& option, const std::string& text);
-
-/// The text " 'x'; did you mean 'y'?", where y is the known word nearest to x; without the question if no
-/// known word is near.
-std::string with_nearest(const std::string& word, std::span<const std::string> known);
 
 /// The integrators of a list NAME,NAME,...; io::UsageError for an unknown name or for a name given twice.
 std::vector<std::string> integrators(const std::string& option, const std::string& text);

@@ -8,8 +8,8 @@
 #include "io/json.hpp"
 #include "io/message.hpp"
 #include "lie/solver/saddle.hpp"
-#include "studies/program/named_model.hpp"
 #include "studies/running/contact_rows.hpp"
+#include "studies/running/named_model.hpp"
 
 #include <fmt/format.h>
 

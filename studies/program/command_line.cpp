@@ -8,9 +8,9 @@
 #include "studies/program/granular_program.hpp"
 #include "studies/program/info.hpp"
 #include "studies/program/lists.hpp"
-#include "studies/program/plot.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
+#include "studies/running/plot.hpp"
 #include "studies/running/sink.hpp"
 
 #include "io/nearest.hpp"

@@ -8,7 +8,7 @@
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/program/plot.hpp"
+#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>

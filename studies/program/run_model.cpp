@@ -5,7 +5,7 @@
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
-#include "studies/program/named_model.hpp"
+#include "studies/running/named_model.hpp"
 #include "studies/running/single_run.hpp"
 
 #include <iostream>

@@ -9,10 +9,10 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
-#include "studies/program/named_model.hpp"
-#include "studies/program/plot.hpp"
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/named_model.hpp"
+#include "studies/running/plot.hpp"
 
 #include <fmt/format.h>
 

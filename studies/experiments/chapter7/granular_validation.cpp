@@ -7,7 +7,6 @@
 #include "io/progress.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/program/arguments.hpp"
 
 #include "granular/validations/validation.hpp"
 
@@ -45,7 +44,7 @@ void reject_unused_options(const StudyContext& study)
           std::pair(!options.steps.empty(), "--steps"), std::pair(options.end.has_value(), "--end"),
           std::pair(!options.set.empty(), "--set")})
         if (given) study.refuse(std::string(option) + " is not an option of this study");
-    if (!options.grid.empty()) one_of("--grid", options.grid, std::vector<std::string>{"full"});
+    if (!options.grid.empty()) io::one_of("--grid", options.grid, std::vector<std::string>{"full"});
 }
 
 granular::ValidationResult result_of(const Validation& validation, const StudyContext& study)

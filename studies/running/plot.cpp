@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/program/plot.hpp"
+#include "studies/running/plot.hpp"
 
 #include "io/files.hpp"
 #include "io/json_source.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/program/named_model.hpp"
+#include "studies/running/named_model.hpp"
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"

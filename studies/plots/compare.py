@@ -4,14 +4,13 @@
 
     compare.py DIR      reads DIR/study.csv and DIR/compare.csv, writes DIR/compare.png
 """
-from drawing import Line2D, directory, distinct, grid, legend, numbers, plt, read, save, style, width
+from drawing import Line2D, axis, directory, distinct, legend, numbers, plt, read, save, style, width
 
 PANELS = [("diff_r", "$r$ [m]"), ("diff_A", "$A$"), ("diff_v", "$\\dot r$ [m/s]"),
           ("diff_omega", "$\\bar\\omega$ [rad/s]")]
 
 
-def main():
-    folder = directory()
+def draw(folder):
     runs, rows = read(folder, "study.csv"), read(folder, "compare.csv")
     schemes = distinct(runs, "integrator")
     t = numbers(rows, "t")
@@ -26,17 +25,13 @@ def main():
                         lw=width(scheme, schemes, 1, 2.5), zorder=2)
     body, component = (runs[0].get("observable_scalar") or runs[0]["watched_scalar"]).rsplit(".", 1)
     unit = {"r": "m", "v": "m/s", "w": "rad/s"}[component[0]]
-    observable.set_ylabel(f"${component[0]}_{component[1]}$ of {body} [{unit}]")
-    observable.set_xlabel("$t$ [s]")
-    grid(observable)
+    axis(observable, "$t$ [s]", f"${component[0]}_{component[1]}$ of {body} [{unit}]")
     for k, (column, symbol) in enumerate(PANELS):
         axes = figure.add_subplot(layout[1 + k // 2, k % 2], sharex=observable)
         for scheme in schemes:
             d = numbers(rows, f"{scheme}.{column}")
             axes.semilogy(t[1:], [x if x > 0 else float("nan") for x in d[1:]], color=style(scheme, schemes)[0], lw=1)
-        axes.set_ylabel("difference in " + symbol)
-        axes.set_xlabel("$t$ [s]")
-        grid(axes)
+        axis(axes, "$t$ [s]", "difference in " + symbol)
     steps = distinct([run for run in runs if run["h"]], "h")
     at = f", h = {float(steps[0]):g} s" if steps else ""
     figure.suptitle(f"{runs[0]['problem']}{at}: observable and differences to the reference solution "
@@ -45,5 +40,4 @@ def main():
     save(figure, folder, "compare.png", legend(figure, schemes, markers=False, more=more))
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -4,7 +4,7 @@
 
     contact-methods.py DIR       reads DIR/study.csv, writes DIR/contact-methods-PART.png
 """
-from drawing import directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import axis, by_scheme, distinct, for_each, legend, number, numbers, plt, save
 
 TITLES = {
     "bowl": "Ball sliding in a bowl for 2 s: position error",
@@ -14,43 +14,25 @@ TITLES = {
 }
 
 
-def lines(axes, rows, x, y, methods):
-    for method in methods:
-        colour, marker = style(method, methods)
-        mine = [row for row in where(rows, method=method) if row["status"] == "ok" and number(row[y]) > 0]
-        axes.loglog(numbers(mine, x), numbers(mine, y), "-", marker=marker, color=colour, lw=1.2, ms=5)
-    grid(axes)
+def lines(axes, rows, x, y, xlabel, ylabel):
+    for _, mine, look in by_scheme(rows, "method"):
+        mine = [row for row in mine if row["status"] == "ok" and number(row[y]) > 0]
+        axes.loglog(numbers(mine, x), numbers(mine, y), "-", lw=1.2, ms=5, **look)
+    axis(axes, xlabel, ylabel)
 
 
 def draw(folder, part, rows):
-    methods = distinct(rows, "method")
-    figure, panels = plt.subplots(1, 2, figsize=(11.5, 5.0))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 5.0))
     if part == "bowl":
-        lines(panels[0], rows, "cpu_seconds", "error", methods)
-        panels[0].set_xlabel("thread CPU time of the run [s]")
-        lines(panels[1], rows, "h", "error", methods)
-        panels[1].set_xlabel("step $h$ [s]")
-        for axes in panels:
-            axes.set_ylabel("largest position error [m]")
+        lines(left, rows, "cpu_seconds", "error", "thread CPU time of the run [s]", "largest position error [m]")
+        lines(right, rows, "h", "error", "step $h$ [s]", "largest position error [m]")
     else:
-        lines(panels[0], rows, "contacts", "us_per_step_and_contact", methods)
-        panels[0].set_ylabel("thread CPU time per step and contact [µs]")
-        panels[0].set_xlabel("number of contacts")
         for row in rows:
             row["per_second"] = str(number(row["cpu_seconds"]) / number(row["end"]))
-        lines(panels[1], rows, "contacts", "per_second", methods)
-        panels[1].set_ylabel("thread CPU time per second of motion [s/s]")
-        panels[1].set_xlabel("number of contacts")
+        lines(left, rows, "contacts", "us_per_step_and_contact", "number of contacts", "thread CPU time per step and contact [µs]")
+        lines(right, rows, "contacts", "per_second", "number of contacts", "thread CPU time per second of motion [s/s]")
     figure.suptitle(TITLES[part], fontsize=11)
-    save(figure, folder, f"contact-methods-{part}.png", legend(figure, methods))
+    save(figure, folder, f"contact-methods-{part}.png", legend(figure, distinct(rows, "method")))
 
 
-def main():
-    folder = directory()
-    rows = read(folder, "study.csv")
-    for part in distinct(rows, "part"):
-        draw(folder, part, where(rows, part=part))
-
-
-if __name__ == "__main__":
-    main()
+for_each("part", draw)

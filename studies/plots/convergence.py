@@ -8,7 +8,7 @@ Reads DIR/study.csv and DIR/study.json. For the default selection of the study i
 for each problem: DIR/convergence-position.png and DIR/convergence-loads.png. For any other selection it writes one
 figure for each problem, DIR/convergence-PROBLEM.png, with one panel for each error norm.
 """
-from drawing import SLOPES, Line2D, directory, distinct, grid, legend, plt, read, record, save, slopes, style, where
+from drawing import SLOPES, Line2D, axis, directory, distinct, legend, numbers, plt, read, record, save, slopes, style, where
 
 # The schemes of the dissertation are drawn on top of the others and come first in the legends.
 OF_THE_TEXT = ("rA-full-1", "rA-half-1", "rA-half-2")
@@ -30,8 +30,7 @@ def text_first(schemes):
 def series(rows, scheme, norm):
     """Steps, errors and floor flags of one scheme, without the rows that have no error"""
     rows = [row for row in where(rows, integrator=scheme) if row[norm] not in ("", "0")]
-    return ([float(row["h"]) for row in rows], [float(row[norm]) for row in rows],
-            [row["floor_" + norm] == "1" for row in rows])
+    return numbers(rows, "h"), numbers(rows, norm), [row["floor_" + norm] == "1" for row in rows]
 
 
 def above_floor(rows, norm):
@@ -99,9 +98,8 @@ def overview(folder, rows, norm, name, title, label):
         if clean:
             guide(axes, 1, clean, above=True)
             guide(axes, 2, clean, above=False)
-        axes.set_title(f"{problem} ({MOTIONS[problem]})" if problem in MOTIONS else problem, fontsize=10.5)
-        axes.set_xlabel("step $h$ [s]" + (f"   (hollow: {AT_FLOOR})" if len(clean) < len(of_problem) else ""))
-        grid(axes)
+        axis(axes, "step $h$ [s]" + (f"   (hollow: {AT_FLOOR})" if len(clean) < len(of_problem) else ""),
+             title=f"{problem} ({MOTIONS[problem]})" if problem in MOTIONS else problem, size=10.5)
     all_axes[0][0].set_ylabel(label)
     figure.suptitle(title, fontsize=12)
     save(figure, folder, name, two_line_legend(figure, schemes), top=1)
@@ -135,10 +133,8 @@ def draw(folder, problem, rows):
             h = sorted({x for x, _ in clean})
             if len(h) > 1:
                 slopes(axes, h, 1.8 * max(error for _, error in clean))
-            axes.set_title(title or f"${component[0]}_{component[1]}$ of {body} [{UNITS[component[0]]}], norm of Fig. 3.4",
-                           fontsize=10)
-            axes.set_xlabel("step $h$ [s]")
-            grid(axes)
+            axis(axes, "step $h$ [s]",
+                 title=title or f"${component[0]}_{component[1]}$ of {body} [{UNITS[component[0]]}], norm of Fig. 3.4")
     all_axes[0][0].set_ylabel("error, rms over the instants")
     all_axes[1][0].set_ylabel(f"error at the end, {body}")
     left_out = [norm for panels in PANELS for norm, _ in panels if not any((norm, _) in p for p in shown)]
@@ -148,8 +144,7 @@ def draw(folder, problem, rows):
     save(figure, folder, f"convergence-{problem}.png", legend(figure, schemes, more=more, columns=int(1.8 * columns)))
 
 
-def main():
-    folder = directory()
+def figures(folder):
     # "observable" is "watched" in results of earlier versions
     rows = [{column.replace("watched", "observable"): value for column, value in row.items()}
             for row in read(folder, "study.csv")]
@@ -164,5 +159,4 @@ def main():
             draw(folder, problem, where(rows, problem=problem))
 
 
-if __name__ == "__main__":
-    main()
+figures(directory())

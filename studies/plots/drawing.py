@@ -94,6 +94,24 @@ def grid(axes):
     axes.set_axisbelow(True)
 
 
+def axis(axes, x="", y="", title="", size=10):
+    """Labels, title and grid of a panel; an empty text leaves what is there"""
+    for text, place in ((x, axes.set_xlabel), (y, axes.set_ylabel)):
+        if text:
+            place(text)
+    if title:
+        axes.set_title(title, fontsize=size)
+    grid(axes)
+
+
+def by_scheme(rows, column="integrator"):
+    """For each scheme of a column: its name, its rows, and its colour and marker as arguments of plot functions"""
+    schemes = distinct(rows, column)
+    for scheme in schemes:
+        colour, marker = style(scheme, schemes)
+        yield scheme, where(rows, **{column: scheme}), {"color": colour, "marker": marker}
+
+
 def legend(figure, schemes, markers=True, more=(), columns=8):
     """Draws one legend below the figure and returns its height as a fraction of the figure height"""
     handles = [Line2D([], [], color=style(s, schemes)[0], marker=style(s, schemes)[1] if markers else None, label=s)
@@ -116,6 +134,13 @@ def bars(rows, column):
             [high - v for v, high in zip(values, numbers(rows, column + "_max"))])
 
 
+def times_and_ratios(time, ratio, rows, x, **points):
+    """Draws the CPU time of a step with its range, and its ratio to that of rA-full-1, over the column x"""
+    values, us = numbers(rows, x), numbers(rows, "us_per_step")
+    time.errorbar(values, us, yerr=bars(rows, "us_per_step"), fmt="-", lw=1.2, capsize=2, elinewidth=0.8, **points)
+    ratio.plot(values, numbers(rows, "ratio_to_full"), "-", lw=1.2, **points)
+
+
 def slopes(axes, h, top):
     """Reference lines of slope 1 and 2 over the steps h that end at the error `top`"""
     for slope, line in ((1, ":"), (2, "--")):
@@ -132,9 +157,10 @@ def save(figure, folder, name, below=0.0, top=0.97):
     plt.close(figure)
 
 
-def for_each_problem(draw):
-    """Calls draw(folder, problem, rows) for each problem in study.csv of the result directory"""
+def for_each(column, draw, *tables):
+    """Calls draw(folder, value, rows, ...) for each value of a column of study.csv, with the rows that have it in
+    study.csv and in further tables of the result directory"""
     folder = directory()
-    rows = read(folder, "study.csv")
-    for problem in distinct(rows, "problem"):
-        draw(folder, problem, where(rows, problem=problem))
+    every = [read(folder, table) for table in ("study.csv", *tables)]
+    for value in distinct(every[0], column):
+        draw(folder, value, *(where(rows, **{column: value}) for rows in every))

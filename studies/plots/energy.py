@@ -4,25 +4,22 @@
 
     energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
 """
-from drawing import DASHES, Line2D, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where, width
+from drawing import DASHES, Line2D, axis, by_scheme, distinct, for_each, legend, number, numbers, plt, save, where, width
 
 
-def draw(folder, problem, rows, runs):
+def draw(folder, problem, runs, rows):
     schemes, steps = distinct(rows, "integrator"), distinct(rows, "h")
     figure, (plain, log) = plt.subplots(1, 2, figsize=(13, 5.2), sharex=True)
-    for scheme in schemes:
-        colour, _ = style(scheme, schemes)
+    for scheme, of_scheme, look in by_scheme(rows):
         for h in steps:
-            mine = where(rows, integrator=scheme, h=h)
+            mine = where(of_scheme, h=h)
             t, drift = numbers(mine, "t"), numbers(mine, "drift")
             dash = DASHES[steps.index(h) % len(DASHES)]
-            plain.plot(t, drift, dash, color=colour, lw=width(scheme, schemes))
-            log.plot(t[1:], [max(abs(d), 1e-16) for d in drift[1:]], dash, color=colour, lw=1)
+            plain.plot(t, drift, dash, color=look["color"], lw=width(scheme, schemes))
+            log.plot(t[1:], [max(abs(d), 1e-16) for d in drift[1:]], dash, color=look["color"], lw=1)
     log.set_yscale("log")
     for axes, label in ((plain, "$E - E_0$ [J]"), (log, "$|E - E_0|$ [J]")):
-        axes.set_xlabel("$t$ [s]")
-        axes.set_ylabel(label)
-        grid(axes)
+        axis(axes, "$t$ [s]", label)
     kinetic = max(number(run["max_kinetic"]) for run in runs if run["status"] == "ok") if any(
         run["status"] == "ok" for run in runs) else float("nan")
     which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: step h"
@@ -32,12 +29,4 @@ def draw(folder, problem, rows, runs):
     save(figure, folder, f"energy-{problem}.png", legend(figure, schemes, markers=False, more=more))
 
 
-def main():
-    folder = directory()
-    rows, runs = read(folder, "energy.csv"), read(folder, "study.csv")
-    for problem in distinct(runs, "problem"):
-        draw(folder, problem, where(rows, problem=problem), where(runs, problem=problem))
-
-
-if __name__ == "__main__":
-    main()
+for_each("problem", draw, "energy.csv")

@@ -6,18 +6,13 @@
 """
 import os
 
-from drawing import COLOURS, DASHES, Line2D, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
-
-
-def positive(values):
-    return [v if v > 0 else float("nan") for v in values]
+from drawing import COLOURS, DASHES, Line2D, axis, directory, distinct, lines_below, number, numbers, plt, read, save, where
 
 
 def path(axes, rows, of, colour, dash, planar):
     across, up = (of + "_y", of + "_z") if planar else (of + "_x", of + "_y")
     axes.plot(numbers(rows, across), numbers(rows, up), dash, color=colour, lw=1)
-    axes.set_xlabel(f"{across[-1]} [m]")
-    axes.set_ylabel(f"{up[-1]} [m]")
+    axis(axes, f"{across[-1]} [m]", f"{up[-1]} [m]")
     axes.set_aspect("equal", adjustable="datalim")
 
 
@@ -32,18 +27,16 @@ def draw(folder, scene, rows):
         path(axes[0][0], mine, "aj", colour, dash, planar)
         path(axes[0][1], mine, "ai", colour, dash, planar)
         axes[0][2].plot(t, numbers(mine, "F_N"), dash, color=colour, lw=1)
-        residual = [max(number(row[c]) for c in ("Psi", "N", "G")) for row in mine]
-        axes[1][0].semilogy(t, positive(residual), dash, color=colour, lw=0.8)
-        multiplier = [max(number(row[c]) for c in ("lambda_N", "lambda_t")) for row in mine]
-        axes[1][1].semilogy(t, positive(multiplier), dash, color=colour, lw=0.8)
+        for ax, columns in ((axes[1][0], ("Psi", "N", "G")), (axes[1][1], ("lambda_N", "lambda_t"))):
+            largest = [max(number(row[c]) for c in columns) for row in mine]
+            ax.semilogy(t, [v if v > 0 else float("nan") for v in largest], dash, color=colour, lw=0.8)
         axes[1][2].plot(t, numbers(mine, "energy_change"), dash, color=colour, lw=1)
     titles = (r"contact point on the bowl $\bar\alpha_j$ [m]", r"contact point on the ball $\bar\alpha_i$ [m]",
               "normal force $F_N$ [N]", r"constraint residual, max of $\Psi$, $N$, $G$ [m]",
               r"max of $|\lambda_N|$ and tangential part of $\lambda_\Psi$ [N]",
               "change of energy $E - E_0$ [J]")
     for ax, title in zip(axes.flat, titles):
-        ax.set_title(title, fontsize=10)
-        grid(ax)
+        axis(ax, title=title)
     for ax in (axes[0][2], *axes[1]):
         ax.set_xlabel("$t$ [s]")
     figure.suptitle(f"{scene}: ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
@@ -51,12 +44,10 @@ def draw(folder, scene, rows):
     save(figure, folder, f"evolving-contact-{scene}.png", 0.04)
 
 
-def main():
-    folder = directory()
+def figures(folder):
     for scene in distinct(read(folder, "study.csv"), "scene"):
         if os.path.exists(os.path.join(folder, scene + ".csv")):
             draw(folder, scene, read(folder, scene + ".csv"))
 
 
-if __name__ == "__main__":
-    main()
+figures(directory())

@@ -4,7 +4,7 @@
 
     evolving-friction.py DIR    reads DIR/curves.csv, writes DIR/evolving-friction-point.png and -forces.png
 """
-from drawing import COLOURS, Line2D, directory, distinct, grid, lines_below, number, numbers, plt, read, save, where
+from drawing import COLOURS, Line2D, axis, directory, distinct, lines_below, number, numbers, plt, read, save, where
 
 DASHES = ["-", "--", "-.", (0, (1, 1))]
 IDEAL = {"color": "black", "lw": 0.7, "ls": ":"}
@@ -25,21 +25,19 @@ def legend(figure, rows, etas):
     lines_below(figure, lines, len(lines) if len(lines) < 8 else 5)
 
 
-def draw(axes, rows, etas, across, up):
+def draw(axes, rows, etas, across, up, x, y):
     for k, eta in enumerate(etas):
         for m, (run, h) in enumerate(sets(rows)):
             mine = where(rows, eta_r=eta, run=run, h=h)
             axes.plot(numbers(mine, across), numbers(mine, up), ls=DASHES[m % len(DASHES)], color=COLOURS[k], lw=1)
         ideal = where(rows, eta_r=eta, run="ideal")
         axes.plot(numbers(ideal, across), numbers(ideal, up), zorder=3, **IDEAL)
-    grid(axes)
+    axis(axes, x, y)
 
 
 def point(folder, rows, etas):
     figure, axes = plt.subplots(1, 2, figsize=(13, 4.8))
-    draw(axes[0], rows, etas, "t", "y")
-    axes[0].set_xlabel("$t$ [s]")
-    axes[0].set_ylabel("$y$ of the contact point [m]")
+    draw(axes[0], rows, etas, "t", "y", "$t$ [s]", "$y$ of the contact point [m]")
     # shifted, because all curves are on the same ellipse
     for k, eta in enumerate(etas):
         for m, (run, h) in enumerate(sets(rows)):
@@ -47,10 +45,8 @@ def point(folder, rows, etas):
             lifted = [z + 0.12 * k for z in numbers(mine, "z")]
             axes[1].plot(numbers(mine, "y"), lifted, ls=DASHES[m % len(DASHES)], color=COLOURS[k], lw=1)
             axes[1].plot(number(mine[-1]["y"]), lifted[-1], "o", color=COLOURS[k], ms=4)
-    axes[1].set_xlabel("$y$ [m]")
-    axes[1].set_ylabel(r"$z$ [m], shifted by 0.12 m for each $\eta_r$")
+    axis(axes[1], "$y$ [m]", r"$z$ [m], shifted by 0.12 m for each $\eta_r$")
     axes[1].set_aspect("equal", adjustable="datalim")
-    grid(axes[1])
     figure.suptitle("ball in a bowl with rolling resistance: contact point on the bowl", fontsize=11)
     legend(figure, rows, etas)
     save(figure, folder, "evolving-friction-point.png", 0.07)
@@ -61,23 +57,19 @@ def forces(folder, rows, etas):
     names = {"F_N": "$|F_N|$ [N]", "F_f": "$|F_f|$ [N]", "torque": "rolling torque [N m]", "v": "$|v|$ [m/s]",
              "omega": r"$|\omega|$ [rad/s]"}
     for ax, (column, name) in zip(axes, names.items()):
-        draw(ax, rows, etas, "t", column)
-        ax.set_ylabel(name)
+        draw(ax, rows, etas, "t", column, "$t$ [s]" if column == "omega" else "", name)
     # the axis excludes the transient of the friction springs after the release
     late = [number(row["F_f"]) for row in rows if row["run"] != "ideal" and number(row["t"]) > 0.1]
     axes[1].set_ylim(0, 1.1 * max(late, default=1))
-    axes[-1].set_xlabel("$t$ [s]")
     legend(figure, rows, etas)
     save(figure, folder, "evolving-friction-forces.png", 0.03)
 
 
-def main():
-    folder = directory()
+def figures(folder):
     rows = read(folder, "curves.csv")
     etas = distinct(rows, "eta_r")
     point(folder, rows, etas)
     forces(folder, rows, etas)
 
 
-if __name__ == "__main__":
-    main()
+figures(directory())

@@ -4,7 +4,7 @@
 
     evolving-order.py DIR       reads DIR/study.csv, writes DIR/evolving-order-PROBLEM.png
 """
-from drawing import SLOPES, distinct, for_each_problem, grid, legend, plt, save, slopes, style, where
+from drawing import SLOPES, axis, by_scheme, distinct, for_each, legend, number, numbers, plt, save, slopes
 
 PANELS = [("r", "position $r$ [m]"), ("A", "orientation $\\|A\\|_F$"), ("alpha", r"contact points $\bar\alpha$ [m]"),
           ("F_N", "normal force $F_N$ [N]")]
@@ -12,16 +12,14 @@ ROUNDING = 1e-9  # the limit of the fit in the study
 
 
 def draw(folder, problem, rows):
-    schemes = distinct(rows, "integrator")
     figure, all_axes = plt.subplots(1, 4, figsize=(16, 4.8), sharex=True)
     for (norm, title), axes in zip(PANELS, all_axes):
         points = []
-        for scheme in schemes:
-            colour, marker = style(scheme, schemes)
-            mine = [row for row in where(rows, integrator=scheme) if row["error_" + norm] and float(row["error_" + norm]) > ROUNDING]
-            h, e = [float(row["h"]) for row in mine], [float(row["error_" + norm]) for row in mine]
+        for _, mine, look in by_scheme(rows):
+            mine = [row for row in mine if number(row["error_" + norm]) > ROUNDING]
+            h, e = numbers(mine, "h"), numbers(mine, "error_" + norm)
             points += zip(h, e)
-            axes.loglog(h, e, "-", color=colour, marker=marker, lw=1.4, ms=6)
+            axes.loglog(h, e, "-", lw=1.4, ms=6, **look)
         h = sorted({p[0] for p in points})
         if len(h) > 1:
             slopes(axes, h, 1.8 * max(p[1] for p in points))
@@ -29,13 +27,10 @@ def draw(folder, problem, rows):
             axes.xaxis.set_minor_formatter(plt.NullFormatter())
         else:
             title += ": errors below rounding"
-        axes.set_title(title, fontsize=10)
-        axes.set_xlabel("step $h$ [s]")
-        grid(axes)
+        axis(axes, "step $h$ [s]", title=title)
     all_axes[0].set_ylabel("largest error over the instants")
     figure.suptitle(f"{problem}: error over step size")
-    save(figure, folder, f"evolving-order-{problem}.png", legend(figure, schemes, more=SLOPES))
+    save(figure, folder, f"evolving-order-{problem}.png", legend(figure, distinct(rows, "integrator"), more=SLOPES))
 
 
-if __name__ == "__main__":
-    for_each_problem(draw)
+for_each("problem", draw)

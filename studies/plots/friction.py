@@ -6,7 +6,7 @@
 """
 import os
 
-from drawing import COLOURS, Line2D, directory, grid, lines_below, number, plt, read, save
+from drawing import COLOURS, Line2D, axis, directory, lines_below, number, numbers, plt, read, save
 
 # EXPERIMENT: rows of panels; a panel is (column, label, limits of t or None)
 PANELS = {
@@ -46,7 +46,7 @@ def styles(runs):
 
 
 def curve(rows, column):
-    return [number(row["t"]) for row in rows], [number(row[column]) for row in rows]
+    return numbers(rows, "t"), numbers(rows, column)
 
 
 def below(figure, lines, columns=4):
@@ -69,9 +69,7 @@ def panels(folder, name, title, by_run):
             for run, rows in by_run.items():
                 colour, dash = lines[run]
                 ax.plot(*curve(within(rows, limits), column), dash, color=colour, lw=1.2)
-            ax.set_ylabel(label)
-            ax.set_xlabel("$t$ [s]")
-            grid(ax)
+            axis(ax, "$t$ [s]", label)
     if name == "disk":  # the axis excludes the dashpot force of the first steps
         axes[2][0].set_ylim(-1, 14)
     figure.suptitle(title, fontsize=11)
@@ -90,10 +88,7 @@ def spinning(folder, name, title, by_run, groups, columns):
                     continue
                 ax.plot(*curve(rows, column), "--" if preset == "dissertation" else "-", lw=1.1,
                         color=COLOURS[stiffness.index(rest.rpartition("-")[2])])
-            ax.set_ylabel(label)
-            ax.set_xlabel("$t$ [s]")
-            ax.set_title(group, fontsize=9)
-            grid(ax)
+            axis(ax, "$t$ [s]", label, group, 9)
     figure.suptitle(title, fontsize=11)
     lines = {"$K_E$ = " + s[2:] + " N/m": (COLOURS[k], "-") for k, s in enumerate(stiffness)}
     lines["preset dissertation (dashed)"] = ("0.4", "--")
@@ -106,15 +101,11 @@ def orbits(folder, name, title, by_run):
     lines = {run.replace("beta=", r"$\beta$ = "): (COLOURS[k], "-") for k, run in enumerate(runs)}
     for (colour, _), run in zip(lines.values(), runs):
         rows = by_run[run]
-        plane.plot([number(r["x"]) for r in rows], [number(r["y"]) for r in rows], color=colour, lw=1)
+        plane.plot(numbers(rows, "x"), numbers(rows, "y"), color=colour, lw=1)
         radius.plot(*curve(rows, "radius"), color=colour)
     plane.set_aspect("equal")
-    plane.set_xlabel("$x$ [m]")
-    plane.set_ylabel("$y$ [m]")
-    radius.set_xlabel("$t$ [s]")
-    radius.set_ylabel("radius relative to the exact one")
-    grid(plane)
-    grid(radius)
+    axis(plane, "$x$ [m]", "$y$ [m]")
+    axis(radius, "$t$ [s]", "radius relative to the exact one")
     figure.suptitle(title, fontsize=11)
     save(figure, folder, f"friction-{name}.png", below(figure, lines))
 
@@ -138,16 +129,11 @@ def draw(folder, name, figure):
         panels(folder, name, title, by_run)
 
 
-def main():
-    folder = directory()
-    for name in sorted(file[:-4] for file in os.listdir(folder) if file.endswith(".csv")):
-        if name not in ("study", "against"):
-            draw(folder, name, FIGURES.get(name, "4"))
-
-
 FIGURES = {"brick": "4.6", "brick-angles": "4.7", "disk": "4.9", "disk-damping": "4.10", "rolling-models": "4.11",
            "incline": "4.12", "spin": "4.15", "spin-hertz": "4.16", "ellipsoid": "4.17", "spin-ellipsoid": "4.18",
            "turntable": "beyond"}
 
-if __name__ == "__main__":
-    main()
+folder = directory()
+for experiment in sorted(file[:-4] for file in os.listdir(folder) if file.endswith(".csv")):
+    if experiment not in ("study", "against"):
+        draw(folder, experiment, FIGURES.get(experiment, "4"))

@@ -7,8 +7,7 @@
 from drawing import COLOURS, Line2D, directory, grid, number, numbers, plt, read, save, where
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows, motion = read(folder, "study.csv"), read(folder, "motion.csv")
     mindlin, incremental = where(rows, law="mindlin"), where(rows, law="mindlin-incremental")
     mu = numbers(mindlin, "mu")
@@ -48,5 +47,4 @@ def main():
     save(figure, folder, "granular-brick.png", top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

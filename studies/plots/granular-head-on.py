@@ -50,8 +50,7 @@ def draw_refinement(axes, rows, schemes):
                 loc="lower right", frameon=False, fontsize=9)
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows = read(folder, "study.csv")
     schemes = distinct(rows, "integrator")
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.8))
@@ -65,5 +64,4 @@ def main():
     save(figure, folder, "granular-head-on.png", below=0.065, top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

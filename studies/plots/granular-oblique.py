@@ -10,8 +10,7 @@ LAWS = {"mindlin": ("o", COLOURS[0], "force from the total displacement (Eq. 2.4
         "mindlin-incremental": ("s", COLOURS[1], "force by increments (Eq. 2.44)")}
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows, reference = read(folder, "study.csv"), read(folder, "reference.csv")
     sliding = sorted(where(reference, law="sliding"), key=lambda row: number(row["from_normal"]))
     critical = number(sliding[0]["from_normal"])
@@ -44,5 +43,4 @@ def main():
     save(figure, folder, "granular-oblique.png", below=0.07, top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

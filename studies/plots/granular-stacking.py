@@ -13,8 +13,7 @@ def ordered(rows, column):
     return sorted(rows, key=lambda row: number(row[column]))
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows, friction = read(folder, "study.csv"), read(folder, "friction.csv")
     gaps = distinct(rows, "gap")
     colours = {gap: COLOURS[k % len(COLOURS)] for k, gap in enumerate(gaps)}
@@ -54,5 +53,4 @@ def main():
     save(figure, folder, "granular-stacking.png", below=0.06, top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -10,8 +10,7 @@ NAMES = {"scaled": r"$F_n = k_n\sqrt{\delta/R}\,\delta$" "\n" r"$k_n = 30000\,mg
          "linear": r"$F_n = k_n\,\delta$" "\n" r"$k_n = 3000\,mg/R$"}
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows, profiles = read(folder, "study.csv"), read(folder, "profiles.csv")
     laws, frictions, forces = (distinct(rows, column) for column in ("stiffness", "mu", "F"))
     shades = plt.get_cmap("viridis")
@@ -53,5 +52,4 @@ def main():
     save(figure, folder, "granular-waves.png", below=0.045, top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -21,8 +21,7 @@ def degrees(tangent):
     return math.degrees(math.atan(tangent))
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows = read(folder, "study.csv")
     study = record(folder)
     etas = sorted({number(row["eta_r"]) for row in rows})
@@ -67,5 +66,4 @@ def main():
     save(figure, folder, "incline-sweep.png", below=0.125, top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -4,21 +4,15 @@
 
     scaling.py DIR      reads DIR/study.csv, writes DIR/scaling.png
 """
-from drawing import Line2D, bars, directory, distinct, grid, legend, number, numbers, plt, read, save, style, where
+from drawing import Line2D, axis, by_scheme, directory, distinct, legend, number, numbers, plt, read, save, times_and_ratios
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows = [row for row in read(folder, "study.csv") if row["status"] == "ok"]
-    schemes = distinct(rows, "integrator")
     figure, (time, ratio, iterations) = plt.subplots(1, 3, figsize=(14.5, 4.9))
-    for scheme in schemes:
-        colour, marker = style(scheme, schemes)
-        mine = where(rows, integrator=scheme)
-        N, us = numbers(mine, "bars"), numbers(mine, "us_per_step")
-        time.errorbar(N, us, yerr=bars(mine, "us_per_step"), fmt="-", marker=marker, color=colour, lw=1.2, ms=5, capsize=2, elinewidth=0.8)
-        ratio.plot(N, numbers(mine, "ratio_to_full"), "-", marker=marker, color=colour, lw=1.2, ms=5)
-        iterations.plot(N, numbers(mine, "iterations_per_step"), "-", marker=marker, color=colour, lw=1.2, ms=5)
+    for _, mine, look in by_scheme(rows):
+        times_and_ratios(time, ratio, mine, "bars", ms=5, **look)
+        iterations.plot(numbers(mine, "bars"), numbers(mine, "iterations_per_step"), "-", lw=1.2, ms=5, **look)
     N = sorted(set(numbers(rows, "bars")))
     top = max(numbers(rows, "us_per_step"))
     time.plot(N, [2 * top * n / N[-1] for n in N], ":", color="0.6", lw=1, zorder=0)
@@ -31,12 +25,10 @@ def main():
         axes.set_ylim(bottom=0)
     for axes in (time, ratio, iterations):
         axes.set_xscale("log", base=2)
-        axes.set_xlabel("number of bars $N$")
-        grid(axes)
+        axis(axes, "number of bars $N$")
     figure.suptitle(f"N-bar pendulum, h = {number(rows[0]['h']):g} s: CPU time per step, median of the repeats", fontsize=11)
     more = [Line2D([], [], color="0.6", ls=":", label="slope 1")]
-    save(figure, folder, "scaling.png", legend(figure, schemes, more=more))
+    save(figure, folder, "scaling.png", legend(figure, distinct(rows, "integrator"), more=more))
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -10,8 +10,7 @@ from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers,
 MODES = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows = read(folder, "study.csv")
     study = record(folder)
     compared = any(row["published"] for row in rows)
@@ -43,5 +42,4 @@ def main():
     save(figure, folder, "stacking.png", top=1)
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

@@ -4,59 +4,40 @@
 
     trajectory.py DIR       reads DIR/trajectory.csv, writes DIR/trajectory.png
 """
-import csv
 import math
 import os
-import sys
 
-import matplotlib
+from drawing import COLOURS, Line2D, directory, numbers, plt, read
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.lines import Line2D
-
-COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6bb1"]
 DASHES = {"x": "-", "y": "--", "z": ":"}
 MOST_BODIES = 8  # of longer chains, equally spaced bodies are drawn
 
 
-def read(path):
-    """The columns of a CSV file, by name"""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = csv.reader(file)
-        names = next(rows)
-        columns = {name: [] for name in names}
-        for row in rows:
-            for name, value in zip(names, row):
-                columns[name].append(float(value))
-    return columns
-
-
-def bodies_of(columns):
-    names = [name[:-3] for name in columns if name.endswith(".rx")]
+def bodies_of(rows):
+    names = [name[:-3] for name in rows[0] if name.endswith(".rx")]
     stride = math.ceil(len(names) / MOST_BODIES) or 1
     return names[stride - 1 :: stride]
 
 
-def components(axes, columns, bodies, symbol, label):
+def components(axes, rows, bodies, symbol, label):
     for colour, body in zip(COLOURS, bodies):
         for axis, dash in DASHES.items():
-            axes.plot(columns["t"], columns[f"{body}.{symbol}{axis}"], dash, color=colour, linewidth=1)
+            axes.plot(numbers(rows, "t"), numbers(rows, f"{body}.{symbol}{axis}"), dash, color=colour, linewidth=1)
     axes.set_ylabel(label)
 
 
-def main(directory):
-    columns = read(os.path.join(directory, "trajectory.csv"))
-    bodies = bodies_of(columns)
+def draw(folder):
+    rows = read(folder, "trajectory.csv")
+    bodies = bodies_of(rows)
+    t, energy = numbers(rows, "t"), numbers(rows, "energy")
     figure, axes = plt.subplots(2, 2, figsize=(10, 6.5), sharex=True, constrained_layout=True)
 
-    components(axes[0][0], columns, bodies, "r", "position $r$ [m]")
-    components(axes[0][1], columns, bodies, "w", "angular velocity $\\bar\\omega$ [rad/s]")
+    components(axes[0][0], rows, bodies, "r", "position $r$ [m]")
+    components(axes[0][1], rows, bodies, "w", "angular velocity $\\bar\\omega$ [rad/s]")
 
-    energy = columns["energy"]
-    axes[1][0].plot(columns["t"], [e - energy[0] for e in energy], color="black", linewidth=1)
+    axes[1][0].plot(t, [e - energy[0] for e in energy], color="black", linewidth=1)
     axes[1][0].set_ylabel(f"energy $E - E_0$ [J],  $E_0$ = {energy[0]:.6g} J")
-    axes[1][1].plot(columns["t"], [max(c, 1e-17) for c in columns["constraint_norm"]], color="black", linewidth=1)
+    axes[1][1].plot(t, [max(c, 1e-17) for c in numbers(rows, "constraint_norm")], color="black", linewidth=1)
     axes[1][1].set_yscale("log")
     axes[1][1].set_ylabel("largest constraint residual [m or rad]")
 
@@ -70,10 +51,7 @@ def main(directory):
     handles += [Line2D([], [], color="0.4", linestyle=d, label=a) for a, d in DASHES.items()]
     figure.legend(handles=handles, loc="upper center", ncol=min(len(handles), 6),
                   fontsize=8, frameon=False, bbox_to_anchor=(0.5, 1.06))
-    figure.savefig(os.path.join(directory, "trajectory.png"), dpi=150, bbox_inches="tight")
+    figure.savefig(os.path.join(folder, "trajectory.png"), dpi=150, bbox_inches="tight")
 
 
-if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    main(sys.argv[1])
+draw(directory())

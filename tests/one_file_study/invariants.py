@@ -4,22 +4,16 @@
 
     invariants.py DIR       reads DIR/study.csv, writes DIR/invariants.png
 """
-from drawing import directory, distinct, grid, legend, numbers, plt, read, save, style, where
+from drawing import axis, by_scheme, directory, distinct, legend, numbers, plt, read, save
 
 
-def main():
-    folder = directory()
+def draw(folder):
     rows = read(folder, "study.csv")
-    schemes = distinct(rows, "integrator")
     figure, axes = plt.subplots(figsize=(6, 4.5))
-    for scheme in schemes:
-        colour, marker = style(scheme, schemes)
-        mine = where(rows, integrator=scheme)
-        axes.loglog(numbers(mine, "h"), numbers(mine, "residual"), marker, color=colour)
-    axes.set(xlabel="step $h$ [s]", ylabel="largest constraint residual [m or rad]")
-    grid(axes)
-    save(figure, folder, "invariants.png", legend(figure, schemes))
+    for _, mine, look in by_scheme(rows):
+        axes.loglog(numbers(mine, "h"), numbers(mine, "residual"), "-", **look)
+    axis(axes, "step $h$ [s]", "largest constraint residual [m or rad]")
+    save(figure, folder, "invariants.png", legend(figure, distinct(rows, "integrator")))
 
 
-if __name__ == "__main__":
-    main()
+draw(directory())

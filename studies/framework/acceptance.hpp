@@ -24,6 +24,21 @@ Criterion between(const std::string& what, double measured, double least, double
 /// Criterion with the bounds value - tolerance and value + tolerance
 Criterion criterion(const std::string& what, double measured, double value, double tolerance);
 
+/// Adds criteria of one run to a list; each description ends with `of`.
+struct CriteriaOf {
+    std::string of;
+    std::vector<Criterion>& list;
+
+    void between(const std::string& what, double measured, double least, double most)
+    {
+        list.push_back(studies::between(what + of, measured, least, most));
+    }
+    void equals(const std::string& what, double measured, double value, double tolerance)
+    {
+        list.push_back(criterion(what + of, measured, value, tolerance));
+    }
+};
+
 /// Evaluates the criteria. Prints a table and the line "N of M passed", and adds the same as "checks" to the
 /// contents of study.json. Returns true if all criteria pass.
 bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Json& json);

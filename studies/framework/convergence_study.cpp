@@ -24,17 +24,6 @@ Sweep<ErrorRun> ConvergenceStudy::runs(const StudyContext& study, const std::vec
     return all;
 }
 
-std::vector<Series> ConvergenceStudy::series(const Sweep<ErrorRun>& runs) const
-{
-    std::vector<Series> all;
-    for (const ErrorRun& run : runs) {
-        if (all.empty() || all.back().front()->c != run.c || all.back().front()->scheme != run.scheme)
-            all.emplace_back();
-        all.back().push_back(&run);
-    }
-    return all;
-}
-
 double ConvergenceStudy::fit(const Series& series, size_t n) const
 {
     std::vector<double> h, e;

@@ -18,7 +18,7 @@ struct ErrorRun : Run {
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes
 };
 
-/// The runs of one scheme on one benchmark, in descending order of the step
+/// The runs of one scheme on one benchmark, in descending order of the step: see series_of
 using Series = std::vector<const ErrorRun*>;
 
 /// What a study of convergence states about its norms and fits
@@ -33,7 +33,6 @@ struct ConvergenceStudy {
     Sweep<ErrorRun> runs(const StudyContext& study, const std::vector<Benchmark>& benchmarks,
                          const Schemes& schemes, const std::vector<double>& steps,
                          const std::function<void(ErrorRun&)>& errors) const;
-    std::vector<Series> series(const Sweep<ErrorRun>& runs) const;
 
     /// Order of convergence in norm n: the slope fitted through the errors above the floor. Schemes of high order
     /// have few of these among the small steps.

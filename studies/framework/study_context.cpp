@@ -105,6 +105,15 @@ void StudyContext::evaluate(const std::vector<Criterion>& criteria)
     criteria_passed = studies::evaluate(criteria, text, json);
 }
 
+io::Json StudyContext::measure(const std::string& of,
+                               const std::vector<std::pair<std::string, double>>& values)
+{
+    Measured& m = measured.emplace_back(Measured{.of = of, .value = {}});
+    io::Json object = io::Json::object();
+    for (const auto& [key, value] : values) m.value[key] = value, object[key] = value;
+    return object;
+}
+
 void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
 {
     failed_runs = failures(runs);

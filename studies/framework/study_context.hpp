@@ -75,6 +75,8 @@ public:
         end_of_runs(run_pointers(all));
         for (const auto& run : all) measured.push_back({run.name(), columns.numbers(run, keys)});
     }
+    /// Adds values by their keys of --expect. Returns them as a JSON object, for study.json.
+    io::Json measure(const std::string& of, const std::vector<std::pair<std::string, double>>& values);
     /// Records which runs failed. If all of them failed, so has the study.
     void end_of_runs(const std::vector<const Run*>& runs);
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
@@ -123,6 +125,29 @@ const Named& one_of_list(const std::string& option, const std::string& name, con
     if (!name.empty()) io::one_of(option, name, known);
     const auto at = std::find(known.begin(), known.end(), name);
     return name.empty() ? list.front() : list[static_cast<size_t>(at - known.begin())];
+}
+
+/// Options of a study of scenes over a grid of parameters: the step h and the end of a run [s], the preset of the
+/// friction laws, and the grid
+template <class Grid>
+struct GridOptions {
+    double h, end;
+    std::string preset;
+    const Grid& grid;
+
+    bool dissertation() const { return preset == "dissertation"; }
+};
+/// These options, with defaults; the defaults of --preset and --grid are `dissertation` and the first grid. They become
+/// the first keys of study.json.
+template <class Grid>
+GridOptions<Grid> grid_options(StudyContext& s, double h, double end, const std::vector<Grid>& grids)
+{
+    s.refuse_models();
+    const GridOptions<Grid> o{s.one_step(h), s.options.end.value_or(end),
+                              s.options.preset.empty() ? "dissertation" : s.options.preset,
+                              one_of_list("--grid", s.options.grid, grids)};
+    s.json = {{"preset", o.preset}, {"h", o.h}, {"end", o.end}, {"grid", o.grid.name}};
+    return o;
 }
 
 }  // namespace hilda::studies

@@ -67,4 +67,17 @@ private:
     }
 };
 
+/// The runs of each scheme on each benchmark, in the order of the sweep
+template <class Row>
+std::vector<std::vector<const Row*>> series_of(const std::vector<Row>& rows)
+{
+    std::vector<std::vector<const Row*>> all;
+    for (const Row& row : rows) {
+        if (all.empty() || all.back().front()->c != row.c || all.back().front()->scheme != row.scheme)
+            all.emplace_back();
+        all.back().push_back(&row);
+    }
+    return all;
+}
+
 }  // namespace hilda::studies

@@ -212,7 +212,7 @@ void convergence(StudyContext& s)
     reference.evaluate(problems, steps);
     const Sweep<ErrorRun> runs =
         study.runs(s, problems, schemes, steps, [&](ErrorRun& run) { compute(run, s.options.settings); });
-    const std::vector<Series> all = study.series(runs);
+    const std::vector<Series> all = series_of(runs);
 
     const Columns<ErrorRun> columns = Columns<ErrorRun>{column::problem,
                                                         column::integrator,

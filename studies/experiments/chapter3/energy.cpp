@@ -8,6 +8,7 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "studies/framework/curve.hpp"
 #include "studies/framework/sweep.hpp"
 
 #include <fmt/format.h>
@@ -30,13 +31,13 @@ public:
         if (n == 0) start = end;
         kinetic = std::max(kinetic, end - model.potential_energy(x));
         largest = std::max(largest, std::abs(end - start));
-        if (grid.is_row(n)) curve.emplace_back(x.t, end);
+        if (grid.is_row(n)) curve.add({x.t, end, end - start});
     }
 
     double start = 0, end = 0;  ///< E at the first and at the last node [J]
     double largest = 0;         ///< largest |E - E(0)| [J]
     double kinetic = 0;         ///< largest T [J]
-    std::vector<std::pair<double, double>> curve;
+    Curve curve{{"t", "energy", "drift"}};
 
 private:
     const dae::Model& model;
@@ -45,7 +46,7 @@ private:
 
 struct EnergyRun : Run {
     double start = 0, drift = 0, largest = 0, kinetic = 0;  ///< [J]
-    std::vector<std::pair<double, double>> curve;           ///< t [s], E [J]
+    Curve curve = {};
 };
 
 void compute(EnergyRun& run, const lie::Settings& settings)
@@ -60,15 +61,6 @@ void compute(EnergyRun& run, const lie::Settings& settings)
     run.largest = run.failed() ? std::nan("") : recorder.largest;
     run.kinetic = recorder.kinetic;
     run.curve = std::move(recorder.curve);
-}
-
-std::string curves(const std::vector<EnergyRun>& runs)
-{
-    Table table({{"problem"}, {"integrator"}, {"h"}, {"t"}, {"energy"}, {"drift"}});
-    for (const EnergyRun& run : runs)
-        for (const auto& [t, E] : run.curve)
-            table.add({run.c->problem.name, run.scheme->name, run.h, t, E, E - run.start});
-    return table.csv();
 }
 
 void energy(StudyContext& s)
@@ -104,7 +96,9 @@ void energy(StudyContext& s)
         s.figures.push_back("energy-" + c.problem.name + ".png");
     }
     s.json["runs"] = columns.array(runs, {"energy_start", "end_drift", "max_drift", "max_kinetic"});
-    s.files = {{"energy.csv", curves(runs)}};
+    CurveTable curves({"problem", "integrator", "h"}, {"t", "energy", "drift"});
+    for (const EnergyRun& run : runs) curves.add({run.c->problem.name, run.scheme->name, run.h}, run.curve);
+    s.files = {{"energy.csv", curves.csv()}};
     s.results(columns, runs);
 }
 

@@ -27,10 +27,9 @@ struct WorkRun : TimedRun {
 
 void compute(WorkRun& run, const StudyOptions& options)
 {
-    EvaluatedRun evaluated;
-    static_cast<Run&>(evaluated) = static_cast<const Run&>(run);
+    EvaluatedRun evaluated{run};
     evaluate(evaluated, options.settings);
-    static_cast<Run&>(run) = static_cast<const Run&>(evaluated);
+    static_cast<Run&>(run) = evaluated;
     run.errors = evaluated.errors;
 }
 
@@ -44,17 +43,6 @@ double end_of(const dae::Description& d)
 
 /// Runs of one scheme on one problem, by decreasing step or tolerance
 using WorkSeries = std::vector<const WorkRun*>;
-
-std::vector<WorkSeries> series_of(const std::vector<WorkRun>& runs)
-{
-    std::vector<WorkSeries> all;
-    for (const WorkRun& run : runs) {
-        if (all.empty() || all.back().front()->c != run.c || all.back().front()->scheme != run.scheme)
-            all.emplace_back();
-        all.back().push_back(&run);
-    }
-    return all;
-}
 
 WorkNeeded work_to_target(const WorkSeries& series)
 {

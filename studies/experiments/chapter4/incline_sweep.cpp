@@ -8,17 +8,13 @@
 /// differences and returns exit code 6 if a criterion fails.
 
 #include "studies/experiments/chapter4/incline.hpp"
-#include "studies/framework/csv_table.hpp"
-#include "studies/framework/study_context.hpp"
-#include "studies/framework/table.hpp"
-
-#include "lie/check.hpp"
+#include "studies/framework/columns.hpp"
+#include "studies/framework/published.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <numbers>
 
 namespace hilda::studies {
@@ -26,296 +22,247 @@ namespace hilda::studies {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-const std::array<const char*, 4> state_names = {"rest", "rolling", "rolling with slip", "slip"};
+const std::vector<std::string> state_names = {"rest", "rolling", "rolling with slip", "slip"};
 
 /// Values k / parts for k = from, from + by, ..., to
-struct IntegerRange {
-    int from, to, by, parts;
-
-    std::vector<double> values() const
-    {
-        std::vector<double> all;
-        for (int k = from; k <= to; k += by) all.push_back(static_cast<double>(k) / parts);
-        return all;
-    }
-};
+std::vector<double> range(int from, int to, int by, int parts)
+{
+    std::vector<double> all;
+    for (int k = from; k <= to; k += by) all.push_back(static_cast<double>(k) / parts);
+    return all;
+}
 
 struct InclineGrid {
     std::string name;
-    IntegerRange eta, angle;  ///< [1, degrees]
+    std::vector<double> eta, angle;  ///< [1, degrees]
 };
 
 /// Grids of --grid; the first is the default. `published` is the grid of the published states, `dissertation`
 /// the smaller one described in the text.
-const std::vector<InclineGrid> grids = {{"published", {40, 120, 1, 200}, {10, 300, 1, 10}},
-                                        {"dissertation", {20, 50, 1, 100}, {10, 300, 1, 10}},
-                                        {"coarse", {20, 60, 5, 100}, {1, 30, 1, 1}}};
+const std::vector<InclineGrid> grids = {{"published", range(40, 120, 1, 200), range(10, 300, 1, 10)},
+                                        {"dissertation", range(20, 50, 1, 100), range(10, 300, 1, 10)},
+                                        {"coarse", range(20, 60, 5, 100), range(1, 30, 1, 1)}};
 
 struct InclineCell {
+    double eta = 0, angle = 0;  ///< [1, degrees]
+    double published = std::nan("");
     int state = -1;
     /// Velocity of the centre and R times the angular velocity at the end, positive up the slope [m/s]
     double v = 0, R_omega = 0;
 };
 
+const Columns<InclineCell> columns = {{"eta_r", &InclineCell::eta},   {"angle_deg", &InclineCell::angle},
+                                      {"state", &InclineCell::state}, {"published", &InclineCell::published},
+                                      {"v", &InclineCell::v},         {"R_omega", &InclineCell::R_omega}};
+
 /// States over η_r (rows) and slope (columns)
 struct StateMap {
-    std::vector<double> eta, angle;
+    const InclineGrid& grid;
     std::vector<InclineCell> cells;
 
-    InclineCell& at(size_t e, size_t a) { return cells[e * angle.size() + a]; }
-    const InclineCell& at(size_t e, size_t a) const { return cells[e * angle.size() + a]; }
+    const InclineCell& at(size_t e, size_t a) const { return cells[e * grid.angle.size() + a]; }
 };
 
-void run(InclineCell& cell, const Incline& incline, double h, long steps)
+Incline incline_of(const InclineCell& cell, bool dissertation)
 {
-    contact::Scene run_scene = scene(incline);
+    return {.alpha = cell.angle * degree, .eta_r = cell.eta, .dissertation = dissertation};
+}
+
+void run(InclineCell& cell, bool dissertation, double h, long steps)
+{
+    contact::Scene run_scene = scene(incline_of(cell, dissertation));
     for (long n = 0; n < steps; ++n) run_scene.step(h);
-    cell = {.state = static_cast<int>(state_of(run_scene)),
-            .v = run_scene.body[0].rdot.x(),
-            .R_omega = Incline::R * (run_scene.body[0].A * run_scene.body[0].omega_bar).y()};
+    cell.state = static_cast<int>(state_of(run_scene));
+    cell.v = run_scene.body[0].rdot.x();
+    cell.R_omega = Incline::R * (run_scene.body[0].A * run_scene.body[0].omega_bar).y();
 }
 
-/// Boundary in row e: the slope midway between the last cell in one of `wanted_states` and the next cell
-/// [degrees]; NaN if there is no such cell or no cell after it
-double last_slope(const StateMap& map, size_t e, std::initializer_list<int> wanted_states)
+/// A row of the map: boundaries between states and their limits [degrees], and whether there is slip without rolling
+struct Boundaries {
+    double eta, rest, rest_limit, rolling, rolling_limit;
+    bool slips;
+};
+
+const Columns<Boundaries> columns_of_boundaries = {
+    {"", "eta_r", "{:.3f}", &Boundaries::eta},
+    {"", "rest up to [deg]", "{:.2f}", &Boundaries::rest},
+    {"", "rest limit [deg]", "{:.2f}", &Boundaries::rest_limit},
+    {"", "rolling up to [deg]", "{:.2f}", &Boundaries::rolling},
+    {"", "limit Sec. A.7 [deg]", "{:.2f}", &Boundaries::rolling_limit}};
+
+std::vector<Boundaries> boundaries(const StateMap& map)
 {
-    double at = std::nan("");
-    for (size_t a = 0; a + 1 < map.angle.size(); ++a)
-        if (std::find(wanted_states.begin(), wanted_states.end(), map.at(e, a).state) !=
-                wanted_states.end() &&
-            std::find(wanted_states.begin(), wanted_states.end(), map.at(e, a + 1).state) ==
-                wanted_states.end())
-            at = 0.5 * (map.angle[a] + map.angle[a + 1]);
-    return at;
+    const std::vector<double>& angle = map.grid.angle;
+    // The slope midway between the last cell with a state up to `most` and the next cell; NaN if there is no such cell
+    // or no cell after it
+    const auto boundary = [&](size_t e, int most) {
+        double at = std::nan("");
+        for (size_t a = 0; a + 1 < angle.size(); ++a)
+            if (map.at(e, a).state <= most && map.at(e, a + 1).state > most)
+                at = 0.5 * (angle[a] + angle[a + 1]);
+        return at;
+    };
+    std::vector<Boundaries> all;
+    for (size_t e = 0; e < map.grid.eta.size(); ++e) {
+        const double eta = map.grid.eta[e];
+        Boundaries& b = all.emplace_back(Boundaries{eta, boundary(e, 0), rest_limit(eta) / degree,
+                                                    boundary(e, 1), rolling_limit(eta) / degree, false});
+        for (size_t a = 0; a < angle.size(); ++a) b.slips = b.slips || map.at(e, a).state == 3;
+    }
+    return all;
 }
 
-/// Range over the rows of the difference between the boundary of the map and the limit [degrees]
-struct Deviation {
+/// Range of values, without NaN
+struct Range {
     double least = std::nan(""), most = std::nan("");
 
-    void add(double difference)
-    {
-        if (std::isnan(difference)) return;
-        least = std::isnan(least) ? difference : std::min(least, difference);
-        most = std::isnan(most) ? difference : std::max(most, difference);
-    }
+    void add(double value) { least = std::fmin(least, value), most = std::fmax(most, value); }
     double largest() const { return std::max(std::abs(least), std::abs(most)); }
+    io::Json json() const { return {{"least", least}, {"most", most}}; }
 };
 
-struct Boundaries {
-    Deviation rest, rolling;
-    Deviation rest_by_torque;         ///< for η_r <= 1/2
+/// Differences between the boundaries of the map and the limits [degrees]
+struct Deviations {
+    Range rest, rolling;
+    Range rest_by_torque;             ///< for η_r <= 1/2
     double slip_from = std::nan("");  ///< smallest η_r with slip without rolling
 };
 
-Boundaries boundaries(const StateMap& map)
+Deviations deviations(const std::vector<Boundaries>& rows)
 {
-    Boundaries b;
-    for (size_t e = 0; e < map.eta.size(); ++e) {
-        const double eta = map.eta[e];
-        for (size_t a = 0; a < map.angle.size(); ++a)
-            if (map.at(e, a).state == 3 && std::isnan(b.slip_from)) b.slip_from = eta;
-        const double rest = last_slope(map, e, {0}) - rest_limit(eta) / degree;
-        b.rest.add(rest);
-        if (eta <= 0.5) b.rest_by_torque.add(rest);
-        b.rolling.add(last_slope(map, e, {0, 1}) - rolling_limit(eta) / degree);
+    Deviations d;
+    for (const Boundaries& b : rows) {
+        d.rest.add(b.rest - b.rest_limit);
+        if (b.eta <= 0.5) d.rest_by_torque.add(b.rest - b.rest_limit);
+        d.rolling.add(b.rolling - b.rolling_limit);
+        if (b.slips) d.slip_from = std::fmin(d.slip_from, b.eta);
     }
-    return b;
+    return d;
 }
 
 /// Acceptance criteria: the boundaries agree with the Coulomb bounds. The resolution of a boundary is half a
 /// cell. With the preset `balanced` a sphere keeps slipping where it sticks with the preset `dissertation`.
 /// Therefore the rolling limit does not apply to `balanced`, and its rest limit applies only up to η_r = 1/2;
 /// above, the slip determines whether the sphere comes to rest.
-std::vector<Criterion> criteria(const StateMap& map, const Boundaries& b, bool dissertation)
+std::vector<Criterion> criteria(const InclineGrid& g, const Deviations& d, bool dissertation)
 {
-    const double cell = map.angle[1] - map.angle[0], row = map.eta[1] - map.eta[0], half = 0.5 * cell;
-    const Deviation& rest = dissertation ? b.rest : b.rest_by_torque;
-    const std::string range_text = dissertation ? "" : " up to eta_r = 1/2";
-    std::vector<Criterion> all = {
-        criterion("rest limit minus atan(2 eta_r mu_k)" + range_text + ", smallest [deg]", rest.least, 0,
-                  0.15 + half),
-        criterion("rest limit minus atan(2 eta_r mu_k)" + range_text + ", largest [deg]", rest.most, 0,
-                  0.15 + half)};
+    const double half = 0.5 * (g.angle[1] - g.angle[0]), row = g.eta[1] - g.eta[0];
+    const Range& rest = dissertation ? d.rest : d.rest_by_torque;
+    const std::string rest_limit =
+        std::string("rest limit minus atan(2 eta_r mu_k)") + (dissertation ? "" : " up to eta_r = 1/2");
+    std::vector<Criterion> all = {criterion(rest_limit + ", smallest [deg]", rest.least, 0, 0.15 + half),
+                                  criterion(rest_limit + ", largest [deg]", rest.most, 0, 0.15 + half)};
     if (dissertation)
         for (const auto& [which, value] :
-             {std::pair("smallest", b.rolling.least), std::pair("largest", b.rolling.most)})
+             {std::pair("smallest", d.rolling.least), {"largest", d.rolling.most}})
             all.push_back(between(fmt::format("rolling limit minus Sec. A.7, {} [deg]", which), value,
                                   -0.8 - half, 0.05 + half));
-    all.push_back(between("smallest eta_r with slip without rolling, first row above 1/2", b.slip_from,
+    all.push_back(between("smallest eta_r with slip without rolling, first row above 1/2", d.slip_from,
                           0.5 + 0.1 * row, 0.5 + 1.1 * row));
     return all;
 }
 
-/// Published states on the cells of the map; -1 for a cell that the file does not have
-std::vector<int> read_published(const StateMap& map, const std::string& file)
+/// Compares the states with the published ones.
+Criterion compare(StudyContext& s, const StateMap& map)
 {
-    const CsvTable table = read_csv_table(file);
-    std::vector<int> states(map.cells.size(), -1);
-    const auto near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
-    std::vector<double> slopes;
-    for (const std::string& name : table.columns) {
-        double slope = std::nan("");
-        std::from_chars(name.data(), name.data() + name.size(), slope);
-        slopes.push_back(slope);
-    }
-    for (const std::vector<double>& row : table.rows)
-        for (size_t e = 0; e < map.eta.size(); ++e) {
-            if (!near(row[0], map.eta[e])) continue;
-            for (size_t c = 1; c < slopes.size(); ++c)
-                for (size_t a = 0; a < map.angle.size(); ++a)
-                    if (near(slopes[c], map.angle[a]) && !std::isnan(row[c]))
-                        states[e * map.angle.size() + a] = static_cast<int>(std::lround(row[c]));
-        }
-    if (std::all_of(states.begin(), states.end(), [](int s) { return s < 0; }))
-        throw lie::InvalidInput(
-            file +
-            ": has no cell of this grid; the header row must contain slopes in degrees and the "
-            "first column eta_r");
-    return states;
-}
-
-struct StateAgreement {
-    long compared = 0, same = 0;
-    /// Cells that differ, and no neighbour in the published map has the computed state
-    long not_adjacent = 0;
-    std::array<std::array<long, 4>, 4> count = {};  ///< [published state][computed state]
-
-    double percent() const { return 100 * static_cast<double>(same) / static_cast<double>(compared); }
-};
-
-StateAgreement agreement(const StateMap& map, const std::vector<int>& published)
-{
-    const auto rows = static_cast<long>(map.eta.size()), columns = static_cast<long>(map.angle.size());
+    const auto rows = static_cast<long>(map.grid.eta.size()),
+               columns = static_cast<long>(map.grid.angle.size());
     const auto has_neighbour = [&](long e, long a, int state) {
         for (long k = std::max(0L, e - 1); k <= std::min(rows - 1, e + 1); ++k)
             for (long l = std::max(0L, a - 1); l <= std::min(columns - 1, a + 1); ++l)
-                if (published[k * columns + l] == state) return true;
+                if (map.at(k, l).published == state) return true;
         return false;
     };
-    StateAgreement result;
+    long compared = 0, same = 0;
+    long far = 0;  // cells that differ, and no neighbour in the published map has the computed state
+    std::array<std::array<long, 4>, 4> count = {};  // [published state][computed state]
     for (long e = 0; e < rows; ++e)
         for (long a = 0; a < columns; ++a) {
-            const int reference_state = published[e * columns + a], state = map.at(e, a).state;
-            if (reference_state < 0 || reference_state > 3) continue;
-            ++result.compared;
-            ++result.count[reference_state][state];
-            result.same += reference_state == state;
-            result.not_adjacent += reference_state != state && !has_neighbour(e, a, state);
-        }
-    return result;
-}
-
-std::string as_csv(const StateMap& map, const std::vector<int>& published)
-{
-    Table table({{"eta_r"}, {"angle_deg"}, {"state"}, {"published"}, {"v"}, {"R_omega"}});
-    for (size_t e = 0; e < map.eta.size(); ++e)
-        for (size_t a = 0; a < map.angle.size(); ++a) {
             const InclineCell& cell = map.at(e, a);
-            const int reference_state = published.empty() ? -1 : published[e * map.angle.size() + a];
-            table.add({map.eta[e], map.angle[a], cell.state,
-                       reference_state < 0 ? std::nan("") : static_cast<double>(reference_state), cell.v,
-                       cell.R_omega});
+            if (!(cell.published >= 0 && cell.published <= 3)) continue;
+            ++compared;
+            ++count[static_cast<size_t>(cell.published)][cell.state];
+            same += cell.published == cell.state;
+            far += cell.published != cell.state && !has_neighbour(e, a, cell.state);
         }
-    return table.csv();
-}
-
-void print(const StateMap& map, std::ostream& out)
-{
-    Table table({{"eta_r", "{:.3f}"},
-                 {"rest up to [deg]", "{:.2f}"},
-                 {"rest limit [deg]", "{:.2f}"},
-                 {"rolling up to [deg]", "{:.2f}"},
-                 {"limit Sec. A.7 [deg]", "{:.2f}"}});
-    const size_t stride = std::max<size_t>(1, (map.eta.size() - 1) / 8);
-    for (size_t e = 0; e < map.eta.size(); e += stride) {
-        const double eta = map.eta[e];
-        table.add({eta, last_slope(map, e, {0}), rest_limit(eta) / degree, last_slope(map, e, {0, 1}),
-                   rolling_limit(eta) / degree});
-    }
-    table.print(out);
-    std::array<long, 4> count = {};
-    for (const InclineCell& cell : map.cells) ++count[cell.state];
-    out << fmt::format("\n{} runs:", map.cells.size());
-    for (size_t s = 0; s < state_names.size(); ++s)
-        out << fmt::format("{} {} {}", s == 0 ? "" : ",", count[s], state_names[s]);
-    out << '\n';
-}
-
-void print(const StateAgreement& a, const std::string& file, std::ostream& out)
-{
-    out << fmt::format(
+    const double percent = 100 * static_cast<double>(same) / static_cast<double>(compared);
+    const std::string& file = s.options.against;
+    s.text << fmt::format(
         "comparison with {}: {:.3f} % of {} cells agree; {} differ, {} of them more than one cell from a "
         "boundary\n",
-        file, a.percent(), a.compared, a.compared - a.same, a.not_adjacent);
-    for (size_t reference_state = 0; reference_state < 4; ++reference_state)
+        file, percent, compared, compared - same, far);
+    for (size_t published = 0; published < 4; ++published)
         for (size_t state = 0; state < 4; ++state)
-            if (reference_state != state && a.count[reference_state][state] > 0)
-                out << fmt::format("  published {}, computed {}: {}\n", state_names[reference_state],
-                                   state_names[state], a.count[reference_state][state]);
+            if (published != state && count[published][state] > 0)
+                s.text << fmt::format("  published {}, computed {}: {}\n", state_names[published],
+                                      state_names[state], count[published][state]);
+    s.measure(file, {{"agreement", percent}, {"far", static_cast<double>(far)}});
+    s.json["against"] = {{"file", file}, {"compared", compared}, {"agreement", percent}, {"far", far}};
+    return between("agreement with the file [%]", percent, 99.7, 100);
+}
+
+void print(const StateMap& map, const std::vector<Boundaries>& rows, std::ostream& out)
+{
+    std::vector<Boundaries> some;
+    for (size_t e = 0; e < rows.size(); e += std::max<size_t>(1, (rows.size() - 1) / 8))
+        some.push_back(rows[e]);
+    columns_of_boundaries.print(out, some);
+    out << fmt::format("\n{} runs:", map.cells.size());
+    for (size_t state = 0; state < state_names.size(); ++state)
+        out << fmt::format(
+            "{} {} {}", state == 0 ? "" : ",",
+            those(map.cells, [&](const auto& cell) { return cell.state == static_cast<int>(state); }).size(),
+            state_names[state]);
+    out << '\n';
 }
 
 void incline_sweep(StudyContext& s)
 {
-    s.refuse_models();
-    const StudyOptions& options = s.options;
-    const double h = s.one_step(1e-4), end = options.end.value_or(1);
-    const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const InclineGrid& g = one_of_list("--grid", options.grid, grids);
-    StateMap map{.eta = g.eta.values(), .angle = g.angle.values(), .cells = {}};
-    map.cells.resize(map.eta.size() * map.angle.size());
-    const auto incline = [&](size_t e, size_t a) {
-        return Incline{
-            .alpha = map.angle[a] * degree, .eta_r = map.eta[e], .dissertation = preset == "dissertation"};
-    };
-    scene(incline(map.eta.size() - 1, 0)).check(h);  // the largest rolling stiffness of the sweep
-    const std::vector<int> published =
-        options.against.empty() ? std::vector<int>() : read_published(map, options.against);
-    const long steps = std::max(1L, std::lround(end / h));
-    s.pool(map.cells.size()).run([&](long k) {
-        run(map.cells[k], incline(k / map.angle.size(), k % map.angle.size()), h, steps);
-    });
+    const GridOptions o = grid_options(s, 1e-4, 1, grids);
+    StateMap map{.grid = o.grid, .cells = {}};
+    std::vector<std::pair<double, double>> places;
+    for (const double eta : o.grid.eta)
+        for (const double angle : o.grid.angle) {
+            map.cells.push_back({.eta = eta, .angle = angle});
+            places.emplace_back(eta, angle);
+        }
+    // the largest rolling stiffness of the sweep
+    scene(incline_of(map.at(o.grid.eta.size() - 1, 0), o.dissertation())).check(o.h);
+    const std::string& file = s.options.against;
+    if (!file.empty()) {
+        const PublishedGrid published{
+            file, "", {}, "the header row must contain slopes in degrees and the first column eta_r"};
+        const std::vector<double> states = published.values(places);
+        for (size_t k = 0; k < states.size(); ++k) map.cells[k].published = std::round(states[k]);
+    }
+    const long steps = std::max(1L, std::lround(o.end / o.h));
+    s.pool(map.cells.size()).run([&](long k) { run(map.cells[k], o.dissertation(), o.h, steps); });
 
-    const Boundaries b = boundaries(map);
-    s.table = as_csv(map, published);
+    const std::vector<Boundaries> rows = boundaries(map);
+    const Deviations d = deviations(rows);
+    s.table = columns.csv(map.cells);
     s.figures = {"incline-sweep.png"};
     s.text << fmt::format(
         "\nfinal state of a sphere pushed up an incline at 0.5 m/s, after {:g} s; {} friction, h = {:g} s\n",
-        end, preset, h);
-    print(map, s.text);
+        o.end, o.preset, o.h);
+    print(map, rows, s.text);
     s.text << fmt::format(
         "boundary minus limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} deg; slip without "
         "rolling "
         "{}\n",
-        b.rest.least, b.rest.most, b.rolling.least, b.rolling.most,
-        std::isfinite(b.slip_from) ? fmt::format("from eta_r = {:.3f}", b.slip_from) : "does not occur");
-    s.json = {{"preset", preset},
-              {"h", h},
-              {"end", end},
-              {"grid", g.name},
-              {"states", std::vector<std::string>(state_names.begin(), state_names.end())},
-              {"rest_limit", {{"least", b.rest.least}, {"most", b.rest.most}}},
-              {"rolling_limit", {{"least", b.rolling.least}, {"most", b.rolling.most}}},
-              {"slip_from", b.slip_from}};
-    s.measured = {{.of = s.name,
-                   .value = {{"rest_limit", b.rest.largest()},
-                             {"rolling_limit_least", b.rolling.least},
-                             {"rolling_limit_most", b.rolling.most},
-                             {"slip_from", b.slip_from}}}};
-    std::vector<Criterion> checks = criteria(map, b, preset == "dissertation");
-    if (!published.empty()) {
-        const StateAgreement a = agreement(map, published);
-        checks.push_back(between("agreement with the file [%]", a.percent(), 99.7, 100));
-        print(a, options.against, s.text);
-        s.measured.push_back(
-            {.of = options.against,
-             .value = {{"agreement", a.percent()}, {"far", static_cast<double>(a.not_adjacent)}}});
-        s.json["against"] = {{"file", options.against},
-                             {"compared", a.compared},
-                             {"agreement", a.percent()},
-                             {"far", a.not_adjacent}};
-    }
-    if (options.check) s.evaluate(checks);
+        d.rest.least, d.rest.most, d.rolling.least, d.rolling.most,
+        std::isfinite(d.slip_from) ? fmt::format("from eta_r = {:.3f}", d.slip_from) : "does not occur");
+    s.json.update({{"states", state_names},
+                   {"rest_limit", d.rest.json()},
+                   {"rolling_limit", d.rolling.json()},
+                   {"slip_from", d.slip_from}});
+    s.measure(s.name, {{"rest_limit", d.rest.largest()},
+                       {"rolling_limit_least", d.rolling.least},
+                       {"rolling_limit_most", d.rolling.most},
+                       {"slip_from", d.slip_from}});
+    std::vector<Criterion> checks = criteria(o.grid, d, o.dissertation());
+    if (!file.empty()) checks.push_back(compare(s, map));
+    if (s.options.check) s.evaluate(checks);
 }
 
 const bool registered = io::Registry<Study>::add(

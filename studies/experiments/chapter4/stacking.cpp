@@ -10,15 +10,11 @@
 
 #include "studies/experiments/chapter4/stack.hpp"
 #include "studies/framework/columns.hpp"
-#include "studies/framework/csv_table.hpp"
-#include "studies/framework/study_context.hpp"
-
-#include "lie/check.hpp"
+#include "studies/framework/published.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
+#include <map>
 
 namespace hilda::studies {
 
@@ -95,56 +91,25 @@ std::string collapse_mode(const StackCell& cell)
                                  : "-";
 }
 
-/// Differences to the masses of the file
-struct MassAgreement {
-    long compared = 0;
-    double rms = 0, largest = 0;  ///< [kg]
-};
-
-MassAgreement agreement(const std::vector<StackCell>& cells)
-{
-    MassAgreement a;
-    for (const StackCell& cell : cells) {
-        const double difference = cell.m_c() - cell.published;
-        if (std::isnan(difference)) continue;
-        ++a.compared;
-        a.rms += difference * difference;
-        a.largest = std::max(a.largest, std::abs(difference));
-    }
-    a.rms = std::sqrt(a.rms / static_cast<double>(a.compared));
-    return a;
-}
-
-/// Reads published masses from a table with columns eta_r, m_c_gap_0.20R, ... into the cells
-void read_published(std::vector<StackCell>& cells, const std::string& file)
-{
-    const CsvTable table = read_csv_table(file);
-    const std::vector<double> eta = table.values("eta_r");
-    bool any = false;
-    for (StackCell& cell : cells) {
-        const size_t column = table.column("m_c_gap_" + gap_text(cell.stack.gap));
-        for (size_t k = 0; k < eta.size(); ++k)
-            if (std::abs(eta[k] - cell.stack.eta_r) < 1e-9)
-                cell.published = table.rows[k][column], any = true;
-    }
-    if (!any) throw lie::InvalidInput(file + ": has no eta_r of this grid");
-}
-
-/// Features of the curve of one gap
+/// The cells of one gap, and features of their curve
 struct MassCurve {
+    std::string gap;
+    std::vector<const StackCell*> cells;
     double peak_eta = std::nan(""), peak_mass = 0;
     double plateau = std::nan("");  ///< mass at the largest η_r [kg]
 };
 
-MassCurve curve(const std::vector<StackCell>& cells, double gap)
+std::vector<MassCurve> curves_of(const std::vector<StackCell>& cells, const StackGrid& g)
 {
-    MassCurve c;
-    for (const StackCell& cell : cells) {
-        if (cell.stack.gap != gap) continue;
-        if (cell.m_c() > c.peak_mass) c.peak_eta = cell.stack.eta_r, c.peak_mass = cell.m_c();
-        c.plateau = cell.m_c();
+    std::vector<MassCurve> all;
+    for (const double gap : g.gaps) {
+        MassCurve& c = all.emplace_back(MassCurve{
+            gap_text(gap), those(cells, [&](const StackCell& cell) { return cell.stack.gap == gap; })});
+        for (const StackCell* cell : c.cells)
+            if (cell->m_c() > c.peak_mass) c.peak_eta = cell->stack.eta_r, c.peak_mass = cell->m_c();
+        c.plateau = c.cells.back()->m_c();
     }
-    return c;
+    return all;
 }
 
 const Columns<StackCell> columns_of_cells = {
@@ -159,66 +124,56 @@ const Columns<StackCell> columns_of_cells = {
     {"runs", &StackCell::runs},
     {"undecided", &StackCell::undecided}};
 
-void print(const std::vector<StackCell>& cells, const StackGrid& g, std::ostream& out)
+void print(const std::vector<MassCurve>& curves, std::ostream& out)
 {
     std::vector<Table::Column> columns = {{"eta_r", "{:.2f}"}};
-    for (const double gap : g.gaps)
-        columns.push_back({"gap " + gap_text(gap), "{:.3f}"}), columns.push_back({"mode"});
+    for (const MassCurve& c : curves)
+        columns.push_back({"gap " + c.gap, "{:.3f}"}), columns.push_back({"mode"});
     Table table(columns);
-    for (size_t e = 0; e < g.etas.size(); ++e) {
-        std::vector<Table::Cell> row = {g.etas[e]};
-        for (size_t k = 0; k < g.gaps.size(); ++k) {
-            const StackCell& cell = cells[k * g.etas.size() + e];
-            row.emplace_back(cell.m_c());
-            row.emplace_back(collapse_mode(cell));
-        }
+    for (size_t e = 0; e < curves.front().cells.size(); ++e) {
+        std::vector<Table::Cell> row = {curves.front().cells[e]->stack.eta_r};
+        for (const MassCurve& c : curves)
+            row.insert(row.end(), {c.cells[e]->m_c(), collapse_mode(*c.cells[e])});
         table.add(row);
     }
     table.print(out);
 }
 
-/// Reference values for both presets: the η_r of the published peaks, and the plateau masses [kg] computed
+/// Reference values for both presets, by gap: the η_r of the published peaks, and the plateau masses [kg] computed
 /// when the published curves were reproduced
 struct ExpectedCurve {
-    double gap, peak_eta, plateau;
+    double peak_eta, plateau;
 };
-constexpr std::array<ExpectedCurve, 5> expected_curves = {{{0.20, 0.21, 1.840},
-                                                           {0.25, 0.22, 1.701},
-                                                           {0.30, 0.23, 1.579},
-                                                           {0.35, 0.23, 1.471},
-                                                           {0.40, 0.24, 1.374}}};
+const std::map<double, ExpectedCurve> expected_curves = {{0.20, {0.21, 1.840}},
+                                                         {0.25, {0.22, 1.701}},
+                                                         {0.30, {0.23, 1.579}},
+                                                         {0.35, {0.23, 1.471}},
+                                                         {0.40, {0.24, 1.374}}};
 constexpr double mass_tolerance = 0.005;  // [kg]; covers the influence of the step and of the preset
-
-const ExpectedCurve& expected_curve(double gap)
-{
-    return *std::find_if(expected_curves.begin(), expected_curves.end(),
-                         [&](const ExpectedCurve& k) { return k.gap == gap; });
-}
 
 /// The cell that is computed again with a smaller step: the peak of the middle gap, at the transition from
 /// rolling to sliding
 const StackCell& refined_cell_of(const std::vector<StackCell>& cells, const StackGrid& g)
 {
-    const ExpectedCurve& k = expected_curve(g.gaps[g.gaps.size() / 2]);
-    return *std::find_if(cells.begin(), cells.end(), [&](const StackCell& c) {
-        return c.stack.gap == k.gap && c.stack.eta_r == k.peak_eta;
-    });
+    const double gap = g.gaps[g.gaps.size() / 2], eta_r = expected_curves.at(gap).peak_eta;
+    return *those(cells, [&](const StackCell& c) {
+                return c.stack.gap == gap && c.stack.eta_r == eta_r;
+            }).front();
 }
 
-std::vector<Criterion> criteria(const std::vector<StackCell>& cells, const StackGrid& g,
+std::vector<Criterion> criteria(const std::vector<MassCurve>& curves, const StackCell& coarse,
                                 const StackCell& refined, double h)
 {
     std::vector<Criterion> all;
-    for (const double gap : g.gaps) {
-        const ExpectedCurve& expected = expected_curve(gap);
-        const MassCurve c = curve(cells, gap);
-        all.push_back(criterion("eta_r of the largest critical mass, gap " + gap_text(gap), c.peak_eta,
+    for (const MassCurve& c : curves) {
+        const StackCell& last = *c.cells.back();
+        const ExpectedCurve& expected = expected_curves.at(last.stack.gap);
+        all.push_back(criterion("eta_r of the largest critical mass, gap " + c.gap, c.peak_eta,
                                 expected.peak_eta, 1e-9));
-        all.push_back(criterion(
-            fmt::format("critical mass at eta_r = {:.2f}, gap {} [kg]", g.etas.back(), gap_text(gap)),
-            c.plateau, expected.plateau, mass_tolerance));
+        all.push_back(
+            criterion(fmt::format("critical mass at eta_r = {:.2f}, gap {} [kg]", last.stack.eta_r, c.gap),
+                      c.plateau, expected.plateau, mass_tolerance));
     }
-    const StackCell& coarse = refined_cell_of(cells, g);
     all.push_back(criterion(
         fmt::format("critical mass with h = {:g} s minus that with h = {:g} s, gap {}, eta_r = {:.2f} [kg]",
                     h / refinement, h, gap_text(coarse.stack.gap), coarse.stack.eta_r),
@@ -234,67 +189,84 @@ std::vector<std::string> keys()
     return all;
 }
 
+/// Compares the masses with those of the file.
+void compare(StudyContext& s, const std::vector<StackCell>& cells, std::vector<Criterion>& checks)
+{
+    long compared = 0;
+    double squares = 0, largest = 0;  // of the differences [kg]
+    for (const StackCell& cell : cells) {
+        const double difference = cell.m_c() - cell.published;
+        if (std::isnan(difference)) continue;
+        ++compared;
+        squares += difference * difference;
+        largest = std::max(largest, std::abs(difference));
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(compared));
+    s.text << fmt::format(
+        "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n",
+        s.options.against, compared, rms, largest);
+    s.json["against"] = {{"file", s.options.against}, {"compared", compared}};
+    s.json["against"].update(s.measure(s.options.against, {{"rms", rms}, {"largest", largest}}));
+    checks.push_back(between("rms difference to the file [kg]", rms, 0, 0.01));
+    checks.push_back(between("largest difference to the file [kg]", largest, 0, 0.02));
+}
+
 void stacking(StudyContext& s)
 {
-    s.refuse_models();
-    const StudyOptions& options = s.options;
-    const double h = s.one_step(1e-4), end = options.end.value_or(10);
-    const std::string preset = options.preset.empty() ? "dissertation" : options.preset;
-    const StackGrid& g = one_of_list("--grid", options.grid, grids);
+    const GridOptions o = grid_options(s, 1e-4, 10, grids);
     std::vector<StackCell> cells;
-    for (const double gap : g.gaps)
-        for (const double eta : g.etas)
-            cells.push_back({.stack = {.gap = gap, .eta_r = eta, .dissertation = preset == "dissertation"}});
-    if (!options.against.empty()) read_published(cells, options.against);
-    StackCell refined{.stack = refined_cell_of(cells, g).stack};
-    const auto jobs = static_cast<long>(cells.size());
-    s.pool(cells.size() + options.check).run([&](long k) {
-        if (k < jobs)
-            bisect(cells[k], h, end);
+    std::vector<std::pair<double, double>> places;  // η_r, gap
+    for (const double gap : o.grid.gaps)
+        for (const double eta : o.grid.etas) {
+            cells.push_back({.stack = {.gap = gap, .eta_r = eta, .dissertation = o.dissertation()}});
+            places.emplace_back(eta, gap);
+        }
+    const std::string& file = s.options.against;
+    if (!file.empty()) {
+        const PublishedGrid published{file, "eta_r", [](double gap) { return "m_c_gap_" + gap_text(gap); },
+                                      "column eta_r must contain values of the grid"};
+        const std::vector<double> masses = published.values(places);
+        for (size_t k = 0; k < cells.size(); ++k) cells[k].published = masses[k];
+    }
+    const StackCell& coarse = refined_cell_of(cells, o.grid);
+    StackCell refined{.stack = coarse.stack};
+    s.pool(cells.size() + s.options.check).run([&](long k) {
+        if (k < static_cast<long>(cells.size()))
+            bisect(cells[k], o.h, o.end);
         else
-            bisect(refined, h / refinement, end);
+            bisect(refined, o.h / refinement, o.end);
     });
 
-    s.json = {{"preset", preset}, {"h", h}, {"end", end}, {"grid", g.name}};
+    const std::vector<MassCurve> curves = curves_of(cells, o.grid);
     s.text << fmt::format(
         "\ncritical mass [kg] of the upper sphere and collapse mode of the lower spheres; "
         "{} friction, h = {:g} s\n",
-        preset, h);
-    print(cells, g, s.text);
-    std::vector<Criterion> checks;
-    if (options.check) checks = criteria(cells, g, refined, h);
+        o.preset, o.h);
+    print(curves, s.text);
     int undecided = 0;
     for (const StackCell& c : cells) undecided += c.undecided;
-    io::Json curves = io::Json::array();
+    s.json["undecided"] = undecided;
     s.text << '\n';
-    for (const double gap : g.gaps) {
-        const MassCurve c = curve(cells, gap);
+    for (const MassCurve& c : curves) {
         s.text << fmt::format(
-            "gap {0}: maximum {2:.3f} kg at eta_r = {1:.2f}; {4:.3f} kg at eta_r = {3:.2f}\n", gap_text(gap),
-            c.peak_eta, c.peak_mass, g.etas.back(), c.plateau);
-        s.measured.push_back({.of = "gap " + gap_text(gap),
-                              .value = {{"peak_eta_" + gap_text(gap), c.peak_eta},
-                                        {"peak_mass_" + gap_text(gap), c.peak_mass},
-                                        {"plateau_" + gap_text(gap), c.plateau}}});
-        curves.push_back(
-            {{"gap", gap}, {"peak_eta", c.peak_eta}, {"peak_mass", c.peak_mass}, {"plateau", c.plateau}});
+            "gap {0}: maximum {2:.3f} kg at eta_r = {1:.2f}; {4:.3f} kg at eta_r = {3:.2f}\n", c.gap,
+            c.peak_eta, c.peak_mass, o.grid.etas.back(), c.plateau);
+        s.measure("gap " + c.gap, {{"peak_eta_" + c.gap, c.peak_eta},
+                                   {"peak_mass_" + c.gap, c.peak_mass},
+                                   {"plateau_" + c.gap, c.plateau}});
+        s.json["curves"].push_back({{"gap", c.cells.front()->stack.gap},
+                                    {"peak_eta", c.peak_eta},
+                                    {"peak_mass", c.peak_mass},
+                                    {"plateau", c.plateau}});
     }
     if (undecided > 0)
-        s.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided, end);
-    s.measured.push_back({.of = s.name, .value = {{"undecided", undecided}}});
-    s.json.update({{"undecided", undecided}, {"curves", curves}});
-    if (!options.against.empty()) {
-        const MassAgreement a = agreement(cells);
-        s.text << fmt::format(
-            "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n",
-            options.against, a.compared, a.rms, a.largest);
-        s.measured.push_back({.of = options.against, .value = {{"rms", a.rms}, {"largest", a.largest}}});
-        s.json["against"] = {
-            {"file", options.against}, {"compared", a.compared}, {"rms", a.rms}, {"largest", a.largest}};
-        checks.push_back(between("rms difference to the file [kg]", a.rms, 0, 0.01));
-        checks.push_back(between("largest difference to the file [kg]", a.largest, 0, 0.02));
-    }
-    if (options.check) s.evaluate(checks);
+        s.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,
+                              o.end);
+    s.measure(s.name, {{"undecided", undecided}});
+    std::vector<Criterion> checks;
+    if (s.options.check) checks = criteria(curves, coarse, refined, o.h);
+    if (!file.empty()) compare(s, cells, checks);
+    if (s.options.check) s.evaluate(checks);
     s.table = columns_of_cells.csv(cells);
     s.figures = {"stacking.png"};
 }

@@ -124,7 +124,7 @@ void evolving_order(StudyContext& s)
     reference.evaluate(benchmarks, steps);
     const Sweep<ErrorRun> runs =
         study.runs(s, benchmarks, schemes, steps, [&](ErrorRun& run) { compute(run, s.options.settings); });
-    const std::vector<Series> all = study.series(runs);
+    const std::vector<Series> all = series_of(runs);
 
     const Columns<ErrorRun> columns = Columns<ErrorRun>{column::problem, column::integrator, column::h} +
                                       study.errors() + study.orders() +

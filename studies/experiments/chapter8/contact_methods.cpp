@@ -18,7 +18,6 @@
 
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
-#include "lie/check.hpp"
 #include "lie/solver/linear_solver.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 
@@ -35,7 +34,7 @@ using methods::Method;
 
 /// One method on one scene at one step
 struct MethodRun {
-    std::string part, method;
+    std::string part, method = {};
     double h = 0, end = 0;
     double stiffness = std::nan("");  ///< of the contact springs [N/m]; NaN without springs
     int bodies = 1;
@@ -50,6 +49,26 @@ struct MethodRun {
 
     double microseconds() const { return 1e6 * seconds / static_cast<double>(steps); }
     double microseconds_per_contact() const { return microseconds() / std::max(1, contacts); }
+};
+
+/// Adds the runs of one scene.
+struct SceneRuns {
+    std::vector<MethodRun>& runs;
+    MethodRun scene;   ///< what the runs have in common
+    double steps = 0;  ///< number of steps, instead of the end time; 0: the end time
+
+    /// h: step [s], k: stiffness of the contact springs [N/m]
+    void add(const std::string& method, double h, double k, std::function<std::unique_ptr<Method>()> make)
+    {
+        MethodRun& run = runs.emplace_back(scene);
+        run.method = method, run.h = h, run.stiffness = k, run.make = std::move(make);
+        if (steps > 0) run.end = h * steps;
+    }
+    /// A method without springs
+    void add(const std::string& method, double h, std::function<std::unique_ptr<Method>()> make)
+    {
+        add(method, h, std::nan(""), std::move(make));
+    }
 };
 
 // ---- the bowl of Sec. 5.5 ---------------------------------------------------------------------------------
@@ -108,23 +127,17 @@ void add_bowl(std::vector<MethodRun>& runs)
         return (m.body(1).r - (*reference_solution)[std::lround(k)].body.r).norm();
     };
     const ContactScene setup = bowl_scene({bowl.point(1, 1.5)});
-    const auto add = [&](const std::string& method, double h, double k,
-                         std::function<std::unique_ptr<Method>()> make) {
-        MethodRun run{.part = "bowl", .method = method, .h = h, .end = end, .stiffness = k};
-        run.make = std::move(make), run.error = position_error;
-        runs.push_back(run);
-    };
+    SceneRuns bowl_runs{runs, {.part = "bowl", .end = end, .error = position_error}};
     for (const double h : {2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3, 5e-4}) {
-        add("evolving", h, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
-        add("evolving, text", h, std::nan(""),
-            [=] { return methods::evolving(setup, {.scheme = "rA-half-1", .reach = 1e-6}); });
-        add("DVI", h, std::nan(""), [=] { return methods::dvi(setup, {}); });
-        add("DVI, not stabilised", h, std::nan(""),
-            [=] { return methods::dvi(setup, {.stabilised = false}); });
-        add("DVI, text", h, std::nan(""), [=] { return methods::dvi(setup, {.half_kick = false}); });
+        bowl_runs.add("evolving", h, [=] { return methods::evolving(setup, {.reach = 1e-6}); });
+        bowl_runs.add("evolving, text", h,
+                      [=] { return methods::evolving(setup, {.scheme = "rA-half-1", .reach = 1e-6}); });
+        bowl_runs.add("DVI", h, [=] { return methods::dvi(setup, {}); });
+        bowl_runs.add("DVI, not stabilised", h, [=] { return methods::dvi(setup, {.stabilised = false}); });
+        bowl_runs.add("DVI, text", h, [=] { return methods::dvi(setup, {.half_kick = false}); });
     }
     for (const StiffnessAndStep& s : stiffnesses)
-        add("DEM", s.h, s.k, [=, at_rest = reference_solution->front()] {
+        bowl_runs.add("DEM", s.h, s.k, [=, at_rest = reference_solution->front()] {
             return methods::compliant_springs(with_static_compression(setup, at_rest, s.k, s.h),
                                               {.stiffness = s.k, .restitution = 1});
         });
@@ -142,20 +155,15 @@ void add_many(std::vector<MethodRun>& runs)
             contact_points.push_back(bowl.point(2 * r * std::cos(angle), 1.5 * r * std::sin(angle)));
         }
         const ContactScene setup = bowl_scene(contact_points);
-        const double steps = std::clamp(2e4 / balls, 20., 2000.);
-        const auto add = [&](const std::string& method, double h, double k,
-                             std::function<std::unique_ptr<Method>()> make) {
-            MethodRun run{
-                .part = "many", .method = method, .h = h, .end = h * steps, .stiffness = k, .bodies = balls};
-            run.make = std::move(make);
-            runs.push_back(run);
-        };
-        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
-        add("evolving, KLU", 5e-3, std::nan(""),
-            [=] { return methods::evolving(setup, {.solver = lie::LinearSolver::klu, .reach = 1e-6}); });
-        add("DVI", 5e-3, std::nan(""), [=] { return methods::dvi(setup, {}); });
-        add("DEM", 1e-3, 1e6,
-            [=] { return methods::compliant_springs(setup, {.stiffness = 1e6, .restitution = 1}); });
+        SceneRuns scene_runs{runs, {.part = "many", .bodies = balls}, std::clamp(2e4 / balls, 20., 2000.)};
+        scene_runs.add("evolving", 5e-3, [=] { return methods::evolving(setup, {.reach = 1e-6}); });
+        scene_runs.add("evolving, KLU", 5e-3, [=] {
+            return methods::evolving(setup, {.solver = lie::LinearSolver::klu, .reach = 1e-6});
+        });
+        scene_runs.add("DVI", 5e-3, [=] { return methods::dvi(setup, {}); });
+        scene_runs.add("DEM", 1e-3, 1e6, [=] {
+            return methods::compliant_springs(setup, {.stiffness = 1e6, .restitution = 1});
+        });
     }
 }
 
@@ -177,23 +185,18 @@ void add_chain(std::vector<MethodRun>& runs)
         lie::Motion stop_start = setup.body[2].start;
         stop_start.r.x() -= 2 * chain.R;
         setup.body.push_back({static_cast<int>(setup.body_types.size()) - 1, stop_start});
-        const auto add = [&](const std::string& method, double h, double k,
-                             std::function<std::unique_ptr<Method>()> make) {
-            MethodRun run{
-                .part = "chain", .method = method, .h = h, .end = 0.05, .stiffness = k, .bodies = balls};
-            run.make = std::move(make);
-            run.error = [at = setup.body, balls](const Method& m, double) {
-                double largest = 0;
-                for (int b = 2; b < balls + 2; ++b)
-                    largest = std::max(largest, (m.body(b).r - at[b].start.r).norm());
-                return largest;
-            };
-            runs.push_back(run);
+        const auto displacement = [at = setup.body, balls](const Method& m, double) {
+            double largest = 0;
+            for (int b = 2; b < balls + 2; ++b)
+                largest = std::max(largest, (m.body(b).r - at[b].start.r).norm());
+            return largest;
         };
-        add("evolving", 5e-3, std::nan(""), [=] { return methods::evolving(setup, {.reach = 1e-6}); });
-        add("DVI", 5e-3, std::nan(""),
-            [=] { return methods::dvi(setup, {.tolerance = 1e-6, .max_iterations = 3000}); });
-        add("DEM", 2e-4, 1e6, [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
+        SceneRuns scene_runs{runs, {.part = "chain", .end = 0.05, .bodies = balls, .error = displacement}};
+        scene_runs.add("evolving", 5e-3, [=] { return methods::evolving(setup, {.reach = 1e-6}); });
+        scene_runs.add("DVI", 5e-3,
+                       [=] { return methods::dvi(setup, {.tolerance = 1e-6, .max_iterations = 3000}); });
+        scene_runs.add("DEM", 2e-4, 1e6,
+                       [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
     }
 }
 
@@ -205,19 +208,14 @@ void add_pile(std::vector<MethodRun>& runs)
         Pile pile;
         pile.balls = balls, pile.mu = 0;
         const ContactScene setup = scene(pile);
-        const auto add = [&](const std::string& method, double h, double k,
-                             std::function<std::unique_ptr<Method>()> make) {
-            MethodRun run{
-                .part = "pile", .method = method, .h = h, .end = 1, .stiffness = k, .bodies = balls};
-            run.make = std::move(make);
-            runs.push_back(run);
-        };
+        SceneRuns scene_runs{runs, {.part = "pile", .end = 1, .bodies = balls}};
         if (balls <= 4)  // with more balls, contacts without load open and close indefinitely
-            add("evolving", 2e-3, std::nan(""),
-                [=] { return methods::evolving(setup, {.reach = 100, .unilateral = true}); });
-        add("DVI", 1e-3, std::nan(""),
-            [=] { return methods::dvi(setup, {.tolerance = 1e-5, .max_iterations = 2000}); });
-        add("DEM", 2e-4, 1e6, [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
+            scene_runs.add("evolving", 2e-3,
+                           [=] { return methods::evolving(setup, {.reach = 100, .unilateral = true}); });
+        scene_runs.add("DVI", 1e-3,
+                       [=] { return methods::dvi(setup, {.tolerance = 1e-5, .max_iterations = 2000}); });
+        scene_runs.add("DEM", 2e-4, 1e6,
+                       [=] { return methods::compliant_springs(setup, {.stiffness = 1e6}); });
     }
 }
 

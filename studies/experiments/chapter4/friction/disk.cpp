@@ -10,7 +10,8 @@
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
 #include "contact/surfaces/disk.hpp"
-#include "contact/surfaces/plane.hpp"
+
+#include <fmt/format.h>
 
 #include <numbers>
 
@@ -21,88 +22,57 @@ namespace {
 constexpr double m = 5, R = 0.2, I = 0.1, mu_s = 0.25, mu_k = 0.2, g = 9.8, N = m * g, v_0 = 0.5, eta_r = 0.1;
 const double K_R = 4 * eta_r * 1e5 * R * R, D_critical = 2 * std::sqrt(I * K_R);
 
-struct DiskSetup {
-    contact::FrictionParameters p = {};
-    std::string law = "slide-roll-spin";
-    bool saturated = false;
-    double h = 1e-4, end = 1.5;
-};
-
 contact::FrictionParameters parameters(const std::string& preset_name, double K_E = 1e5)
 {
     return preset(preset_name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = K_E, .eta_r = eta_r});
 }
 
-Series roll(const DiskSetup& setup, Frames* frames)
+/// `saturated`: the springs start slightly above their kinetic bounds.
+BodyOnPlane roll(const contact::FrictionParameters& p, double end = 1.5, double h = 1e-4,
+                 bool saturated = false, const std::string& law = "slide-roll-spin")
 {
-    contact::Scene scene;
-    scene.gravity = {0, 0, -g};
     contact::Motion start = at({0, 0, R}, {v_0, 0, 0});
     start.A = lie::exp(lie::Vec3(std::numbers::pi / 2, 0, 0));  // axis along -y
-    const int disk = scene.add({m, I * lie::Mat3::Identity()}, start),
-              plane = scene.add(contact::Inertia{}, {});
-    scene.add("disk", disk, shape<contact::Disk>(R), plane, shape<contact::Plane>(),
-              std::make_shared<contact::GivenForce>(N), law(setup.p, setup.law));
-    scene.check(setup.h);
-    bool saturation_set = false;
-    double theta = 0, v = v_0, omega = 0;  // values at the previous node
-    return sample(scene, setup.h, setup.end, frames,
-                  {"t", "x", "theta", "v", "omega", "a", "alpha", "F_E", "F_D", "T_E", "T_D", "S_mm",
-                   "Theta_e-3rad", "slips", "rolls"},
-                  [&](Series& s, const std::vector<contact::Motion>& body) {
-                      contact::Scene::Pair& pair = scene.pair[0];
-                      if (setup.saturated && !saturation_set) {
-                          // springs slightly above their kinetic bounds before the first step
-                          const lie::Vec3 &n = pair.contact_state.slip.n, &u = pair.contact_state.slip.u;
-                          contact::Deflections& history = pair.history.deflections;
-                          const double S = (1 + 1e-9) * mu_k * N / setup.p.K_E;
-                          history.S = contact::components({-S, 0, 0}, n, u);
-                          history.Theta_i = contact::components({S / (2 * R), 0, 0}, n, u);
-                          history.slide = history.roll_i = {.slipping = true, .damped = false};
-                      }
-                      saturation_set = true;
-                      const contact::Motion& b = body[disk];
-                      const lie::Vec3 omega_now = b.A * b.omega_bar;
-                      const contact::Wrench& w = pair.wrench;
-                      const contact::Deflections& history = pair.history.deflections;
-                      const contact::SlidingDisplacement& frame = pair.contact_state.slip;
-                      const auto along_x = [&](const contact::Vec2& of) {
-                          return contact::tangent(of, frame.n, frame.u).x();
-                      };
-                      const double F_E = -w.F_E.x(), T_E = -w.T_roll_E.y();
-                      theta += setup.h * omega_now.y();
-                      s.add({scene.t, b.r.x(), theta, b.rdot.x(), omega_now.y(), (b.rdot.x() - v) / setup.h,
-                             (omega_now.y() - omega) / setup.h, F_E, -w.F.x() - F_E, T_E, -w.T_i.y() - T_E,
-                             -1e3 * along_x(history.S), 1e3 * along_x(history.Theta_i),
-                             history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 0. : 1.});
-                      v = b.rdot.x(), omega = omega_now.y();
-                  });
+    return {.name = "disk",
+            .inertia = {m, I * lie::Mat3::Identity()},
+            .start = start,
+            .shape = shape<contact::Disk>(R),
+            .normal = given_force(N),
+            .friction = p,
+            .friction_law = law,
+            .h = h,
+            .end = end,
+            .columns = {"t", "x", "theta", "v", "omega", "a", "alpha", "F_E", "F_D", "T_E", "T_D", "S_mm",
+                        "Theta_e-3rad", "slips", "rolls"},
+            .record = [=, theta = 0., v = v_0, omega = 0.](Curve& c, const Node& node) mutable {
+                const contact::SlidingDisplacement& frame = node.pair.contact_state.slip;
+                contact::Deflections& springs = node.springs;
+                if (saturated && c.rows() == 0) {
+                    const double S = (1 + 1e-9) * mu_k * N / p.K_E;
+                    springs.S = contact::components({-S, 0, 0}, frame.n, frame.u);
+                    springs.Theta_i = contact::components({S / (2 * R), 0, 0}, frame.n, frame.u);
+                    springs.slide = springs.roll_i = {.slipping = true, .damped = false};
+                }
+                const auto along_x = [&](const contact::Vec2& of) {
+                    return contact::tangent(of, frame.n, frame.u).x();
+                };
+                const double v_now = node.body.rdot.x(), omega_now = node.omega.y(),
+                             F_E = -node.wrench.F_E.x(), T_E = -node.wrench.T_roll_E.y();
+                theta += h * omega_now;
+                c.add({node.scene.t, node.body.r.x(), theta, v_now, omega_now, (v_now - v) / h,
+                       (omega_now - omega) / h, F_E, -node.wrench.F.x() - F_E, T_E,
+                       -node.wrench.T_i.y() - T_E, -1e3 * along_x(springs.S), 1e3 * along_x(springs.Theta_i),
+                       springs.slide.slipping ? 1. : 0., springs.roll_i.slipping ? 0. : 1.});
+                v = v_now, omega = omega_now;
+            }};
 }
 
-DiskSetup published_setup()
+/// The parameters with these parts of the critical dampings of rolling and sliding; 0: no change
+contact::FrictionParameters damped(contact::FrictionParameters p, double roll, double slide)
 {
-    DiskSetup setup{.p = parameters("dissertation")};
-    setup.p.D_roll = 1.5 * D_critical;
-    return setup;
-}
-
-std::vector<ExperimentRun> runs()
-{
-    return {
-        {.name = "dissertation", .compute = [](Frames* frames) { return roll(published_setup(), frames); }},
-        {.name = "saturated",
-         .compute =
-             [](Frames* frames) {
-                 return roll({.p = parameters("dissertation"), .saturated = true}, frames);
-             }},
-        {.name = "balanced",
-         .compute = [](Frames* frames) { return roll({.p = parameters("balanced"), .end = 3}, frames); }},
-        {.name = "stiff",
-         .compute =
-             [](Frames* frames) {
-                 return roll({.p = parameters("balanced", 1e6), .h = 2e-5, .end = 2}, frames);
-             },
-         .check_only = true}};
+    if (roll > 0) p.D_roll = roll * D_critical;
+    if (slide > 0) p.D_slide = slide * 2 * std::sqrt(m * p.K_E);
+    return p;
 }
 
 /// Closed form: rigid disk with kinetic friction
@@ -117,121 +87,83 @@ struct RigidDisk {
     double theta_2 = 0.5 * alpha * t_1 * t_1 + 0.5 * v_1 * v_1 / (a * R);
 };
 
-/// Time of the end of slip and of the end of rolling [s]
-std::pair<double, double> instants(const Series& s)
-{
-    const double slip = s.first_time([&](size_t k) { return s.at(k, "slips") == 0; }, 0.01);
-    // end of kinetic rolling friction; afterwards the rolling spring oscillates about its rest position
-    const auto speed = s.all("omega");
-    size_t k = 0;
-    while (k + 1 < speed.size() && (s.at(k, 0) < 0.5 || s.at(k, "rolls") == 0)) ++k;
-    return {slip, s.at(k, 0)};
-}
+const RigidDisk rigid;
 
-void checks(const Results& results, std::vector<Check>& out)
-{
-    const RigidDisk rigid_disk;
-    if (const Series* s = results.find("dissertation")) {
-        out.push_back({"x at 1.5 s, dissertation [m]", s->last("x"), 0.2093106, 5e-8, "published run"});
-        out.push_back(
-            {"theta at 1.5 s, dissertation [rad]", s->last("theta"), 0.9512334, 5e-8, "published run"});
-    }
-    for (const auto& [name, part_1, part] :
-         {std::tuple("balanced", 5e-3, 1.), std::tuple("stiff", 1e-3, 0.)}) {
-        const Series* s = results.find(name);
-        if (s == nullptr) continue;
-        const std::string suffix = std::string(", ") + name;
-        const auto [slip, stop] = instants(*s);
-        const double rest = part > 0 ? 3e-3 : 1e-3;
-        out.push_back(
-            {"end of slip" + suffix + " [s]", slip, rigid_disk.t_1, part_1 * rigid_disk.t_1, "rigid"});
-        out.push_back({"stop time" + suffix + " [s]", stop, rigid_disk.t_2, 1e-3 * rigid_disk.t_2, "rigid"});
-        out.push_back(
-            {"x at rest" + suffix + " [m]", s->last("x"), rigid_disk.x_2, rest * rigid_disk.x_2, "rigid"});
-        out.push_back({"theta at rest" + suffix + " [rad]", s->last("theta"), rigid_disk.theta_2,
-                       rest * rigid_disk.theta_2, "rigid"});
-    }
-    if (const Series* s = results.find("balanced")) {
-        double largest = 0;
-        for (size_t k = 0; k < s->rows(); ++k)
-            if (s->at(k, 0) > 2.5) largest = std::max(largest, std::abs(s->at(k, "omega")));
-        out.push_back({"largest |omega| after 2.5 s, balanced [rad/s]", largest, 0, 1e-8, "comes to rest"});
-    }
-}
+const Measure end_of_slip = first(
+    "slips", [](double slips) { return slips == 0; }, 0.01);
+/// End of kinetic rolling friction; afterwards the rolling spring oscillates about its rest position
+const Measure end_of_rolling = first(
+    "rolls", [](double rolls) { return rolls != 0; }, 0.5);
 
-const bool disk = register_experiment({.name = "disk",
-                                       .figure = "4.9",
-                                       .what = "disk started without rotation: slip, rolling, rest",
-                                       .runs = runs,
-                                       .checks = checks,
-                                       .has_frames = true});
+const bool disk = register_experiment(
+    {.name = "disk",
+     .figure = "4.9",
+     .what = "disk started without rotation: slip, rolling, rest",
+     .runs = {{"dissertation", [] { return roll(damped(parameters("dissertation"), 1.5, 0)); }},
+              {"saturated", [] { return roll(parameters("dissertation"), 1.5, 1e-4, true); }},
+              {"balanced", [] { return roll(parameters("balanced"), 3); }},
+              {"stiff", [] { return roll(parameters("balanced", 1e6), 2, 2e-5); }, true}},
+     .expected =
+         {{"dissertation", "x at 1.5 s, dissertation [m]", last("x"), 0.2093106, 5e-8, "published run"},
+          {"dissertation", "theta at 1.5 s, dissertation [rad]", last("theta"), 0.9512334, 5e-8,
+           "published run"},
+          {"balanced", "end of slip, balanced [s]", end_of_slip, rigid.t_1, 5e-3 * rigid.t_1, "rigid"},
+          {"balanced", "stop time, balanced [s]", end_of_rolling, rigid.t_2, 1e-3 * rigid.t_2, "rigid"},
+          {"balanced", "x at rest, balanced [m]", last("x"), rigid.x_2, 3e-3 * rigid.x_2, "rigid"},
+          {"balanced", "theta at rest, balanced [rad]", last("theta"), rigid.theta_2, 3e-3 * rigid.theta_2,
+           "rigid"},
+          {"stiff", "end of slip, stiff [s]", end_of_slip, rigid.t_1, 1e-3 * rigid.t_1, "rigid"},
+          {"stiff", "stop time, stiff [s]", end_of_rolling, rigid.t_2, 1e-3 * rigid.t_2, "rigid"},
+          {"stiff", "x at rest, stiff [m]", last("x"), rigid.x_2, 1e-3 * rigid.x_2, "rigid"},
+          {"stiff", "theta at rest, stiff [rad]", last("theta"), rigid.theta_2, 1e-3 * rigid.theta_2,
+           "rigid"},
+          {"balanced", "largest |omega| after 2.5 s, balanced [rad/s]",
+           [](const Curve& c) { return c.largest("omega", 2.5); }, 0, 1e-8, "comes to rest"}},
+     .has_frames = true});
 
 std::vector<ExperimentRun> dampings()
 {
     std::vector<ExperimentRun> all;
     for (const double part : {0.5, 1., 1.5, 2.})
-        for (const std::string& name : presets) {
-            DiskSetup setup{.p = parameters(name)};
-            setup.p.D_roll = part * D_critical;
-            setup.p.D_slide = part * 2 * std::sqrt(m * setup.p.K_E);
-            all.push_back({.name = name + (part == 0.5   ? "-0.5"
-                                           : part == 1   ? "-1"
-                                           : part == 1.5 ? "-1.5"
-                                                         : "-2"),
-                           .compute = [setup](Frames* frames) { return roll(setup, frames); }});
-        }
+        for (const std::string& name : presets)
+            all.push_back({fmt::format("{}-{:g}", name, part),
+                           [=] { return roll(damped(parameters(name), part, part)); }});
     return all;
 }
-
-void no_checks(const Results&, std::vector<Check>&) {}
 
 const bool disk_damping =
     register_experiment({.name = "disk-damping",
                          .figure = "4.10",
                          .what = "disk coming to rest with 0.5, 1, 1.5 and 2 times the critical damping",
-                         .runs = dampings,
-                         .checks = no_checks});
+                         .runs = dampings()});
 
-std::vector<ExperimentRun> rolling_laws()
+ExperimentRun with_law(const std::string& law)
 {
-    std::vector<ExperimentRun> all;
-    for (const std::string law : {"slide-roll-spin", "constant-torque", "epsd"}) {
-        DiskSetup setup{.p = parameters("balanced"), .law = law, .end = 2};
-        if (law != "slide-roll-spin") setup.p.mu_r = 2 * eta_r * mu_k;  // the same torque during rolling
-        all.push_back({.name = law, .compute = [setup](Frames* frames) { return roll(setup, frames); }});
-    }
-    return all;
+    contact::FrictionParameters p = parameters("balanced");
+    if (law != "slide-roll-spin") p.mu_r = 2 * eta_r * mu_k;  // the same torque during rolling
+    return {law, [=] { return roll(p, 2, 1e-4, false, law); }};
 }
 
-/// Largest absolute value of a column in the last 0.2 s
-double largest_at_end(const Series& s, const std::string& column)
+/// The largest rolling torque of a law in the last 0.2 s
+Expected torque_at_rest(const std::string& law, double required, double tolerance, const std::string& source)
 {
-    double largest = 0;
-    for (size_t k = 0; k < s.rows(); ++k)
-        if (s.at(k, 0) > s.at(s.rows() - 1, 0) - 0.2) largest = std::max(largest, std::abs(s.at(k, column)));
-    return largest;
-}
-
-void check_models(const Results& results, std::vector<Check>& out)
-{
-    const double M = 2 * eta_r * R * mu_k * N;
-    if (const Series* s = results.find("slide-roll-spin"))
-        out.push_back({"rolling torque at rest, slide-roll-spin [N m]", largest_at_end(*s, "T_E"), 0,
-                       1e-6 * M, "comes to rest"});
-    if (const Series* s = results.find("epsd"))
-        out.push_back(
-            {"rolling torque at rest, epsd [N m]", largest_at_end(*s, "T_E"), 0, 1e-6 * M, "comes to rest"});
-    if (const Series* s = results.find("constant-torque"))
-        out.push_back({"rolling torque at rest, constant-torque [N m]", largest_at_end(*s, "T_E"), M,
-                       1e-9 * M, "torque oscillates between its bounds"});
+    return {law,
+            "rolling torque at rest, " + law + " [N m]",
+            [](const Curve& c) { return c.largest("T_E", c.last("t") - 0.2); },
+            required,
+            tolerance,
+            source};
 }
 
 const bool rolling_models = register_experiment(
     {.name = "rolling-models",
      .figure = "4.11",
      .what = "rolling torque laws with and without history; the torque at rest vanishes only with history",
-     .runs = rolling_laws,
-     .checks = check_models});
+     .runs = {with_law("slide-roll-spin"), with_law("constant-torque"), with_law("epsd")},
+     .expected = {torque_at_rest("slide-roll-spin", 0, 1e-6 * rigid.M, "comes to rest"),
+                  torque_at_rest("epsd", 0, 1e-6 * rigid.M, "comes to rest"),
+                  torque_at_rest("constant-torque", rigid.M, 1e-9 * rigid.M,
+                                 "torque oscillates between its bounds")}});
 
 }  // namespace
 

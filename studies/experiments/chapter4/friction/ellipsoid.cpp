@@ -5,7 +5,6 @@
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
-#include "contact/surfaces/plane.hpp"
 
 #include <numbers>
 
@@ -15,99 +14,81 @@ namespace {
 
 constexpr double m = 5, a = 0.2, c = 0.5, g = 9.8, pi = std::numbers::pi;
 
-struct EllipsoidSetup {
-    contact::FrictionParameters p;
-    double v_0 = 0.3, omega_0 = 0, h = 1e-4, end = 3, k_n = 1e7;
-    bool at_rest_height = true;  ///< start with the static deflection of the normal spring
-};
-
-Series simulate(const EllipsoidSetup& setup, Frames* frames)
+BodyOnPlane tip(const contact::FrictionParameters& p, double omega_0 = 0, double end = 3, double h = 1e-4)
 {
-    contact::Scene scene;
-    scene.gravity = {0, 0, -g};
-    const contact::Inertia inertia{
-        m, lie::Vec3(m / 5 * (a * a + c * c), m / 5 * (a * a + c * c), m / 5 * 2 * a * a).asDiagonal()};
-    contact::Motion start = at({0, 0, c - (setup.at_rest_height ? m * g / setup.k_n : 0)}, {0, setup.v_0, 0});
-    start.omega_bar = {-setup.omega_0, 0, 0};
-    const int body = scene.add(inertia, start), plane = scene.add(contact::Inertia{}, {});
-    scene.add("ellipsoid", body, shape<contact::Ellipsoid>(lie::Vec3(a, a, c)), plane,
-              shape<contact::Plane>(), std::make_shared<contact::Hooke>(setup.k_n, 0), law(setup.p));
-    scene.check(setup.h);
-    return sample(
-        scene, setup.h, setup.end, frames, {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
-        [&](Series& s, const std::vector<contact::Motion>& b) {
-            const lie::Vec3 axis = b[body].A.col(2);
-            const contact::Scene::Pair& pair = scene.pair[0];
-            const contact::Deflections& history = pair.history.deflections;
-            s.add({scene.t, b[body].r.y(), b[body].r.z(), std::atan2(axis.y(), axis.z()) * 180 / pi,
-                   -(b[body].A * b[body].omega_bar).x(), std::max(0., pair.contact_state.N),
-                   pair.wrench.F.y(), history.slide.slipping ? 1. : 0., history.roll_i.slipping ? 1. : 0.});
-        });
+    constexpr double k_n = 1e7, I_a = m / 5 * (a * a + c * c), I_c = m / 5 * 2 * a * a;
+    contact::Motion start =
+        at({0, 0, c - m * g / k_n}, {0, 0.3, 0});  // static deflection of the normal spring
+    start.omega_bar = {-omega_0, 0, 0};
+    return {.name = "ellipsoid",
+            .inertia = {m, lie::Vec3(I_a, I_a, I_c).asDiagonal()},
+            .start = start,
+            .shape = shape<contact::Ellipsoid>(lie::Vec3(a, a, c)),
+            .normal = std::make_shared<contact::Hooke>(k_n, 0),
+            .friction = p,
+            .h = h,
+            .end = end,
+            .columns = {"t", "y", "z", "tilt", "omega", "N", "F", "slips", "rolls"},
+            .record = [](Curve& curve, const Node& n) {
+                const lie::Vec3 axis = n.body.A.col(2);
+                curve.add({n.scene.t, n.body.r.y(), n.body.r.z(), std::atan2(axis.y(), axis.z()) * 180 / pi,
+                           -n.omega.x(), std::max(0., n.pair.contact_state.N), n.wrench.F.y(),
+                           n.springs.slide.slipping ? 1. : 0., n.springs.roll_i.slipping ? 1. : 0.});
+            }};
 }
 
-EllipsoidSetup falling_setup(const std::string& name)
+BodyOnPlane falling(const std::string& name)
 {
-    return {.p = preset(name, {.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e5, .eta_r = 0.2})};
+    return tip(preset(name, {.mu_s = 0.25, .mu_k = 0.2, .K_E = 1e5, .eta_r = 0.2}));
 }
 
 /// No rolling resistance, and friction large enough to prevent slip
-EllipsoidSetup rolling_setup(double K_E, double h)
+BodyOnPlane rolling(double K_E, double h) { return tip({.mu_s = 20, .mu_k = 20, .K_E = K_E}, 0.6, 0.85, h); }
+
+/// A quantity when the axis is horizontal, by linear interpolation; NaN if it does not become horizontal
+Measure at_tilt_90(const std::string& column)
 {
-    return {.p = {.mu_s = 20, .mu_k = 20, .K_E = K_E}, .v_0 = 0.3, .omega_0 = 0.6, .h = h, .end = 0.85};
+    return [=](const Curve& s) {
+        size_t k = 1;
+        while (k < s.rows() && s.at(k, "tilt") < 90) ++k;
+        if (k >= s.rows()) return std::nan("");
+        const double part = (90 - s.at(k - 1, "tilt")) / (s.at(k, "tilt") - s.at(k - 1, "tilt"));
+        return s.at(k - 1, column) + part * (s.at(k, column) - s.at(k - 1, column));
+    };
 }
 
-std::vector<ExperimentRun> runs()
-{
-    std::vector<ExperimentRun> all;
-    for (const std::string& name : presets)
-        all.push_back({.name = name,
-                       .compute = [name](Frames* frames) { return simulate(falling_setup(name), frames); }});
-    all.push_back({.name = "no-resistance",
-                   .compute = [](Frames* frames) { return simulate(rolling_setup(1e5, 1e-4), frames); }});
-    all.push_back({.name = "no-resistance-stiff",
-                   .compute = [](Frames* frames) { return simulate(rolling_setup(1e7, 5e-6), frames); },
-                   .check_only = true});
-    return all;
-}
-
-void checks(const Results& results, std::vector<Check>& out)
+std::vector<Expected> expected()
 {
     const double t_90 = 0.788758, omega_90 = 7.818659, y_90 = 0.575328;
-    for (const auto& [name, dt, domega, dy] : {std::tuple("no-resistance", 2e-4, 5e-3, 3e-4),
-                                               std::tuple("no-resistance-stiff", 1e-5, 3e-4, 1e-6)}) {
-        const Series* s = results.find(name);
-        if (s == nullptr) continue;
-        size_t k = 1;
-        while (k < s->rows() && s->at(k, "tilt") < 90) ++k;
-        const bool flat = k < s->rows();  // otherwise the results are NaN
-        const double part =
-            flat ? (90 - s->at(k - 1, "tilt")) / (s->at(k, "tilt") - s->at(k - 1, "tilt")) : std::nan("");
-        const auto between = [&](const char* column) {
-            const size_t end = flat ? k : k - 1;
-            return s->at(k - 1, column) + part * (s->at(end, column) - s->at(k - 1, column));
-        };
-        const std::string suffix = std::string(", ") + name;
-        out.push_back({"time at tilt 90 deg" + suffix + " [s]", between("t"), t_90, dt, "energy"});
-        out.push_back({"omega at tilt 90 deg" + suffix + " [rad/s]", between("omega"), omega_90,
+    std::vector<Expected> all;
+    for (const auto& [run, dt, domega, dy] :
+         {std::tuple<std::string, double, double, double>("no-resistance", 2e-4, 5e-3, 3e-4),
+          {"no-resistance-stiff", 1e-5, 3e-4, 1e-6}}) {
+        all.push_back({run, "time at tilt 90 deg, " + run + " [s]", at_tilt_90("t"), t_90, dt, "energy"});
+        all.push_back({run, "omega at tilt 90 deg, " + run + " [rad/s]", at_tilt_90("omega"), omega_90,
                        domega * omega_90, "energy"});
-        out.push_back({"y at tilt 90 deg" + suffix + " [m]", between("y"), y_90, dy, "arc length"});
+        all.push_back({run, "y at tilt 90 deg, " + run + " [m]", at_tilt_90("y"), y_90, dy, "arc length"});
     }
     for (const std::string& name : presets) {
-        const Series* s = results.find(name);
-        if (s == nullptr) continue;
-        const double reversal = s->first_time([&](size_t k) { return s->at(k, "omega") < 0; }, 0.5);
-        out.push_back(
-            {"reversal of the rotation, " + name + " [s]", reversal, 1.085, 0.035, "independent code"});
-        out.push_back({"final tilt, " + name + " [deg]", s->last("tilt"), 90, 4, "within the static band"});
+        all.push_back({name, "reversal of the rotation, " + name + " [s]",
+                       first(
+                           "omega", [](double omega) { return omega < 0; }, 0.5),
+                       1.085, 0.035, "independent code"});
+        all.push_back(
+            {name, "final tilt, " + name + " [deg]", last("tilt"), 90, 4, "within the static band"});
     }
+    return all;
 }
 
 const bool ellipsoid =
     register_experiment({.name = "ellipsoid",
                          .figure = "4.17",
                          .what = "upright ellipsoid that tips over and comes to rest on its side",
-                         .runs = runs,
-                         .checks = checks,
+                         .runs = {{"dissertation", [] { return falling("dissertation"); }},
+                                  {"balanced", [] { return falling("balanced"); }},
+                                  {"no-resistance", [] { return rolling(1e5, 1e-4); }},
+                                  {"no-resistance-stiff", [] { return rolling(1e7, 5e-6); }, true}},
+                         .expected = expected(),
                          .has_frames = true});
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
-#include <algorithm>
+#include "contact/surfaces/plane.hpp"
+
 #include <cmath>
 
 namespace hilda::studies::friction {
@@ -22,67 +23,63 @@ void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<con
 
 }  // namespace
 
-size_t Series::column_index(const std::string& column) const
+Curve simulate(const BodyOnPlane& setup, Frames* frames)
 {
-    return static_cast<size_t>(std::find(columns.begin(), columns.end(), column) - columns.begin());
-}
-
-std::vector<double> Series::all(const std::string& column) const
-{
-    std::vector<double> values;
-    const size_t k = column_index(column);
-    for (size_t row = 0; row < rows(); ++row) values.push_back(at(row, k));
-    return values;
-}
-
-double Series::first_time(const std::function<bool(size_t)>& condition, double from) const
-{
-    for (size_t row = 0; row < rows(); ++row)
-        if (at(row, 0) >= from && condition(row)) return at(row, 0);
-    return std::nan("");
-}
-
-Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
-              const std::function<void(Series&, const std::vector<contact::Motion>&)>& row)
-{
-    Series series(std::move(columns));
-    const long steps = std::lround(end / h);
+    contact::Scene scene;
+    scene.gravity = setup.gravity;
+    const int body = scene.add(setup.inertia, setup.start),
+              plane = scene.add(contact::Inertia{}, setup.plane);
+    scene.add(setup.name, body, setup.shape, plane, shape<contact::Plane>(), setup.normal,
+              contact::friction_law(setup.friction_law).make(setup.friction));
+    if (!setup.above_stability_limit) scene.check(setup.h);
+    Curve curve(setup.columns);
+    const long steps = std::lround(setup.end / setup.h);
     EvenSelection choice(frames != nullptr ? frames->count : 0, steps);
-    if (frames != nullptr)
-        for (const contact::Scene::Pair& p : scene.pair) {
-            frames->snapshots.add_surface(p.i, p.contact.i);
-            frames->snapshots.add_surface(p.j, p.contact.j);
-        }
-    series.values.reserve(static_cast<size_t>(steps + 1) * series.columns.size());
+    if (frames != nullptr) {
+        frames->snapshots.add_surface(body, scene.pair[0].contact.i);
+        frames->snapshots.add_surface(plane, scene.pair[0].contact.j);
+    }
     std::vector<contact::Motion> before;
     for (long n = 0; n <= steps; ++n) {
-        scene.t = static_cast<double>(n) * h;
+        const double t = scene.t = static_cast<double>(n) * setup.h;
         before = scene.body;
-        const double t = scene.t;
-        scene.step(h);
+        scene.step(setup.h);
         scene.t = t;
-        row(series, before);
+        setup.record(curve, Node{.scene = scene, .body = before[body], .pair = scene.pair[0]});
         if (choice.is_selected(n)) add_frame(frames->snapshots, scene, before);
     }
-    return series;
+    return curve;
 }
 
-const Series* Results::find(const std::string& run) const
+Measure last(const std::string& column)
 {
-    for (size_t k = 0; k < runs.size(); ++k)
-        if (runs[k].name == run) return series[k].rows() > 0 ? &series[k] : nullptr;
-    return nullptr;
+    return [=](const Curve& curve) { return curve.last(column); };
+}
+
+Measure count(const std::string& column)
+{
+    return [=](const Curve& curve) {
+        double rows = 0;
+        for (size_t k = 0; k < curve.rows(); ++k) rows += curve.at(k, column) == 1;
+        return rows;
+    };
+}
+
+Measure last_rate(const std::string& column, double h)
+{
+    return [=](const Curve& curve) { return (curve.last(column) - curve.at(curve.rows() - 2, column)) / h; };
+}
+
+Measure first(const std::string& column, bool (*condition)(double), double from)
+{
+    return [=](const Curve& curve) {
+        return curve.first_time([&](size_t k) { return condition(curve.at(k, column)); }, from);
+    };
 }
 
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p)
 {
     return name == "dissertation" ? p.as_in_dissertation() : p;
-}
-
-std::shared_ptr<const contact::FrictionModel> law(const contact::FrictionParameters& p,
-                                                  const std::string& name)
-{
-    return contact::friction_law(name).make(p);
 }
 
 contact::Motion at(const lie::Vec3& r, const lie::Vec3& rdot)

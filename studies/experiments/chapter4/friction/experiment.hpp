@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Friction experiments (Fang 2022, Sec. 4.4): short runs of free bodies in contact, and their acceptance
-/// criteria.
+/// Friction experiments (Fang 2022, Sec. 4.4): short runs of one body on a plane, and their acceptance criteria.
 
 #pragma once
 
 #include "contact/scenes/scene.hpp"
 #include "io/registry.hpp"
+#include "studies/framework/curve.hpp"
 #include "studies/running/vtk.hpp"
 
 #include <functional>
@@ -14,26 +14,31 @@
 
 namespace hilda::studies::friction {
 
-/// Samples of a run, one row for each node; the first column is t [s].
-class Series {
-public:
-    Series() = default;
-    explicit Series(std::vector<std::string> columns) : columns(std::move(columns)) {}
+/// A node of a run: the body, and the loads and springs of its contact at this node
+struct Node {
+    contact::Scene& scene;
+    const contact::Motion& body;
+    contact::Scene::Pair& pair;
+    const contact::Wrench& wrench = pair.wrench;
+    contact::Deflections& springs = pair.history.deflections;
+    const lie::Vec3 omega = body.A * body.omega_bar;  ///< global [rad/s]
+};
 
-    void add(std::initializer_list<double> row) { values.insert(values.end(), row); }
-    size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
-    /// Index of a column; columns.size() if there is no such column
-    size_t column_index(const std::string& column) const;
-    double at(size_t row, size_t column) const { return values[row * columns.size() + column]; }
-    double at(size_t row, const std::string& column) const { return at(row, column_index(column)); }
-    double last(const std::string& column) const { return at(rows() - 1, column); }
-    /// All values of a column
-    std::vector<double> all(const std::string& column) const;
-    /// Time [s] of the first row with t >= from that satisfies the condition; NaN if there is none
-    double first_time(const std::function<bool(size_t row)>& condition, double from = 0) const;
-
-    std::vector<std::string> columns;
-    std::vector<double> values;
+/// A body in contact with the plane z = 0 of a second body, and the quantities recorded at every node
+struct BodyOnPlane {
+    std::string name;
+    contact::Inertia inertia = {};
+    contact::Motion start = {};
+    contact::Shape shape = {};
+    lie::Vec3 gravity = {0, 0, -9.8};  ///< [m/s²]
+    std::shared_ptr<const contact::NormalLaw> normal = {};
+    contact::FrictionParameters friction = {};
+    std::string friction_law = "slide-roll-spin";
+    contact::Motion plane = {};
+    double h = 1e-4, end = 1;            ///< [s]
+    bool above_stability_limit = false;  ///< no check of the step
+    std::vector<std::string> columns = {};
+    std::function<void(Curve&, Node)> record = {};
 };
 
 /// Snapshots of a run at `count` nodes: the first, the last and evenly distributed nodes between
@@ -42,49 +47,41 @@ struct Frames {
     Snapshots snapshots = {};
 };
 
-/// Integrates a scene with step h [s] to `end` [s] and records a row for every node.
-///
-/// `row` is called after each step for the node at the start of the step: `before` are the bodies at that
-/// node, and scene.pair contains the contact loads at that node. Snapshots are stored in `frames` unless it
-/// is nullptr.
-Series sample(contact::Scene& scene, double h, double end, Frames* frames, std::vector<std::string> columns,
-              const std::function<void(Series&, const std::vector<contact::Motion>& before)>& row);
+/// Integrates with the step h to the end. The record of a node is made after the step from this node, which computes
+/// the contact loads at it. Snapshots are stored in `frames` unless it is nullptr.
+Curve simulate(const BodyOnPlane& setup, Frames* frames);
 
 /// One run of an experiment
 struct ExperimentRun {
     std::string name;
-    std::function<Series(Frames*)> compute;
+    std::function<BodyOnPlane()> setup;
     bool check_only = false;  ///< run only with --check
 };
 
-/// Acceptance criterion of an experiment: |measured - required| <= tolerance
-struct Check {
-    std::string what;
-    double measured = 0, required = 0, tolerance = 0;
+using Measure = std::function<double(const Curve&)>;
+
+/// Acceptance criterion of a run: |measured - required| <= tolerance. It is left out if the run was not selected or
+/// failed. A criterion without a run belongs to no curve.
+struct Expected {
+    std::string run = {}, what;
+    Measure measure = {};
+    double required = 0, tolerance = 0;
     std::string source;  ///< origin of the required value: closed form, published run, ...
-
-    bool passed() const { return std::abs(measured - required) <= tolerance; }
 };
 
-/// The series of an experiment, by the names of the runs
-class Results {
-public:
-    Results(const std::vector<ExperimentRun>& runs, const std::vector<Series>& series)
-        : runs(runs), series(series)
-    {}
-    /// nullptr for a run that was not selected or failed
-    const Series* find(const std::string& run) const;
-
-private:
-    const std::vector<ExperimentRun>& runs;
-    const std::vector<Series>& series;
-};
+/// The value of the last row, and the number of rows in which a quantity is 1
+Measure last(const std::string& column);
+Measure count(const std::string& column);
+/// Rate of a quantity in the last step of h [s]
+Measure last_rate(const std::string& column, double h);
+/// Time [s] of the first row with t >= from in which the quantity satisfies the condition
+Measure first(const std::string& column, bool (*condition)(double), double from = 0);
 
 /// An experiment: name, figure of the dissertation, description, runs and criteria
 struct Experiment {
     std::string name, figure, what;
-    std::vector<ExperimentRun> (*runs)() = nullptr;
-    void (*checks)(const Results&, std::vector<Check>& out) = nullptr;
+    std::vector<ExperimentRun> runs = {};
+    std::vector<Expected> expected = {};
     bool has_frames = false;  ///< the experiment writes frames with --vtk
 };
 
@@ -98,9 +95,6 @@ inline bool register_experiment(Experiment experiment)
 /// Friction parameters with the choices of a preset: "dissertation" or "balanced"
 contact::FrictionParameters preset(const std::string& name, const contact::FrictionParameters& p);
 inline const std::vector<std::string> presets = {"dissertation", "balanced"};
-/// Friction law with these parameters
-std::shared_ptr<const contact::FrictionModel> law(const contact::FrictionParameters& p,
-                                                  const std::string& name = "slide-roll-spin");
 
 /// A surface in the body frame
 template <class Surface, class... Args>
@@ -108,6 +102,8 @@ contact::Shape shape(Args... args)
 {
     return {.surface = std::make_shared<Surface>(args...)};
 }
+/// A constant normal force [N]
+inline auto given_force(double N) { return std::make_shared<contact::GivenForce>(N); }
 
 /// Motion with position r [m] and velocity rdot [m/s], without rotation
 contact::Motion at(const lie::Vec3& r, const lie::Vec3& rdot = lie::Vec3::Zero());

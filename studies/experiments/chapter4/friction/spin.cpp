@@ -8,7 +8,6 @@
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
-#include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "dae/model.hpp"
 
@@ -28,42 +27,39 @@ struct Spinner {
     contact::Shape shape;
     double height = 0;
     lie::Mat3 A = lie::Mat3::Identity();
-    double I = 0;  ///< moment of inertia about the vertical axis [kg m²]
 };
 
-Series spin(const Spinner& body, const contact::FrictionParameters& p, double end, Frames* frames)
+BodyOnPlane spin(const Spinner& body, const contact::FrictionParameters& p, double end)
 {
-    contact::Scene scene;
-    scene.gravity = {0, 0, -g};
     contact::Motion start = at({0, 0, body.height});
     start.A = body.A;
     start.omega_bar = body.A.transpose() * lie::Vec3(0, 0, omega_0);
-    const int b = scene.add(body.inertia, start), plane = scene.add(contact::Inertia{}, {});
-    scene.add("spinner", b, body.shape, plane, shape<contact::Plane>(),
-              std::make_shared<contact::GivenForce>(body.inertia.m * g), law(p));
-    // No scene.check(h): for K_E >= 1e7 N/m the step is above the stability limit of the sliding springs, but
-    // the sliding springs are not excited here.
-    double angle = 0;
-    return sample(scene, h, end, frames, {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
-                  [&](Series& s, const std::vector<contact::Motion>& bodies) {
-                      const contact::Scene::Pair& pair = scene.pair[0];
-                      const double omega = (bodies[b].A * bodies[b].omega_bar).z();
-                      if (s.rows() > 0) angle += h * omega;
-                      s.add({scene.t, omega, pair.history.deflections.Psi, pair.wrench.T_spin,
-                             pair.wrench.T_spin_E, angle, pair.history.deflections.spin.slipping ? 1. : 0.});
-                  });
+    return {
+        .name = "spinner",
+        .inertia = body.inertia,
+        .start = start,
+        .shape = body.shape,
+        .normal = given_force(body.inertia.m * g),
+        .friction = p,
+        .h = h,
+        .end = end,
+        // For K_E >= 1e7 N/m the step is above the stability limit of the sliding springs, but the sliding springs
+        // are not excited here.
+        .above_stability_limit = true,
+        .columns = {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
+        .record = [angle = 0.](Curve& c, const Node& n) mutable {
+            const double omega = n.omega.z();
+            if (c.rows() > 0) angle += h * omega;
+            c.add({n.scene.t, omega, n.springs.Psi, n.wrench.T_spin, n.wrench.T_spin_E, angle,
+                   n.springs.spin.slipping ? 1. : 0.});
+        }};
 }
 
-/// Time of the first zero of omega [s], by linear interpolation. Afterwards the spring causes a small reverse
-/// rotation.
-double first_stop(const Series& s)
+/// Time of the first zero of omega [s]. Afterwards the spring causes a small reverse rotation.
+double stop_time(const Curve& c)
 {
-    for (size_t k = 1; k < s.rows(); ++k)
-        if (s.at(k, "omega") <= 0) {
-            const double a = s.at(k - 1, "omega"), b = s.at(k, "omega");
-            return s.at(k - 1, 0) + (s.at(k, 0) - s.at(k - 1, 0)) * a / (a - b);
-        }
-    return std::nan("");
+    const std::vector<double> zeros = c.zero_crossings("omega");
+    return zeros.empty() ? std::nan("") : zeros.front();
 }
 
 /// K_E as text in the format of the columns of published tables, for example 5e6
@@ -77,11 +73,9 @@ std::string exponent_text(double K_E)
 
 const std::vector<double> etas = {0.012, 0.010, 0.008, 0.006};
 
-Spinner big_sphere()
+Spinner homogeneous_sphere(double m, double R)
 {
-    const double m = 5, R = 0.2;
-    return {
-        .inertia = solid_sphere(m, R), .shape = shape<contact::Sphere>(R), .height = R, .I = 0.4 * m * R * R};
+    return {.inertia = solid_sphere(m, R), .shape = shape<contact::Sphere>(R), .height = R};
 }
 
 std::vector<ExperimentRun> empirical()
@@ -89,58 +83,48 @@ std::vector<ExperimentRun> empirical()
     std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         for (const double eta : etas)
-            all.push_back({.name = fmt::format("{}-eta{:.3f}", name, eta), .compute = [=](Frames* frames) {
+            all.push_back({fmt::format("{}-eta{:.3f}", name, eta), [=] {
                                return spin(
-                                   big_sphere(),
-                                   preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8,
-                                   frames);
+                                   homogeneous_sphere(5, 0.2),
+                                   preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8);
                            }});
     return all;
 }
 
-void check_empirical(const Results& results, std::vector<Check>& out)
+std::vector<Expected> expected_empirical()
 {
-    const Spinner ball = big_sphere();
-    const double published[] = {3.3029, 3.9736, 4.9811, 6.6628};
+    std::vector<Expected> all;
+    const double m = 5, R = 0.2, published[] = {3.3029, 3.9736, 4.9811, 6.6628};
     for (size_t k = 0; k < etas.size(); ++k) {
-        const double M = etas[k] * 0.2 * mu_k * ball.inertia.m * g, stop = omega_0 * ball.I / M;
-        if (const Series* s = results.find(fmt::format("balanced-eta{:.3f}", etas[k]))) {
-            out.push_back({fmt::format("stop time, eta_psi {:.3f}, balanced [s]", etas[k]), first_stop(*s),
-                           stop, 2e-4, "rigid"});
-            out.push_back({fmt::format("angle, eta_psi {:.3f}, balanced [rad]", etas[k]), s->last("angle"),
-                           0.5 * stop, 2e-3 * stop, "rigid"});
-        }
-        if (const Series* s = results.find(fmt::format("dissertation-eta{:.3f}", etas[k])))
-            out.push_back({fmt::format("stop time, eta_psi {:.3f}, dissertation [s]", etas[k]),
-                           first_stop(*s), published[k], 1e-4, "independent code"});
+        const std::string eta = fmt::format("{:.3f}", etas[k]), balanced = "balanced-eta" + eta;
+        const double M = etas[k] * 0.2 * mu_k * m * g, stop = omega_0 * (0.4 * m * R * R) / M;
+        all.push_back(
+            {balanced, "stop time, eta_psi " + eta + ", balanced [s]", stop_time, stop, 2e-4, "rigid"});
+        all.push_back({balanced, "angle, eta_psi " + eta + ", balanced [rad]", last("angle"), 0.5 * stop,
+                       2e-3 * stop, "rigid"});
+        all.push_back({"dissertation-eta" + eta, "stop time, eta_psi " + eta + ", dissertation [s]",
+                       stop_time, published[k], 1e-4, "independent code"});
     }
+    return all;
 }
 
 const bool spinning = register_experiment({.name = "spin",
                                            .figure = "4.15",
                                            .what = "spinning sphere, empirical spinning resistance",
-                                           .runs = empirical,
-                                           .checks = check_empirical,
+                                           .runs = empirical(),
+                                           .expected = expected_empirical(),
                                            .has_frames = true});
 
 // Fig. 4.16
 
-struct BallMaterial {
-    const char* name;
-    double R, rho, E, nu, stop;
+/// Balls with their stop times [s]: that of an independent code with the preset `dissertation`, and the rigid one
+struct Ball {
+    std::string name;
+    double R, rho, E, nu, published, rigid;
 };
-const std::vector<BallMaterial> balls = {{"steel-20mm", 0.02, 8e3, 2e11, 0.3, 2.776},
-                                         {"steel-40mm", 0.04, 8e3, 2e11, 0.3, 4.308},
-                                         {"glass-20mm", 0.02, 2.5e3, 5e10, 0.2, 2.582}};
-
-Spinner ball_of(const BallMaterial& material)
-{
-    const double m = 4. / 3 * pi * material.R * material.R * material.R * material.rho;
-    return {.inertia = solid_sphere(m, material.R),
-            .shape = shape<contact::Sphere>(material.R),
-            .height = material.R,
-            .I = 0.4 * m * material.R * material.R};
-}
+const std::vector<Ball> balls = {{"steel-20mm", 0.02, 8e3, 2e11, 0.3, 2.776, 2.89531},
+                                 {"steel-40mm", 0.04, 8e3, 2e11, 0.3, 4.308, 4.59602},
+                                 {"glass-20mm", 0.02, 2.5e3, 5e10, 0.2, 2.582, 2.64027}};
 
 /// Hertzian contact with a rigid plane, as in the published runs
 contact::FrictionParameters hertzian(const std::string& preset_name, double E, double nu, double K_E)
@@ -152,35 +136,35 @@ std::vector<ExperimentRun> hertz()
 {
     std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
-        for (const BallMaterial& material : balls)
+        for (const Ball& ball : balls)
             for (const double K_E : {5e5, 1e6, 5e6, 1e7})
-                all.push_back({.name = fmt::format("{}-{}-KE{}", name, material.name, exponent_text(K_E)),
-                               .compute = [=](Frames* frames) {
-                                   return spin(ball_of(material),
-                                               hertzian(name, material.E, material.nu, K_E), 6, frames);
+                all.push_back({fmt::format("{}-{}-KE{}", name, ball.name, exponent_text(K_E)), [=] {
+                                   const double m = 4. / 3 * pi * ball.R * ball.R * ball.R * ball.rho;
+                                   return spin(homogeneous_sphere(m, ball.R),
+                                               hertzian(name, ball.E, ball.nu, K_E), 6);
                                }});
     return all;
 }
 
-void check_hertz(const Results& results, std::vector<Check>& out)
+std::vector<Expected> expected_hertz()
 {
-    const double rigid[] = {2.89531, 4.59602, 2.64027};
-    for (size_t k = 0; k < balls.size(); ++k) {
-        if (const Series* s = results.find(fmt::format("balanced-{}-KE1e7", balls[k].name)))
-            out.push_back({fmt::format("stop time, {}, balanced [s]", balls[k].name), first_stop(*s),
-                           rigid[k], 1e-3, "rigid"});
-        if (const Series* s = results.find(fmt::format("dissertation-{}-KE1e7", balls[k].name)))
-            out.push_back({fmt::format("stop time, {}, dissertation [s]", balls[k].name), first_stop(*s),
-                           balls[k].stop, 1e-3, "independent code"});
+    std::vector<Expected> all;
+    for (const Ball& ball : balls) {
+        all.push_back({"balanced-" + ball.name + "-KE1e7", "stop time, " + ball.name + ", balanced [s]",
+                       stop_time, ball.rigid, 1e-3, "rigid"});
+        all.push_back({"dissertation-" + ball.name + "-KE1e7",
+                       "stop time, " + ball.name + ", dissertation [s]", stop_time, ball.published, 1e-3,
+                       "independent code"});
     }
+    return all;
 }
 
 const bool spinning_hertz =
     register_experiment({.name = "spin-hertz",
                          .figure = "4.16",
                          .what = "spinning steel and glass balls, Hertzian contact patch",
-                         .runs = hertz,
-                         .checks = check_hertz});
+                         .runs = hertz(),
+                         .expected = expected_hertz()});
 
 // Fig. 4.18, Table 4.7
 
@@ -191,86 +175,90 @@ constexpr double published_I = 0.4 * (4. / 3 * pi * a * a * a * 8e3) * a * a;
 
 Spinner ellipsoid(bool upright, bool published)
 {
-    Spinner e{.shape = shape<contact::Ellipsoid>(lie::Vec3(a, a, c)), .height = upright ? c : a, .I = 0};
     const double I_c = 0.4 * steel_m * a * a, I_a = 0.2 * steel_m * (a * a + c * c);
-    e.inertia = {steel_m, published ? lie::Mat3(published_I * lie::Mat3::Identity())
-                                    : lie::Mat3(lie::Vec3(I_a, I_a, I_c).asDiagonal())};
+    Spinner e{.inertia = {steel_m, published ? lie::Mat3(published_I * lie::Mat3::Identity())
+                                             : lie::Mat3(lie::Vec3(I_a, I_a, I_c).asDiagonal())},
+              .shape = shape<contact::Ellipsoid>(lie::Vec3(a, a, c)),
+              .height = upright ? c : a};
     if (!upright) e.A = lie::exp(lie::Vec3(pi / 2, 0, 0));
-    e.I = published ? published_I : upright ? I_c : I_a;
     return e;
 }
 
 std::vector<ExperimentRun> ellipsoids()
 {
     std::vector<ExperimentRun> all;
-    for (const bool published : {false, true})
+    for (const std::string& name : {presets[1], presets[0]})
         for (const bool upright : {true, false})
             for (const double K_E : {5e6, 1e7, 5e7, 1e8}) {
-                const std::string preset_name = published ? "dissertation" : "balanced";
-                all.push_back({.name = fmt::format("{}-{}-KE{}", preset_name, upright ? "upright" : "flat",
-                                                   exponent_text(K_E)),
-                               .compute = [=](Frames* frames) {
-                                   return spin(ellipsoid(upright, published),
-                                               hertzian(preset_name, 2e11, 0.3, K_E),
-                                               published ? 2
-                                               : upright ? 4
-                                                         : 8,
-                                               frames);
-                               }});
+                const bool published = name == "dissertation";
+                const double end = published ? 2 : upright ? 4 : 8;
+                all.push_back(
+                    {fmt::format("{}-{}-KE{}", name, upright ? "upright" : "flat", exponent_text(K_E)), [=] {
+                         return spin(ellipsoid(upright, published), hertzian(name, 2e11, 0.3, K_E), end);
+                     }});
             }
     return all;
 }
 
-void check_ellipsoids(const Results& results, std::vector<Check>& out)
+/// Spinning resistance of the steel ellipsoid at K_E = 5e6 N/m on a contact point with the mean curvature kappa [1/m]:
+/// stiffness [N m/rad] and micro-deflection at the static bound [rad]                                Table 4.7
+struct SpinSpring {
+    double K = 0, S = 0;
+};
+SpinSpring spin_spring(double kappa)
 {
-    for (const auto& [pose, stop] : {std::pair("upright", 2.8953), std::pair("flat", 6.4491)})
-        if (const Series* s = results.find(fmt::format("balanced-{}-KE1e8", pose)))
-            out.push_back({fmt::format("stop time, {}, true inertia [s]", pose), first_stop(*s), stop,
-                           0.02 * stop, "rigid"});
-    // Table 4.7 at K_E = 5e6: curvature, stiffness, static micro-deflection, static torque
+    contact::ContactState now;
+    now.contact_point.n = now.slip.n = lie::Vec3::UnitZ();
+    now.slip.u = lie::Vec3::UnitX();
+    now.contact_point.K_i = lie::Vec3(kappa, kappa, 0).asDiagonal();
+    now.contact_point.K_j.setZero();
+    now.N = steel_m * g;
+    now.I_spin = 1;
+    const auto model = contact::friction_law("slide-roll-spin").make(hertzian("balanced", 2e11, 0.3, 5e6));
+    const double K = model->springs(now).K_spin;
+    contact::Deflections springs;
+    now.slip.ds = now.slip.q_i = now.slip.q_j = now.slip.p_i = now.slip.p_j = lie::Vec3::Zero();
+    now.slip.psi = 1;  // far above the static bound
+    model->advance(now, springs);
+    return {K, springs.Psi};
+}
+
+std::vector<Expected> expected_ellipsoids()
+{
+    std::vector<Expected> all;
+    for (const auto& [pose, stop] : {std::pair<std::string, double>("upright", 2.8953), {"flat", 6.4491}})
+        all.push_back({"balanced-" + pose + "-KE1e8", "stop time, " + pose + ", true inertia [s]", stop_time,
+                       stop, 0.02 * stop, "rigid"});
     struct TableRow {
-        const char* body;
+        std::string body;
         double kappa;               // mean curvature at the contact point [1/m]
         double K, K_psi, S_s, T_s;  // published
     };
-    const double K_E = 5e6, N = steel_m * g;
     const contact::Ellipsoid surface(lie::Vec3(a, a, c));
-    const double sphere_R = std::cbrt(a * a * c);
-    for (const TableRow& row :
-         {TableRow{"sphere", 1 / sphere_R, 36.84, 1.795e-2, 3.876e-3, 6.957e-5},
+    for (const auto& [body, kappa, K, K_psi, S_s, T_s] :
+         {TableRow{"sphere", 1 / std::cbrt(a * a * c), 36.84, 1.795e-2, 3.876e-3, 6.957e-5},
           TableRow{"flat", surface.mean_curvature({a, 0, 0}), 29, 2.10546e-2, 3.5785e-3, 7.53438e-5},
           TableRow{"upright", surface.mean_curvature({0, 0, c}), 125, 7.94947e-3, 5.82379e-3, 4.6296e-5}}) {
-        const double kappa = row.kappa;
-        contact::ContactState now;
-        now.contact_point.n = now.slip.n = lie::Vec3::UnitZ();
-        now.slip.u = lie::Vec3::UnitX();
-        now.contact_point.K_i = lie::Vec3(kappa, kappa, 0).asDiagonal();
-        now.contact_point.K_j.setZero();
-        now.N = N;
-        now.I_spin = 1;
-        const auto model = law(hertzian("balanced", 2e11, 0.3, K_E));
-        const double K_psi = model->springs(now).K_spin;
-        contact::Deflections history;
-        now.slip.ds = now.slip.q_i = now.slip.q_j = now.slip.p_i = now.slip.p_j = lie::Vec3::Zero();
-        now.slip.psi = 1;  // far above the static bound
-        model->advance(now, history);
-        const auto check = [&](const char* what, double measured, double required) {
-            out.push_back({fmt::format("Table 4.7, {}: {}", row.body, what), measured, required,
-                           5e-4 * required, "published table"});
+        const auto expect = [&, of = "Table 4.7, " + body + ": "](const std::string& what, double required,
+                                                                  const Measure& measure) {
+            all.push_back({"", of + what, measure, required, 5e-4 * required, "published table"});
         };
-        check("K [1/m]", kappa, row.K);
-        check("K_psi [N m/rad]", K_psi, row.K_psi);
-        check("S_psi, static [rad]", history.Psi, row.S_s);
-        check("torque, static [N m]", K_psi * history.Psi, row.T_s);
+        const double k = kappa;
+        expect("K [1/m]", K, [=](const Curve&) { return k; });
+        expect("K_psi [N m/rad]", K_psi, [=](const Curve&) { return spin_spring(k).K; });
+        expect("S_psi, static [rad]", S_s, [=](const Curve&) { return spin_spring(k).S; });
+        expect("torque, static [N m]", T_s,
+               [=](const Curve&) { return spin_spring(k).K * spin_spring(k).S; });
     }
+    return all;
 }
 
 const bool spinning_ellipsoid =
     register_experiment({.name = "spin-ellipsoid",
                          .figure = "4.18",
                          .what = "spinning steel ellipsoid, upright and flat; Table 4.7",
-                         .runs = ellipsoids,
-                         .checks = check_ellipsoids,
+                         .runs = ellipsoids(),
+                         .expected = expected_ellipsoids(),
                          .has_frames = true});
 
 }  // namespace

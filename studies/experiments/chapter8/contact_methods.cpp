@@ -38,7 +38,7 @@ struct MethodRun {
     double h = 0, end = 0;
     double stiffness = std::nan("");  ///< of the contact springs [N/m]; NaN without springs
     int bodies = 1;
-    std::function<std::unique_ptr<Method>()> make = {};
+    std::function<Method()> make = {};
     /// Position error after a step [m]; empty if there is no reference solution
     std::function<double(const Method&, double t)> error = {};
 
@@ -58,14 +58,14 @@ struct SceneRuns {
     double steps = 0;  ///< number of steps, instead of the end time; 0: the end time
 
     /// h: step [s], k: stiffness of the contact springs [N/m]
-    void add(const std::string& method, double h, double k, std::function<std::unique_ptr<Method>()> make)
+    void add(const std::string& method, double h, double k, std::function<Method()> make)
     {
         MethodRun& run = runs.emplace_back(scene);
         run.method = method, run.h = h, run.stiffness = k, run.make = std::move(make);
         if (steps > 0) run.end = h * steps;
     }
     /// A method without springs
-    void add(const std::string& method, double h, std::function<std::unique_ptr<Method>()> make)
+    void add(const std::string& method, double h, std::function<Method()> make)
     {
         add(method, h, std::nan(""), std::move(make));
     }
@@ -236,19 +236,19 @@ void compute(MethodRun& run)
 {
     run.steps = std::lround(run.end / run.h);
     run.seconds = run.largest_error = std::nan("");
-    const std::unique_ptr<Method> method = run.make();
+    const Method method = run.make();
     double largest = 0, seconds = 0;
     for (long n = 1; n <= run.steps; ++n) {
         const double before = thread_seconds();
-        method->step(run.h);
+        method.step(run.h);
         if (n > 1) seconds += thread_seconds() - before;
-        if (run.error) largest = std::max(largest, run.error(*method, static_cast<double>(n) * run.h));
+        if (run.error) largest = std::max(largest, run.error(method, static_cast<double>(n) * run.h));
     }
     run.seconds = seconds * static_cast<double>(run.steps) / static_cast<double>(std::max(1L, run.steps - 1));
     if (run.error) run.largest_error = largest;
-    run.contacts = method->contacts();
-    run.iterations = method->iterations();
-    run.events = method->events();
+    run.contacts = method.contacts();
+    run.iterations = method.iterations();
+    run.events = method.events();
 }
 
 const Columns<MethodRun> columns = {

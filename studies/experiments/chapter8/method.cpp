@@ -7,6 +7,8 @@
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 
+#include <algorithm>
+
 namespace hilda::studies::methods {
 
 namespace {
@@ -20,9 +22,10 @@ bool has_finite_mass(const ContactScene& setup, int b)
     return std::isfinite(setup.body_types[setup.body[b].type].inertia.m);
 }
 
-class EvolvingContactMethod final : public Method {
+/// A model with the bodies of finite mass, and a contact constraint for each pair
+class EvolvingScene {
 public:
-    EvolvingContactMethod(const ContactScene& setup, const EvolvingOptions& options)
+    EvolvingScene(const ContactScene& setup, const EvolvingOptions& options)
     {
         for (const ContactScene::Interaction& interaction : setup.interaction)
             if (interaction.mu > 0)
@@ -46,28 +49,16 @@ public:
         start = x;
     }
 
-    void step(double h) override
+    void step(double h)
     {
         if (!march) march = std::make_unique<lie::March>(start, *integrator, h);
         march->advance({});
     }
-    const Motion& body(int b) const override
-    {
-        return march ? march->node().body[number[b]] : start.body[number[b]];
-    }
-    int contacts() const override
-    {
-        int closed = 0;
-        const lie::State& x = march ? march->node() : start;
-        for (const auto& c : model.general_constraints()) closed += !dae::Model::inactive(*c, x);
-        return closed;
-    }
-    long iterations() const override { return integrator->statistics().iterations; }
-    int events() const override
-    {
-        const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(integrator.get());
-        return unilateral != nullptr ? static_cast<int>(unilateral->events().size()) : 0;
-    }
+    const lie::State& state() const { return march ? march->node() : start; }
+
+    dae::Model model;
+    std::vector<int> number;  // index of each body in the model; ground for fixed bodies
+    std::unique_ptr<lie::Integrator> integrator;
 
 private:
     void add(const ContactScene& setup, const EvolvingOptions& options, int i, int j)
@@ -93,74 +84,55 @@ private:
         return s;
     }
 
-    dae::Model model;
-    std::vector<int> number;  // index of each body in the model; ground for fixed bodies
     lie::State start;
-    std::unique_ptr<lie::Integrator> integrator;
     std::unique_ptr<lie::March> march;
-};
-
-class DviMethod final : public Method {
-public:
-    DviMethod(const ContactScene& setup, const DviMethodOptions& options) : scene(studies::rigid(setup))
-    {
-        scene.options.stabilised = options.stabilised;
-        scene.options.half_kick = options.half_kick;
-        scene.solver.tolerance = options.tolerance;
-        scene.solver.max_iterations = options.max_iterations;
-    }
-    void step(double h) override
-    {
-        scene.step(h);
-        sum += scene.outcome.iterations;
-    }
-    const Motion& body(int b) const override { return scene.body[b]; }
-    int contacts() const override { return scene.contacts(); }
-    long iterations() const override { return sum; }
-
-private:
-    contact::DviScene scene;
-    long sum = 0;
-};
-
-class CompliantMethod final : public Method {
-public:
-    CompliantMethod(const ContactScene& setup, const Compliance& options) : scene(compliant(setup, options))
-    {}
-    void step(double h) override
-    {
-        scene.step(h);
-        ++steps;
-    }
-    const Motion& body(int b) const override { return scene.body[b]; }
-    int contacts() const override
-    {
-        int count = 0;
-        for (const auto& p : scene.neighbors.pair()) count += p.state.contact_state.N > 0;
-        return count;
-    }
-    long iterations() const override { return steps; }
-
-private:
-    contact::Scene scene;
-    long steps = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> evolving(const ContactScene& setup, const EvolvingOptions& options)
+Method evolving(const ContactScene& setup, const EvolvingOptions& options)
 {
-    return std::make_unique<EvolvingContactMethod>(setup, options);
+    const auto scene = std::make_shared<EvolvingScene>(setup, options);
+    const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(scene->integrator.get());
+    return {
+        .step = [=](double h) { scene->step(h); },
+        .body = [=](int b) -> const Motion& { return scene->state().body[scene->number[b]]; },
+        .contacts =
+            [=] {
+                return static_cast<int>(std::ranges::count_if(
+                    scene->model.general_constraints(),
+                    [&](const auto& c) { return !dae::Model::inactive(*c, scene->state()); }));
+            },
+        .iterations = [=] { return scene->integrator->statistics().iterations; },
+        .events = [=] { return unilateral != nullptr ? static_cast<int>(unilateral->events().size()) : 0; }};
 }
 
-std::unique_ptr<Method> dvi(const ContactScene& setup, const DviMethodOptions& options)
+Method dvi(const ContactScene& setup, const DviMethodOptions& options)
 {
-    return std::make_unique<DviMethod>(setup, options);
+    const auto scene = std::make_shared<contact::DviScene>(rigid(setup));
+    scene->options.stabilised = options.stabilised;
+    scene->options.half_kick = options.half_kick;
+    scene->solver.tolerance = options.tolerance;
+    scene->solver.max_iterations = options.max_iterations;
+    const auto sum = std::make_shared<long>(0);
+    return {.step = [=](double h) { scene->step(h), *sum += scene->outcome.iterations; },
+            .body = [=](int b) -> const Motion& { return scene->body[b]; },
+            .contacts = [=] { return scene->contacts(); },
+            .iterations = [=] { return *sum; }};
 }
 
-std::unique_ptr<Method> compliant_springs(const ContactScene& setup, const Compliance& options)
+Method compliant_springs(const ContactScene& setup, const Compliance& options)
 {
-    return std::make_unique<CompliantMethod>(setup, options);
+    const auto scene = std::make_shared<contact::Scene>(compliant(setup, options));
+    const auto steps = std::make_shared<long>(0);
+    return {.step = [=](double h) { scene->step(h), ++*steps; },
+            .body = [=](int b) -> const Motion& { return scene->body[b]; },
+            .contacts =
+                [=] {
+                    return static_cast<int>(std::ranges::count_if(
+                        scene->neighbors.pair(), [](const auto& p) { return p.state.contact_state.N > 0; }));
+                },
+            .iterations = [=] { return *steps; }};
 }
 
 }  // namespace hilda::studies::methods

@@ -8,21 +8,21 @@
 #include "lie/solver/linear_solver.hpp"
 #include "studies/experiments/chapter8/contact_scenes.hpp"
 
+#include <functional>
+
 namespace hilda::studies::methods {
 
 /// A scene being integrated by one contact method
-class Method {
-public:
-    virtual ~Method() = default;
-    virtual void step(double h) = 0;
+struct Method {
+    std::function<void(double h)> step;
     /// Body b of the scene at the current node, with the velocities that the method stores
-    virtual const lie::Motion& body(int b) const = 0;
-    virtual int contacts() const = 0;  ///< number of active contacts in the last step
+    std::function<const lie::Motion&(int b)> body;
+    std::function<int()> contacts;  ///< number of active contacts in the last step
     /// Accumulated iterations: of Newton's method or of the cone solver; for springs the number of steps
-    virtual long iterations() const = 0;
+    std::function<long()> iterations;
     /// Number of contact events (closing, impact, lift-off, switch to the fallback), for methods that locate
     /// them
-    virtual int events() const { return 0; }
+    std::function<int()> events = [] { return 0; };
 };
 
 /// Options of evolving contact constraints
@@ -35,7 +35,7 @@ struct EvolvingOptions {
 };
 /// Frictionless evolving contacts. Bodies without a finite mass are part of the ground. InvalidInput for a
 /// moving body without a finite mass and for a scene with friction.
-std::unique_ptr<Method> evolving(const ContactScene& setup, const EvolvingOptions& options);
+Method evolving(const ContactScene& setup, const EvolvingOptions& options);
 
 /// Options of the differential variational inequality; the tolerance is on impulse over mass [m/s]
 struct DviMethodOptions {
@@ -44,9 +44,9 @@ struct DviMethodOptions {
     double tolerance = 1e-10;
     int max_iterations = 10000;
 };
-std::unique_ptr<Method> dvi(const ContactScene& setup, const DviMethodOptions& options);
+Method dvi(const ContactScene& setup, const DviMethodOptions& options);
 
 /// Contact springs; the bodies start exactly as in the scene
-std::unique_ptr<Method> compliant_springs(const ContactScene& setup, const Compliance& options);
+Method compliant_springs(const ContactScene& setup, const Compliance& options);
 
 }  // namespace hilda::studies::methods

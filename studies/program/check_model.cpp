@@ -147,9 +147,10 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
         const ContactLoads loads = contact_loads(model, *c, force_elements, x);
         all.push_back(
             {.name = c->name,
-             .friction = c->friction == EvolvingContact::Friction::rolling ? "rolling"
-                         : force_elements.friction != nullptr              ? "tracked"
-                                                                           : "none",
+             .friction = c->friction == EvolvingContact::Friction::rolling    ? "rolling"
+                         : c->friction == EvolvingContact::Friction::implicit ? "implicit"
+                         : force_elements.friction != nullptr                 ? "tracked"
+                                                                              : "none",
              .normal_rows = c->normal_rows == EvolvingContact::NormalRows::tangent ? "tangent" : "fixed-xy",
              .rows = c->position_rows(),
              .velocity_rows = c->velocity_rows(),
@@ -210,7 +211,10 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
     };
     std::vector<std::string> all = {
         fmt::format("{} rows, {} unknowns{}{}", c.rows, c.unknowns,
-                    c.velocity_rows > 0 ? fmt::format(", {} rolling rows", c.velocity_rows) : "",
+                    c.velocity_rows == 0
+                        ? ""
+                        : fmt::format(", {} rows of {}", c.velocity_rows,
+                                      c.friction == "rolling" ? "rolling" : "implicit friction"),
                     c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
         fmt::format("at {} m, normal {} into body i, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
         fmt::format("normal force {:.10g} N{}", c.F_N,
@@ -242,7 +246,8 @@ int check_model(const CheckOptions& options)
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
     const std::vector<ContactConstraintInfo> constrained = contact_constraints(model, d.x);
-    const int contact_rows_rank = contact_rank(model, d.x);
+    const RowsOfGeneralConstraints general = rows_of_general_constraints(model, d.x);
+    const int constraints = model.constraints() + general.others, rows = start.rows + general.of_others;
     double condition = std::nan("");
     if (!constrained.empty()) {
         lie::Saddle K(model);
@@ -259,11 +264,11 @@ int check_model(const CheckOptions& options)
             {"status", "ok"},
             {"model", d.name},
             {"bodies", model.bodies()},
-            {"constraints", model.constraints()},
+            {"constraints", constraints},
             {"forces", other_forces},
             {"contacts", io::Json::array()},
             {"evolving_contacts", io::Json::array()},
-            {"rows", start.rows},
+            {"rows", rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
             {"dropped_rows", start.dropped},
@@ -301,12 +306,12 @@ int check_model(const CheckOptions& options)
     };
     line("model", d.name);
     line("bodies", std::to_string(model.bodies()));
-    line("constraints", fmt::format("{} with {} rows of rank {}", model.constraints(), start.rows,
-                                    start.rank - contact_rows_rank));
+    line("constraints",
+         fmt::format("{} with {} rows of rank {}", constraints, rows, start.rank - general.of_contacts));
     line("forces", std::to_string(other_forces));
     if (!compliant.empty()) line("contacts", std::to_string(compliant.size()));
     if (!constrained.empty()) {
-        line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), contact_rows_rank));
+        line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), general.of_contacts));
         for (const ContactConstraintInfo& c : constrained) {
             std::string head = "  " + c.name + ' ';
             for (const std::string& words : to_text(c)) line(head.c_str(), words), head.clear();

@@ -47,13 +47,18 @@ ContactLoads contact_loads(const dae::Model& model, const contact::EvolvingConta
     return {.F_N = m.F_N, .friction = of.friction != nullptr ? of.friction->friction(x).F : m.friction};
 }
 
-int contact_rank(const dae::Model& model, const lie::State& x)
+RowsOfGeneralConstraints rows_of_general_constraints(const dae::Model& model, const lie::State& x)
 {
-    int rank = 0;
-    for (const auto& c : model.general_constraints())
-        if (!dae::Model::inactive(*c, x))
-            rank += c->position_rows() + c->velocity_rows() - c->algebraic_variables();
-    return rank;
+    RowsOfGeneralConstraints count;
+    for (const auto& c : model.general_constraints()) {
+        const int rows =
+            c->position_rows() - c->algebraic_variables() + (c->is_regularised() ? 0 : c->velocity_rows());
+        if (dynamic_cast<const contact::EvolvingContact*>(c.get()) == nullptr)
+            ++count.others, count.of_others += rows;
+        else if (!dae::Model::inactive(*c, x))
+            count.of_contacts += rows;
+    }
+    return count;
 }
 
 }  // namespace hilda::studies

@@ -32,8 +32,12 @@ struct ContactLoads {
 ContactLoads contact_loads(const dae::Model& model, const contact::EvolvingContact& c,
                            const ContactForceElements& of, const lie::State& x);
 
-/// Number of degrees of freedom removed by the contact constraints that are active in x: their position and
-/// velocity rows minus their algebraic variables
-int contact_rank(const dae::Model& model, const lie::State& x);
+/// Numbers of degrees of freedom removed by the general constraints: their position and velocity rows without
+/// those of implicit friction, minus their algebraic variables
+struct RowsOfGeneralConstraints {
+    int of_contacts = 0;            ///< that are active in x
+    int others = 0, of_others = 0;  ///< number of the other general constraints, and of their rows
+};
+RowsOfGeneralConstraints rows_of_general_constraints(const dae::Model& model, const lie::State& x);
 
 }  // namespace hilda::studies

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/studies/program.hpp"
+#include "tests/support/paths.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -253,6 +254,10 @@ TEST_CASE("check prints the properties of a model and writes no file", "[studies
     CHECK(facts["rank"] == 18);
     CHECK(facts["degrees_of_freedom"] == 0);
     CHECK_FALSE(fs::exists(in / "out"));
+
+    // point-on-curve is a general constraint: 3 rows and 1 algebraic variable
+    const std::string couplings = std::string(test_data) + "/models/couplings.json";
+    CHECK_THAT(call(in, {"check", couplings}).out, Contains("9 with 32 rows of rank 32"));
 }
 
 TEST_CASE("an inconsistent initial state is rejected, or projected by --fix-initial", "[studies][check]")

@@ -270,6 +270,15 @@ TEST_CASE(
     CHECK(facts["stable_step"].get<double>() == Approx(3.26e-3).epsilon(2e-3));
     CHECK(facts["fallback"] == false);
     CHECK(facts["fallback_stable_step"].is_null());
+
+    // Implicit friction takes no degree of freedom.
+    const std::vector<std::string> implicit = {
+        "check", "braked_ball_in_bowl", "--set",
+        R"(/contacts/0/friction={"law": "implicit", "mu_s": 0.25, "K_E": 1e4})"};
+    const Ended with_implicit = call(in, implicit);
+    CHECK_THAT(with_implicit.out, Contains("0 with 0 rows of rank 0") && Contains("1, of rank 1") &&
+                                      Contains("2 rows of implicit friction") &&
+                                      Contains("degrees of freedom  5"));
 }
 
 TEST_CASE("a run writes the friction of an evolving contact", "[studies][evolving][friction]")

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Fields of CSV files.
+/// Fields and rows of CSV files.
 
 #pragma once
 
 #include <charconv>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace hilda::io {
 
@@ -39,5 +42,17 @@ inline std::string csv_field(const std::string& name)
     for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + '"';
 }
+
+/// A row of a table. The cells have no blanks at their ends.
+struct CsvRow {
+    const std::vector<std::string_view>& names;  ///< of the columns
+    std::vector<std::string_view> cells;
+    std::string place;  ///< FILE:LINE
+};
+
+/// Calls `use` for each row of a table. The first line has the names of the columns. Empty lines and lines that
+/// begin with # are ignored. Throws InvalidInput with FILE:LINE for two columns of one name, and for a row with
+/// another number of cells.
+void read_csv(std::string_view text, const std::string& file, const std::function<void(const CsvRow&)>& use);
 
 }  // namespace hilda::io

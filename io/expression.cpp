@@ -145,37 +145,25 @@ public:
     }
 
 private:
-    void sum()
-    {
-        product();
-        for (;;) {
-            const std::size_t at = place;
-            if (accept("+")) {
-                product();
-                apply({Op::add}, 2, at);
-            } else if (accept("-")) {
-                product();
-                apply({Op::subtract}, 2, at);
-            } else {
-                return;
-            }
-        }
-    }
+    struct Infix {
+        std::string_view symbol;
+        Op op;
+    };
 
-    void product()
+    void sum() { left_associative(&Parser::product, {{"+", Op::add}, {"-", Op::subtract}}); }
+    void product() { left_associative(&Parser::signed_power, {{"*", Op::multiply}, {"/", Op::divide}}); }
+
+    /// part { symbol part }
+    void left_associative(void (Parser::*part)(), const Infix (&operators)[2])
     {
-        signed_power();
+        (this->*part)();
         for (;;) {
             const std::size_t at = place;
-            if (accept("*")) {
-                signed_power();
-                apply({Op::multiply}, 2, at);
-            } else if (accept("/")) {
-                signed_power();
-                apply({Op::divide}, 2, at);
-            } else {
-                return;
-            }
+            const Infix* const found =
+                std::find_if(operators, operators + 2, [&](const Infix& o) { return accept(o.symbol); });
+            if (found == operators + 2) return;
+            (this->*part)();
+            apply({found->op}, 2, at);
         }
     }
 

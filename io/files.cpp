@@ -16,10 +16,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what)
+[[noreturn]] void fail(const std::string& path, const std::string& what = "cannot be written")
 {
     const int error = errno;
     throw IoError(path + ": " + what + ": " + std::strerror(error));
+}
+
+/// Writes a text and returns the number of written bytes: all, or fewer after an error, which is in errno
+size_t write_all(int descriptor, const std::string& content)
+{
+    size_t done = 0;
+    while (done < content.size()) {
+        const ssize_t n = write(descriptor, content.data() + done, content.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) break;
+        done += static_cast<size_t>(n);
+    }
+    return done;
 }
 
 /// A temporary file, which commit() renames to the target and which is removed otherwise
@@ -28,7 +41,7 @@ public:
     explicit Temporary(const std::string& target) : target(target), path(target + ".tmp")
     {
         descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        if (descriptor < 0) fail(target, "cannot be written");
+        if (descriptor < 0) fail(target);
     }
     Temporary(const Temporary&) = delete;
     Temporary& operator=(const Temporary&) = delete;
@@ -40,14 +53,8 @@ public:
 
     void write(const std::string& content) const
     {
-        size_t done = 0;
-        while (done < content.size()) {
-            const ssize_t n = ::write(descriptor, content.data() + done, content.size() - done);
-            if (n < 0 && errno == EINTR) continue;
-            if (n < 0) fail(target, "cannot be written");
-            done += static_cast<size_t>(n);
-        }
-        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(target, "cannot be written");
+        if (write_all(descriptor, content) < content.size()) fail(target);
+        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(target);
     }
 
     void commit()
@@ -83,7 +90,7 @@ void write_file(const std::string& name, const std::string& content)
         // devices and pipes are written to, not replaced
         std::ofstream out(path, std::ios::binary);
         out << content << std::flush;
-        if (!out) fail(name, "cannot be written");
+        if (!out) fail(name);
         return;
     }
     Temporary file(path);
@@ -131,6 +138,43 @@ void make_directory(const std::string& directory)
     std::error_code error;
     fs::create_directories(directory, error);
     if (error) throw IoError(directory + ": cannot be created: " + error.message());
+}
+
+OutputFile::OutputFile(std::string file, std::uint64_t keep_bytes, bool resume)
+    : path(std::move(file)), written(keep_bytes)
+{
+    descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | (resume ? 0 : O_CREAT | O_TRUNC), 0666);
+    if (descriptor < 0) fail(path);
+    if (!resume) return;
+    struct stat s {};
+    if (fstat(descriptor, &s) != 0) fail(path);
+    if (static_cast<std::uint64_t>(s.st_size) < keep_bytes) {
+        close(descriptor);
+        throw IoError(path + ": is shorter than the checkpoint states: " + std::to_string(s.st_size) +
+                      " bytes, not " + std::to_string(keep_bytes));
+    }
+    if (ftruncate(descriptor, static_cast<off_t>(keep_bytes)) != 0 || lseek(descriptor, 0, SEEK_END) < 0)
+        fail(path);
+}
+
+OutputFile::~OutputFile()
+{
+    if (descriptor >= 0) close(descriptor);
+}
+
+void OutputFile::flush()
+{
+    const size_t done = write_all(descriptor, buffer);
+    const bool failed = done < buffer.size();
+    written += done;
+    buffer.clear();  // a later flush() must not fail again for the same rows
+    if (failed) fail(path);
+}
+
+void OutputFile::sync()
+{
+    flush();
+    if (fdatasync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(path);
 }
 
 }  // namespace hilda::io

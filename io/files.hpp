@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Files that are written at once or read at once, and directories.
+/// Files that are written or read at once, output files that grow, and directories.
 
 #pragma once
 
 #include "io/error.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace hilda::io {
@@ -25,5 +26,41 @@ bool is_missing_or_empty(const std::string& directory);
 
 /// Creates the directory and its parents. IoError.
 void make_directory(const std::string& directory);
+
+/// A buffered output file with checked writes and known length, which can be continued from a checkpoint
+class OutputFile {
+public:
+    /// Creates the file; with `resume`, opens it and truncates it to `keep_bytes` bytes. IoError, also if the
+    /// file is shorter than that.
+    explicit OutputFile(std::string path, std::uint64_t keep_bytes = 0, bool resume = false);
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    /// Closes the file without writing the buffer, because a destructor could not report an error. Call
+    /// flush() before.
+    ~OutputFile();
+
+    /// Text appended here is written by the next flush().
+    std::string buffer;
+
+    /// Writes the buffer if it exceeds 1 MiB. IoError.
+    void flush_when_full()
+    {
+        if (buffer.size() >= full) flush();
+    }
+    /// Writes the buffer. IoError.
+    void flush();
+    /// flush() and fdatasync. IoError.
+    void sync();
+    /// Length of the file including the buffer [byte]
+    std::uint64_t size() const { return written + buffer.size(); }
+    const std::string& name() const { return path; }
+
+private:
+    static constexpr size_t full = 1 << 20;
+
+    std::string path;
+    int descriptor = -1;
+    std::uint64_t written = 0;
+};
 
 }  // namespace hilda::io

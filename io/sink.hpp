@@ -4,7 +4,7 @@
 #pragma once
 
 #include "io/archive.hpp"
-#include "io/output_file.hpp"
+#include "io/files.hpp"
 #include "io/registry.hpp"
 
 #include <algorithm>

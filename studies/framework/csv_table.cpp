@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/csv_table.hpp"
 
+#include "io/csv.hpp"
 #include "io/files.hpp"
+#include "io/option_values.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <sstream>
+#include <optional>
 
 namespace hilda::studies {
 
 namespace {
 
 constexpr size_t most = 256 << 20;  // bytes
-
-std::string trimmed(const std::string& text)
-{
-    const size_t from = text.find_first_not_of(" \t\r"), to = text.find_last_not_of(" \t\r");
-    return from == std::string::npos ? "" : text.substr(from, to - from + 1);
-}
-
-std::vector<std::string> fields(const std::string& line)
-{
-    std::vector<std::string> all;
-    for (size_t from = 0; from <= line.size();) {
-        const size_t to = std::min(line.find(',', from), line.size());
-        all.push_back(trimmed(line.substr(from, to - from)));
-        from = to + 1;
-    }
-    return all;
-}
 
 std::string contents(const std::string& file)
 {
@@ -61,33 +45,16 @@ std::vector<double> CsvTable::values(const std::string& name) const
 CsvTable read_csv_table(const std::string& file)
 {
     CsvTable table{.file = file, .columns = {}, .rows = {}};
-    std::istringstream in(contents(file));
-    std::string line;
-    for (long n = 1; std::getline(in, line); ++n) {
-        line = trimmed(line);
-        if (line.empty() || line.starts_with('#')) continue;
-        const auto refuse = [&](const std::string& what) {
-            throw lie::InvalidInput(file + ":" + std::to_string(n) + ": " + what);
-        };
-        const std::vector<std::string> texts = fields(line);
-        if (table.columns.empty()) {
-            table.columns = texts;
-            continue;
+    io::read_csv(contents(file), file, [&](const io::CsvRow& row) {
+        table.columns.assign(row.names.begin(), row.names.end());
+        std::vector<double>& values = table.rows.emplace_back();
+        for (const std::string_view cell : row.cells) {
+            const auto value = cell.empty() ? std::optional(std::nan("")) : io::number_in<double>(cell);
+            if (!value)
+                throw lie::InvalidInput(row.place + ": must be a number, got '" + std::string(cell) + "'");
+            values.push_back(*value);
         }
-        if (texts.size() != table.columns.size())
-            refuse("a row must have a field for each of the " + std::to_string(table.columns.size()) +
-                   " columns, got " + std::to_string(texts.size()));
-        std::vector<double> row;
-        for (const std::string& text : texts) {
-            double value = std::nan("");
-            const char* const end = text.data() + text.size();
-            const auto [at, error] = std::from_chars(text.data(), end, value);
-            if (!text.empty() && (error != std::errc() || at != end))
-                refuse("must be a number, got '" + text + "'");
-            row.push_back(value);
-        }
-        table.rows.push_back(std::move(row));
-    }
+    });
     if (table.rows.empty()) throw lie::InvalidInput(file + ": has no rows of numbers");
     return table;
 }

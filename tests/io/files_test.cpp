@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/files.hpp"
-#include "io/output_file.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -22,6 +22,10 @@ enum class Scheme : std::int32_t {
     chung
 };
 
+/// Names in the order of Scheme
+inline constexpr const char* scheme_names[] = {"symplectic-euler", "velocity-verlet", "forward-euler",
+                                               "extended-taylor", "chung"};
+
 /// Parts of a step
 enum class Part : std::int32_t {
     whole,         ///< the whole step

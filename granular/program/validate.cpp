@@ -53,15 +53,14 @@ const Validation* find_validation(const std::string& name)
     std::error_code error;
     // a case file with this name has precedence
     if (std::filesystem::is_regular_file(name, error)) return nullptr;
-    for (const Validation& v : validations())
-        if (v.name == name) return &v;
-    return nullptr;
+    return io::Registry<Validation>::find(name);
 }
 
 std::string known_validations()
 {
     std::string all;
-    for (const Validation& v : validations()) all += (all.empty() ? "; validations: " : ", ") + v.name;
+    for (const std::string& name : io::Registry<Validation>::names())
+        all += (all.empty() ? "; validations: " : ", ") + name;
     return all;
 }
 

@@ -55,16 +55,6 @@ WorldOptions world_options(Device device = {})
     return o;
 }
 
-PairLaw law(double mu, bool incremental)
-{
-    PairLaw law = hertz_mindlin(soft(), restitution, mu);
-    if (incremental)
-        law.tangential =
-            MindlinIncremental{.spring = TangentialSpring::of_materials(soft(), soft(), restitution),
-                               .cap = {static_cast<float>(mu), static_cast<float>(mu)}};
-    return law;
-}
-
 double distance_with_spring(double mu)
 {
     const TangentialSpring spring = TangentialSpring::of_materials(soft(), soft(), restitution);
@@ -74,7 +64,7 @@ double distance_with_spring(double mu)
 
 double in_double(double mu, bool incremental)
 {
-    DoubleWorld world(world_options(), law(mu, incremental));
+    DoubleWorld world(world_options(), soft_law(restitution, mu, incremental));
     world.particle = {sphere_at_rest()};
     world.boundary = {Boundary{}};
     world.turns = false;
@@ -94,7 +84,7 @@ struct Slide {
 Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
 {
     World world(world_options(device), {soft()});
-    world.set_law(0, 0, law(mu, incremental));
+    world.set_law(0, 0, soft_law(restitution, mu, incremental));
     world.add(Boundary{});
     world.set_omega_locked(true);
     world.add(sphere_at_rest());
@@ -159,10 +149,10 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered =
-    register_validation({.name = "brick",
-                         .description = "sliding distance over the coefficient of friction (Fig. 7.4)",
-                         .run = run});
+const bool registered = io::Registry<Validation>::add(
+    {.name = "brick",
+     .description = "sliding distance over the coefficient of friction (Fig. 7.4)",
+     .run = run});
 
 }  // namespace
 

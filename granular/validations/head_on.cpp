@@ -20,17 +20,18 @@ namespace {
 constexpr double R = 0.5, v_i = 1, end = 0.5, gap = 1e-3;
 constexpr double step_of_text = 3e-5;
 
-struct NamedScheme {
-    const char* name;
+struct SchemeLimits {
     Scheme scheme;
     double tolerance;  ///< allowed error of the restitution at the step of the dissertation
     bool first_order;  ///< whether the fitted order is checked; the error of chung is too irregular
+
+    const char* name() const { return scheme_names[static_cast<int>(scheme)]; }
 };
-constexpr NamedScheme schemes[] = {{"symplectic-euler", Scheme::symplectic_euler, 5e-4, true},
-                                   {"velocity-verlet", Scheme::velocity_verlet, 5e-4, true},
-                                   {"chung", Scheme::chung, 1.5e-4, false},
-                                   {"extended-taylor", Scheme::extended_taylor, 5e-3, true},
-                                   {"forward-euler", Scheme::forward_euler, 1e-2, true}};
+constexpr SchemeLimits schemes[] = {{Scheme::symplectic_euler, 5e-4, true},
+                                    {Scheme::velocity_verlet, 5e-4, true},
+                                    {Scheme::chung, 1.5e-4, false},
+                                    {Scheme::extended_taylor, 5e-3, true},
+                                    {Scheme::forward_euler, 1e-2, true}};
 
 std::vector<double> restitutions()
 {
@@ -197,11 +198,11 @@ ValidationResult run(const ValidationOptions& options)
     ValidationTable clamped = {"clamped", {"restitution", "rebound", "difference"}, {}};
     ValidationResult result;
     double difference = 0, progress = 0;
-    for (const NamedScheme& s : schemes) {
+    for (const SchemeLimits& s : schemes) {
         for (const double e : restitutions()) {
             const double v = rebounds({{e}}, s.scheme, step_of_text, options.device)[0],
                          in_double = rebound({e}, s.scheme, step_of_text);
-            at_text.rows.push_back({s.name, step_of_text, e, v, v - e, in_double, in_double - e});
+            at_text.rows.push_back({s.name(), step_of_text, e, v, v - e, in_double, in_double - e});
         }
         std::vector<double> errors;
         for (const double h : steps) {
@@ -212,14 +213,14 @@ ValidationResult run(const ValidationOptions& options)
                 n == 0 ? std::nan("") : std::log(w.in_double / errors[n - 1]) / std::log(h / steps[n - 1]);
             errors.push_back(w.in_double);
             difference = max_or_nan(difference, w.difference);
-            refinement.rows.push_back({s.name, h, w.world, w.in_double, order});
+            refinement.rows.push_back({s.name(), h, w.world, w.in_double, order});
             if (h == step_of_text)
-                result.checks.push_back(
-                    {std::string("largest |v_end/v_i| - COR at 3e-5 s: ") + s.name, w.world, 0, s.tolerance});
+                result.checks.push_back({std::string("largest |v_end/v_i| - COR at 3e-5 s: ") + s.name(),
+                                         w.world, 0, s.tolerance});
             options.progress(progress += 1.0 / static_cast<double>(std::size(schemes) * steps.size()));
         }
         if (s.first_order)
-            result.checks.push_back({std::string("order in double precision: ") + s.name,
+            result.checks.push_back({std::string("order in double precision: ") + s.name(),
                                      fitted_slope(steps, errors), 0.85, 1.15});
     }
     result.checks.push_back({"largest difference of World from double precision", difference, 0, 1e-4});
@@ -243,7 +244,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = register_validation(
+const bool registered = io::Registry<Validation>::add(
     {.name = "head-on",
      .description = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
      .run = run});

@@ -41,16 +41,6 @@ WorldOptions options_of(double h, double wide, Device device = {})
 }
 
 constexpr const char* laws[] = {"mindlin", "mindlin-incremental"};
-constexpr auto friction = static_cast<float>(mu);
-
-PairLaw law(int law_index)
-{
-    PairLaw law = hertz_mindlin(soft(), e, mu);
-    if (law_index == 1)
-        law.tangential = MindlinIncremental{.spring = TangentialSpring::of_materials(soft(), soft(), e),
-                                            .cap = {friction, friction}};
-    return law;
-}
 
 Particle incident_sphere(double angle)
 {
@@ -72,7 +62,7 @@ struct Rebound {
 
 Rebound in_double(double angle, double h, int law_index)
 {
-    DoubleWorld world(options_of(h, 2), law(law_index));
+    DoubleWorld world(options_of(h, 2), soft_law(e, mu, law_index == 1));
     world.particle = {incident_sphere(angle)};
     world.boundary = {Boundary{}};
     world.step(std::lround(end / h));
@@ -83,7 +73,7 @@ Rebound in_double(double angle, double h, int law_index)
 std::vector<Rebound> in_world(const std::vector<double>& angles, int law_index, Device device)
 {
     World world(options_of(step, 2 * static_cast<double>(angles.size()), device), {soft()});
-    world.set_law(0, 0, law(law_index));
+    world.set_law(0, 0, soft_law(e, mu, law_index == 1));
     world.add(Boundary{});
     for (std::size_t k = 0; k < angles.size(); ++k) {
         Particle p = incident_sphere(angles[k]);
@@ -217,7 +207,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = register_validation(
+const bool registered = io::Registry<Validation>::add(
     {.name = "oblique",
      .description =
          "tangential restitution and angular velocity after an oblique impact, over the angle (Fig. 7.6)",

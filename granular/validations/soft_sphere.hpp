@@ -21,4 +21,15 @@ inline Particle soft_sphere()
     return p;
 }
 
+/// hertz_mindlin() of soft(), with the law mindlin-incremental in place of mindlin if requested
+inline PairLaw soft_law(double restitution, double mu, bool incremental)
+{
+    PairLaw law = hertz_mindlin(soft(), restitution, mu);
+    const auto bound = static_cast<float>(mu);
+    if (incremental)
+        law.tangential = MindlinIncremental{
+            .spring = TangentialSpring::of_materials(soft(), soft(), restitution), .cap = {bound, bound}};
+    return law;
+}
+
 }  // namespace hilda::granular

@@ -113,7 +113,7 @@ private:
             for (const double r : mu_r) stacks.push_back({p.gap, mu, r});
         for (std::size_t m = 0; m < models.size(); ++m) {
             masses[m] = critical_masses(stacks, models[m].run,
-                                        [&](double share) { report_progress(0.25 * (double(m) + share)); });
+                                        [&](double share) { options.progress(0.25 * (double(m) + share)); });
             for (std::size_t k = 0; k < stacks.size(); ++k) {
                 const Stack& s = stacks[k];
                 study.rows.push_back({models[m].name, s.gap, s.mu_r, s.mu, masses[m][k],
@@ -159,7 +159,7 @@ private:
         for (const Plateau& p : plateaus)
             for (const double m : mus) stacks.push_back({p.gap, m, 0.4});
         const std::vector<double> found = critical_masses(
-            stacks, models[0].run, [&](double share) { report_progress(0.75 + 0.1 * share); });
+            stacks, models[0].run, [&](double share) { options.progress(0.75 + 0.1 * share); });
         for (std::size_t k = 0; k < stacks.size(); ++k)
             friction.rows.push_back({stacks[k].gap, stacks[k].mu, found[k], static_limit(stacks[k], 0.5, 0.5),
                                      plateaus[k / mus.size()].mass});
@@ -194,21 +194,19 @@ private:
         }
         checks.push_back({"number of collapsed stacks", double(fell), double(expected), double(expected)});
         checks.push_back({"number of stacks on the wrong side of the critical mass", double(wrong), 0, 0});
-        report_progress(0.9);
+        options.progress(0.9);
 
         StackRun finer = models[0].run;
         finer.h /= 2;
         const double coarse[] = {masses[0][1], masses[0][mu_r.size() - 1]};
         const std::vector<double> fine =
             critical_masses({{plateaus[0].gap, mu, mu_r[1]}, {plateaus[0].gap, mu, mu_r.back()}}, finer,
-                            [&](double share) { report_progress(0.9 + 0.1 * share); });
+                            [&](double share) { options.progress(0.9 + 0.1 * share); });
         for (int k = 0; k < 2; ++k)
             checks.push_back(
                 {std::string("change with half the step, ") + (k == 0 ? "rolling" : "sliding") + " [kg]",
                  std::abs(fine[k] - coarse[k]), 0, 0.0101});
     }
-
-    void report_progress(double share) const { options.progress(share); }
 
     const ValidationOptions& options;
     std::vector<double> mu_r;
@@ -221,8 +219,8 @@ private:
 };
 
 const bool registered =
-    register_validation({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
-                         [](const ValidationOptions& options) { return Stacking(options).run(); }});
+    io::Registry<Validation>::add({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
+                                   [](const ValidationOptions& options) { return Stacking(options).run(); }});
 
 }  // namespace
 

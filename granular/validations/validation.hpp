@@ -8,6 +8,7 @@
 #pragma once
 
 #include "granular/world/world.hpp"
+#include "io/registry.hpp"
 
 #include <functional>
 #include <string>
@@ -49,15 +50,11 @@ struct ValidationResult {
     std::vector<ValidationCheck> checks;
 };
 
+/// A file registers a validation by io::Registry<Validation>::add.
 struct Validation {
     std::string name;         ///< for example head-on
     std::string description;  ///< what is validated, with the figure, in one line
     ValidationResult (*run)(const ValidationOptions&) = nullptr;
 };
-
-/// All registered validations, ordered by name
-const std::vector<Validation>& validations();
-/// Registers a validation during static initialisation. Returns true.
-bool register_validation(Validation validation);
 
 }  // namespace hilda::granular

@@ -90,7 +90,7 @@ void validate(const Validation& validation, StudyContext& s)
 std::vector<Study> all()
 {
     std::vector<Study> studies;
-    for (const Validation& v : granular::validations())
+    for (const Validation& v : io::Registry<Validation>::all())
         studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
                            .accepted = takes::check | takes::grid,

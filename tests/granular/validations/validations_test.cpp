@@ -13,7 +13,7 @@ namespace {
 
 void check_validation(const std::string& name)
 {
-    for (const Validation& v : validations()) {
+    for (const Validation& v : hilda::io::Registry<Validation>::all()) {
         if (v.name != name) continue;
         double share = 0;
         bool forward = true;
@@ -51,7 +51,7 @@ TEST_CASE("validations are listed by name, each with a description of one line",
     // and are run as studies.
     std::set<std::string> tested = {"brick", "head-on", "oblique", "stacking", "waves"};
     std::string last;
-    for (const Validation& v : validations()) {
+    for (const Validation& v : hilda::io::Registry<Validation>::all()) {
         CHECK(last < v.name);
         last = v.name;
         CHECK_FALSE(v.description.empty());

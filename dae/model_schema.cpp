@@ -4,7 +4,6 @@
 
 #include "dae/force.hpp"
 #include "dae/model_types.hpp"
-#include "io/json_source.hpp"
 
 #include <algorithm>
 
@@ -18,23 +17,19 @@ namespace {
 template <class Type>
 void set_definitions(io::Json& definitions, const std::string& title, const std::string& kind)
 {
-    io::Json references = io::Json::array();
-    for (const Type& type : io::Registry<Type>::all()) {
+    io::set_one_of<Type>(definitions, "any_" + kind, [&](const Type& type) {
         TypeSchema schema = type.schema;
         if (std::count(schema.parts.begin(), schema.parts.end(), "on_one_body") == 0)
             schema.parts.insert(schema.parts.begin(), "pair");
-        references.push_back({{"$ref", "#/$defs/" + type.name}});
-        definitions[type.name] = definition({title, "type", "Type of the " + kind + "."}, type.name, schema);
-    }
-    definitions["any_" + kind]["oneOf"] = references;
+        return definition({title, "type", "Type of the " + kind + "."}, type.name, schema);
+    });
 }
 
 }  // namespace
 
 io::Json model_schema()
 {
-    const std::string text = model_schema_text;
-    io::Json schema = io::JsonSource(text, "model.schema.json", text.size() + 1).root;
+    io::Json schema = io::parsed_schema(model_schema_text, "model.schema.json");
     set_definitions<ConstraintType>(schema["$defs"], "Constraint", "constraint");
     set_definitions<ForceType>(schema["$defs"], "Force", "force");
     for (const SchemaPart& part : io::Registry<SchemaPart>::all()) part.add(schema["$defs"]);

@@ -22,6 +22,7 @@ PAGES = ROOT / "docs" / "reference"
 FROM_SCHEMAS = "python3 docs/generate.py"
 FROM_PROGRAMS = "python3 docs/generate.py --program build/release/hilda --granular build/release/hilda-granular"
 NONE = "–"
+SCHEMAS = ("dae/model.schema.json", "granular/case.schema.json")  # of hilda and hilda-granular
 
 
 class Failure(Exception):
@@ -467,13 +468,14 @@ def commands_page(program, granular):
 WIDTH = 130
 
 
-def schema_text(value, indent=0):
-    """JSON text with short members on common lines of at most WIDTH columns."""
+def schema_text(value, indent=0, before=0):
+    """JSON text with short members on common lines of at most WIDTH columns; `before` characters precede it in its line."""
     flat = json.dumps(value, ensure_ascii=False)
-    if not isinstance(value, (dict, list)) or not value or indent + len(flat) < WIDTH - 30:
+    if not isinstance(value, (dict, list)) or not value or indent + before + len(flat) < WIDTH:
         return flat
-    pairs = value.items() if isinstance(value, dict) else [(None, item) for item in value]
-    pieces = [("" if key is None else json.dumps(key) + ": ") + schema_text(item, indent + 2) for key, item in pairs]
+    names = [json.dumps(key) + ": " for key in value] if isinstance(value, dict) else [""] * len(value)
+    items = value.values() if isinstance(value, dict) else value
+    pieces = [name + schema_text(item, indent + 2, len(name)) for name, item in zip(names, items)]
     lines = []
     for piece in pieces:
         alone = "\n" in piece or "\"description\": " in piece[:15] or isinstance(value, list) and piece[0] in "{["
@@ -505,14 +507,16 @@ def main():
         parser.error("--program and --granular must be given together")
     try:
         if options.program is not None:
-            path, text = ROOT / "dae" / "model.schema.json", program_schema(options.program)
-            if json.loads(path.read_text(encoding="utf-8")) != json.loads(text):
+            for name, program in zip(SCHEMAS, (options.program, options.granular)):
+                path, text = ROOT / name, program_schema(program)
+                if json.loads(path.read_text(encoding="utf-8")) == json.loads(text):
+                    continue
                 if options.check:
-                    print(f"dae/model.schema.json is out of date; run: {FROM_PROGRAMS}")
+                    print(f"{name} is out of date; run: {FROM_PROGRAMS}")
                     return 1
                 path.write_text(text, encoding="utf-8")
-                print("dae/model.schema.json written")
-        model, case = (SchemaPage(ROOT / name) for name in ("dae/model.schema.json", "granular/case.schema.json"))
+                print(f"{name} written")
+        model, case = (SchemaPage(ROOT / name) for name in SCHEMAS)
         pages = {"model-file.md": (model.page("Model file reference"), FROM_SCHEMAS),
                  "case-file.md": (case.page("Granular case file reference"), FROM_SCHEMAS)}
         if options.program is not None:

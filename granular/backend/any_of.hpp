@@ -51,6 +51,12 @@ public:
         ((name == Laws::name ? void((*this = Laws::read(keys), found = true)) : void()), ...);
         return found;
     }
+    /// Calls f with a value of each law, in the order of the list.
+    template <class F>
+    static void for_each(const F& f)
+    {
+        (f(Laws{}), ...);
+    }
 
 private:
     int index = 0;

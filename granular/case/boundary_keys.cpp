@@ -9,66 +9,49 @@ namespace hilda::granular {
 
 namespace {
 
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-/// Value of a formula at t = 0; zero if it is not finite there. Velocities and forces are evaluated within
-/// steps, so they need no value at t = 0. Positions do, which the caller checks.
-Vec3 value_at_start(const VectorFormula& f)
+/// Reads a vector of numbers, or of formulas. The number is then the value at t = 0, or zero if it is not finite
+/// there: velocities and forces are evaluated within steps. Positions need it, which the caller checks.
+void read_vector(ObjectReader& o, const std::string& key, Vec3& number, std::optional<VectorFormula>& formula)
 {
-    const Vec3 v = f(0);
-    return finite(v) ? v : Vec3{0, 0, 0};
+    if (!o.has_formula(key)) {
+        number = o.vec3(key, Vec3{0, 0, 0});
+        return;
+    }
+    formula = o.formulas(key);
+    const Vec3 v = (*formula)(0);
+    number = finite(v) ? v : Vec3{0, 0, 0};
 }
 
-/// Reads r and v. Vectors of numbers become initial values, vectors with a formula also become prescribed
-/// motions.
 NamedBoundary read_motion(ObjectReader& o, const std::string& name)
 {
     NamedBoundary all{.name = name, .boundary = {}};
     all.motion.name = name;
-    const auto read = [&](const std::string& key, Vec3& number, std::optional<VectorFormula>& formula) {
-        if (!o.has_formula(key)) {
-            number = o.vec3(key, Vec3{0, 0, 0});
-            return;
-        }
-        formula = o.formulas(key);
-        number = value_at_start(*formula);
-    };
-    read("r", all.boundary.r, all.motion.r);
+    read_vector(o, "r", all.boundary.r, all.motion.r);
     if (all.motion.r && !finite((*all.motion.r)(0)))
         o.fail("r", "r must be finite at t = 0, got " + described(*o.find("r")));
     if (all.motion.r && o.has("v")) o.fail("v", "v must not be given if r is a formula");
-    read("v", all.boundary.v, all.motion.v);
+    read_vector(o, "v", all.boundary.v, all.motion.v);
     return all;
 }
 
-/// Reads the keys of a boundary that may be a tool: omega, mass, inertia, free and F.
-void read_tool(ObjectReader& o, NamedBoundary& tool)
+/// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free and F.
+void read_body(ObjectReader& o, NamedBoundary& body)
 {
-    Boundary& b = tool.boundary;
-    if (o.has_formula("omega")) {
-        tool.motion.omega = o.formulas("omega");
-        b.omega = value_at_start(*tool.motion.omega);
-    } else {
-        b.omega = o.vec3("omega", Vec3{0, 0, 0});
-    }
+    Boundary& b = body.boundary;
+    read_vector(o, "omega", b.omega, body.motion.omega);
     if (!o.has("mass")) return;
     b.mass = o.positive("mass");
     b.inertia = o.not_negative("inertia", 0);
-    if (b.inertia > 0 && tool.motion.omega)
+    if (b.inertia > 0 && body.motion.omega)
         o.fail("omega", "omega must be three numbers if inertia is positive");
     b.free = o.flags("free", {true, true, true});
-    if (tool.motion.v && !finite((*tool.motion.v)(0)))
+    if (body.motion.v && !finite((*body.motion.v)(0)))
         o.fail("v", "v must be finite at t = 0 if the boundary has a mass");
-    if (o.has_formula("F")) {
-        tool.motion.F = o.formulas("F");
-        b.F = value_at_start(*tool.motion.F);
-    } else {
-        b.F = o.vec3("F", Vec3{0, 0, 0});
-    }
+    read_vector(o, "F", b.F, body.motion.F);
 }
 
 /// The sides of a box as planes, without those that `open` lists
-std::vector<NamedBoundary> read_box(ObjectReader& o, const NamedBoundary& box)
+std::vector<NamedBoundary> read_box(ObjectReader& o, NamedBoundary box)
 {
     const Vec3 low = o.vec3("low"), high = o.vec3("high");
     const double widths[] = {high.x - low.x, high.y - low.y, high.z - low.z};
@@ -107,36 +90,127 @@ std::vector<NamedBoundary> read_box(ObjectReader& o, const NamedBoundary& box)
     return all;
 }
 
+std::vector<NamedBoundary> read_plane(ObjectReader& o, NamedBoundary plane)
+{
+    read_body(o, plane);
+    plane.boundary.axis = o.direction("normal");
+    return {plane};
+}
+
+/// A surface with an inside. The further keys: radius; axis, radius; or axis, half_angle
+template <Boundary::Shape shape>
+std::vector<NamedBoundary> read_round(ObjectReader& o, NamedBoundary round)
+{
+    read_body(o, round);
+    Boundary& b = round.boundary;
+    b.inside = o.flag("inside", false);
+    b.shape = shape;
+    if (shape != Boundary::Shape::sphere) b.axis = o.direction("axis");
+    if (shape != Boundary::Shape::cone) {
+        b.radius = o.positive("radius");
+        return {round};
+    }
+    const double half = o.number("half_angle");
+    if (!(half > 0 && half < M_PI / 2))
+        o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + io::shortest(half));
+    b.cosine = std::cos(half), b.sine = std::sin(half);
+    return {round};
+}
+
+const std::vector<std::string> common = {"boundary_keys"}, of_body = {"boundary_keys", "body_keys"};
+
+/// The key r; `point` is what it is the position of
+io::KeySchema place(const std::string& point)
+{
+    return {"r",
+            point +
+                " [m], in the global frame; numbers or formulas in t. With formulas, the boundary is at r(t) "
+                "after "
+                "every step.",
+            R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"};
+}
+
+io::KeySchema axis(const std::string& text)
+{
+    return {"axis", text, R"("$ref": "#/$defs/direction", "examples": [[0, 0, 1]])", true};
+}
+
+const io::KeySchema radius = {"radius", "Radius [m].", R"("$ref": "#/$defs/positive", "examples": [0.05])",
+                              true},
+                    inside = {"inside",
+                              "If true, the particles are inside of the surface; otherwise they are outside.",
+                              R"("type": "boolean", "default": false, "examples": [true])"};
+
+const bool registered =
+    io::Registry<BoundaryType>::add(
+        {"plane",
+         {.description = "Plane. The particles are on the side to which the normal points.",
+          .parts = of_body,
+          .keys = {{"normal", "Normal towards the particles [-], in the global frame.",
+                    R"("$ref": "#/$defs/direction", "examples": [[0, 0, 1]])", true},
+                   place("A point of the plane")},
+          .example = R"("name": "lid", "normal": [0, 0, -1], "r": [0, 0, 0.03], "mass": 0.01,
+                        "free": [false, false, true])"},
+         read_plane}) &&
+    io::Registry<BoundaryType>::add(
+        {"box",
+         {.description =
+              "Six planes around the particles, named NAME-x, NAME+x, NAME-y, NAME+y, NAME-z, NAME+z. "
+              "Sides can be left open.",
+          .parts = common,
+          .keys =
+              {{"low", "Lower corner [m], in the global frame.",
+                R"("$ref": "#/$defs/vector", "examples": [[0, 0, 0]])", true},
+               {"high",
+                "Upper corner [m], in the global frame. It must exceed the lower corner in each component.",
+                R"("$ref": "#/$defs/vector", "examples": [[0.03, 0.02, 0.06]])", true},
+               {"open", "Sides that are left open; at least one side must remain.",
+                R"("type": "array", "items": {"enum": ["-x", "+x", "-y", "+y", "-z", "+z"]}, "uniqueItems": true,
+                       "maxItems": 5, "default": [], "examples": [["+z"]])"},
+               {"r",
+                "Displacement of the whole box from low and high [m], in the global frame; numbers or "
+                "formulas in "
+                "t.",
+                R"json("$ref": "#/$defs/formulas", "default": [0, 0, 0],
+                         "examples": [["1e-3*sin(2*pi*20*t)", 0, 0]])json"}},
+          .example = R"json("name": "box", "low": [0, 0, 0], "high": [0.03, 0.02, 0.06], "open": ["+z"],
+                            "r": ["1e-3*sin(2*pi*20*t)", 0, 0])json"},
+         read_box}) &&
+    io::Registry<BoundaryType>::add(
+        {"cylinder",
+         {.description = "Infinite circular cylinder.",
+          .parts = of_body,
+          .keys = {axis("Direction of the axis [-], in the global frame."), radius, inside,
+                   place("A point of the axis")},
+          .example =
+              R"("name": "drum", "axis": [0, 1, 0], "radius": 0.05, "inside": true, "omega": [0, 3, 0])"},
+         read_round<Boundary::Shape::cylinder>}) &&
+    io::Registry<BoundaryType>::add(
+        {"cone",
+         {.description = "Infinite circular cone that opens along its axis.",
+          .parts = of_body,
+          .keys = {axis("Direction from the apex in which the cone opens [-], in the global frame."),
+                   {"half_angle", "Angle between axis and surface [rad].",
+                    R"("type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966,
+                       "examples": [0.5])",
+                    true},
+                   inside,
+                   place("The apex")},
+          .example = R"("name": "hopper", "axis": [0, 0, 1], "half_angle": 0.5, "inside": true)"},
+         read_round<Boundary::Shape::cone>}) &&
+    io::Registry<BoundaryType>::add({"sphere",
+                                     {.description = "Sphere.",
+                                      .parts = of_body,
+                                      .keys = {radius, inside, place("The centre")},
+                                      .example = R"("name": "obstacle", "radius": 0.01, "r": [0, 0, 0.02])"},
+                                     read_round<Boundary::Shape::sphere>});
+
 }  // namespace
 
 std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name)
 {
-    const std::string type = o.one_of("type", {"plane", "box", "cylinder", "cone", "sphere"});
-    NamedBoundary one = read_motion(o, name);
-    if (type == "box") return read_box(o, one);
-    read_tool(o, one);
-    Boundary& b = one.boundary;
-    if (type == "plane") {
-        b.axis = o.direction("normal");
-        return {one};
-    }
-    b.inside = o.flag("inside", false);
-    if (type == "sphere") {
-        b.shape = Boundary::Shape::sphere;
-        b.radius = o.positive("radius");
-    } else if (type == "cylinder") {
-        b.shape = Boundary::Shape::cylinder;
-        b.axis = o.direction("axis");
-        b.radius = o.positive("radius");
-    } else {
-        b.shape = Boundary::Shape::cone;
-        b.axis = o.direction("axis");
-        const double half = o.number("half_angle");
-        if (!(half > 0 && half < M_PI / 2))
-            o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + io::shortest(half));
-        b.cosine = std::cos(half), b.sine = std::sin(half);
-    }
-    return {one};
+    const std::string type = o.one_of("type", io::Registry<BoundaryType>::names());
+    return io::Registry<BoundaryType>::find(type)->read(o, read_motion(o, name));
 }
 
 }  // namespace hilda::granular

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reader of the boundaries of a case file.
+/// Reader of the boundaries of a case file, and their registered types.
 
 #pragma once
 
 #include "granular/case/object_reader.hpp"
+#include "io/type_schema.hpp"
 
 namespace hilda::granular {
 
@@ -11,6 +12,15 @@ struct NamedBoundary {
     std::string name;
     Boundary boundary;
     BoundaryMotion motion = {};  ///< prescribed motion and load; the boundary number is not set
+};
+
+/// A type of boundary. A file registers it by io::Registry<BoundaryType>::add.
+struct BoundaryType {
+    std::string name;  ///< value of the key "type"
+    io::TypeSchema schema;
+    /// Reads the keys of the type, besides type, name, material, r and v. `boundary` holds these. Returns one
+    /// boundary, or several with other names. Throws io::PlacedError.
+    std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);
 };
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the

@@ -16,12 +16,9 @@ namespace {
 
 Scheme read_scheme(ObjectReader& o)
 {
-    const std::vector<std::string> names = {"symplectic-euler", "velocity-verlet", "forward-euler",
-                                            "extended-taylor", "chung"};
-    constexpr Scheme schemes[] = {Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::forward_euler,
-                                  Scheme::extended_taylor, Scheme::chung};
+    const std::vector<std::string> names(std::begin(scheme_names), std::end(scheme_names));
     const std::string name = o.one_of("integrator", names, names[0]);
-    return schemes[std::find(names.begin(), names.end(), name) - names.begin()];
+    return static_cast<Scheme>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 Material read_material(ObjectReader o)
@@ -226,7 +223,7 @@ private:
     void fill_spec(ObjectReader& o)
     {
         FillSpec spec = read_fill(o);
-        const bool from_csv = spec.type == FillSpec::Type::csv;
+        const bool from_csv = !spec.particles.empty();
         spec.material = from_csv && !o.has("material") ? -1 : material(o);
         spec.replica = replica(o);
         if (!world.orientation)

@@ -4,30 +4,45 @@
 #pragma once
 
 #include "granular/case/object_reader.hpp"
+#include "granular/case/split_mix.hpp"
+#include "io/type_schema.hpp"
 
 namespace hilda::granular {
 
+struct FillType;
+
 /// An entry of `fill`
 struct FillSpec {
-    enum class Type {
-        lattice,  ///< simple cubic
-        hcp,      ///< hexagonal layers; close-packed if the spacing is one diameter
-        csv,      ///< read from a table
-        poisson   ///< Poisson disk sampling: random, no two centres closer than the spacing; Bridson (2007)
-    } type = Type::lattice;
+    const FillType* type = nullptr;
     Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the box that contains the spheres [m]
     double radius = 0, least_radius = 0;     ///< radii are uniformly distributed between the two [m]
     double spacing = 0;                      ///< distance of neighbouring centres [m]
     double jitter = 0;          ///< random displacement over the largest one without contact, in [0, 1]
     std::size_t max_count = 0;  ///< largest number of particles; 0: no limit
     std::uint64_t seed = 1;
-    int material = 0;  ///< index; -1 with Type::csv: as in the table
+    int material = 0;  ///< index; -1 with particles of a table: as in the table
     std::uint16_t replica = 0;
     Vec3 v = {0, 0, 0};                    ///< [m/s]
     double random_v = 0;                   ///< magnitude of an added velocity of random direction [m/s]
-    std::vector<Particle> particles = {};  ///< particles of the table, with Type::csv
+    std::vector<Particle> particles = {};  ///< of the table; empty for the other types
     std::uint64_t checksum = 0;            ///< of the table file
 };
+
+/// A type of fill. A file registers it by io::Registry<FillType>::add.
+struct FillType {
+    std::string name;  ///< value of the key "type"
+    io::TypeSchema schema;
+    /// Reads the keys besides type, material and replica. Throws io::InvalidInput.
+    FillSpec (*read)(ObjectReader& o);
+    /// Centres between low and high [m], at most max_count if the order is that of the particles
+    std::vector<Vec3> (*centres)(const FillSpec& f, const Vec3& low, const Vec3& high,
+                                 Random& random) = nullptr;
+    /// Estimated number of centres in a box of this size [m]
+    double (*estimated_count)(const FillSpec& f, const Vec3& size) = nullptr;
+};
+
+/// Reads the keys of a box that is filled with spheres, see FillSpec. Throws io::InvalidInput.
+FillSpec read_filled_box(ObjectReader& o);
 
 /// Reads an entry of `fill`, without material and replica. Throws io::InvalidInput.
 FillSpec read_fill(ObjectReader& o);
@@ -38,8 +53,7 @@ FillSpec read_fill(ObjectReader& o);
 /// file and line.
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
 
-/// Estimated number of particles. For Type::poisson max_count is ignored, because all positions are generated
-/// first.
+/// Estimated number of particles
 double estimated_count(const FillSpec& filling);
 
 /// Generates the particles. The result is the same on all platforms (see SplitMix). Throws io::InvalidInput.

@@ -1,100 +1,94 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reader of particle tables (CSV).
+/// Fill csv: particles of a table.
 #include "granular/case/fill.hpp"
+#include "io/archive.hpp"
+#include "io/csv.hpp"
 #include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/option_values.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string_view>
 
 namespace hilda::granular {
 
 namespace {
 
-std::string_view trimmed(std::string_view s)
+template <class Number>
+Number number(const io::CsvRow& row, const std::string& name, const char* rule)
 {
-    const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view{} : s.substr(first, last - first + 1);
+    const auto at =
+        static_cast<std::size_t>(std::find(row.names.begin(), row.names.end(), name) - row.names.begin());
+    if (at == row.names.size()) throw io::InvalidInput(row.place + ": missing column " + name);
+    const auto value = io::number_in<Number>(row.cells[at]);
+    if (!value || !std::isfinite(static_cast<double>(*value)))
+        throw io::InvalidInput(row.place + ": " + name + ' ' + rule + ", got '" + std::string(row.cells[at]) +
+                               '\'');
+    return *value;
 }
 
-std::vector<std::string_view> cells(std::string_view line)
+Particle particle(const io::CsvRow& row)
 {
-    std::vector<std::string_view> all;
-    for (std::size_t from = 0; from <= line.size();) {
-        const std::size_t to = std::min(line.find(',', from), line.size());
-        all.push_back(trimmed(line.substr(from, to - from)));
-        from = to + 1;
-    }
-    return all;
+    const auto has = [&](const char* name) {
+        return std::find(row.names.begin(), row.names.end(), name) != row.names.end();
+    };
+    const auto real = [&](const char* name) { return number<double>(row, name, "must be a finite number"); };
+    const auto vector = [&](const char* x, const char* y, const char* z) {
+        return Vec3{real(x), real(y), real(z)};
+    };
+    Particle p;
+    p.r = vector("x", "y", "z"), p.radius = real("radius");
+    if (!(p.radius > 0))
+        throw io::InvalidInput(row.place + ": radius must be positive, got " + io::shortest(p.radius));
+    if (has("material")) p.material = number<int>(row, "material", "must be the number of a material");
+    if (has("vx")) p.v = vector("vx", "vy", "vz");
+    if (has("omega_x")) p.omega = vector("omega_x", "omega_y", "omega_z");
+    if (has("e0")) p.e = {real("e0"), real("e1"), real("e2"), real("e3")};
+    return p;
 }
 
-/// A line of the table, with access by column name
-struct Row {
-    const std::vector<std::string_view>& names;
-    std::vector<std::string_view> cell;
-    std::string place;
+FillSpec read_table(ObjectReader& o)
+{
+    FillSpec f;
+    const std::string file = o.text("file");
+    try {
+        const std::string text = io::read_file(file, std::size_t{1} << 36);
+        f.particles = particles_of_csv(text, file);
+        f.checksum = io::checksum(text.data(), text.size());
+    } catch (const io::IoError& e) {
+        o.fail("file", e.what());
+    } catch (const io::InvalidInput& e) {
+        o.fail("file", e.what());
+    }
+    for (const Particle& p : f.particles) f.radius = std::max(f.radius, p.radius);
+    return f;
+}
 
-    bool has(const std::string& name) const
-    {
-        return std::find(names.begin(), names.end(), name) != names.end();
-    }
-    template <class Number>
-    Number number(const std::string& name, const char* rule) const
-    {
-        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-        if (at == names.size()) throw io::InvalidInput(place + ": missing column " + name);
-        const std::string_view text = cell[at];
-        Number value{};
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        bool good = error == std::errc() && end == text.data() + text.size();
-        if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
-        if (!good)
-            throw io::InvalidInput(place + ": " + name + ' ' + rule + ", got '" + std::string(text) + '\'');
-        return value;
-    }
-    double real(const std::string& name) const { return number<double>(name, "must be a finite number"); }
-    Vec3 vector(const std::string& x, const std::string& y, const std::string& z) const
-    {
-        return {real(x), real(y), real(z)};
-    }
-};
+const bool registered = io::Registry<FillType>::add(
+    {.name = "csv",
+     .schema =
+         {.description = "The particles of a CSV table.",
+          .parts = {"fill_keys"},
+          .keys =
+              {{"file",
+                "CSV file with the particles. A relative path refers to the working directory of the "
+                "program. "
+                "The first line has the column names. Columns x, y, z and radius (m) are required; vx, vy, "
+                "vz "
+                "(m/s), omega_x, omega_y, omega_z (rad/s), e0, e1, e2, e3 and material (number of the "
+                "material, "
+                "counted from 0) are optional; others are ignored. The file particles.csv of a run has this "
+                "format.",
+                R"("type": "string", "examples": ["out/bed/particles.csv"])", true}},
+          .example = R"("file": "out/bed/particles.csv")"},
+     .read = read_table});
 
 }  // namespace
 
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file)
 {
     std::vector<Particle> all;
-    std::vector<std::string_view> names;
-    long line = 0;
-    for (std::size_t from = 0; from < text.size(); ++line) {
-        const std::size_t to = std::min(text.find('\n', from), text.size());
-        const std::string_view here = trimmed(std::string_view(text).substr(from, to - from));
-        from = to + 1;
-        if (here.empty()) continue;
-        if (names.empty()) {
-            names = cells(here);
-            for (auto name = names.begin(); name != names.end(); ++name)
-                if (std::find(names.begin(), name, *name) != name)
-                    throw io::InvalidInput(file + ':' + std::to_string(line + 1) +
-                                           ": two columns have the same name, got '" + std::string(*name) +
-                                           '\'');
-            continue;
-        }
-        const Row row{names, cells(here), file + ':' + std::to_string(line + 1)};
-        if (row.cell.size() != names.size())
-            throw io::InvalidInput(row.place + ": the number of cells must be that of the column names, " +
-                                   std::to_string(names.size()) + ", got " + std::to_string(row.cell.size()));
-        Particle p;
-        p.r = row.vector("x", "y", "z"), p.radius = row.real("radius");
-        if (!(p.radius > 0))
-            throw io::InvalidInput(row.place + ": radius must be positive, got " + std::to_string(p.radius));
-        if (row.has("material")) p.material = row.number<int>("material", "must be the number of a material");
-        if (row.has("vx")) p.v = row.vector("vx", "vy", "vz");
-        if (row.has("omega_x")) p.omega = row.vector("omega_x", "omega_y", "omega_z");
-        if (row.has("e0")) p.e = {row.real("e0"), row.real("e1"), row.real("e2"), row.real("e3")};
-        all.push_back(p);
-    }
+    io::read_csv(text, file, [&](const io::CsvRow& row) { all.push_back(particle(row)); });
     if (all.empty()) throw io::InvalidInput(file + ": contains no particles");
     return all;
 }

@@ -9,19 +9,20 @@ namespace hilda::granular {
 
 namespace {
 
-/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it
+/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it. The texts and
+/// examples are for the schema.
 class LawKeys {
 public:
-    LawKeys(ObjectReader& own, ObjectReader& pair, const Material& i, const Material& j, bool material_normal)
-        : i(i), j(j), own(own), pair(pair), of_materials(material_normal)
+    LawKeys(ObjectReader& own, ObjectReader& pair, const Material& i, const Material& j, const PairLaw& law)
+        : i(i), j(j), own(own), pair(pair), law(law)
     {}
 
-    float positive(const char* key) { return static_cast<float>(own.positive(key)); }
-    float not_negative(const char* key, float default_value = 0)
+    float positive(const char* key, const char*, double) { return static_cast<float>(own.positive(key)); }
+    float not_negative(const char* key, double default_value, const char*, double)
     {
         return static_cast<float>(own.not_negative(key, default_value));
     }
-    int flag(const char* key) { return own.flag(key, false) ? 1 : 0; }
+    int flag(const char* key, const char*) { return own.flag(key, false) ? 1 : 0; }
     double restitution()
     {
         constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
@@ -34,33 +35,14 @@ public:
     float kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
     /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
     /// then does so too
-    bool material_normal() const { return of_materials; }
+    bool material_normal() const { return law.normal.is<Hertz>(); }
 
     const Material &i, &j;
 
 private:
     ObjectReader &own, &pair;
-    bool of_materials;
+    const PairLaw& law;
 };
-
-template <class... Laws>
-std::vector<std::string> names(const AnyOf<Laws...>&)
-{
-    return {Laws::name...};
-}
-
-template <class Laws>
-Laws read_law(ObjectReader& pair, const char* kind, const char* default_value, const Material& i,
-              const Material& j, bool material_normal)
-{
-    static const io::JsonSource none("{}", "");
-    ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");
-    LawKeys keys(own, pair, i, j, material_normal);
-    Laws law;
-    law.read(own.one_of("law", names(law), default_value), keys);
-    own.finish();
-    return law;
-}
 
 }  // namespace
 
@@ -98,12 +80,15 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
     for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
     PairLaw law;
-    law.normal = read_law<NormalLaws>(pair, "normal", "hertz", i, j, true);
-    const bool material_stiffness = law.normal.is<Hertz>();
-    law.tangential = read_law<TangentialLaws>(pair, "tangential", "none", i, j, material_stiffness);
-    law.rolling = read_law<RollingLaws>(pair, "rolling", "none", i, j, material_stiffness);
-    law.spin = read_law<SpinLaws>(pair, "spin", "none", i, j, material_stiffness);
-    law.cohesion = read_law<CohesionLaws>(pair, "cohesion", "none", i, j, material_stiffness);
+    for_each_kind([&]<class Laws>(const char* kind, const char* standard, Laws PairLaw::*member) {
+        static const io::JsonSource none("{}", "");
+        ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");
+        std::vector<std::string> names;
+        Laws::for_each([&](const auto& known) { names.emplace_back(known.name); });
+        LawKeys keys(own, pair, i, j, law);
+        (law.*member).read(own.one_of("law", names, standard), keys);
+        own.finish();
+    });
     const bool spring = !law.tangential.is<NoFriction>();
     const bool has_rotational_spring =
         !(law.rolling.is<NoRolling>() || law.rolling.is<ConstantTorque>()) || !law.spin.is<NoSpin>();

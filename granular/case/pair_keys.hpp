@@ -20,4 +20,16 @@ std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>&
 PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j,
                   std::vector<std::string>& notices);
 
+/// Calls f(key of the case, name of the default law, member of PairLaw) for each kind of law. The normal law is the
+/// first, because others depend on it.
+template <class F>
+void for_each_kind(const F& f)
+{
+    f("normal", "hertz", &PairLaw::normal);
+    f("tangential", "none", &PairLaw::tangential);
+    f("rolling", "none", &PairLaw::rolling);
+    f("spin", "none", &PairLaw::spin);
+    f("cohesion", "none", &PairLaw::cohesion);
+}
+
 }  // namespace hilda::granular

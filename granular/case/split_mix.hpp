@@ -4,6 +4,9 @@
 
 #pragma once
 
+#include "granular/backend/real.hpp"
+
+#include <cmath>
 #include <cstdint>
 
 namespace hilda::granular {
@@ -19,6 +22,25 @@ struct SplitMix {
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
         return z ^ (z >> 31);
     }
+};
+
+/// A sequence of random numbers
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state(seed) {}
+    double number()  ///< uniform in [0, 1)
+    {
+        return static_cast<double>(SplitMix::mixed(state += SplitMix::step) >> 11) * 0x1p-53;
+    }
+    double number(double low, double high) { return low + (high - low) * number(); }
+    Vec<double> direction()
+    {
+        const double z = number(-1, 1), angle = number(0, 2 * M_PI), across = std::sqrt(1 - z * z);
+        return {across * std::cos(angle), across * std::sin(angle), z};
+    }
+
+private:
+    std::uint64_t state;
 };
 
 }  // namespace hilda::granular

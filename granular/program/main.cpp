@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The program hilda-granular: runs a granular case or a validation. It is separate from hilda because it may
+/// The program hilda-granular: runs a granular case or a validation, or prints the schema of cases. It is separate from hilda because it may
 /// link the CUDA runtime, which must not be linked with GSL.
 
+#include "granular/case/case_schema.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
@@ -10,6 +11,7 @@
 #include "io/program.hpp"
 
 #include <omp.h>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -39,11 +41,16 @@ int run_program(int argc, char** argv)
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
     const Validation* const validation = find_validation(o.file);
-    if (validation != nullptr && !o.case_only_option.empty())
+    const bool schema = o.file == "schema" && !std::filesystem::exists(o.file);
+    if ((validation != nullptr || schema) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
-                             " is a validation");
+                             (schema ? " is a command" : " is a validation"));
     if (o.full && validation == nullptr && std::filesystem::exists(o.file))
         throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
+    if (schema) {
+        std::puts(io::written(case_schema()).c_str());
+        return io::exit_code::done;
+    }
     try {
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();

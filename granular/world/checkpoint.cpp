@@ -16,7 +16,6 @@ namespace {
 constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 6};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
-bool finite(const Vec3& a) { return std::isfinite(a.x + a.y + a.z); }
 template <class Array>
 bool all_finite(const Array& list)
 {

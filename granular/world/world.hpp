@@ -10,6 +10,7 @@
 #include "io/error.hpp"
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -23,6 +24,8 @@ class Archive;
 }
 
 namespace hilda::granular {
+
+inline bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// A particle has left the domain, has moved by more than a cell in one step, or has a velocity that is not
 /// finite. Do not continue the run: the step may be computed in part only.

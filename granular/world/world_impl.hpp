@@ -28,8 +28,6 @@ template <class Value>
     throw io::InvalidInput(text.str());
 }
 
-inline bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 inline double sphere_mass(double radius, double density)
 {
     return 4.0 / 3 * M_PI * radius * radius * radius * density;

@@ -13,6 +13,9 @@ namespace hilda::granular {
 ///     F_c = const.,    independent of the overlap
 struct ConstantCohesion {
     static constexpr const char* name = "constant";
+    static constexpr const char* description =
+        "Constant attractive force F_c while the bodies touch (Fang 2022, introduction of Ch. 6).";
+    static constexpr const char* example = R"("F_c": 1e-6)";
 
     float F_c = 0;  ///< attraction [N]
 
@@ -24,7 +27,7 @@ struct ConstantCohesion {
     template <class Keys>
     static ConstantCohesion read(Keys& keys)
     {
-        return {.F_c = keys.not_negative("F_c")};
+        return {.F_c = keys.not_negative("F_c", 0, "Force F_c [N].", 1e-6)};
     }
 };
 

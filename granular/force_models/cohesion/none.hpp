@@ -9,6 +9,7 @@ namespace hilda::granular {
 
 struct NoCohesion {
     static constexpr const char* name = "none";
+    static constexpr const char* description = "No cohesion.";
 
     template <class R>
     HILDA_HD R operator()(const ContactPoint<R>&) const

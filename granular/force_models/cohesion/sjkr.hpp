@@ -13,6 +13,9 @@ namespace hilda::granular {
 /// overlapping spheres, which some programs use, has twice this area.
 struct Sjkr {
     static constexpr const char* name = "sjkr";
+    static constexpr const char* description =
+        "Simplified Johnson-Kendall-Roberts law: F_c = k A with the contact area A = pi R* delta.";
+    static constexpr const char* example = R"("k": 1000)";
 
     float k = 0;  ///< [J/m³]
 
@@ -24,7 +27,7 @@ struct Sjkr {
     template <class Keys>
     static Sjkr read(Keys& keys)
     {
-        return {.k = keys.not_negative("k")};
+        return {.k = keys.not_negative("k", 0, "Cohesion energy density k [J/m^3].", 1000)};
     }
 };
 

@@ -15,6 +15,9 @@ namespace hilda::granular {
 /// rebound to impact velocity is 0.25 for e = 0.1 and 0.55 for e = 0.5.
 struct Hertz {
     static constexpr const char* name = "hertz";
+    static constexpr const char* description =
+        "Hertzian contact with damping (Fang 2022, Eq. 2.42): F = 2/3 S delta + c sqrt(m* S) "
+        "deltadot with S = 2 E* sqrt(R* delta) and c from the coefficient of restitution.";
 
     float E_eff = 0;  ///< effective modulus E* [Pa]
     float c = 0;      ///< damping coefficient [-]; see damping()
@@ -32,7 +35,9 @@ struct Hertz {
     static Hertz read(Keys& keys)
     {
         Hertz law = of_materials(keys.i, keys.j, keys.restitution());
-        law.clamped = keys.flag("clamped");
+        law.clamped = keys.flag("clamped",
+                                "If true, the normal force is never tensile. The restitution is then higher "
+                                "than the value given: 0.25 for e = 0.1, 0.55 for e = 0.5.");
         return law;
     }
     static Hertz of_materials(const Material& i, const Material& j, double restitution)

@@ -12,6 +12,9 @@ namespace hilda::granular {
 /// γ_n is a rate; the damping constant of Eq. 2.41 is γ_n m*.
 struct Hooke {
     static constexpr const char* name = "hooke";
+    static constexpr const char* description =
+        "Linear spring and damper (Fang 2022, Eq. 2.41): F = k_n delta + gamma_n m* deltadot.";
+    static constexpr const char* example = R"("k_n": 1e4, "gamma_n": 10)";
 
     float k_n = 0;      ///< [N/m]
     float gamma_n = 0;  ///< [1/s]
@@ -27,9 +30,10 @@ struct Hooke {
     template <class Keys>
     static Hooke read(Keys& keys)
     {
-        return {.k_n = keys.positive("k_n"),
-                .gamma_n = keys.not_negative("gamma_n"),
-                .clamped = keys.flag("clamped")};
+        return {.k_n = keys.positive("k_n", "Normal stiffness k_n [N/m].", 1e4),
+                .gamma_n = keys.not_negative("gamma_n", 0,
+                                             "Normal damping coefficient per effective mass [1/s].", 10),
+                .clamped = keys.flag("clamped", "If true, the normal force is never tensile.")};
     }
 };
 

@@ -14,6 +14,10 @@ namespace hilda::granular {
 /// for prescribed stiffnesses.
 struct ScaledHooke {
     static constexpr const char* name = "scaled-hooke";
+    static constexpr const char* description =
+        "Linear law scaled by sqrt(delta/R), where R is the larger of the two radii (Fang 2022, "
+        "Eq. 2.42): F = sqrt(delta/R) (k_n delta + gamma_n m* deltadot).";
+    static constexpr const char* example = R"("k_n": 1e4, "gamma_n": 10)";
 
     float k_n = 0;      ///< [N/m]; F/δ at δ = R
     float gamma_n = 0;  ///< [1/s]
@@ -30,9 +34,10 @@ struct ScaledHooke {
     template <class Keys>
     static ScaledHooke read(Keys& keys)
     {
-        return {.k_n = keys.positive("k_n"),
-                .gamma_n = keys.not_negative("gamma_n"),
-                .clamped = keys.flag("clamped")};
+        return {.k_n = keys.positive("k_n", "Normal stiffness k_n [N/m] at delta = R.", 1e4),
+                .gamma_n = keys.not_negative("gamma_n", 0,
+                                             "Normal damping coefficient per effective mass [1/s].", 10),
+                .clamped = keys.flag("clamped", "If true, the normal force is never tensile.")};
     }
 };
 

@@ -18,6 +18,10 @@ namespace hilda::granular {
 /// zero until the contact has the age `after`.
 struct ConstantTorque {
     static constexpr const char* name = "constant-torque";
+    static constexpr const char* description =
+        "Torque of constant magnitude mu_r R* |F_n| that opposes the relative angular velocity "
+        "(Fang 2022, Eq. 2.48).";
+    static constexpr const char* example = R"("mu_r": 0.05)";
 
     float mu_r = 0;       ///< coefficient of rolling friction
     float slow = 0;       ///< angular velocity below which the torque is regularised [rad/s]
@@ -41,10 +45,16 @@ struct ConstantTorque {
     template <class Keys>
     static ConstantTorque read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r"),
-                .slow = keys.not_negative("slow", 1e-4f),
-                .after = keys.not_negative("after", 0.f),
-                .half_radius = keys.flag("half_radius")};
+        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+                .slow = keys.not_negative(
+                    "slow", 1e-4,
+                    "Relative angular velocity below which the torque is proportional to it [rad/s].", 0.001),
+                .after = keys.not_negative("after", 0, "Age of the contact from which the torque acts [s].",
+                                           0.001),
+                .half_radius = keys.flag(
+                    "half_radius",
+                    "If true, the lever arm is half of the larger radius instead of R*. The two differ for "
+                    "contacts with a boundary only, or between particles of different size.")};
     }
 };
 

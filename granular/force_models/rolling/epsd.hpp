@@ -15,6 +15,11 @@ namespace hilda::granular {
 /// sphere about a point of its surface, with m* and R*.
 struct Epsd {
     static constexpr const char* name = "epsd";
+    static constexpr const char* description =
+        "Elastic-plastic spring and damper on the relative rolling rotation (Fang 2022, Sec. "
+        "2.2.1.4). The elastic torque is at most mu_r R* |F_n|. It requires a tangential law "
+        "other than none.";
+    static constexpr const char* example = R"("mu_r": 0.05, "eta_r": 0.3)";
 
     float mu_r = 0, eta_r = 0;  ///< coefficient of rolling friction, damping ratio
 
@@ -36,7 +41,9 @@ struct Epsd {
     template <class Keys>
     static Epsd read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r"), .eta_r = keys.not_negative("eta_r")};
+        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+                .eta_r = keys.not_negative(
+                    "eta_r", 0, "Damping of the rolling spring as a fraction of critical damping [-].", 0.3)};
     }
 };
 

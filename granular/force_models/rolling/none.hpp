@@ -9,6 +9,7 @@ namespace hilda::granular {
 
 struct NoRolling {
     static constexpr const char* name = "none";
+    static constexpr const char* description = "No rolling resistance.";
 
     template <class R>
     HILDA_HD Vec<R> operator()(const ContactPoint<R>&, const NormalForce<R>&, R, History<R>&) const

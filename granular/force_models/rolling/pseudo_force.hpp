@@ -14,6 +14,10 @@ namespace hilda::granular {
 /// depend on the direction of n; M does not.
 struct PseudoForce {
     static constexpr const char* name = "pseudo-force";
+    static constexpr const char* description =
+        "Elastic-plastic pseudo-force on the objective rolling displacement (Fang 2022, Sec. "
+        "2.2.1.4), bounded by mu_r |F_n|. It requires a tangential law other than none.";
+    static constexpr const char* example = R"("mu_r": 0.05, "k_r": 2, "eta_r": 0.3)";
 
     float mu_r = 0;   ///< coefficient of rolling friction
     float k_r = 0;    ///< ratio of the stiffness to that of the tangential spring
@@ -37,9 +41,11 @@ struct PseudoForce {
     template <class Keys>
     static PseudoForce read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r"),
-                .k_r = keys.not_negative("k_r", 1.f),
-                .eta_r = keys.not_negative("eta_r", 0.f)};
+        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+                .k_r = keys.not_negative(
+                    "k_r", 1, "Rolling stiffness as a multiple of the tangential stiffness [-].", 2),
+                .eta_r = keys.not_negative(
+                    "eta_r", 0, "Damping of the rolling spring as a fraction of critical damping [-].", 0.3)};
     }
 };
 

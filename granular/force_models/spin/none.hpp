@@ -9,6 +9,7 @@ namespace hilda::granular {
 
 struct NoSpin {
     static constexpr const char* name = "none";
+    static constexpr const char* description = "No spin resistance.";
 
     template <class R>
     HILDA_HD R operator()(const ContactPoint<R>&, const NormalForce<R>&, R, R, History<R>&) const

@@ -14,6 +14,10 @@ namespace hilda::granular {
 /// holds for the sum of spring and dashpot; at the bound the angle is computed back from M.
 struct TorsionalSpring {
     static constexpr const char* name = "torsional-spring";
+    static constexpr const char* description =
+        "Torsional spring and damper about the normal (Fang 2022, Eq. 2.51). The torque is at "
+        "most 2/3 mu |F_n| a with the contact radius a = sqrt(R* delta). It requires a tangential "
+        "law other than none.";
 
     float mu = 0;  ///< coefficient of kinetic friction
 

@@ -12,6 +12,9 @@ namespace hilda::granular {
 ///     F_t = -min(γ_t |v_t|, μ_k |F_n|) v_t/|v_t|
 struct Coulomb {
     static constexpr const char* name = "coulomb";
+    static constexpr const char* description =
+        "Viscous tangential force bounded by mu F_n, without a spring. It has no static regime: a "
+        "body on an incline creeps.";
 
     TangentialSpring spring = {};
     float mu_k = 0;  ///< coefficient of kinetic friction

@@ -19,6 +19,9 @@ namespace hilda::granular {
 /// Before each step u is rotated into the tangent plane; see to_tangent_plane().
 struct Mindlin {
     static constexpr const char* name = "mindlin";
+    static constexpr const char* description =
+        "Tangential spring and damper with the elastic displacement as a history variable (Fang "
+        "2022, Eqs. 2.45 to 2.47). The Coulomb bound applies to the sum of spring and damper.";
 
     TangentialSpring spring = {};
     Cap cap = {};

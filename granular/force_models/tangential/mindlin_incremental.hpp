@@ -17,6 +17,9 @@ namespace hilda::granular {
 /// energy.
 struct MindlinIncremental {
     static constexpr const char* name = "mindlin-incremental";
+    static constexpr const char* description =
+        "Tangential spring and damper with the elastic force as a history variable (Fang 2022, "
+        "Eq. 2.44). The elastic force decreases with the stiffness when the contact is unloaded.";
 
     TangentialSpring spring = {};
     Cap cap = {};

@@ -9,6 +9,7 @@ namespace hilda::granular {
 
 struct NoFriction {
     static constexpr const char* name = "none";
+    static constexpr const char* description = "No tangential force.";
 
     template <class R>
     HILDA_HD Vec<R> operator()(const ContactPoint<R>&, const NormalForce<R>&, History<R>&) const

@@ -36,7 +36,16 @@ struct TangentialSpring {
     static TangentialSpring read(Keys& keys)
     {
         if (!keys.material_normal())
-            return {.k_t = keys.positive("k_t"), .c = 0, .gamma_t = keys.not_negative("gamma_t")};
+            return {.k_t = keys.positive(
+                        "k_t",
+                        "Tangential stiffness k_t [N/m]. Required with the normal laws hooke and "
+                        "scaled-hooke; not allowed with hertz, which uses 8 G*.",
+                        1e4),
+                    .c = 0,
+                    .gamma_t = keys.not_negative("gamma_t", 0,
+                                                 "Tangential damping coefficient per effective mass [1/s]. "
+                                                 "Not allowed with the normal law hertz.",
+                                                 3)};
         return of_materials(keys.i, keys.j, keys.restitution());
     }
     static TangentialSpring of_materials(const Material& i, const Material& j, double restitution)

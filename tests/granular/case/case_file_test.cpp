@@ -238,7 +238,7 @@ TEST_CASE("errors in a case are reported with their place and value", "[granular
         {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key \"mu\""},
         {"/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: k_n must be positive, got -1"},
         {"/boundaries/0/type", "wall",
-         "/boundaries/0/type: unknown type \"wall\"; allowed: plane, box, cylinder, cone, sphere"},
+         "/boundaries/0/type: unknown type \"wall\"; allowed: box, cone, cylinder, plane, sphere"},
         {"/boundaries/0/normal",
          {0, 0, 0},
          "/boundaries/0/normal: normal must have a direction, got [0, 0, 0]"},
@@ -528,7 +528,7 @@ TEST_CASE("a run can start from the particle table of another run", "[granular][
     io::write_file(file, table + "1,2\n");
     CHECK_THAT(refusal(c.dump()),
                Catch::StartsWith("file: /fill/0/file: " + file + ':') &&
-                   Catch::Contains("the number of cells must be that of the column names"));
+                   Catch::Contains("a row must have a field for each of the 16 columns, got 2"));
     std::remove(file.c_str());
     CHECK_THAT(refusal(c.dump()), Catch::StartsWith("file: /fill/0/file: " + file + ": does not exist"));
 }
@@ -541,11 +541,11 @@ TEST_CASE("an invalid particle table is rejected with its line", "[granular][fil
         {"x,y,radius\n1,2,3\n", "t:2: missing column z"},
         {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
         {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
-        {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1.000000"},
+        {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1"},
         {"x,y,x,z,radius\n1,2,3,4,1\n", "t:1: two columns have the same name, got 'x'"},
         {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: missing column vy"},
         {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be the number of a material, got '0.5'"},
-        {"x,y,z,radius\n1,2,3\n", "t:2: the number of cells must be that of the column names, 4, got 3"}};
+        {"x,y,z,radius\n1,2,3\n", "t:2: a row must have a field for each of the 4 columns, got 3"}};
     for (const auto& [table, message] : wrong)
         CHECK_THROWS_WITH(granular::particles_of_csv(table, "t"), message);
     const auto all = granular::particles_of_csv("\r\n radius , z,y,x,colour\r\n1, 4,3 ,2,red\r\n", "t");
@@ -555,13 +555,11 @@ TEST_CASE("an invalid particle table is rejected with its line", "[granular][fil
 
 TEST_CASE("particles of a fill do not overlap and are within its box", "[granular][fill]")
 {
-    const auto kind = GENERATE(granular::FillSpec::Type::lattice, granular::FillSpec::Type::hcp,
-                               granular::FillSpec::Type::poisson);
+    const std::string type = GENERATE("lattice", "hcp", "poisson");
     granular::FillSpec f;
-    f.type = kind;
+    f.type = io::Registry<granular::FillType>::find(type);
     f.low = {0, 0, 0}, f.high = {0.02, 0.02, 0.02};
-    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (kind == granular::FillSpec::Type::hcp ? 1 : 1.05),
-    f.jitter = 1;
+    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (type == "hcp" ? 1 : 1.05), f.jitter = 1;
     const auto all = granular::fill(f);
     for (std::size_t i = 0; i < all.size(); ++i) {
         for (const double c : {all[i].r.x, all[i].r.y, all[i].r.z}) REQUIRE((c >= 1e-3 && c <= 0.019));
@@ -569,9 +567,7 @@ TEST_CASE("particles of a fill do not overlap and are within its box", "[granula
             REQUIRE((all[i].r - all[j].r).norm() > 2e-3 * (1 - 1e-12));
     }
     const double packing = static_cast<double>(all.size()) * 4 / 3 * M_PI * 1e-9 / 8e-6;
-    CHECK(packing > (kind == granular::FillSpec::Type::hcp       ? 0.55
-                     : kind == granular::FillSpec::Type::lattice ? 0.37
-                                                                 : 0.2));
+    CHECK(packing > (type == "hcp" ? 0.55 : type == "lattice" ? 0.37 : 0.2));
     CHECK(granular::fill(f)[5].r == all[5].r);
     // alternate rows and layers of a crystal may have one particle less
     CHECK(granular::estimated_count(f) == Approx(double(all.size())).epsilon(0.12));

@@ -9,8 +9,7 @@
 
 namespace hilda::io {
 
-/// Writes a text to stderr. Errors of stderr (closed, or redirected to a full disk) are ignored; fmt::print
-/// would throw.
+/// Writes a text to stderr. Errors of stderr (closed, or redirected to a full disk) are ignored.
 inline void message(const std::string& text) noexcept
 {
     std::fputs(text.c_str(), stderr);

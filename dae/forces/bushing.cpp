@@ -81,7 +81,7 @@ const TypeSchema schema = {
 
 Vec3 not_negative(ObjectReader& o, const char* key, const std::optional<Vec3>& fallback = {})
 {
-    const Vec3 k = o.vec3(key, fallback);
+    Vec3 k = o.vec3(key, fallback);
     if (!(k.minCoeff() >= 0))
         o.fail(key, std::string(key) + " must not have negative components, got " + described(*o.find(key)));
     return k;

@@ -18,12 +18,10 @@ using lie::Vec3;
 /// Number of the fixed body at the origin. Constraints and forces may refer to it. It has no equations.
 inline constexpr int ground = -1;
 
-/// Motion of body b in the state x. The ground is at rest at the origin.
-inline const Motion& motion(const State& x, int b)
-{
-    static const Motion at_rest;
-    return b == ground ? at_rest : x.body[b];
-}
+inline const Motion motion_of_ground;  ///< at rest at the origin
+
+/// Motion of body b in the state x
+inline const Motion& motion(const State& x, int b) { return b == ground ? motion_of_ground : x.body[b]; }
 
 /// Velocity of the material point of a body at this arm from the centre of mass, global frame [m/s]
 inline Vec3 velocity_at(const Motion& body, const Vec3& arm)

@@ -77,6 +77,12 @@ public:
                 mode(c, x),
                 &x.lambda};
     }
+    /// The same for a row of a joint, which has no algebraic variables and is always active
+    static Constraint::Arguments arguments(const Block& row, const State& x)
+    {
+        return {motion(x, row.i), motion(x, row.j), x.t, nullptr,
+                x.internal_state.data() + row.first_internal_state};
+    }
     /// Whether a constraint is switched off. Its rows are then zero.
     static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
     /// Mode of a constraint, see Constraint::may_be_inactive()

@@ -31,11 +31,10 @@ using Mat63 = Eigen::Matrix<double, 6, 3>;
 class FullyImplicit1Exact final : public BackwardEulerStep {
 public:
     FullyImplicit1Exact(const System& model, const Settings& settings)
-        : BackwardEulerStep(model, settings, "rA-full-1-exact"), H(C), dF(model.load_pattern()),
-          J_r(model.bodies())
+        : BackwardEulerStep(model, settings, "rA-full-1-exact"), H(C), dF(model.load_pattern()), J_r(bodies)
     {
-        const int m = 6 * model.bodies();
-        for (int i = 0; i < model.bodies(); ++i) body_at.push_back(N.declare(6 * i, 6 * i, 6, 6));
+        const int m = 6 * bodies;
+        for (int i = 0; i < bodies; ++i) body_at.push_back(N.declare(6 * i, 6 * i, 6, 6));
         for (int k = 0; k < C.rows(); ++k)
             for (int a = C.start[k]; a < C.start[k + 1]; ++a) {
                 const int i = 6 * C.entry[a].body;
@@ -66,11 +65,11 @@ private:
         model.load_variation(x, dF);
         N.set_zero();
         Mat6 block = Mat6::Zero();
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Motion& body = x.body[i];
-            const Mat3& J_bar = model.mass().J_bar[i];
+            const Mat3& J_bar = mass.J_bar[i];
             J_r[i] = right_jacobian(h * body.omega_bar);
-            block.topLeftCorner<3, 3>() = model.mass().m[i] * Mat3::Identity();
+            block.topLeftCorner<3, 3>() = mass.m[i] * Mat3::Identity();
             block.bottomRightCorner<3, 3>() =
                 J_bar + h * (tilde(body.omega_bar) * J_bar - tilde(J_bar * body.omega_bar));
             N.add(body_at[i], block);

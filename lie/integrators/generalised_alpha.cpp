@@ -38,7 +38,7 @@ namespace {
 class GeneralisedAlpha final : public SaddleStep {
 public:
     GeneralisedAlpha(const System& model, const Settings& settings)
-        : SaddleStep(model, settings), C(model.pattern()), a_n(6 * model.bodies()), a_next(a_n)
+        : SaddleStep(model, settings), C(model.pattern()), a_n(6 * bodies), a_next(a_n)
     {
         const double rho = settings.rho_infinity;
         if (!(rho >= 0 && rho <= 1)) reject("rA-genalpha", "rho_infinity must be from 0 to 1", rho);
@@ -93,7 +93,7 @@ private:
         K.assemble(ahead);
         set_load_terms(model, K, ahead, loads, e);
         K.solve(e);
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
             a_n.segment<6>(6 * i) +=
                 (alpha_m - alpha_f) * (e.segment<6>(6 * i) - a_n.segment<6>(6 * i)).eval();
@@ -103,7 +103,7 @@ private:
     /// The state x at t_{n+1}, and a_{n+1}, from z
     void place(State& x, double h)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             using Vec6 = Eigen::Matrix<double, 6, 1>;
             const Motion& from = x_n.body[i];
             Motion& body = x.body[i];

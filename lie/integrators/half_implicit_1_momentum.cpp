@@ -34,7 +34,7 @@ namespace {
 class HalfImplicit1Momentum final : public LeapfrogStep {
 public:
     HalfImplicit1Momentum(const System& model, const Settings& settings)
-        : LeapfrogStep(model, settings, "rA-half-1-momentum"), mean_difference(6 * model.bodies())
+        : LeapfrogStep(model, settings, "rA-half-1-momentum"), mean_difference(6 * bodies)
     {
         mean_difference.setZero();
     }
@@ -44,7 +44,7 @@ private:
     Vec3 half_kick_back(int i, double h) const override
     {
         const Motion& body = x_n.body[i];
-        const Mat3& J_bar = model.mass().J_bar[i];
+        const Mat3& J_bar = mass.J_bar[i];
         const Vec3 H = J_bar * body.omega_bar,
                    target = h * H - 0.5 * h * h * (J_bar * body.omegadot_bar + body.omega_bar.cross(H));
         Vec3 theta = J_bar_inverse[i] * target;
@@ -93,7 +93,7 @@ private:
     /// alternating error of O(h) in the multipliers.
     void set_nonholonomic_residual()
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Vec3 theta = z.segment<3>(6 * i + 3), before = h * velocity(i).tail<3>();
             mean_difference.segment<3>(6 * i + 3) =
                 J_bar_inverse[i] * (momentum(i, theta) - momentum(i, -before)) - theta - before;

@@ -26,7 +26,7 @@ namespace {
 class HalfImplicit2 final : public HalfImplicitStep {
 public:
     HalfImplicit2(const System& model, const Settings& settings)
-        : HalfImplicitStep(model, settings, "rA-half-2", 1.5, 2), A_hat(model.bodies())
+        : HalfImplicitStep(model, settings, "rA-half-2", 1.5, 2), A_hat(bodies)
     {}
 
 private:
@@ -34,13 +34,12 @@ private:
     void begin(double h) override
     {
         half_h = 0.5 * h;
-        for (int i = 0; i < model.bodies(); ++i)
-            A_hat[i] = x_n.body[i].A * exp(half_h * x_n.body[i].omega_bar);
+        for (int i = 0; i < bodies; ++i) A_hat[i] = x_n.body[i].A * exp(half_h * x_n.body[i].omega_bar);
     }
 
     void place(State& x) const override
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             x.body[i].r = x_n.body[i].r + half_h * x_n.body[i].rdot + 0.5 * z.segment<3>(6 * i);
             x.body[i].A = A_hat[i] * exp(0.5 * z.segment<3>(6 * i + 3));  // Eq. 3.45
         }

@@ -43,8 +43,8 @@ private:
             increments = x_n.history;
             return;
         }
-        increments.resize(6 * model.bodies());
-        for (int i = 0; i < model.bodies(); ++i) {
+        increments.resize(6 * bodies);
+        for (int i = 0; i < bodies; ++i) {
             const Motion& body = x_n.body[i];
             increments.segment<6>(6 * i) << h * body.rdot - 0.5 * h * h * body.rddot,
                 h * body.omega_bar - 0.5 * h * h * body.omegadot_bar;
@@ -56,7 +56,7 @@ private:
 
     void place(State& x) const override
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Vec6 d = advance(i);
             x.body[i].r = x_n.body[i].r + d.head<3>();
             x.body[i].A = x_n.body[i].A * exp(d.tail<3>());
@@ -66,7 +66,7 @@ private:
     void leave(State& x, double h) override
     {
         HalfImplicitStep::leave(x, h);
-        for (int i = 0; i < model.bodies(); ++i) increments.segment<6>(6 * i) = advance(i);
+        for (int i = 0; i < bodies; ++i) increments.segment<6>(6 * i) = advance(i);
         x.history = increments;
     }
 

@@ -63,11 +63,10 @@ private:
     void set_known_part(double h)
     {
         model.loads(x_n, loads);
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Motion& body = x_n.body[i];
-            b.segment<3>(6 * i) = h * model.mass().m[i] * body.rdot + 0.5 * h * h * loads.F[i];
-            b.segment<3>(6 * i + 3) =
-                h * (model.mass().J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
+            b.segment<3>(6 * i) = h * mass.m[i] * body.rdot + 0.5 * h * h * loads.F[i];
+            b.segment<3>(6 * i + 3) = h * (mass.J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
         }
         K.constraint_part(b).setZero();
         K.algebraic_part(b).setZero();
@@ -83,13 +82,13 @@ private:
     /// The second half step: ṙ, ω̄ at t_{n+1}
     void set_velocities(State& x, double h)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             x.body[i].rdot = 2 / h * z.segment<3>(6 * i) - x_n.body[i].rdot;
             x.body[i].omega_bar = 2 / h * z.segment<3>(6 * i + 3) - x_n.body[i].omega_bar;
         }
         model.loads(x, loads);
-        for (int i = 0; i < model.bodies(); ++i) {
-            e.segment<3>(6 * i) = model.mass().m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
+        for (int i = 0; i < bodies; ++i) {
+            e.segment<3>(6 * i) = mass.m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
             e.segment<3>(6 * i + 3) = -momentum(i, -z.segment<3>(6 * i + 3)) / h + 0.5 * h * loads.n_bar[i];
         }
         assemble_once(x);

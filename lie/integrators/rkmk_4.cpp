@@ -24,8 +24,7 @@ namespace {
 class Rkmk4 final : public NodeStep {
 public:
     Rkmk4(const System& model, const Settings& settings)
-        : NodeStep(model, settings), sum(12 * model.bodies()), slope(12 * model.bodies()),
-          theta(3 * model.bodies())
+        : NodeStep(model, settings), sum(12 * bodies), slope(12 * bodies), theta(3 * bodies)
     {}
 
     int step(State& x, double h) override
@@ -61,7 +60,7 @@ private:
     /// d/dt (r, θ, ṙ, ω̄) of the stage x
     void set_slope(const State& x)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Motion& body = x.body[i];
             slope.segment<12>(12 * i) << body.rdot,
                 right_jacobian_inverse(theta.segment<3>(3 * i)) * body.omega_bar, body.rddot,
@@ -72,7 +71,7 @@ private:
     /// x = x_n advanced by h times the slopes `by`
     void place(State& x, double h, const Eigen::VectorXd& by)
     {
-        for (int i = 0; i < model.bodies(); ++i) {
+        for (int i = 0; i < bodies; ++i) {
             const Motion& from = x_n.body[i];
             Motion& body = x.body[i];
             const Vec12 d = h * by.segment<12>(12 * i);

@@ -10,7 +10,7 @@ namespace hilda::lie {
 BackwardEulerStep::BackwardEulerStep(const System& model, const Settings& settings, std::string name)
     : NewtonStep(model, settings), C(model.pattern()), name(std::move(name))
 {
-    z.resize(6 * model.bodies() + model.rows() + C.algebraic_variables());
+    z.resize(6 * bodies + model.rows() + C.algebraic_variables());
     e.resize(z.size());
 }
 
@@ -39,7 +39,7 @@ int BackwardEulerStep::step(State& x, double h)
 /// The state x at t_{n+1} from z (Eq. 3.19)
 void BackwardEulerStep::place(State& x, double h) const
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Motion& from = x_n.body[i];
         Motion& body = x.body[i];
         body.rddot = z.segment<3>(6 * i);
@@ -50,7 +50,7 @@ void BackwardEulerStep::place(State& x, double h) const
         body.A = from.A * exp(h * body.omega_bar);
     }
     place_algebraic(x, h * h);
-    x.lambda = z.segment(6 * model.bodies(), model.rows());
+    x.lambda = z.segment(6 * bodies, model.rows());
 }
 
 /// The residual e in the state x (Eq. 3.20)

@@ -51,7 +51,7 @@ HalfImplicitStep::Vec6 HalfImplicitStep::velocity(int i) const
 
 void HalfImplicitStep::leave(State& x, double h)
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         x.body[i].rdot = z.segment<3>(6 * i) / h;
         x.body[i].omega_bar = z.segment<3>(6 * i + 3) / h;
     }
@@ -59,7 +59,7 @@ void HalfImplicitStep::leave(State& x, double h)
 
 Vec3 HalfImplicitStep::known_moment(int i, double h) const
 {
-    return h * (model.mass().J_bar[i] * (velocity(i).tail<3>() - (w - 1) * h * x_n.body[i].omegadot_bar)) +
+    return h * (mass.J_bar[i] * (velocity(i).tail<3>() - (w - 1) * h * x_n.body[i].omegadot_bar)) +
            w * h * h * tau_bar(i, node().body[i]);
 }
 
@@ -90,10 +90,9 @@ int HalfImplicitStep::solve(State& x)
 void HalfImplicitStep::set_known_part(double h)
 {
     model.loads(node(), loads);
-    for (int i = 0; i < model.bodies(); ++i) {
-        b.segment<3>(6 * i) =
-            h * model.mass().m[i] * (velocity(i).head<3>() - (w - 1) * h * x_n.body[i].rddot) +
-            w * h * h * loads.F[i];
+    for (int i = 0; i < bodies; ++i) {
+        b.segment<3>(6 * i) = h * mass.m[i] * (velocity(i).head<3>() - (w - 1) * h * x_n.body[i].rddot) +
+                              w * h * h * loads.F[i];
         b.segment<3>(6 * i + 3) = known_moment(i, h);
     }
     K.constraint_part(b).setZero();
@@ -106,7 +105,7 @@ void HalfImplicitStep::set_known_part(double h)
 /// velocities half a step before and after t_n.
 void HalfImplicitStep::set_nonholonomic_part(double h)
 {
-    for (int i = 0; i < model.bodies(); ++i) z.segment<6>(6 * i) = h * velocity(i);
+    for (int i = 0; i < bodies; ++i) z.segment<6>(6 * i) = h * velocity(i);
     model.nu(x_n, K.constraint_part(e));
     const Rows& C = K.rows();
     for (int k = C.position_rows(); k < C.rows(); ++k)
@@ -116,7 +115,7 @@ void HalfImplicitStep::set_nonholonomic_part(double h)
 /// Initial guess from the accelerations and multipliers of the previous step                         Eq. 3.34
 void HalfImplicitStep::predict(double h)
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Motion& body = x_n.body[i];
         z.segment<6>(6 * i) = h * velocity(i);
         z.segment<3>(6 * i) += h * h * body.rddot;
@@ -130,7 +129,7 @@ void HalfImplicitStep::predict(double h)
 double HalfImplicitStep::length()
 {
     double sum = K.algebraic_part(e).squaredNorm() / (q * q);
-    for (int i = 0; i < model.bodies(); ++i)
+    for (int i = 0; i < bodies; ++i)
         sum += e.segment<3>(6 * i).squaredNorm() / (q * q) + e.segment<3>(6 * i + 3).squaredNorm();
     return std::sqrt(sum);
 }
@@ -150,10 +149,10 @@ void HalfImplicitStep::accept(State& x, double h)
     x.lambda = K.constraint_part(z) / (w * h * h);
     b.setZero();
     rows_of_node().add_transpose(1, x.lambda, b);
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         Motion& body = x.body[i];
         body.A = orthonormalised(body.A);
-        body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / model.mass().m[i];  // Eqs. 3.24, 3.39
+        body.rddot = (loads.F[i] - b.segment<3>(6 * i)) / mass.m[i];  // Eqs. 3.24, 3.39
         body.omegadot_bar = J_bar_inverse[i] * (tau_bar(i, node().body[i]) - b.segment<3>(6 * i + 3));
     }
     leave(x, h);

@@ -14,7 +14,7 @@ LeapfrogStep::LeapfrogStep(const System& model, const Settings& settings, std::s
 void LeapfrogStep::fill_node(State& node, const State& after) const
 {
     take_loads(node, after);
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Vec6 before = earlier(after.history, i), behind = later(after.history, i);
         node.body[i].rdot = 0.5 * (before + behind).head<3>();
         node.body[i].omega_bar = between(i, before.tail<3>(), behind.tail<3>(), after.t - node.t);
@@ -42,7 +42,7 @@ void LeapfrogStep::begin(double h)
 
 void LeapfrogStep::leave(State& x, double h)
 {
-    const int half = 6 * model.bodies();
+    const int half = 6 * bodies;
     half_steps.tail(half) = half_steps.head(half);
     half_steps.head(half) = z.head(half) / h;
     x.history = half_steps;
@@ -56,17 +56,17 @@ LeapfrogStep::Vec6 LeapfrogStep::later(const Eigen::VectorXd& half_steps, int i)
 
 LeapfrogStep::Vec6 LeapfrogStep::earlier(const Eigen::VectorXd& half_steps, int i) const
 {
-    return half_steps.segment<6>(6 * (model.bodies() + i));
+    return half_steps.segment<6>(6 * (bodies + i));
 }
 
 /// The history at a start
 void LeapfrogStep::half_kick(double h)
 {
-    half_steps.resize(12 * model.bodies());
-    for (int i = 0; i < model.bodies(); ++i) {
+    half_steps.resize(12 * bodies);
+    for (int i = 0; i < bodies; ++i) {
         const Motion& body = x_n.body[i];
         half_steps.segment<6>(6 * i) << body.rdot - 0.5 * h * body.rddot, half_kick_back(i, h);
-        half_steps.segment<6>(6 * (model.bodies() + i)) << body.rdot - 1.5 * h * body.rddot,
+        half_steps.segment<6>(6 * (bodies + i)) << body.rdot - 1.5 * h * body.rddot,
             body.omega_bar - 1.5 * h * body.omegadot_bar;
     }
 }
@@ -75,7 +75,7 @@ void LeapfrogStep::half_kick(double h)
 /// velocities
 void LeapfrogStep::extrapolate(State& x) const
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Vec6 v = 1.5 * later(half_steps, i) - 0.5 * earlier(half_steps, i);
         x.body[i].rdot = v.head<3>();
         x.body[i].omega_bar = v.tail<3>();

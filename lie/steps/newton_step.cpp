@@ -17,9 +17,9 @@
 namespace hilda::lie {
 
 NewtonStep::NewtonStep(const System& model, const Settings& settings)
-    : model(model), settings(settings), loads(model.bodies())
+    : model(model), mass(model.mass()), bodies(model.bodies()), settings(settings), loads(bodies)
 {
-    for (const Mat3& J_bar : model.mass().J_bar) J_bar_inverse.push_back(J_bar.inverse());
+    for (const Mat3& J_bar : mass.J_bar) J_bar_inverse.push_back(J_bar.inverse());
     set_rounding_mass();
 }
 
@@ -30,12 +30,12 @@ NewtonStep::Attempt::~Attempt()
 
 Vec3 NewtonStep::tau_bar(int i, const Motion& body) const
 {
-    return loads.tau_bar(i, model.mass().J_bar[i], body.omega_bar);
+    return loads.tau_bar(i, mass.J_bar[i], body.omega_bar);
 }
 
 void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Motion& body = x_n.body[i];
         z.segment<6>(6 * i) << by_v * body.rdot + by_vdot * body.rddot,
             by_v * body.omega_bar + by_vdot * body.omegadot_bar;
@@ -46,7 +46,7 @@ void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
 
 void NewtonStep::place_increments(State& x) const
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         x.body[i].r = x_n.body[i].r + z.segment<3>(6 * i);
         x.body[i].A = x_n.body[i].A * exp(z.segment<3>(6 * i + 3));
     }
@@ -54,6 +54,7 @@ void NewtonStep::place_increments(State& x) const
 
 void NewtonStep::place_algebraic(State& x, double factor) const
 {
+    if (x_n.alpha.size() == 0) return;
     x.alpha = x_n.alpha;
     const Rows& C = model.pattern();
     move_algebraic(C, x, z.tail(C.algebraic_variables()), factor);
@@ -63,10 +64,10 @@ void NewtonStep::set_motion_residual(const State& x, Rows& C)
 {
     model.loads(x, loads);
     model.variation(x, C);
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Motion& body = x.body[i];
-        e.segment<3>(6 * i) = model.mass().m[i] * body.rddot - loads.F[i];
-        e.segment<3>(6 * i + 3) = model.mass().J_bar[i] * body.omegadot_bar - tau_bar(i, body);
+        e.segment<3>(6 * i) = mass.m[i] * body.rddot - loads.F[i];
+        e.segment<3>(6 * i + 3) = mass.J_bar[i] * body.omegadot_bar - tau_bar(i, body);
     }
     C.add_transpose(1, x.lambda, e);
     algebraic_part(e).setZero();
@@ -75,7 +76,7 @@ void NewtonStep::set_motion_residual(const State& x, Rows& C)
 
 double NewtonStep::length_of_motion(Eigen::VectorXd& e) const
 {
-    return std::sqrt(e.head(6 * model.bodies()).squaredNorm() + algebraic_part(e).squaredNorm());
+    return std::sqrt(e.head(6 * bodies).squaredNorm() + algebraic_part(e).squaredNorm());
 }
 
 bool NewtonStep::converged(int k, double motion, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -92,7 +93,7 @@ bool NewtonStep::converged(int k, double motion, const Eigen::Ref<const Eigen::V
         if (!(std::abs(change) < ulp * rounding_mass[row])) sum += change * change;
     }
     const double before = correction;
-    correction = std::sqrt(sum / std::max(1.0, model.bodies() / 4.0));
+    correction = std::sqrt(sum / std::max(1.0, bodies / 4.0));
     if (correction < std::max(settings.tolerance, 4 * ulp)) return true;
     return k > 2 && correction > 0.5 * before && correction < 1e3 * ulp;
 }
@@ -108,7 +109,7 @@ void NewtonStep::take_loads(State& node, const State& after)
 
 void NewtonStep::refuse_whole_turns(const State& x, double h, const std::string& scheme) const
 {
-    for (int i = 0; i < model.bodies(); ++i)
+    for (int i = 0; i < bodies; ++i)
         if (const double angle = h * x.body[i].omega_bar.norm(); !(angle < std::numbers::pi)) {
             std::ostringstream what;
             what.precision(3);
@@ -146,7 +147,7 @@ void NewtonStep::set_rounding_mass()
 {
     const Rows& C = model.pattern();
     // Union-find: bodies that rows connect form a group, represented by one of them.
-    std::vector<int> group(model.bodies());
+    std::vector<int> group(bodies);
     std::iota(group.begin(), group.end(), 0);
     const auto first = [&](int b) {
         while (group[b] != b) b = group[b] = group[group[b]];
@@ -155,11 +156,11 @@ void NewtonStep::set_rounding_mass()
     for (int k = 0; k < C.rows(); ++k)
         for (int n = C.start[k] + 1; n < C.start[k + 1]; ++n)
             group[first(C.entry[n].body)] = first(C.entry[n - 1].body);
-    std::vector<double> mass(model.bodies());
-    for (int b = 0; b < model.bodies(); ++b) mass[first(b)] += model.mass().m[b];
+    std::vector<double> group_mass(bodies);
+    for (int b = 0; b < bodies; ++b) group_mass[first(b)] += mass.m[b];
     rounding_mass.setZero(C.rows());
     for (int k = 0; k < C.rows(); ++k)
-        if (C.start[k] < C.start[k + 1]) rounding_mass[k] = 4 * mass[first(C.entry[C.start[k]].body)];
+        if (C.start[k] < C.start[k + 1]) rounding_mass[k] = 4 * group_mass[first(C.entry[C.start[k]].body)];
     // Rows of an algebraic group without a body have the value of the other rows.
     for (const Rows::AlgebraicGroup& algebraic : C.algebraic) {
         auto of_rows = rounding_mass.segment(algebraic.first, algebraic.rows);

@@ -52,11 +52,11 @@ protected:
     void set_motion_residual(const State& x, Rows& C);
     Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const
     {
-        return z.segment(6 * model.bodies(), model.rows());
+        return z.segment(6 * bodies, model.rows());
     }
     Eigen::VectorBlock<Eigen::VectorXd> algebraic_part(Eigen::VectorXd& z) const
     {
-        return z.tail(z.size() - 6 * model.bodies() - model.rows());
+        return z.tail(z.size() - 6 * bodies - model.rows());
     }
     /// Euclidean norm of the components of the bodies and of the algebraic variables
     double length_of_motion(Eigen::VectorXd& e) const;
@@ -102,6 +102,8 @@ protected:
     }
 
     const System& model;
+    const Mass& mass;  ///< of the model; the functions of System are virtual
+    const int bodies;
     const Settings settings;
     Loads loads;
     State x_n;              ///< the state at the beginning of the step

@@ -32,21 +32,21 @@ void SaddleStep::set_constraint_residual(int k, const State& x, double factor)
 
 Vec3 SaddleStep::momentum(int i, const Vec3& theta) const
 {
-    return right_jacobian_inverse(theta) * (model.mass().J_bar[i] * theta);
+    return right_jacobian_inverse(theta) * (mass.J_bar[i] * theta);
 }
 
 void SaddleStep::balance_momentum()
 {
-    for (int i = 0; i < model.bodies(); ++i) {
+    for (int i = 0; i < bodies; ++i) {
         const Vec3 theta = z.segment<3>(6 * i + 3);
-        e.segment<3>(6 * i + 3) -= momentum(i, theta) - model.mass().J_bar[i] * theta;
+        e.segment<3>(6 * i + 3) -= momentum(i, theta) - mass.J_bar[i] * theta;
     }
 }
 
 Eigen::VectorBlock<Eigen::VectorXd> SaddleStep::velocity_part(Eigen::VectorXd& z) const
 {
     const Eigen::Index rows = nonholonomic_residual.size();
-    return z.segment(6 * model.bodies() + model.rows() - rows, rows);
+    return z.segment(6 * bodies + model.rows() - rows, rows);
 }
 
 }  // namespace hilda::lie

@@ -257,3 +257,17 @@ TEST_CASE("a stop pushes back beyond its range only, and never pulls", "[dae][fo
     CHECK(stop.potential(2.1) == Approx(0.05));
     CHECK(stop.potential(0) == 0);
 }
+
+TEST_CASE("a distance limit without a direction ends the run with its name", "[dae][forces]")
+{
+    State x;
+    x.body.resize(2);
+    lie::Loads loads(2);
+    const auto add = [&](const Stop& stop) {
+        loads.set_zero();
+        DistanceLimit(0, O, 1, O, stop).add(x, loads);
+    };
+    CHECK_NOTHROW(add(Stop{.maximum = 0.5, .stiffness = 40}));
+    CHECK(loads.F[0].norm() == 0);
+    CHECK_THROWS_AS(add(Stop{.minimum = 0.1, .stiffness = 40}), lie::NonFinite);
+}

@@ -72,3 +72,5 @@ Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optio
 }
 
 }  // namespace hilda::contact
+
+template class hilda::io::Registry<hilda::contact::SurfaceType>;

@@ -26,6 +26,12 @@ struct SurfaceType {
     std::string z = {};
 };
 
+}  // namespace hilda::contact
+
+extern template class hilda::io::Registry<hilda::contact::SurfaceType>;
+
+namespace hilda::contact {
+
 /// Reads the shape under a key, such as
 ///
 ///     {"type": "sphere", "radius": 0.2, "concave": false, "position": [x, y, z], "A": [[...], [...], [...]]}

@@ -69,3 +69,6 @@ bool register_contact_reader(ReadContact read)
 ReadContact contact_reader() { return registered(); }
 
 }  // namespace hilda::dae
+
+template class hilda::io::Registry<hilda::dae::ConstraintType>;
+template class hilda::io::Registry<hilda::dae::ForceType>;

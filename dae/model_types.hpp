@@ -55,6 +55,13 @@ struct ForceType {
     std::unique_ptr<Force> (*read)(ObjectReader& o, const BodyFinder& bodies, const State& x);
 };
 
+}  // namespace hilda::dae
+
+extern template class hilda::io::Registry<hilda::dae::ConstraintType>;
+extern template class hilda::io::Registry<hilda::dae::ForceType>;
+
+namespace hilda::dae {
+
 /// The function f(t) given by a key. f, ḟ and f̈ must be finite at t = 0.
 Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {});
 

@@ -19,21 +19,14 @@ namespace hilda::io {
 ///     const bool registered = io::Registry<JointType>::add({.name = "screw", .read = read_screw});
 ///
 /// The order in which files are initialised has no effect on the list.
+///
+/// An entry that many files register is declared in its header by `extern template class io::Registry<Entry>;`
+/// and instantiated in one .cpp file, so that add() is compiled once.
 template <class Entry>
 class Registry {
 public:
     /// Adds an entry and returns true. Throws std::logic_error if an entry with this name exists.
-    static bool add(Entry entry)
-    {
-        std::vector<Entry>& list = entries();
-        const auto at = std::lower_bound(list.begin(), list.end(), entry,
-                                         [](const Entry& a, const Entry& b) { return a.name < b.name; });
-        if (at != list.end() && at->name == entry.name)
-            throw std::logic_error("two entries of a list are registered under the name " +
-                                   std::string(entry.name));
-        list.insert(at, std::move(entry));
-        return true;
-    }
+    static bool add(Entry entry);
 
     static const std::vector<Entry>& all() { return entries(); }
 
@@ -61,5 +54,18 @@ private:
         return list;
     }
 };
+
+template <class Entry>
+bool Registry<Entry>::add(Entry entry)
+{
+    std::vector<Entry>& list = entries();
+    const auto at = std::lower_bound(list.begin(), list.end(), entry,
+                                     [](const Entry& a, const Entry& b) { return a.name < b.name; });
+    if (at != list.end() && at->name == entry.name)
+        throw std::logic_error("two entries of a list are registered under the name " +
+                               std::string(entry.name));
+    list.insert(at, std::move(entry));
+    return true;
+}
 
 }  // namespace hilda::io

@@ -33,3 +33,5 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
 }
 
 }  // namespace hilda::lie
+
+template class hilda::io::Registry<hilda::lie::Scheme>;

@@ -38,6 +38,12 @@ struct Scheme {
     std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
 };
 
+}  // namespace hilda::lie
+
+extern template class hilda::io::Registry<hilda::lie::Scheme>;
+
+namespace hilda::lie {
+
 /// All schemes, sorted by name
 inline const std::vector<Scheme>& schemes() { return io::Registry<Scheme>::all(); }
 

@@ -118,3 +118,5 @@ const FrictionLaw& friction_law(const std::string& name)
 }
 
 }  // namespace hilda::contact
+
+template class hilda::io::Registry<hilda::contact::FrictionLaw>;

@@ -147,6 +147,13 @@ struct FrictionLaw {
     std::shared_ptr<const FrictionModel> (*read)(dae::ObjectReader& o, FrictionParameters p,
                                                  const NormalLaw& normal) = nullptr;
 };
+
+}  // namespace hilda::contact
+
+extern template class hilda::io::Registry<hilda::contact::FrictionLaw>;
+
+namespace hilda::contact {
+
 /// For FrictionLaw::make: the constructor Law(const FrictionParameters&)
 template <class Law>
 std::shared_ptr<const FrictionModel> make_law(const FrictionParameters& p)

@@ -43,3 +43,5 @@ Problem problem(const std::string& name)
 }
 
 }  // namespace hilda::studies
+
+template class hilda::io::Registry<hilda::studies::Problem>;

@@ -39,6 +39,12 @@ struct Problem {
     Observable observable;                 ///< scalar shown in figures
 };
 
+}  // namespace hilda::studies
+
+extern template class hilda::io::Registry<hilda::studies::Problem>;
+
+namespace hilda::studies {
+
 /// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. n_pendulum represents the family n_pendulum_N.
 inline const std::vector<Problem>& problems() { return io::Registry<Problem>::all(); }
 

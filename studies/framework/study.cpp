@@ -31,3 +31,5 @@ bool register_studies(Maker make)
 }
 
 }  // namespace hilda::studies
+
+template class hilda::io::Registry<hilda::studies::Study>;

@@ -81,6 +81,12 @@ struct Study {
     std::function<void(StudyContext&)> run = {};  ///< the experiment: fills the results of the context
 };
 
+}  // namespace hilda::studies
+
+extern template class hilda::io::Registry<hilda::studies::Study>;
+
+namespace hilda::studies {
+
 /// All registered studies, sorted by name. A file adds one by io::Registry<Study>::add.
 const std::vector<Study>& studies();
 /// Adds a function that makes studies from another registry. It is called by the first call of studies(),

@@ -24,12 +24,23 @@ extern "C" void record_signal(int signal)
     signal_caught = signal;
 }
 
+// Text of EndOnSignal. A signal handler must not allocate.
+char last_message[4096];
+std::size_t last_message_length = 0;
+
+extern "C" void end_with_message(int signal)
+{
+    if (last_message_length > 0 && write(STDERR_FILENO, last_message, last_message_length) < 0) {
+    }
+    _exit(128 + signal);
+}
+
 void handle(void (*handler)(int))
 {
     struct sigaction action {};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
-    for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
@@ -66,6 +77,14 @@ void Verbosity::log(const std::string& what) const
 
 Interrupt::Interrupt() { handle(record_signal); }
 Interrupt::~Interrupt() { handle(SIG_DFL); }
+EndOnSignal::EndOnSignal(const std::string& message)
+{
+    const std::string line = "hilda: " + message + '\n';
+    last_message_length = message.empty() ? 0 : line.copy(last_message, sizeof last_message);
+    handle(end_with_message);
+}
+EndOnSignal::~EndOnSignal() { handle(SIG_DFL); }
+
 int Interrupt::caught() { return signal_caught; }
 
 }  // namespace hilda::io

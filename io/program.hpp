@@ -27,10 +27,10 @@ struct Verbosity {
     void log(const std::string& what) const;
 };
 
-/// Handling of SIGINT (Ctrl-C) and SIGTERM: the first signal requests the end of the run, the second
+/// Handling of SIGINT (Ctrl-C), SIGTERM and SIGHUP (end of the terminal): the first signal requests the end of the run, the second
 /// terminates the process.
 ///
-/// During the lifetime of an object of this class, the first SIGINT or SIGTERM is recorded and does not end
+/// During the lifetime of an object of this class, the first of these signals is recorded and does not end
 /// the program.
 class Interrupt {
 public:
@@ -41,6 +41,17 @@ public:
 
     /// Number of the recorded signal, or 0
     static int caught();
+};
+
+/// During the lifetime of an object of this class, SIGINT, SIGTERM and SIGHUP end the process at once, with the line
+/// "hilda: MESSAGE" on stderr and the exit code 128 + signal. For programs whose files are complete at any time.
+class EndOnSignal {
+public:
+    /// "": no message
+    explicit EndOnSignal(const std::string& message);
+    ~EndOnSignal();
+    EndOnSignal(const EndOnSignal&) = delete;
+    EndOnSignal& operator=(const EndOnSignal&) = delete;
 };
 
 }  // namespace hilda::io

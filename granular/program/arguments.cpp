@@ -103,7 +103,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_flag("-v,--verbose", o.verbose, "report steps, checkpoints and resumption on stderr");
     app.footer(
         "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 invalid case, 4 numerical failure,\n"
-        "5 input/output, 6 a check of a validation failed, 7 device not available, 130/143 interrupted.");
+        "5 input/output, 6 a check of a validation failed, 7 device not available, 129/130/143 interrupted.");
     try {
         app.parse(argc, argv);
         if (o.force && o.resume) throw io::UsageError("--force and --resume exclude each other");

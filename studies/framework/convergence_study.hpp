@@ -16,6 +16,12 @@ struct ErrorRun : Run {
     std::vector<char> at_floor = {};  ///< the error does not depend on the step any more: not in the fit
     int instants = 0;                 ///< number of compared instants
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes
+
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        a.list(error), a.list(at_floor), a.value(instants), a.value(constraint_norm), a.value(orthogonality);
+    }
 };
 
 /// The runs of one scheme on one benchmark, in descending order of the step: see series_of

@@ -54,6 +54,15 @@ Curve::Extremum Curve::extremum(size_t row, const std::string& name, double h) c
     return {t(row) + offset * h, b - (a - c) * (a - c) / (8 * curvature)};
 }
 
+void Curve::transfer(io::Archive& a)
+{
+    size_t count = columns.size();
+    a.count(count, sizeof(size_t));
+    columns.resize(count);
+    for (std::string& column : columns) a.list(column);
+    a.list(values);
+}
+
 CurveTable::CurveTable(std::vector<std::string> keys, const std::vector<std::string>& columns)
 {
     keys.insert(keys.end(), columns.begin(), columns.end());

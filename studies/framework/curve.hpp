@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/archive.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/framework/table.hpp"
 
@@ -41,6 +42,9 @@ public:
         double t, value;
     };
     Extremum extremum(size_t row, const std::string& name, double h) const;
+
+    /// Writes or reads the curve.
+    void transfer(io::Archive& a);
 
     std::vector<std::string> columns;
 

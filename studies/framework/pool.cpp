@@ -2,6 +2,7 @@
 #include "studies/framework/pool.hpp"
 
 #include "io/progress.hpp"
+#include "studies/running/finished_jobs.hpp"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,22 @@ void Pool::run(const std::function<void(long)>& job) const
     line.clear();
     for (const std::exception_ptr& e : thrown)
         if (e) std::rethrow_exception(e);
+}
+
+void Pool::run(const std::function<void(long)>& job,
+               const std::function<void(io::Archive&, long)>& transfer) const
+{
+    if (finished == nullptr) {
+        run(job);
+        return;
+    }
+    const long pool = finished->next_pool();
+    run([&](long k) {
+        const auto result = [&](io::Archive& a) { transfer(a, k); };
+        if (finished->restore({pool, k}, result)) return;
+        job(k);
+        finished->keep({pool, k}, result);
+    });
 }
 
 }  // namespace hilda::studies

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/archive.hpp"
 #include "io/json.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
@@ -22,6 +23,9 @@ struct Run {
     lie::Statistics statistics;
     double seconds = 0;  ///< thread CPU time of the integration [s]
     std::string status = "ok", message;
+
+    /// Writes or reads the results. A derived type adds its own: see Sweep.
+    void transfer(io::Archive& a) { a.value(statistics), a.value(seconds), a.list(status), a.list(message); }
 
     bool failed() const { return status != "ok"; }
     /// "h = 1e-3 s" or "rtol = 1e-6"

@@ -66,10 +66,15 @@ void time_in_turn(const StudyContext& study, const std::vector<TimedRun*>& runs)
     const int repeats = study.options.repeats;
     const size_t count = runs.size();
     for (TimedRun* run : runs) run->repeat.assign(run->failed() ? 0 : repeats, 0);
-    study.pool(count * repeats).run([&](long k) {
-        TimedRun& run = *runs[k % count];
-        if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, study.options.settings);
-    });
+    study.pool(count * repeats)
+        .run(
+            [&](long k) {
+                TimedRun& run = *runs[k % count];
+                if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, study.options.settings);
+            },
+            [&](io::Archive& a, long k) {
+                if (!runs[k % count]->failed()) a.value(runs[k % count]->repeat[k / count]);
+            });
 }
 
 Exponent exponent(const std::vector<double>& x, const std::vector<double>& y)

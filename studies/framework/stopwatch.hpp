@@ -19,6 +19,8 @@ struct TimedRun : Run {
     std::vector<double> repeat;   ///< thread CPU time of each integration [s]; empty if the run failed
     double ratio = std::nan("");  ///< of the time to that of a baseline, see set_ratios
 
+    /// Without the repeats, whose results time_in_turn() transfers
+    void transfer(io::Archive& a) { Run::transfer(a); }
     Spread seconds_of_repeats() const { return spread(repeat); }
     /// Time of a step [µs]
     Spread microseconds() const;

@@ -45,9 +45,10 @@ struct StudyOptions {
 
     std::string output;  ///< existing output directory; "": no files (--json without --output)
     int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
-    bool check = false;  ///< evaluate all acceptance criteria; exit code 6 if one fails
-    bool all = false;    ///< the complete default selection of a study that has a short one
-    bool force = false;  ///< accept a non-empty directory and a reference solution that is too coarse
+    bool check = false;   ///< evaluate all acceptance criteria; exit code 6 if one fails
+    bool all = false;     ///< the complete default selection of a study that has a short one
+    bool force = false;   ///< accept a non-empty directory and a reference solution that is too coarse
+    bool resume = false;  ///< continue the interrupted study of the output directory
     bool plot = true, quiet = false, json = false;
     std::vector<Expectation> expect;
     std::string command_line;  ///< recorded in study.json

@@ -5,6 +5,7 @@
 #include "io/files.hpp"
 #include "io/message.hpp"
 #include "io/nearest.hpp"
+#include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 
@@ -12,9 +13,62 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 namespace hilda::studies {
+
+namespace {
+
+template <class Value>
+std::string joined(const std::vector<Value>& list)
+{
+    return fmt::format("{}", fmt::join(list, ","));
+}
+template <class Value>
+std::string text_of(const std::optional<Value>& value)
+{
+    return value ? fmt::format("{}", *value) : "";
+}
+
+/// The options on which the rows of a study depend, with the contents of its files
+FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
+{
+    FinishedJobs::Identity all = {
+        {"study", study},
+        {"version of the program", version_line()},
+        {"--problem", joined(o.problems)},
+        {"--integrator", joined(o.integrators)},
+        {"--steps", joined(o.steps)},
+        {"--rtols", joined(o.rtols)},
+        {"--bars", joined(o.bars)},
+        {"--end", text_of(o.end)},
+        {"--set", joined(o.set)},
+        {"--reference", o.reference},
+        {"--reference-step", text_of(o.reference_step)},
+        {"--reference-rtol", text_of(o.reference_rtol)},
+        {"--preset", o.preset},
+        {"--normal-rows", o.normal_rows},
+        {"--grid", o.grid},
+        {"--vtk", std::to_string(o.vtk)},
+        {"--repeats", std::to_string(o.repeats)},
+        {"--seed", std::to_string(o.seed)},
+        {"--check", o.check ? "yes" : "no"},
+        {"--all", o.all ? "yes" : "no"},
+        {"numerical settings",
+         fmt::format("tolerance {}, linear solver {}, rho-infinity {}, reparametrise {}, rtol {}, atol {}",
+                     o.settings.tolerance, static_cast<int>(o.settings.linear_solver),
+                     o.settings.rho_infinity, o.settings.reparametrise, o.settings.rtol, o.settings.atol)}};
+    constexpr size_t most = 64 << 20;  // as for a model file
+    for (const std::string& problem : o.problems)
+        if (is_model_path(problem) && std::filesystem::exists(problem)) {
+            const std::string text = io::read_file(problem, most);
+            all["content of " + problem] = std::to_string(io::checksum(text.data(), text.size()));
+        }
+    return all;
+}
+
+}  // namespace
 
 StudyContext::StudyContext(const Study& study, const StudyOptions& options)
     : name(study.name), keys(study.keys), options(options)
@@ -28,6 +82,11 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options)
     }
     if (options.vtk > 0 && options.output.empty())
         refuse("--vtk writes files: with --json it needs --output");
+    if (!options.output.empty())
+        finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume);
+    if (options.resume && !options.quiet)
+        io::message(
+            fmt::format("hilda: {} finished jobs are read from {}\n", finished->count(), options.output));
 }
 
 void StudyContext::refuse(const std::string& what) const
@@ -97,7 +156,8 @@ std::vector<Benchmark> StudyContext::benchmarks(const std::vector<std::string>& 
 
 Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) const
 {
-    return {threads > 0 ? threads : options.jobs, options.quiet ? "" : name + label, static_cast<long>(jobs)};
+    return {threads > 0 ? threads : options.jobs, options.quiet ? "" : name + label, static_cast<long>(jobs),
+            finished.get()};
 }
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
@@ -195,6 +255,7 @@ int StudyContext::finish()
     else if (!options.quiet)
         std::cout << text.str() << failed_runs;
     if (!options.output.empty()) write(all);
+    if (finished) finished->remove();
     if (!all_failed.empty()) {
         io::message(all_failed);
         return io::exit_code::numerical_failure;

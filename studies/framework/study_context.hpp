@@ -10,9 +10,11 @@
 #include "studies/framework/pool.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
+#include "studies/running/finished_jobs.hpp"
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -28,7 +30,8 @@ struct Measured {
 
 class StudyContext {
 public:
-    /// io::UsageError for a key of --expect that the study does not have, and for --vtk without a directory
+    /// Opens the file of the finished jobs in the output directory. io::UsageError for a key of --expect that the study
+    /// does not have, for --vtk without a directory, and for --resume with other options than the interrupted study.
     StudyContext(const Study& study, const StudyOptions& options);
 
     const std::string& name;
@@ -56,6 +59,7 @@ public:
                                       const DefaultEnd& end = end_of_model) const;
     /// A pool with this number of threads, or that of --jobs, whose progress line shows the name of the study and
     /// the label
+    /// Results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
 
     // Results
@@ -92,7 +96,8 @@ private:
     void write(const io::Json& whole_json) const;
     bool as_expected() const;
 
-    std::string failed_runs, all_failed;  ///< texts; empty if no run, or not all runs failed
+    std::string failed_runs, all_failed;     ///< texts; empty if no run, or not all runs failed
+    std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory
 };
 
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known

@@ -9,10 +9,12 @@
 #include "studies/framework/study_context.hpp"
 
 #include <numeric>
+#include <type_traits>
 
 namespace hilda::studies {
 
 /// Rows of parameters and results. Run, or a class derived from it, has the parameters benchmark, scheme and step.
+/// Row::transfer(io::Archive&) writes or reads the results of a row, so that an interrupted study can be resumed.
 template <class Row>
 class Sweep : public std::vector<Row> {
 public:
@@ -41,13 +43,17 @@ public:
         std::iota(queue.begin(), queue.end(), 0);
         std::stable_sort(queue.begin(), queue.end(),
                          [&](size_t a, size_t b) { return (*this)[a].h < (*this)[b].h; });
-        study.pool(this->size(), label).run([&](long k) { compute_row((*this)[queue[k]], job); });
+        study.pool(this->size(), label)
+            .run([&](long k) { compute_row((*this)[queue[k]], job); },
+                 [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); });
     }
     /// The same, one row after the other, for studies that measure time
     template <class Job>
     void compute_in_turn(const StudyContext& study, const Job& job)
     {
-        study.pool(this->size(), "", 1).run([&](long k) { compute_row((*this)[k], job); });
+        study.pool(this->size(), "", 1)
+            .run([&](long k) { compute_row((*this)[k], job); },
+                 [&](io::Archive& a, long k) { transfer(a, (*this)[k]); });
     }
 
     std::vector<const Row*> of(const Benchmark& c) const
@@ -56,6 +62,13 @@ public:
     }
 
 private:
+    // With the function of a base class a resumed study would have rows without the results of Row.
+    static void transfer(io::Archive& a, Row& row)
+    {
+        static_assert(std::is_same_v<decltype(&Row::transfer), void (Row::*)(io::Archive&)>,
+                      "a row of a study has a member function void transfer(io::Archive&) of its own");
+        row.transfer(a);
+    }
     template <class Job>
     static void compute_row(Row& row, const Job& job)
     {

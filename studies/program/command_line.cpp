@@ -11,6 +11,7 @@
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/running/plot.hpp"
+#include "studies/running/provenance.hpp"
 #include "studies/running/sink.hpp"
 
 #include "io/nearest.hpp"
@@ -40,7 +41,7 @@ public:
             "A model is the path of a model file or the name of a built-in model (see hilda models).\n"
             "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 invalid model or input file,\n"
             "4 numerical failure, 5 input/output, 6 --expect or --check failed, 7 not available,\n"
-            "130/143 interrupted.");
+            "129/130/143 interrupted.");
         add_run();
         add_check();
         add_models();
@@ -277,8 +278,11 @@ private:
                append(o.set, one_setting));
         add_settings(c, o.settings);
         value(c, "--output", "DIR",
-              "output directory, new or empty unless --force is given; default: out/KIND",
+              "output directory, new or empty unless --force or --resume is given; default: out/KIND",
               assign(o.output, io::path));
+        c->add_flag("--resume", o.resume,
+                    "continue the interrupted study in the output directory; its finished runs are not "
+                    "computed again");
         value(c, "--reference", "NAME",
               "integrator of the reference solution; default: the reference solution of each problem",
               assign(o.reference, integrator));

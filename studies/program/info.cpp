@@ -33,8 +33,6 @@ constexpr const char* devices = "CPU; hilda does not use GPUs (see hilda granula
 
 }  // namespace
 
-std::string version_line() { return fmt::format("hilda {} ({})", version::number, version::git); }
-
 int info(bool json, const std::string& command_line)
 {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());

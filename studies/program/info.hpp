@@ -7,9 +7,6 @@
 
 namespace hilda::studies {
 
-/// Name, version and git state of the program, in one line
-std::string version_line();
-
 /// Prints version, build, libraries, system and processor; returns the exit code.
 int info(bool json, const std::string& command_line);
 

@@ -63,10 +63,20 @@ int run_study(const std::string& kind, StudyOptions options)
     if (options.jobs == 0)
         options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json) options.output = "out/" + kind;
+    if (options.resume && options.output.empty())
+        throw io::UsageError("study " + kind + ": --resume needs the --output of the interrupted study");
+    if (options.resume && options.force)
+        throw io::UsageError("study " + kind + ": --force and --resume exclude each other");
     if (!options.output.empty()) {
-        io::check_output_directory(options.output, options.force, io::force_overwrites);
+        io::check_output_directory(
+            options.output, options.force || options.resume,
+            FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
         io::make_directory(options.output);
     }
+    const io::EndOnSignal end_on_signal(options.output.empty()
+                                            ? ""
+                                            : "interrupted; the finished runs are kept in " + options.output +
+                                                  ", the same command with --resume continues");
     try {
         StudyContext context(study, options);
         study.run(context);

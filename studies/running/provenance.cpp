@@ -21,6 +21,8 @@ std::vector<std::pair<std::string, std::string>> libraries()
         {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)}};
 }
 
+std::string version_line() { return fmt::format("hilda {} ({})", version::number, version::git); }
+
 io::Json provenance(const std::string& command_line, int threads)
 {
     return io::provenance(

@@ -13,6 +13,8 @@ namespace hilda::studies {
 
 /// Name and version of each library
 std::vector<std::pair<std::string, std::string>> libraries();
+/// "hilda 0.1.0 (7734a36)": version and git state of the program
+std::string version_line();
 /// Version, git state, compiler and flags, libraries, command line, processor and number of threads
 io::Json provenance(const std::string& command_line, int threads);
 

@@ -14,6 +14,12 @@ namespace {
 
 struct InvariantsRun : Run {
     double residual = 0, orthogonality = 0;
+
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        a.value(residual), a.value(orthogonality);
+    }
 };
 
 /// Updates the largest values of a run at each node.

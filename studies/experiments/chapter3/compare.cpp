@@ -27,6 +27,16 @@ struct ComparedRun : Run {
     std::vector<lie::State> row;  ///< at the instants; fewer if the run failed
     std::vector<Difference> difference;
     std::array<double, 4> largest{}, last{};
+
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        size_t rows = row.size();
+        a.count(rows, sizeof(double));
+        row.resize(rows);
+        for (lie::State& x : row) a.value(x.t), a.list(x.body);
+        a.list(difference), a.value(largest), a.value(last);
+    }
 };
 
 /// The instants of compare.csv: every stride-th node, with a stride that gives between min_rows and max_rows

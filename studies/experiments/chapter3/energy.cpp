@@ -47,6 +47,12 @@ private:
 struct EnergyRun : Run {
     double start = 0, drift = 0, largest = 0, kinetic = 0;  ///< [J]
     Curve curve = {};
+
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        a.value(start), a.value(drift), a.value(largest), a.value(kinetic), curve.transfer(a);
+    }
 };
 
 void compute(EnergyRun& run, const lie::Settings& settings)

@@ -49,6 +49,11 @@ struct IterationsRun : Run {
     std::vector<IterationBin> bins;
     int max_iterations = 0;
 
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        a.list(bins), a.value(max_iterations);
+    }
     double mean() const { return failed() ? std::nan("") : statistics.iterations_per_step(); }
 };
 

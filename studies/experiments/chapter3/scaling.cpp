@@ -24,6 +24,12 @@ constexpr int fit_from = 64;  // smallest N of the fit; below, the costs indepen
 struct ScalingRun : TimedRun {
     int N = 0;
     double start_seconds = 0;  ///< wall time to read the model and find its start [s]
+
+    void transfer(io::Archive& a)
+    {
+        TimedRun::transfer(a);
+        a.value(start_seconds);
+    }
 };
 
 /// A benchmark with N bars, and the wall time to read the model and find its start [s]

@@ -23,6 +23,12 @@ constexpr double target_error = 1e-3;  // rms error of r for which the CPU time 
 
 struct WorkRun : TimedRun {
     Errors errors;
+
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        a.value(errors.value), a.value(errors.instants);
+    }
 };
 
 void compute(WorkRun& run, const StudyOptions& options)

@@ -127,7 +127,12 @@ void friction_experiments(StudyContext& s)
     std::vector<std::pair<SelectedExperiment*, size_t>> jobs;
     for (SelectedExperiment& c : all)
         for (size_t r = 0; r < c.runs.size(); ++r) jobs.emplace_back(&c, r);
-    s.pool(jobs.size()).run([&](long k) { compute(*jobs[k].first, jobs[k].second, options); });
+    s.pool(jobs.size())
+        .run([&](long k) { compute(*jobs[k].first, jobs[k].second, options); },
+             [&](io::Archive& a, long k) {
+                 const auto& [c, r] = jobs[k];
+                 c->curves[r].transfer(a), a.list(c->failures[r]);
+             });
 
     std::vector<Checked> checks;
     std::vector<NamedCurve> named;

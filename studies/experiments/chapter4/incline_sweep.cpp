@@ -49,6 +49,8 @@ struct InclineCell {
     int state = -1;
     /// Velocity of the centre and R times the angular velocity at the end, positive up the slope [m/s]
     double v = 0, R_omega = 0;
+
+    void transfer(io::Archive& a) { a.value(state), a.value(v), a.value(R_omega); }
 };
 
 const Columns<InclineCell> columns = {{"eta_r", &InclineCell::eta},   {"angle_deg", &InclineCell::angle},
@@ -236,7 +238,9 @@ void incline_sweep(StudyContext& s)
         for (size_t k = 0; k < states.size(); ++k) map.cells[k].published = std::round(states[k]);
     }
     const long steps = std::max(1L, std::lround(o.end / o.h));
-    s.pool(map.cells.size()).run([&](long k) { run(map.cells[k], o.dissertation(), o.h, steps); });
+    s.pool(map.cells.size())
+        .run([&](long k) { run(map.cells[k], o.dissertation(), o.h, steps); },
+             [&](io::Archive& a, long k) { map.cells[k].transfer(a); });
 
     const std::vector<Boundaries> rows = boundaries(map);
     const Deviations d = deviations(rows);

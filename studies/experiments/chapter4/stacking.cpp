@@ -49,6 +49,11 @@ struct StackCell {
     double published = std::nan("");
     int runs = 0, undecided = 0;
 
+    void transfer(io::Archive& a)
+    {
+        a.value(stack.top), a.value(below), a.value(at_critical);
+        a.value(found), a.value(runs), a.value(undecided);
+    }
     double m_c() const { return found ? stack.top : std::nan(""); }
 };
 
@@ -230,12 +235,12 @@ void stacking(StudyContext& s)
     }
     const StackCell& coarse = refined_cell_of(cells, o.grid);
     StackCell refined{.stack = coarse.stack};
-    s.pool(cells.size() + s.options.check).run([&](long k) {
-        if (k < static_cast<long>(cells.size()))
-            bisect(cells[k], o.h, o.end);
-        else
-            bisect(refined, o.h / refinement, o.end);
-    });
+    const auto cell = [&](long k) -> StackCell& {
+        return k < static_cast<long>(cells.size()) ? cells[k] : refined;
+    };
+    s.pool(cells.size() + s.options.check)
+        .run([&](long k) { bisect(cell(k), &cell(k) == &refined ? o.h / refinement : o.h, o.end); },
+             [&](io::Archive& a, long k) { cell(k).transfer(a); });
 
     const std::vector<MassCurve> curves = curves_of(cells, o.grid);
     s.text << fmt::format(

@@ -90,6 +90,11 @@ struct BowlRun : RecordedRun<BowlVariant> {
     std::string rows;
     std::array<double, norm::count> error{};
 
+    void transfer(io::Archive& a)
+    {
+        RecordedRun::transfer(a);
+        a.value(error);
+    }
     std::string label() const { return scheme->name + (rows == "tangent" ? "" : ", " + rows); }
     double residual() const
     {

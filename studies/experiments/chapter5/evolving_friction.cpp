@@ -67,6 +67,12 @@ struct BrakedRun : RecordedRun<BrakedVariant> {
     /// transient of the release the friction of the previous step causes an error of first order.
     double error_r = std::nan(""), error_r_last = std::nan(""), error_F_f = std::nan("");
 
+    void transfer(io::Archive& a)
+    {
+        RecordedRun::transfer(a);
+        a.list(r), a.value(bound), a.value(error_r), a.value(error_r_last), a.value(error_F_f);
+    }
+
     double max_friction() const { return failed() ? std::nan("") : curve.largest("F_f", transient); }
     /// Reversals of motion: extrema of y [m]
     std::vector<Curve::Extremum> reversals() const

@@ -22,6 +22,12 @@ struct RecordedRun : Run {
     bool for_check = false;  ///< with half of the step, only for the acceptance criteria
     Curve curve = {};        ///< a row for each node
 
+    void transfer(io::Archive& a)
+    {
+        Run::transfer(a);
+        curve.transfer(a);
+    }
+
     /// 0: the scheme of the dissertation; 1: the recommended one; 2: any other
     size_t which_scheme() const
     {

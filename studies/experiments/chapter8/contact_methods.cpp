@@ -47,6 +47,11 @@ struct MethodRun {
     double largest_error = std::nan(""), seconds = 0;
     std::string status = "ok", message = {};
 
+    void transfer(io::Archive& a)
+    {
+        a.value(contacts), a.value(events), a.value(steps), a.value(iterations);
+        a.value(largest_error), a.value(seconds), a.list(status), a.list(message);
+    }
     double microseconds() const { return 1e6 * seconds / static_cast<double>(steps); }
     double microseconds_per_contact() const { return microseconds() / std::max(1, contacts); }
 };

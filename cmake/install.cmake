@@ -34,10 +34,14 @@ install(TARGETS hilda_library EXPORT hilda_targets)
 if(TARGET hilda_program)
     install(TARGETS hilda_program hilda_granular_program)
 endif()
-foreach(room io lie dae contact)
+# What a plug-in needs (hildaPlugin.cmake): the headers of studies, and the interface of this build.
+foreach(room io lie dae contact studies)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
         FILES_MATCHING PATTERN "*.hpp")
 endforeach()
+install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
+install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
+    DESTINATION "${hilda_package_dir}")
 install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL

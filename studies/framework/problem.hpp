@@ -32,11 +32,12 @@ struct Observable {
 /// A built-in model
 struct Problem {
     std::string name;
-    std::string what;                      ///< one line: description and source of the data
-    std::string model;                     ///< text of the model file
-    std::string reference_name;            ///< description of the reference solution, for tables
-    ReferenceSolution reference_solution;  ///< to be called after dae::start()
-    Observable observable;                 ///< scalar shown in figures
+    std::string what;                 ///< one line: description and source of the data
+    std::string model;                ///< text of the model file
+    std::string reference_name = {};  ///< description of the reference solution, for tables
+    /// To be called after dae::start(). Empty: that of a model file, see problem_or_file().
+    ReferenceSolution reference_solution = {};
+    Observable observable = {};  ///< scalar shown in figures
 };
 
 }  // namespace hilda::studies

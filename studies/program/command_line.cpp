@@ -8,6 +8,8 @@
 #include "studies/program/granular_program.hpp"
 #include "studies/program/info.hpp"
 #include "studies/program/lists.hpp"
+#include "studies/program/new_plugin.hpp"
+#include "studies/program/plugin.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/running/plot.hpp"
@@ -36,6 +38,11 @@ public:
     {
         app.set_version_flag("--version", version_line());
         app.set_help_flag("-h,--help", "print this text; hilda COMMAND --help: the options of a command");
+        app.add_option(
+               "--load", plugin_files,
+               "load a plug-in: a shared library with integrators, joints, forces, surfaces, laws, problems, "
+               "studies or outputs; before the command, repeatable")
+            ->type_name("FILE");
         app.require_subcommand(1);
         app.footer(
             "A model is the path of a model file or the name of a built-in model (see hilda models).\n"
@@ -51,6 +58,7 @@ public:
         add_granular();
         add_plot();
         add_info();
+        add_new();
         add_help();
     }
 
@@ -353,6 +361,15 @@ private:
         c->add_flag("--json", json, "print the result as JSON");
     }
 
+    void add_new()
+    {
+        CLI::App* c = add("new", "write the starting point of a plug-in, see --load",
+                          [this] { return new_plugin(kind, name, write_to); });
+        c->add_option("KIND", kind, "what the plug-in registers: integrator")->required()->type_name("");
+        c->add_option("NAME", name, "name of the integrator")->required()->type_name("");
+        value(c, "--output", "DIR", "directory, new or empty; default: NAME", assign(write_to, io::path));
+    }
+
     void add_help()
     {
         CLI::App* c = add("help", "print this text, or the options of a command", [this] {
@@ -397,6 +414,9 @@ private:
         for (const CLI::Option* o : command->get_options())
             for (const std::string& long_name : o->get_lnames()) known.push_back("--" + long_name);
         const std::string where = selected.empty() ? "" : command->get_name() + ": ";
+        if (option == "--load")
+            throw io::UsageError(where + "--load goes before the command: hilda --load FILE " +
+                                 (selected.empty() ? "COMMAND" : command->get_name()));
         if (word.starts_with('-'))
             throw io::UsageError(where + "unknown option" + with_nearest(option, known));
         throw io::UsageError(where + "one argument too many: '" + word + "'");
@@ -411,16 +431,34 @@ private:
     CheckOptions check;
     StudyOptions study;
     std::vector<std::string> selected_integrators;
+    std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;
     bool json = false, verbose = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
+/// Loads the plug-ins of the options --load FILE before the command, and returns the other words. The options of a
+/// command name registered integrators, so that these must exist before the command line is read.
+void load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
+{
+    size_t k = 0;
+    if (k < given.size()) words.push_back(given[k++]);
+    for (; k < given.size() && std::string_view(given[k]).starts_with("--load"); ++k) {
+        const std::string_view word = given[k];
+        if (word != "--load" && !word.starts_with("--load=")) break;
+        if (word == "--load" && ++k == given.size()) throw io::UsageError("--load: needs a FILE");
+        load_plugin(word == "--load" ? given[k] : std::string(word.substr(7)));
+    }
+    words.insert(words.end(), given.begin() + static_cast<std::ptrdiff_t>(k), given.end());
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv)
 {
-    return Commands(io::shell_quoted(argc, argv)).parse_and_run(argc, argv);
+    std::vector<char*> words;
+    load_plugins({argv, argv + argc}, words);
+    return Commands(io::shell_quoted(argc, argv)).parse_and_run(static_cast<int>(words.size()), words.data());
 }
 
 }  // namespace hilda::studies

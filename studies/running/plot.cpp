@@ -32,14 +32,22 @@ std::string python()
     return configured != nullptr && *configured != '\0' ? configured : version::python;
 }
 
-/// Path of a script in share/hilda/plots of an installed program or in the source tree; empty if it is in
-/// neither
+std::vector<fs::path>& more_places()
+{
+    static std::vector<fs::path> places;
+    return places;
+}
+
+/// Path of a script in share/hilda/plots of an installed program, in the source tree or beside a plug-in; empty if there
+/// is none
 std::string find_script(const std::string& script)
 {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    for (const fs::path& place :
-         {program.parent_path().parent_path() / "share/hilda/plots", fs::path(version::plots)})
+    std::vector<fs::path> places = {program.parent_path().parent_path() / "share/hilda/plots",
+                                    fs::path(version::plots)};
+    places.insert(places.end(), more_places().begin(), more_places().end());
+    for (const fs::path& place : places)
         if (fs::is_regular_file(place / script, error)) return place / script;
     return {};
 }
@@ -102,6 +110,8 @@ std::string failure_reason(const ProcessResult& result)
 }
 
 }  // namespace
+
+void add_script_directory(const std::string& directory) { more_places().emplace_back(directory); }
 
 bool plot(const std::string& script, const std::string& directory)
 {

@@ -12,6 +12,9 @@ namespace hilda::studies {
 /// stderr if Python, matplotlib or the script is missing or if the script fails.
 bool plot(const std::string& script, const std::string& directory);
 
+/// Adds a directory in which plot() looks for scripts, after those of the program.
+void add_script_directory(const std::string& directory);
+
 /// The script for the results in a directory: trajectory.py for trajectory.csv, KIND.py for study.csv, where
 /// study.json states KIND. lie::InvalidInput if there is neither file.
 std::string script_for(const std::string& directory);

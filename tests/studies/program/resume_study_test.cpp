@@ -80,7 +80,8 @@ TEST_CASE("an interrupted study, resumed, gives the table of an uninterrupted st
     CHECK(table(in / "parts/study.csv", c.without) == table(in / "whole/study.csv", c.without));
 }
 
-TEST_CASE("--resume of a study needs an interrupted study and the same options", "[studies][resume]")
+TEST_CASE("the option --resume of a study needs an interrupted study and the same options",
+          "[studies][resume]")
 {
     const Scratch in;
     const std::vector<std::string> study = {"study", "energy", "--steps", "1e-2", "--no-plot", "--quiet"};

@@ -84,6 +84,7 @@ EndOnSignal::EndOnSignal(const std::string& message)
     handle(end_with_message);
 }
 EndOnSignal::~EndOnSignal() { handle(SIG_DFL); }
+void EndOnSignal::ignore() { handle(SIG_IGN); }
 
 int Interrupt::caught() { return signal_caught; }
 

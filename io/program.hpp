@@ -50,6 +50,8 @@ public:
     /// "": no message
     explicit EndOnSignal(const std::string& message);
     ~EndOnSignal();
+    /// The signals have no effect from here on, for the last lines of a program whose results are complete.
+    static void ignore();
     EndOnSignal(const EndOnSignal&) = delete;
     EndOnSignal& operator=(const EndOnSignal&) = delete;
 };

@@ -5,6 +5,7 @@
 #include "io/files.hpp"
 #include "io/message.hpp"
 #include "io/nearest.hpp"
+#include "io/program.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
@@ -255,7 +256,10 @@ int StudyContext::finish()
     else if (!options.quiet)
         std::cout << text.str() << failed_runs;
     if (!options.output.empty()) write(all);
-    if (finished) finished->remove();
+    if (finished) {
+        io::EndOnSignal::ignore();  // the results are complete, there is nothing left to resume
+        finished->remove();
+    }
     if (!all_failed.empty()) {
         io::message(all_failed);
         return io::exit_code::numerical_failure;

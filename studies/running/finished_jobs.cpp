@@ -31,11 +31,15 @@ FinishedJobs::FinishedJobs(const std::string& directory, const Identity& identit
 {
     if (resume && !in(directory))
         throw io::UsageError(directory + ": has no interrupted study; --resume needs its file study.part");
+    bool is_new = !resume;
     if (resume) {
         const size_t whole = read(io::read_file(path, most), identity);
         file.emplace(path, whole, true);
+        is_new = whole == 0;
     } else {
         file.emplace(path);
+    }
+    if (is_new) {
         io::Archive a;
         Identity copy = identity;
         a.map(copy);
@@ -58,7 +62,7 @@ bool FinishedJobs::in(const std::string& directory)
 size_t FinishedJobs::read(const std::string& bytes, const Identity& identity)
 {
     size_t at = 0;
-    bool has_identity = false;
+    bool has_identity = bytes.empty();  // the study was interrupted before the first record
     Header h{};
     while (bytes.size() - at >= sizeof h) {
         std::memcpy(&h, bytes.data() + at, sizeof h);

@@ -67,6 +67,20 @@ TEST_CASE("results of finished jobs are read back to the bit", "[studies][resume
     CHECK(!FinishedJobs::in(in.path));
 }
 
+TEST_CASE("a study that was interrupted before its first record starts from the beginning",
+          "[studies][resume]")
+{
+    const Scratch in;
+    write(in / "study.part", "");
+    {
+        FinishedJobs jobs(in.path, identity, true);
+        CHECK(jobs.count() == 0);
+        Result result{1. / 3, "x"};
+        jobs.keep({0, 1}, of(result));
+    }
+    CHECK(restored(in) == 1);
+}
+
 TEST_CASE("a record that was cut off or damaged is dropped, and the preceding ones are kept",
           "[studies][resume]")
 {

@@ -89,8 +89,8 @@ public:
     virtual bool is_unbounded() const;
     /// Polygons that approximate the surface, at most about 500 points, outward for sigma() = 1. A point that
     /// is not found is NaN. The default samples a convex surface by its support function, which places the
-    /// points by normal direction, an implicit surface along rays from its origin, and an unbounded one by
-    /// projection of points of the plane z = 0. For output see tessellate().
+    /// points by normal direction, an implicit surface along rays from its origin, and an unbounded one above
+    /// and below the points of the plane z = 0, by projection where there is no such point. For output see tessellate().
     virtual PolygonMesh drawing(const DrawingExtent& extent) const;
 };
 

@@ -68,6 +68,33 @@ std::optional<Vec3> exit_point(const Surface& surface, const Vec3& u)
     return Vec3(upper * u);
 }
 
+/// The point of the surface above or below (a.x, a.y), at the height nearest to the extent; empty if the surface has
+/// none within three times the extent
+std::optional<Vec3> point_above(const Surface& surface, const Vec3& a, const DrawingExtent& extent)
+{
+    constexpr int samples = 200;
+    const bool is_empty = extent.box.isEmpty();
+    const double low = is_empty ? -1 : extent.box.min().z(), high = is_empty ? 1 : extent.box.max().z();
+    const double side = is_empty ? 0 : extent.box.sizes().maxCoeff(), middle = 0.5 * (low + high);
+    const double reach = 1.5 * std::max(high - low, side);
+    if (!(reach > 0)) return {};
+    const auto G = [&](double z) { return surface.value({a.x(), a.y(), z}); };
+    std::optional<double> nearest;
+    for (int k = 0; k < samples; ++k) {
+        double z_0 = middle + reach * (2. * k / samples - 1),
+               z_1 = middle + reach * (2. * (k + 1) / samples - 1);
+        const bool is_inside = G(z_0) < 0;
+        if (is_inside == (G(z_1) < 0)) continue;
+        for (int bisection = 0; bisection < 60; ++bisection) {
+            const double z = 0.5 * (z_0 + z_1);
+            ((G(z) < 0) == is_inside ? z_0 : z_1) = z;
+        }
+        if (!nearest || std::abs(z_1 - middle) < std::abs(*nearest - middle)) nearest = z_1;
+    }
+    if (!nearest) return {};
+    return Vec3(a.x(), a.y(), *nearest);
+}
+
 }  // namespace
 
 bool Surface::is_unbounded() const
@@ -92,7 +119,10 @@ PolygonMesh Surface::drawing(const DrawingExtent& extent) const
     };
     if (convex()) return sphere_image(or_missing([&](const Vec3& u) { return support(u); }));
     if (!is_unbounded()) return sphere_image(or_missing([&](const Vec3& u) { return exit_point(*this, u); }));
-    return square(extent, or_missing([&](const Vec3& a) { return std::optional(project(a)); }));
+    return square(extent, or_missing([&](const Vec3& a) {
+                      const std::optional<Vec3> above = point_above(*this, a, extent);
+                      return above ? above : std::optional(project(a));
+                  }));
 }
 
 PolygonMesh grid(int rows, int columns, bool rows_join, bool columns_join,

@@ -29,6 +29,14 @@ inline Vec3 velocity_at(const Motion& body, const Vec3& arm)
     return body.rdot + (body.A * body.omega_bar).cross(arm);
 }
 
+/// Point P of body i and point Q of body j, for drawings: the ends of a spring, the points of a joint
+struct PointPair {
+    int i, j;
+    Vec3 s_bar_i, s_bar_j;  ///< [m], body frames
+
+    bool operator==(const PointPair&) const = default;
+};
+
 struct Body {
     std::string name;
     double m = 1;                   ///< mass [kg]

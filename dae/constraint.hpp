@@ -7,6 +7,7 @@
 #include "lie/bounded_rows.hpp"
 #include "lie/rows.hpp"
 
+#include <optional>
 #include <string>
 
 namespace hilda::dae {
@@ -163,6 +164,9 @@ public:
     virtual Violation position_violation(const Arguments& x, double tolerance) const;
     /// The default is the largest |C v - ν| of the position rows.
     virtual Violation velocity_violation(const Arguments& x, double tolerance) const;
+
+    /// The two points that the constraint refers to; none for a constraint on orientations
+    virtual std::optional<PointPair> points() const { return {}; }
 
     /// Kind and name for messages
     virtual std::string label() const { return "constraint '" + name + "'"; }

@@ -8,7 +8,9 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace hilda::dae {
 
@@ -24,6 +26,17 @@ public:
     virtual void add(const State& x, lie::Loads& out) const = 0;
     /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
+
+    /// A scalar quantity of the force for the output
+    struct Quantity {
+        std::string name, unit, meaning;  ///< meaning with the sign convention
+    };
+    /// The quantities that values() computes
+    virtual std::vector<Quantity> quantities() const { return {}; }
+    /// The quantities in the state x. The function must not allocate memory.
+    virtual void values(const State& /*x*/, double* /*out*/) const {}
+    /// The two points between which the force acts; none for a force without points
+    virtual std::optional<PointPair> points() const { return {}; }
 
     /// Reason why the force cannot be used from the start x, in the form "what is wrong, got value". An empty
     /// string if it can. It is called first at a start: x has no internal states yet, and its positions and

@@ -11,11 +11,10 @@ namespace hilda::io {
 
 namespace {
 
-std::string begin_of_file(VtkEncoding encoding, const std::string& type, const std::string& attributes = "")
+std::string begin_of_file(const std::string& type, const std::string& attributes = "")
 {
-    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\" version=\"" +
-           (encoding == VtkEncoding::ascii ? "0.1" : "1.0") + "\" byte_order=\"LittleEndian\"" + attributes +
-           ">\n<" + type + ">\n";
+    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
+           "\" version=\"1.0\" byte_order=\"LittleEndian\"" + attributes + ">\n<" + type + ">\n";
 }
 
 std::string escaped(const std::string& name)
@@ -32,10 +31,8 @@ std::string escaped(const std::string& name)
 
 }  // namespace
 
-VtkPolyData::VtkPolyData(VtkEncoding encoding,
-                         std::initializer_list<std::pair<const char*, std::size_t>> counts)
-    : encoding(encoding),
-      xml(begin_of_file(encoding, "PolyData", encoding == VtkEncoding::raw ? " header_type=\"UInt64\"" : ""))
+VtkPolyData::VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts)
+    : xml(begin_of_file("PolyData", " header_type=\"UInt64\""))
 {
     xml += "<Piece";
     for (const auto& [name, count] : counts)
@@ -63,16 +60,8 @@ void VtkPolyData::array(const std::string& name, int components, const std::vect
                              : std::is_same_v<Number, float> ? "Float32"
                                                              : "Float64";
     xml += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-           std::to_string(components) + '"';
-    if (encoding == VtkEncoding::ascii) {
-        xml += " format=\"ascii\">\n";
-        char digits[32];
-        for (const Number x : values)
-            xml.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr) += ' ';
-        xml += "\n</DataArray>\n";
-        return;
-    }
-    xml += " format=\"appended\" offset=\"" + std::to_string(blocks.size()) + "\"/>\n";
+           std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(blocks.size()) +
+           "\"/>\n";
     const std::uint64_t size = values.size() * sizeof(Number);
     blocks.append(reinterpret_cast<const char*>(&size), sizeof size);
     blocks.append(reinterpret_cast<const char*>(values.data()), size);
@@ -84,19 +73,17 @@ template void VtkPolyData::array(const std::string&, int, const std::vector<std:
 std::string VtkPolyData::text()
 {
     end_section();
-    xml += "</Piece>\n</PolyData>\n";
-    if (encoding == VtkEncoding::raw)
-        xml += "<AppendedData encoding=\"raw\">\n_" + blocks + "\n</AppendedData>\n";
+    xml += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + blocks + "\n</AppendedData>\n";
     return std::move(xml += "</VTKFile>\n");
 }
 
-std::string vtk_collection(VtkEncoding encoding, const std::vector<std::pair<double, std::string>>& files)
+std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files)
 {
-    std::string xml = begin_of_file(encoding, "Collection");
+    std::string xml = begin_of_file("Collection");
     for (const auto& [t, file] : files) {
         xml += "<DataSet timestep=\"";
         append_number(xml, t);
-        xml += encoding == VtkEncoding::ascii ? "\" part=\"0\" file=\"" : "\" file=\"";
+        xml += "\" file=\"";
         xml += escaped(file) + "\"/>\n";
     }
     return xml + "</Collection>\n</VTKFile>\n";

@@ -10,18 +10,13 @@
 
 namespace hilda::io {
 
-enum class VtkEncoding {
-    ascii,  ///< the numbers within the XML elements, version 0.1
-    raw     ///< the bytes of the numbers after the XML elements, version 1.0
-};
-
-/// A file of the type PolyData (.vtp) with one piece
+/// A file of the type PolyData (.vtp) with one piece. The numbers are binary, after the XML elements ("appended raw").
 class VtkPolyData {
 public:
     /// counts: attributes of the piece, such as {"NumberOfPoints", 3}
-    VtkPolyData(VtkEncoding encoding, std::initializer_list<std::pair<const char*, std::size_t>> counts);
+    explicit VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts);
 
-    /// Begins a section: PointData, CellData, Points, Verts, Polys.
+    /// Begins a section: PointData, CellData, Points, Verts, Lines, Polys.
     void section(const std::string& name);
     /// Adds an array to the section, with `components` numbers for each point or cell.
     /// Number: float, double or std::int32_t
@@ -33,11 +28,10 @@ public:
 private:
     void end_section();
 
-    const VtkEncoding encoding;
     std::string xml, open_section, blocks;
 };
 
 /// A list of files with their times [s] (.pvd)
-std::string vtk_collection(VtkEncoding encoding, const std::vector<std::pair<double, std::string>>& files);
+std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files);
 
 }  // namespace hilda::io

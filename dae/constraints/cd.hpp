@@ -68,6 +68,8 @@ public:
         return axes | cross_product_pattern(s_bar_i) << 3 | axes << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
+    std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
+
     std::string start_error(const Arguments&) const override
     {
         return c.norm() > 0 ? "" : "a vector of length zero has no direction, got |c| = 0";

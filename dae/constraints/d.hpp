@@ -85,6 +85,8 @@ public:
         return 0b111 | cross_product_pattern(s_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;
     }
 
+    std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
+
     std::string start_error(const Arguments& x) const override
     {
         std::ostringstream text;

@@ -58,6 +58,23 @@ double Bushing::potential_energy(const State& x) const
                   at.psi.dot(coefficients.rotational_stiffness.cwiseProduct(at.psi)));
 }
 
+std::vector<Force::Quantity> Bushing::quantities() const
+{
+    std::vector<Quantity> all;
+    for (const char* axis : {"x", "y", "z"})
+        all.push_back({std::string("d") + axis, "m", "vector from P to Q, frame of body i"});
+    for (const char* axis : {"x", "y", "z"})
+        all.push_back({std::string("psi_") + axis, "rad",
+                       "rotation vector of body j relative to body i since the start, frame of body j"});
+    return all;
+}
+
+void Bushing::values(const State& x, double* out) const
+{
+    const Deflection at = deflection(x);
+    Vec3::Map(out) = at.d, Vec3::Map(out + 3) = at.psi;
+}
+
 namespace {
 
 const TypeSchema schema = {

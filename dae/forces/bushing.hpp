@@ -30,7 +30,10 @@ public:
 
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
+    std::vector<Quantity> quantities() const override;
+    void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
+    std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
     int last_body() const override { return std::max(i, j); }
 
 private:

@@ -38,6 +38,25 @@ double HingeForce::angle(const State& x) const
     return nearest_revolution(std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j)), saved_angle);
 }
 
+double HingeForce::rate(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 axis = bi.A * axis_bar_i;
+    return axis.dot(bj.A * bj.omega_bar - bi.A * bi.omega_bar);
+}
+
+std::vector<Force::Quantity> HingeForce::quantities() const
+{
+    return {{"angle", "rad", "rotation of body j relative to body i about the axis since the start"},
+            {"rate", "rad/s", "rate of the angle"},
+            {"torque", "N m", "torque on body i along the axis; the opposite torque acts on body j"}};
+}
+
+void HingeForce::values(const State& x, double* out) const
+{
+    out[0] = angle(x), out[1] = rate(x), out[2] = torque(out[0], out[1]);
+}
+
 void HingeForce::update_internal_state(State& x) const
 {
     x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
@@ -46,9 +65,7 @@ void HingeForce::update_internal_state(State& x) const
 void HingeForce::add(const State& x, lie::Loads& out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const Vec3 axis = bi.A * axis_bar_i;
-    const double thetadot = axis.dot(bj.A * bj.omega_bar - bi.A * bi.omega_bar);
-    const Vec3 n = torque(angle(x), thetadot) * axis;
+    const Vec3 n = torque(angle(x), rate(x)) * (bi.A * axis_bar_i);
     if (i != ground) out.n_bar[i] += bi.A.transpose() * n;
     if (j != ground) out.n_bar[j] -= bj.A.transpose() * n;
 }

@@ -34,6 +34,9 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override { return potential(angle(x)); }
 
+    std::vector<Quantity> quantities() const override;
+    void values(const State& x, double* out) const override;
+
     int discrete_states() const override { return 1; }
     void update_internal_state(State& x) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
@@ -41,6 +44,8 @@ public:
 
     /// theta [rad]: of the angles that differ by whole revolutions, the one nearest to the number stored in x
     double angle(const State& x) const;
+    /// thetadot [rad/s]
+    double rate(const State& x) const;
 };
 
 }  // namespace hilda::dae

@@ -13,22 +13,41 @@ Vec3 DistanceLimit::d_ij(const State& x) const
     return bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
 }
 
-void DistanceLimit::add(const State& x, lie::Loads& out) const
+Vec3 DistanceLimit::d_ijdot(const State& x) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
+    return velocity_at(bj, bj.A * s_bar_j) - velocity_at(bi, bi.A * s_bar_i);
+}
+
+void DistanceLimit::add(const State& x, lie::Loads& out) const
+{
     const Vec3 d = d_ij(x);
     const double l = d.norm();
     if (!(l > 0)) {
         if (stop.force(l, 0) == 0) return;
         throw lie::NonFinite(label() + ": the two points coincide, so that the force has no direction");
     }
-    const Vec3 ddot = velocity_at(bj, bj.A * s_bar_j) - velocity_at(bi, bi.A * s_bar_i);
-    const Vec3 along = d / l, F = stop.force(l, along.dot(ddot)) * along;
+    const Vec3 along = d / l, F = stop.force(l, along.dot(d_ijdot(x))) * along;
     apply_force(i, F, s_bar_i, x, out);
     apply_force(j, -F, s_bar_j, x, out);
 }
 
 double DistanceLimit::potential_energy(const State& x) const { return stop.potential(d_ij(x).norm()); }
+
+std::vector<Force::Quantity> DistanceLimit::quantities() const
+{
+    return {{"length", "m", "distance of the two points"},
+            {"rate", "m/s", "rate of the distance, positive while it grows; 0 while the points coincide"},
+            {"force", "N", "force of the limit, positive if it pulls the bodies together"}};
+}
+
+void DistanceLimit::values(const State& x, double* out) const
+{
+    const Vec3 d = d_ij(x);
+    out[0] = d.norm();
+    out[1] = out[0] > 0 ? d.dot(d_ijdot(x)) / out[0] : 0;
+    out[2] = stop.force(out[0], out[1]);
+}
 
 namespace {
 

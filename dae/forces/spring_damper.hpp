@@ -34,6 +34,43 @@ public:
 
     void add(const State& x, lie::Loads& out) const override
     {
+        const Stretch at = stretch(x);
+        apply_force(i, at.f * at.along, s_bar_i, x, out);
+        apply_force(j, -at.f * at.along, s_bar_j, x, out);
+    }
+
+    /// k (l - l_0)²/2: the linear spring only
+    double potential_energy(const State& x) const override
+    {
+        const Motion &bi = motion(x, i), &bj = motion(x, j);
+        const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
+        return 0.5 * stiffness * stretch * stretch;
+    }
+
+    std::vector<Quantity> quantities() const override
+    {
+        return {{"length", "m", "distance of the two points"},
+                {"rate", "m/s", "rate of the distance, positive while it grows"},
+                {"force", "N",
+                 "force of the spring, damper and actuator, positive if it pulls the bodies together"}};
+    }
+    void values(const State& x, double* out) const override
+    {
+        const Stretch at = stretch(x);
+        out[0] = at.l, out[1] = at.ldot, out[2] = at.f;
+    }
+
+    std::array<int, 2> bodies() const override { return {i, j}; }
+    std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
+    int last_body() const override { return std::max(i, j); }
+
+private:
+    struct Stretch {
+        Vec3 along;         ///< unit vector from P to Q, global frame
+        double l, ldot, f;  ///< [m], [m/s], [N]
+    };
+    Stretch stretch(const State& x) const
+    {
         const Motion &bi = motion(x, i), &bj = motion(x, j);
         const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j;
         const Vec3 d = bj.r + s_j - bi.r - s_i, ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i);
@@ -49,20 +86,8 @@ public:
             const double variables[] = {l, ldot, x.t};
             f += law->value(variables);
         }
-        apply_force(i, f * along, s_bar_i, x, out);
-        apply_force(j, -f * along, s_bar_j, x, out);
+        return {along, l, ldot, f};
     }
-
-    /// k (l - l_0)²/2: the linear spring only
-    double potential_energy(const State& x) const override
-    {
-        const Motion &bi = motion(x, i), &bj = motion(x, j);
-        const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
-        return 0.5 * stiffness * stretch * stretch;
-    }
-
-    std::array<int, 2> bodies() const override { return {i, j}; }
-    int last_body() const override { return std::max(i, j); }
 };
 
 }  // namespace hilda::dae

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// vtk/particles-*.vtp and vtk/run.pvd: the particles, for ParaView.
+/// run.pvd and vtk/particles-*.vtp: the particles, for ParaView.
 
 #include "granular/program/sink.hpp"
 #include "granular/world/output.hpp"
@@ -14,20 +14,20 @@ namespace hilda::granular {
 
 namespace {
 
-std::string frame(long k) { return io::formatted("particles-%06ld.vtp", k); }
+std::string frame(long k) { return io::formatted("vtk/particles-%06ld.vtp", k); }
 
 class Frames final : public Sink {
 public:
     explicit Frames(const CaseSetup& run)
-        : c(run.c), folder(run.directory + "/vtk/"), steps(run.steps_in(c.frame_interval))
+        : c(run.c), directory(run.directory + '/'), steps(run.steps_in(c.frame_interval))
     {}
 
     long interval() const override { return steps; }
 
     void node(const World& w) override
     {
-        io::make_directory(folder);
-        io::write_file(folder + frame(w.steps() / steps), particles_vtp(w));
+        io::make_directory(directory + "vtk");
+        io::write_file(directory + frame(w.steps() / steps), particles_vtp(w));
     }
 
     /// Frames are missing if an earlier part of the run used --no-vtk.
@@ -35,17 +35,16 @@ public:
     {
         std::vector<std::pair<double, std::string>> frames;
         for (long k = 0; k * steps <= c.world->steps(); ++k)
-            if (std::filesystem::exists(folder + frame(k)))
+            if (std::filesystem::exists(directory + frame(k)))
                 frames.emplace_back(static_cast<double>(k * steps) * c.h, frame(k));
-        if (!frames.empty())
-            io::write_file(folder + "run.pvd", io::vtk_collection(io::VtkEncoding::raw, frames));
+        if (!frames.empty()) io::write_file(directory + "run.pvd", io::vtk_collection(frames));
     }
 
-    std::vector<std::string> files() const override { return {"vtk/run.pvd"}; }
+    std::vector<std::string> files() const override { return {"run.pvd"}; }
 
 private:
     const Case& c;
-    const std::string folder;
+    const std::string directory;
     const long steps;
 };
 
@@ -58,7 +57,7 @@ const bool registered =
                                  },
                                  .remove =
                                      [](const std::string& directory) {
-                                         const std::string folder = directory + "/vtk/";
+                                         const std::string folder = directory + '/';
                                          std::remove((folder + "run.pvd").c_str());
                                          for (long k = 0; std::remove((folder + frame(k)).c_str()) == 0;) ++k;
                                      }});

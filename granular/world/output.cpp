@@ -65,7 +65,7 @@ std::string particles_vtp(const World& world)
         omega.insert(omega.end(), {p.omega.x, p.omega.y, p.omega.z});
         e.insert(e.end(), p.e.begin(), p.e.end());
     }
-    io::VtkPolyData file(io::VtkEncoding::raw, {{"NumberOfPoints", id.size()}});
+    io::VtkPolyData file({{"NumberOfPoints", id.size()}});
     file.section("PointData");
     file.array("radius", 1, radius);
     file.array("velocity", 3, v);

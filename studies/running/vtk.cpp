@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/vtk.hpp"
 
-#include "dae/body.hpp"
 #include "io/files.hpp"
 #include "io/vtk.hpp"
 
@@ -78,6 +77,12 @@ void Snapshots::add_surface(int body, const contact::Shape& shape)
     if (std::none_of(surfaces.begin(), surfaces.end(), same)) surfaces.push_back({body, shape});
 }
 
+void Snapshots::add_joint(int body, const Vec3& s_bar)
+{
+    const Joint joint{body, s_bar};
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
+}
+
 Snapshots::ContactData Snapshots::contact_data(int contact, int i, const contact::ContactState& now,
                                                const contact::Wrench& friction,
                                                const contact::Deflections& history)
@@ -125,7 +130,7 @@ DrawingExtent Snapshots::extent_of(const BodySurface& of, const std::vector<doub
 std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
 {
     const auto piece = [](const BodySurface& s, const DrawingExtent& extent) {
-        BodyMesh p{s.body, tessellate(*s.shape.surface, extent)};
+        BodyMesh p{s.body, tessellate(*s.shape.surface, extent), surface};
         for (Vec3& a : p.mesh.point) a = s.shape.to_body(a);
         return p;
     };
@@ -135,7 +140,7 @@ std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
         if (!surfaces[k].shape.surface->is_unbounded())
             for (const Vec3& a : tessellate(*surfaces[k].shape.surface, {}).point)
                 radius[k] = std::max(radius[k], a.norm());
-    std::vector<BodyMesh> all;
+    std::vector<BodyMesh> all = solids;
     for (const BodySurface& s : surfaces) {
         BodyMesh p = piece(s, s.shape.surface->is_unbounded() ? extent_of(s, radius) : DrawingExtent());
         if (std::find(all.begin(), all.end(), p) == all.end()) all.push_back(std::move(p));
@@ -143,61 +148,93 @@ std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
     return all;
 }
 
-std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes)
-{
+namespace {
+
+/// The points and cells of a frame, in the order in which VTK expects them: vertices, lines, polygons
+struct FrameData {
     Vectors points, velocities, N, F;
-    std::vector<int> slipping, rolling, body, contact;
-    Cells vertices, polygons;  // VTK expects cell data in this order
-    int count = 0;
+    std::vector<int> slipping, rolling, body, contact, kind;
+    Cells vertices, lines, polygons;
+    int count = 0;  ///< of the points
+
+    /// Adds the material point p of a body.
+    void add_point(const Vec3& p, const Motion& b)
+    {
+        points.add(p);
+        velocities.add(dae::velocity_at(b, p - b.r));
+        N.add(Vec3::Zero()), F.add(Vec3::Zero());
+        slipping.push_back(0), rolling.push_back(0);
+        ++count;
+    }
+    /// Adds the values of a cell.
+    void add_cell(int of_body, int of_contact, int of_kind)
+    {
+        body.push_back(of_body), contact.push_back(of_contact), kind.push_back(of_kind);
+    }
+
+    std::string text() const
+    {
+        io::VtkPolyData file({{"NumberOfPoints", static_cast<size_t>(count)},
+                              {"NumberOfVerts", vertices.offsets.size()},
+                              {"NumberOfLines", lines.offsets.size()},
+                              {"NumberOfStrips", 0},
+                              {"NumberOfPolys", polygons.offsets.size()}});
+        file.section("PointData");
+        file.array("velocity", 3, velocities.components);
+        file.array("normal_force", 3, N.components);
+        file.array("friction", 3, F.components);
+        file.array("slipping", 1, slipping);
+        file.array("rolling", 1, rolling);
+        file.section("CellData");
+        file.array("body", 1, body);
+        file.array("contact", 1, contact);
+        file.array("kind", 1, kind);
+        file.section("Points");
+        file.array("Points", 3, points.components);
+        vertices.write("Verts", file);
+        lines.write("Lines", file);
+        polygons.write("Polys", file);
+        return file.text();
+    }
+};
+
+}  // namespace
+
+std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes) const
+{
+    FrameData data;
     for (const ContactData& t : now.contacts) {
-        points.add(t.C);
+        data.vertices.add({0}, data.count++);
+        data.points.add(t.C);
         const Motion& b = motion(now.body, t.i);
-        velocities.add(dae::velocity_at(b, t.C - b.r));
-        N.add(t.N);
-        F.add(t.F);
-        slipping.push_back(t.slipping);
-        rolling.push_back(t.rolling);
-        body.push_back(t.i);
-        contact.push_back(t.contact);
-        vertices.add({0}, count++);
+        data.velocities.add(dae::velocity_at(b, t.C - b.r));
+        data.N.add(t.N), data.F.add(t.F);
+        data.slipping.push_back(t.slipping), data.rolling.push_back(t.rolling);
+        data.add_cell(t.i, t.contact, contact_point);
+    }
+    for (const Joint& at : joints) {
+        const Motion& b = motion(now.body, at.body);
+        data.vertices.add({0}, data.count);
+        data.add_point(b.r + b.A * at.s_bar, b);
+        data.add_cell(at.body, -1, joint);
+    }
+    for (const Line& line : lines) {
+        const Motion &bi = motion(now.body, line.ends.i), &bj = motion(now.body, line.ends.j);
+        data.lines.add({0, 1}, data.count);
+        data.add_point(bi.r + bi.A * line.ends.s_bar_i, bi);
+        data.add_point(bj.r + bj.A * line.ends.s_bar_j, bj);
+        data.add_cell(line.ends.i, -1, line.kind);
     }
     for (const BodyMesh& piece : body_meshes) {
         const Motion& b = motion(now.body, piece.body);
-        for (const Vec3& a : piece.mesh.point) {
-            const Vec3 p = b.r + b.A * a;
-            points.add(p);
-            velocities.add(dae::velocity_at(b, p - b.r));
-            N.add(Vec3::Zero());
-            F.add(Vec3::Zero());
-            slipping.push_back(0);
-            rolling.push_back(0);
-        }
+        const int first = data.count;
+        for (const Vec3& a : piece.mesh.point) data.add_point(b.r + b.A * a, b);
         for (const std::vector<int>& polygon : piece.mesh.polygon) {
-            body.push_back(piece.body);
-            contact.push_back(-1);
-            polygons.add(polygon, count);
+            data.polygons.add(polygon, first);
+            data.add_cell(piece.body, -1, piece.kind);
         }
-        count += static_cast<int>(piece.mesh.point.size());
     }
-    io::VtkPolyData file(io::VtkEncoding::ascii, {{"NumberOfPoints", static_cast<size_t>(count)},
-                                                  {"NumberOfVerts", vertices.offsets.size()},
-                                                  {"NumberOfLines", 0},
-                                                  {"NumberOfStrips", 0},
-                                                  {"NumberOfPolys", polygons.offsets.size()}});
-    file.section("PointData");
-    file.array("velocity", 3, velocities.components);
-    file.array("normal_force", 3, N.components);
-    file.array("friction", 3, F.components);
-    file.array("slipping", 1, slipping);
-    file.array("rolling", 1, rolling);
-    file.section("CellData");
-    file.array("body", 1, body);
-    file.array("contact", 1, contact);
-    file.section("Points");
-    file.array("Points", 3, points.components);
-    vertices.write("Verts", file);
-    polygons.write("Polys", file);
-    return file.text();
+    return data.text();
 }
 
 void Snapshots::write(const std::string& directory, const std::string& name) const
@@ -209,7 +246,7 @@ void Snapshots::write(const std::string& directory, const std::string& name) con
         files.emplace_back(frames[k].t, frame_file(name, k));
         io::write_file(directory + '/' + files.back().second, poly_data(frames[k], all));
     }
-    io::write_file(directory + '/' + name + ".pvd", io::vtk_collection(io::VtkEncoding::ascii, files));
+    io::write_file(directory + '/' + name + ".pvd", io::vtk_collection(files));
 }
 
 void Snapshots::transfer(io::Archive& a)

@@ -5,6 +5,7 @@
 
 #include "contact/compliant/contact.hpp"
 #include "contact/tessellation.hpp"
+#include "dae/body.hpp"
 #include "io/archive.hpp"
 
 #include <string>
@@ -34,15 +35,26 @@ private:
 /// The surfaces of the bodies of a run, and frames of motions and contacts. The frames are stored until the
 /// end of the run, because the drawn part of an unbounded surface depends on all of them.
 ///
-/// File format: VTK XML PolyData, ASCII, with the polygons of the surfaces and a vertex for each contact with
-/// a positive normal force.
-///     cell data    `body` (number, -1: ground), `contact` (number, -1 for polygons)
+/// File format: VTK XML PolyData with the polygons of the surfaces and solids, a vertex for each contact with a
+/// positive normal force and for each point of a joint, and a line for each spring and link.
+///     cell data    `body` (number, -1: ground; of a line the first body), `contact` (number, -1 for other cells),
+///                  `kind` (see Kind)
 ///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the
 ///                  first body [N], `slipping`, `rolling` (0 or 1); all vectors global
 class Snapshots {
 public:
+    /// What a cell shows
+    enum Kind { contact_point, joint, spring, link, solid, surface };
+
     /// Adds a surface of a body (-1: ground). A surface that was added before is ignored.
     void add_surface(int body, const contact::Shape& shape);
+
+    /// Adds the drawing of a body without a surface, in the frame of the body.
+    void add_solid(int body, PolygonMesh mesh) { solids.push_back({body, std::move(mesh), solid}); }
+    /// Adds a point of a joint [m], in the frame of the body.
+    void add_joint(int body, const lie::Vec3& s_bar);
+    /// Adds a line between two points: a spring or a link.
+    void add_line(const dae::PointPair& ends, Kind kind) { lines.push_back({ends, kind}); }
 
     /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], all
     /// global
@@ -81,15 +93,30 @@ private:
     struct BodyMesh {
         int body;
         PolygonMesh mesh;
+        Kind kind;
 
         bool operator==(const BodyMesh&) const = default;
     };
 
+    struct Joint {
+        int body;
+        lie::Vec3 s_bar;
+
+        bool operator==(const Joint&) const = default;
+    };
+    struct Line {
+        dae::PointPair ends;
+        Kind kind;
+    };
+
     std::vector<BodyMesh> body_meshes() const;
     DrawingExtent extent_of(const BodySurface& of, const std::vector<double>& radius) const;
-    static std::string poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes);
+    std::string poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes) const;
 
     std::vector<BodySurface> surfaces;
+    std::vector<BodyMesh> solids;
+    std::vector<Joint> joints;
+    std::vector<Line> lines;
     std::vector<Frame> frames;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.pvd and vtk/run-*.vtp: the bodies in contact, for ParaView. The files are written at the end of the run (see
+/// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView. The files are written at the end of the run (see
 /// Snapshots); a checkpoint contains the frames.
 
 #include "studies/program/arguments.hpp"
@@ -14,12 +14,7 @@ namespace {
 
 class Vtk final : public io::Sink<RunNode> {
 public:
-    Vtk(const RunSetup& run, const lie::TimeGrid& at) : frames(run.model, at), directory(run.directory)
-    {
-        if (!frames.has_contacts())
-            throw io::UsageError("run: --vtk shows bodies in contact; " + run.model_name +
-                                 " has no contacts");
-    }
+    Vtk(const RunSetup& run, const lie::TimeGrid& at) : frames(run.model, at), directory(run.directory) {}
 
     void node(const RunNode& node) override { frames.accepted(node.x, node.n, node.iterations); }
     void transfer(io::Archive& a) override { frames.snapshots.transfer(a); }
@@ -51,7 +46,7 @@ const bool registered = io::Registry<SinkType>::add(
     {.name = "vtk",
      .options = {{.name = "--vtk",
                   .value = "DT",
-                  .help = "time between ParaView frames of the bodies in contact [s]; default: no frames",
+                  .help = "time between ParaView frames of the model [s]; default: no frames",
                   .check = [](const std::string& option,
                               const std::string& text) { positive_number(option, text); }}},
      .make = make,

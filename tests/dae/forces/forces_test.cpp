@@ -2,6 +2,8 @@
 /// Forces: negative gradient of the potential energy, action and reaction, power of dampers, revolutions of
 /// torsion springs.
 
+#include "dae/forces/bushing.hpp"
+#include "dae/forces/limits.hpp"
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
@@ -130,6 +132,46 @@ TEST_CASE("forces are the negative gradient of the potential energy", "[dae][for
             CHECK((c < 3 ? exact.F[b][c] : exact.n_bar[b][c - 3]) ==
                   Approx(-gradient).epsilon(1e-7).margin(1e-7));
         }
+}
+
+TEST_CASE("the power of a force is minus its force times its rate in the output", "[dae][forces]")
+{
+    Random random(GENERATE(range(1u, 11u)));
+    Twisted twisted(random);
+    State& x = twisted.x;
+    std::vector<std::unique_ptr<Force>> forces;
+    forces.push_back(std::make_unique<SpringDamper>(0, random.vector(), 1, random.vector(), 50, 3, 0.4,
+                                                    io::Expression("l^2 - 5*ldot", {"l", "ldot", "t"})));
+    forces.push_back(std::make_unique<SpringDamper>(ground, random.vector(), 1, random.vector(), 20, 2, 3));
+    forces.push_back(std::make_unique<TorsionSpring>(0, twisted.axis_i, 1, twisted.axis_j, 7, 2, 0.3, x));
+    const Stop stop{.minimum = 20, .stiffness = 40, .damping = 0.1};
+    forces.push_back(std::make_unique<DistanceLimit>(0, random.vector(), 1, random.vector(), stop));
+    forces.push_back(std::make_unique<AngleLimit>(0, twisted.axis_i, 1, twisted.axis_j, stop, x));
+    twisted.twist(random.number(-2, 2));
+    for (const auto& force : forces) {
+        REQUIRE(force->quantities().size() == 3);
+        double value[3];
+        force->values(x, value);
+        const double rate = value[1], load = value[2];
+        CHECK(load != 0);
+        CHECK(power(loads(*force, x), x) == Approx(-load * rate).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("the deflection of a bushing in the output gives its potential energy", "[dae][forces]")
+{
+    Random random(GENERATE(range(1u, 6u)));
+    State x = random.state(2);
+    const Bushing::Coefficients k{.stiffness = {1, 2, 3}, .rotational_stiffness = {4, 5, 6}};
+    const Bushing bushing(0, random.vector(), 1, random.vector(), k, x);
+    x.body[0] = tests::displaced(x.body[0], 0.3 * Eigen::Matrix<double, 6, 1>::Ones());
+    REQUIRE(bushing.quantities().size() == 6);
+    double value[6];
+    bushing.values(x, value);
+    const Vec3 d = Vec3::Map(value), psi = Vec3::Map(value + 3);
+    CHECK(bushing.potential_energy(x) == Approx(0.5 * (d.dot(k.stiffness.cwiseProduct(d)) +
+                                                       psi.dot(k.rotational_stiffness.cwiseProduct(psi))))
+                                             .epsilon(1e-12));
 }
 
 TEST_CASE("springs between two bodies satisfy Newton's third law", "[dae][forces]")

@@ -4,6 +4,7 @@
 #include "contact/implicit_surface.hpp"
 #include "contact/mesh/height_map.hpp"
 #include "contact/mesh/mesh_surface.hpp"
+#include "contact/surfaces/cone.hpp"
 #include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
@@ -12,12 +13,14 @@
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
-#include "tests/studies/program.hpp"
+#include "tests/studies/csv.hpp"
 #include "tests/support/icosphere.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 
@@ -32,12 +35,11 @@ using tests::Scratch;
 
 namespace {
 
-/// A parser of XML files with nested elements and quoted attributes; throws if the file is not well-formed
+/// The XML part of a VTK file: elements with quoted attributes; throws if it is not well-formed
 struct Xml {
     struct Element {
         std::string name;
         std::map<std::string, std::string> attribute;
-        std::string text;
     };
     std::vector<Element> element;
 
@@ -60,7 +62,7 @@ struct Xml {
             const bool empty = tag.ends_with('/');
             if (empty) tag.pop_back();
             read(tag);
-            element.back().text = file.substr(at, file.find('<', at) - at);
+            if (element.back().name == "AppendedData") at = file.rfind("</AppendedData>");
             if (!empty) open.push_back(element.size() - 1);
         }
         if (!open.empty()) throw std::runtime_error("<" + element[open.back()].name + "> is not closed");
@@ -87,7 +89,7 @@ private:
     void read(const std::string& tag)
     {
         size_t at = tag.find(' ');
-        Element e{.name = tag.substr(0, at), .attribute = {}, .text = {}};
+        Element e{.name = tag.substr(0, at), .attribute = {}};
         while (at < tag.size()) {
             const size_t is = tag.find("=\"", at);
             if (is == std::string::npos) throw std::runtime_error("an attribute has no value: " + tag);
@@ -100,67 +102,90 @@ private:
     }
 };
 
-std::vector<double> numbers(const std::string& text)
-{
-    std::istringstream in(text);
-    std::vector<double> all;
-    for (std::string word; in >> word;) all.push_back(std::stod(word));
-    return all;
-}
-
 /// A frame; the constructor checks the sizes of its arrays
 struct Frame {
     std::vector<Vec3> point, velocity, N, F;
-    std::vector<double> slipping, rolling, body, contact;
-    std::vector<std::vector<size_t>> vertex, polygon;
+    std::vector<double> slipping, rolling, body, contact, kind;
+    using Cells = std::vector<std::vector<size_t>>;
+    Cells vertex, line, polygon;
 
-    explicit Frame(const tests::fs::path& file)
+    explicit Frame(const tests::fs::path& file) : text(tests::read(file)), xml(text)
     {
-        const Xml xml(tests::read(file));
         CHECK(xml.named("VTKFile").attribute.at("type") == "PolyData");
-        const auto count = [&](const std::string& of) -> size_t {
-            return std::stoul(xml.named("Piece").attribute.at("NumberOf" + of));
-        };
+        const size_t points = count("Points"), all_cells = count("Verts") + count("Lines") + count("Polys");
         const auto array = [&](const std::string& name, size_t size) {
-            std::vector<double> all = numbers(xml.array(name).text);
+            std::vector<double> all = numbers(xml.array(name));
             INFO(name);
             REQUIRE(all.size() == size);
             return all;
         };
         const auto vectors = [&](const std::string& name) {
-            const std::vector<double> all = array(name, 3 * count("Points"));
+            const std::vector<double> all = array(name, 3 * points);
             std::vector<Vec3> v;
             for (size_t k = 0; k < all.size(); k += 3) v.emplace_back(all[k], all[k + 1], all[k + 2]);
             return v;
         };
         point = vectors("Points"), velocity = vectors("velocity");
         N = vectors("normal_force"), F = vectors("friction");
-        slipping = array("slipping", count("Points")), rolling = array("rolling", count("Points"));
-        body = array("body", count("Verts") + count("Polys"));
-        contact = array("contact", count("Verts") + count("Polys"));
-        std::vector<std::vector<std::vector<size_t>>> cells;
-        for (size_t k = 0; k < xml.element.size(); ++k) {
-            if (xml.element[k].name != "Verts" && xml.element[k].name != "Polys") continue;
-            const auto connectivity = numbers(xml.element[k + 1].text),
-                       offsets = numbers(xml.element[k + 2].text);
-            REQUIRE(offsets.size() == count(xml.element[k].name));
-            cells.emplace_back();
-            size_t from = 0;
-            for (const double offset : offsets) {
-                const size_t end = static_cast<size_t>(offset);
-                REQUIRE(from < end);
-                cells.back().emplace_back();
-                for (; from < end; ++from) {
-                    const size_t point_number = static_cast<size_t>(connectivity.at(from));
-                    REQUIRE(point_number < count("Points"));
-                    cells.back().back().push_back(point_number);
-                }
-            }
-            REQUIRE(from == connectivity.size());
-        }
-        REQUIRE(cells.size() == 2);
-        vertex = cells[0], polygon = cells[1];
+        slipping = array("slipping", points), rolling = array("rolling", points);
+        body = array("body", all_cells), contact = array("contact", all_cells),
+        kind = array("kind", all_cells);
+        vertex = cells("Verts"), line = cells("Lines"), polygon = cells("Polys");
     }
+
+    /// The contact points, which precede the points of joints
+    Cells contacts() const
+    {
+        return {vertex.begin(),
+                vertex.begin() + std::count(kind.begin(), kind.end(), Snapshots::contact_point)};
+    }
+
+private:
+    size_t count(const std::string& of) const
+    {
+        return std::stoul(xml.named("Piece").attribute.at("NumberOf" + of));
+    }
+    /// The numbers of an array of appended raw data
+    std::vector<double> numbers(const Xml::Element& array) const
+    {
+        const size_t begin = text.find('_', text.find("<AppendedData")) + 1;
+        const char* at = text.data() + begin + std::stoul(array.attribute.at("offset"));
+        std::uint64_t size = 0;
+        std::memcpy(&size, at, sizeof size);
+        REQUIRE(at + sizeof size + size <= text.data() + text.size());
+        std::vector<double> all;
+        const auto read = [&](auto number) {
+            for (size_t k = 0; k < size; k += sizeof number) {
+                std::memcpy(&number, at + sizeof size + k, sizeof number);
+                all.push_back(static_cast<double>(number));
+            }
+        };
+        array.attribute.at("type") == "Int32" ? read(std::int32_t()) : read(float());
+        return all;
+    }
+    Cells cells(const std::string& section) const
+    {
+        const size_t at = static_cast<size_t>(&xml.named(section) - xml.element.data());
+        const auto connectivity = numbers(xml.element[at + 1]), offsets = numbers(xml.element[at + 2]);
+        REQUIRE(offsets.size() == count(section));
+        Cells all;
+        size_t from = 0;
+        for (const double offset : offsets) {
+            const size_t end = static_cast<size_t>(offset);
+            REQUIRE(from < end);
+            all.emplace_back();
+            for (; from < end; ++from) {
+                const size_t point_number = static_cast<size_t>(connectivity.at(from));
+                REQUIRE(point_number < count("Points"));
+                all.back().push_back(point_number);
+            }
+        }
+        REQUIRE(from == connectivity.size());
+        return all;
+    }
+
+    const std::string text;
+    const Xml xml;
 };
 
 template <class Surface, class... Of>
@@ -378,7 +403,7 @@ TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
     for (size_t k = 0; k < listed.size(); ++k) {
         CHECK(std::stod(listed[k].time) == Approx(0.02 * static_cast<double>(k)));
         const Frame frame(in / ("out/" + listed[k].file));
-        REQUIRE(frame.vertex.size() == 1);  // the ball is in contact with the floor
+        REQUIRE(frame.contacts().size() == 1);  // the ball is in contact with the floor
         CHECK(frame.body[0] == 0);
         CHECK(frame.body.back() == -1);
         CHECK(frame.N[0].z() == Approx(5 * 9.81).epsilon(1e-3));
@@ -390,6 +415,52 @@ TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
     CHECK(call(in, {"run", "rolling_ball", "--end", "0.1", "--output", "out", "--force"}).code == 0);
     CHECK_FALSE(tests::fs::exists(in / "out/run.pvd"));
     CHECK(files(in / "out/vtk") == 0);
+}
+
+TEST_CASE("a run writes frames of a mechanism without contacts", "[studies][vtk]")
+{
+    const Scratch in;
+    const std::string model =
+        std::string(tests::source_dir) + "/examples/models/slider_crank_with_spring.json";
+    REQUIRE(call(in, {"run", model, "--end", "0.1", "--interval", "0.05", "--vtk", "0.05", "--forces",
+                      "--output", "out"})
+                .code == 0);
+    const auto motion = tests::csv(in / "out/trajectory.csv"), forces = tests::csv(in / "out/forces.csv");
+    const std::vector<Data> listed = collection(in / "out/run.pvd");
+    REQUIRE(listed.size() == motion.size());
+    for (size_t k = 0; k < listed.size(); ++k) {
+        const Frame frame(in / ("out/" + listed[k].file));
+        CHECK(frame.contacts().empty());
+        CHECK(std::count(frame.kind.begin(), frame.kind.end(), Snapshots::solid) ==
+              6 + 6 + 288);  // two boxes, a sphere
+        REQUIRE(frame.line.size() == 1);
+        CHECK(frame.kind[frame.vertex.size()] == double(Snapshots::spring));
+        const Vec3 P = frame.point[frame.line[0][0]], Q = frame.point[frame.line[0][1]];
+        CHECK((P - Vec3(0.6, 0, 0)).norm() < 1e-6);
+        CHECK((Q - P).norm() == Approx(tests::number(forces[k], "spring.length")).epsilon(1e-6));
+        const auto joint_at = [&](const Vec3& p) {
+            return std::any_of(frame.vertex.begin(), frame.vertex.end(),
+                               [&](const auto& cell) { return (frame.point[cell[0]] - p).norm() < 1e-6; });
+        };
+        const Vec3 crank(tests::number(motion[k], "crank.rx"), tests::number(motion[k], "crank.ry"), 0);
+        CHECK(joint_at(Vec3::Zero()));
+        CHECK(joint_at(2 * crank));
+        CHECK(joint_at(Q));
+    }
+}
+
+TEST_CASE("the drawn patch of an unbounded surface covers the region of the other bodies", "[studies][vtk]")
+{
+    // A cone of 45 degrees: the point above (x, y) is at the height sqrt(x² + y²), its projection is elsewhere.
+    const contact::Cone cone(0.25 * 3.14159265358979, true);
+    const studies::DrawingExtent reach{.box = {Vec3(-1, -1, 0.1), Vec3(1, 1, 1.2)}, .scene_size = 3};
+    Eigen::AlignedBox3d box;
+    for (const Vec3& a : contact::tessellate(cone, reach).point) {
+        CHECK(a.z() == Approx(a.head<2>().norm()).margin(1e-12));
+        box.extend(a);
+    }
+    CHECK(box.min().head<2>().maxCoeff() < -1);
+    CHECK(box.max().head<2>().minCoeff() > 1);
 }
 
 TEST_CASE("a run writes frames of a contact constraint", "[studies][vtk][evolving]")
@@ -422,7 +493,6 @@ TEST_CASE("a run rejects --vtk if it would write no frames", "[studies][vtk][run
     };
     for (const std::string text : {"0", "-1", "nan", "often"})
         refused({"run", "rolling_ball", "--vtk", text}, "--vtk: must be a positive, finite number");
-    refused({"run", "double_pendulum", "--vtk", "0.1"}, "double_pendulum has no contacts");
     refused({"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, "more than 1000000");
 }
 

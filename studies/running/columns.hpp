@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Columns of output tables that are functions of the state.
+
+#pragma once
+
+#include "studies/running/sink.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hilda::studies {
+
+/// A column of an output table
+struct Column {
+    std::string name;           ///< ENTITY.quantity
+    std::string unit, meaning;  ///< meaning with frame and sign convention
+};
+
+/// Columns that are computed together from the state at a node
+class ColumnGroup {
+public:
+    explicit ColumnGroup(std::vector<Column> columns) : columns(std::move(columns)) {}
+    virtual ~ColumnGroup() = default;
+
+    /// The values of all columns. The function does not allocate memory.
+    virtual void values(const lie::State& x, double* out) = 0;
+
+    const std::vector<Column> columns;
+};
+
+/// Position, rotation matrix, velocities and accelerations of all bodies, as in trajectory.csv
+std::unique_ptr<ColumnGroup> body_columns(const dae::Model& model);
+/// Force::quantities() of all forces with a name
+std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model);
+/// Normal force, gap, contact point, normal, friction and slip of all contacts, see ContactOutput
+std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model);
+
+/// A CSV file with a row of these columns at each output row of the run
+class ColumnsSink final : public RowsSink {
+public:
+    ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group);
+
+private:
+    std::string header() const override;
+    void append(std::string& row, const RunNode& node) override;
+
+    const std::unique_ptr<ColumnGroup> group;
+    std::vector<double> value;
+};
+
+}  // namespace hilda::studies

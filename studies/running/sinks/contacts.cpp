@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// contacts.csv: forces and motion of all contacts at the output rows.
+
+#include "studies/running/columns.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+const bool registered = io::Registry<SinkType>::add(
+    {.name = "contacts",
+     .options = {{.name = "--contacts",
+                  .help = "write contacts.csv as well: normal force, gap, contact point, friction, slip"}},
+     .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {
+         if (!run.options.contains("--contacts")) return nullptr;
+         auto columns = contact_columns(run.model);
+         if (columns->columns.empty())
+             throw io::UsageError("run: --contacts writes the contacts of a model; " + run.model_name +
+                                  " has no contacts");
+         return std::make_unique<ColumnsSink>(run, "contacts.csv", std::move(columns));
+     },
+     .files = {"contacts.csv"}});
+
+}  // namespace
+
+}  // namespace hilda::studies

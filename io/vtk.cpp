@@ -80,11 +80,12 @@ std::string VtkPolyData::text()
 std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files)
 {
     std::string xml = begin_of_file("Collection");
-    for (const auto& [t, file] : files) {
+    int part = 0;
+    for (size_t k = 0; k < files.size(); ++k) {
+        part = k > 0 && files[k].first == files[k - 1].first ? part + 1 : 0;
         xml += "<DataSet timestep=\"";
-        append_number(xml, t);
-        xml += "\" file=\"";
-        xml += escaped(file) + "\"/>\n";
+        append_number(xml, files[k].first);
+        xml += "\" part=\"" + std::to_string(part) + "\" file=\"" + escaped(files[k].second) + "\"/>\n";
     }
     return xml + "</Collection>\n</VTKFile>\n";
 }

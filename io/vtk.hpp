@@ -31,7 +31,7 @@ private:
     std::string xml, open_section, blocks;
 };
 
-/// A list of files with their times [s] (.pvd)
+/// A list of files with their times [s] (.pvd). Successive files with the same time are parts of one frame.
 std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files);
 
 }  // namespace hilda::io

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.pvd and vtk/particles-*.vtp: the particles, for ParaView.
+/// run.pvd, vtk/particles-*.vtp and vtk/boundaries-*.vtp: the particles and the boundaries, for ParaView.
 
 #include "granular/program/sink.hpp"
+#include "granular/world/boundary_drawing.hpp"
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
@@ -15,6 +16,7 @@ namespace hilda::granular {
 namespace {
 
 std::string frame(long k) { return io::formatted("vtk/particles-%06ld.vtp", k); }
+std::string boundary_frame(long k) { return io::formatted("vtk/boundaries-%06ld.vtp", k); }
 
 class Frames final : public Sink {
 public:
@@ -27,6 +29,8 @@ public:
     void node(const World& w) override
     {
         io::make_directory(directory + "vtk");
+        if (!w.all_boundaries().empty())
+            io::write_file(directory + boundary_frame(w.steps() / steps), boundaries_vtp(w));
         io::write_file(directory + frame(w.steps() / steps), particles_vtp(w));
     }
 
@@ -35,8 +39,9 @@ public:
     {
         std::vector<std::pair<double, std::string>> frames;
         for (long k = 0; k * steps <= c.world->steps(); ++k)
-            if (std::filesystem::exists(directory + frame(k)))
-                frames.emplace_back(static_cast<double>(k * steps) * c.h, frame(k));
+            for (const std::string& file : {frame(k), boundary_frame(k)})
+                if (std::filesystem::exists(directory + file))
+                    frames.emplace_back(static_cast<double>(k * steps) * c.h, file);
         if (!frames.empty()) io::write_file(directory + "run.pvd", io::vtk_collection(frames));
     }
 
@@ -59,7 +64,8 @@ const bool registered =
                                      [](const std::string& directory) {
                                          const std::string folder = directory + '/';
                                          std::remove((folder + "run.pvd").c_str());
-                                         for (long k = 0; std::remove((folder + frame(k)).c_str()) == 0;) ++k;
+                                         for (long k = 0; std::remove((folder + frame(k)).c_str()) == 0; ++k)
+                                             std::remove((folder + boundary_frame(k)).c_str());
                                      }});
 
 }  // namespace

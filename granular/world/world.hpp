@@ -142,6 +142,10 @@ public:
     /// Access to a boundary, to prescribe v, omega and F. A boundary with a mass is accelerated by the
     /// contact forces. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
+    const std::vector<Boundary>& all_boundaries() const { return boundaries; }
+    /// Lower and upper corner of the domain [m]
+    const Vec3& low() const { return options.low; }
+    const Vec3& high() const { return options.high; }
     /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
     /// Throws io::InvalidInput.
     void set_force(std::uint32_t id, const Vec3& F);

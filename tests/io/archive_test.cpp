@@ -123,6 +123,7 @@ TEST_CASE("VTK files have an XML part and raw blocks", "[io][vtk]")
                Contains("Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" offset=\"12\"/>"));
     CHECK(text.find(std::string("\n_\4\0\0\0\0\0\0\0\7\0\0\0\14\0\0\0", 18)) != std::string::npos);
     CHECK_THAT(text, Catch::EndsWith("</AppendedData>\n</VTKFile>\n"));
-    CHECK_THAT(io::vtk_collection({{0.1, "a&b.vtp"}}),
-               Contains("<DataSet timestep=\"0.1\" file=\"a&amp;b.vtp\"/>"));
+    CHECK_THAT(io::vtk_collection({{0, "a"}, {0.1, "a&b.vtp"}, {0.1, "c"}}),
+               Contains("<DataSet timestep=\"0.1\" part=\"0\" file=\"a&amp;b.vtp\"/>\n"
+                        "<DataSet timestep=\"0.1\" part=\"1\" file=\"c\"/>"));
 }

@@ -51,6 +51,9 @@ public:
         o.record("forces", each(o, "forces", false,
                                 [this](const Json& v, const std::string& at) { return load(v, at); }));
         contacts(o);
+        if (o.has("outputs"))
+            o.record("outputs", each(o, "outputs", false,
+                                     [this](const Json& v, const std::string& at) { return output(v, at); }));
         out.text = written(o.finish()) + "\n";
         if (ignored > 0)
             out.warnings.push_back(ignored_place +
@@ -237,6 +240,18 @@ private:
         return recorded;
     }
 
+    Json output(const Json& v, const std::string& at)
+    {
+        ObjectReader o(source, v, at);
+        const auto [name, type] = heading<OutputType>(o, output_names);
+        std::unique_ptr<Output> output = o.located([&, type = type] { return type->read(o, *this, out.x); });
+        output->name = name;
+        if (output->place.empty()) output->place = o.place();
+        Json recorded = o.finish();
+        out.outputs.push_back(std::move(output));
+        return recorded;
+    }
+
     /// The canonical form has the key only if there are contacts.
     void contacts(ObjectReader& o)
     {
@@ -276,7 +291,7 @@ private:
     Model& model;
     std::map<std::string, int> by_name;
     std::map<int, int> by_id;
-    std::set<std::string> constraint_names, force_names, contact_names;
+    std::set<std::string> constraint_names, force_names, contact_names, output_names;
     bool ground_listed = false;
     int ignored = 0;  // number of constraints with f_dot or f_ddot
     std::string ignored_place;

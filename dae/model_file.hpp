@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dae/model.hpp"
+#include "dae/outputs/output.hpp"
 #include "dae/start.hpp"
 
 #include <span>
@@ -21,6 +22,7 @@ struct Description {
     /// Changes of the text by the arguments of the reader: `set`, then /contacts/K/normal/rows=ROWS for each contact K
     /// to which `normal_rows` applies
     std::vector<std::string> changes;
+    std::vector<std::unique_ptr<Output>> outputs;
     std::vector<std::string> warnings;  ///< one line each, with the location
     std::vector<std::string>
         constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint

@@ -4,6 +4,7 @@
 
 #include "dae/force.hpp"
 #include "dae/model_types.hpp"
+#include "dae/outputs/output.hpp"
 
 #include <algorithm>
 
@@ -19,8 +20,10 @@ void set_definitions(io::Json& definitions, const std::string& title, const std:
 {
     io::set_one_of<Type>(definitions, "any_" + kind, [&](const Type& type) {
         TypeSchema schema = type.schema;
-        if (std::count(schema.parts.begin(), schema.parts.end(), "on_one_body") == 0)
-            schema.parts.insert(schema.parts.begin(), "pair");
+        const auto has_part = [&](const char* part) {
+            return std::count(schema.parts.begin(), schema.parts.end(), part) > 0;
+        };
+        if (!has_part("on_one_body") && !has_part("named")) schema.parts.insert(schema.parts.begin(), "pair");
         return definition({title, "type", "Type of the " + kind + "."}, type.name, schema);
     });
 }
@@ -32,6 +35,7 @@ io::Json model_schema()
     io::Json schema = io::parsed_schema(model_schema_text, "model.schema.json");
     set_definitions<ConstraintType>(schema["$defs"], "Constraint", "constraint");
     set_definitions<ForceType>(schema["$defs"], "Force", "force");
+    set_definitions<OutputType>(schema["$defs"], "Output", "output");
     for (const SchemaPart& part : io::Registry<SchemaPart>::all()) part.add(schema["$defs"]);
     return schema;
 }

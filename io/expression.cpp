@@ -125,7 +125,7 @@ std::string excerpt(std::string_view text, std::size_t place)
 ///     product = signed { (*|/) signed }
 ///     signed  = (-|+) signed  |  power
 ///     power   = operand [ (^|**) signed ]
-///     operand = number | name | function ( sum {, sum} ) | ( sum )
+///     operand = number | name | { name } | function ( sum {, sum} ) | ( sum )
 class Parser {
 public:
     Parser(std::string_view text, const std::vector<std::string>& variables)
@@ -209,6 +209,7 @@ private:
         const char c = text[place];
         if (is_digit(c) || c == '.') return number();
         if (is_letter(c)) return name();
+        if (c == '{') return name_in_braces();
         if (accept("(")) {
             sum();
             return close(at);
@@ -236,7 +237,7 @@ private:
     void name()
     {
         const std::size_t at = place;
-        while (!at_end() && (is_letter(text[place]) || is_digit(text[place]))) ++place;
+        while (!at_end() && (is_letter(text[place]) || is_digit(text[place]) || text[place] == '.')) ++place;
         const std::string_view word = text.substr(at, place - at);
         skip_blanks();
 
@@ -253,6 +254,19 @@ private:
             call(*function, at);
         else
             fail_unknown(word, at);
+    }
+
+    /// {any characters}: the variable of this name
+    void name_in_braces()
+    {
+        const std::size_t at = place, end = text.find('}', at);
+        if (end == std::string_view::npos) fail("'{' is never closed", at);
+        const std::string_view word = text.substr(at + 1, end - at - 1);
+        place = end + 1;
+        skip_blanks();
+        const auto variable = std::find(variables.begin(), variables.end(), word);
+        if (variable == variables.end()) fail_unknown(word, at);
+        push({.op = Op::variable, .n = static_cast<int>(variable - variables.begin())}, at);
     }
 
     void call(const Function& function, std::size_t at)
@@ -377,7 +391,10 @@ private:
         if (!hint.empty()) {
             hint = "did you mean '" + hint + "'?";
         } else {
-            for (const std::string& w : known) hint += (hint.empty() ? "known: " : ", ") + w;
+            constexpr std::size_t most = 12;
+            for (std::size_t k = 0; k < std::min(known.size(), most); ++k)
+                hint += (hint.empty() ? "known: " : ", ") + known[k];
+            if (known.size() > most) hint += ", ...";
         }
         fail((called ? "unknown function '" : "unknown name '") + excerpt(word, 0) + "'", at, hint);
     }
@@ -407,6 +424,13 @@ Jet Expression::jet(double t) const noexcept
     assert(arity == 1);
     const Jet x{t, 1, 0};
     return is_constant() ? Jet{program[0].c, 0, 0} : evaluate(program, std::span(&x, 1));
+}
+
+bool Expression::uses(std::size_t k) const
+{
+    return std::any_of(program.begin(), program.end(), [&](const Instruction& i) {
+        return i.op == Op::variable && i.n == static_cast<int>(k);
+    });
 }
 
 std::string_view Expression::outermost() const

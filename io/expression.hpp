@@ -26,7 +26,8 @@ public:
 /// An arithmetic expression in named variables, compiled to a postfix program.
 ///
 ///     numbers     1  .5  1.  2e-3, independent of the locale
-///     names       the variables, pi, e. A variable may have the name pi or e.
+///     names       the variables, pi, e. A variable may have the name pi or e. Names consist of letters, digits, _
+///                 and dots; a variable with another name is written in braces: {ball-floor.F_N}.
 ///     operators   + - * / and ^ (also **). ^ is right associative and binds more tightly than a sign on its
 ///                 left: -t^2 = -(t^2), 2^-3 = 1/8. The exponent is constant. Integer exponents up to 64 are
 ///                 evaluated by multiplication, so that 0^2 and (-2)^3 are exact. x^0 = 1.
@@ -65,6 +66,9 @@ public:
     std::string_view outermost() const;
 
     const std::string& text() const { return source; }
+
+    /// Whether the value depends on variable k
+    bool uses(std::size_t k) const;
 
     enum class Op {
         // clang-format off

@@ -37,7 +37,7 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
 const std::map<std::string, std::set<std::string>> folders = {
     {"io", {""}},
     {"lie", {"", "integrators", "solver", "steps"}},
-    {"dae", {"", "constraints", "forces", "joints"}},
+    {"dae", {"", "constraints", "forces", "joints", "outputs"}},
     {"contact",
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "scenes",
       "scenes/dvi", "surfaces"}},

@@ -10,6 +10,7 @@
 #include "lie/solver/saddle.hpp"
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/named_model.hpp"
+#include "studies/running/output_columns.hpp"
 
 #include <fmt/format.h>
 
@@ -242,6 +243,7 @@ int check_model(const CheckOptions& options)
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
     const dae::Model& model = *d.model;
+    const size_t output_columns = OutputColumns(model, d.outputs).columns.size();
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
@@ -279,6 +281,7 @@ int check_model(const CheckOptions& options)
             {"largest_reaction_torque", as_json(loads.T)},
             {"end", d.end},
             {"warnings", d.warnings}};
+        if (output_columns > 0) out["output_columns"] = output_columns;
         for (const CompliantContactInfo& c : compliant) out["contacts"].push_back(as_json(c));
         for (const ContactConstraintInfo& c : constrained) out["evolving_contacts"].push_back(as_json(c));
         if (!constrained.empty())
@@ -309,6 +312,7 @@ int check_model(const CheckOptions& options)
     line("constraints",
          fmt::format("{} with {} rows of rank {}", constraints, rows, start.rank - general.of_contacts));
     line("forces", std::to_string(other_forces));
+    if (output_columns > 0) line("outputs", fmt::format("{} columns in outputs.csv", output_columns));
     if (!compliant.empty()) line("contacts", std::to_string(compliant.size()));
     if (!constrained.empty()) {
         line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), general.of_contacts));

@@ -90,6 +90,12 @@ ColumnsSink::ColumnsSink(const RunSetup& run, const std::string& file, std::uniq
     : RowsSink(run.directory, file), group(std::move(group)), value(this->group->columns.size())
 {}
 
+void ColumnsSink::transfer(io::Archive& a)
+{
+    RowsSink::transfer(a);
+    group->transfer(a);
+}
+
 std::string ColumnsSink::header() const
 {
     std::string row = "t";
@@ -99,6 +105,7 @@ std::string ColumnsSink::header() const
 
 void ColumnsSink::append(std::string& row, const RunNode& node)
 {
+    group->node(node.x);
     if (!node.is_row) return;
     group->values(node.x, value.data());
     io::append_number(row, node.x.t);

@@ -23,6 +23,10 @@ public:
     explicit ColumnGroup(std::vector<Column> columns) : columns(std::move(columns)) {}
     virtual ~ColumnGroup() = default;
 
+    /// Takes every node of the run, in order and before values().
+    virtual void node(const lie::State& /*x*/) {}
+    /// Writes what a resumed run needs to the archive, or reads it.
+    virtual void transfer(io::Archive&) {}
     /// The values of all columns. The function does not allocate memory.
     virtual void values(const lie::State& x, double* out) = 0;
 
@@ -40,6 +44,8 @@ std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model);
 class ColumnsSink final : public RowsSink {
 public:
     ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group);
+
+    void transfer(io::Archive& a) override;
 
 private:
     std::string header() const override;

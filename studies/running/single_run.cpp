@@ -80,6 +80,7 @@ RunResult SingleRun::execute()
     const std::unique_ptr<lie::Integrator> integrator =
         contact::make_integrator(*description.model, scheme, integrator_settings);
     Recorder recorder({.model = *description.model,
+                       .outputs = description.outputs,
                        .model_name = description.name,
                        .grid = grid,
                        .end = result.end,

@@ -10,7 +10,8 @@
 
 namespace hilda::dae {
 class Model;
-}
+class Output;
+}  // namespace hilda::dae
 
 namespace hilda::studies {
 
@@ -35,6 +36,7 @@ struct RunSetup {
     using Node = RunNode;
 
     const dae::Model& model;
+    const std::vector<std::unique_ptr<dae::Output>>& outputs;  ///< of the model file
     const std::string& model_name;
     const lie::TimeGrid& grid;
     double end;  ///< [s]

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Output type angle: rotation of one body relative to another about a common axis.
+#include "dae/constraints/angle.hpp"
+#include "dae/forces/hinge_force.hpp"
+#include "dae/outputs/output.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace hilda::dae {
+
+namespace {
+
+/// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start, counted through
+/// whole turns from node to node. The saved number is the angle at the last node, so a step must rotate the bodies by
+/// less than half a turn.
+class AngleOutput final : public Output {
+public:
+    AngleOutput(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j, const State& start)
+        : hinge(i, axis_bar_i, j, axis_bar_j, start)
+    {}
+
+    std::vector<Quantity> quantities() const override
+    {
+        return {{"angle", "rad", "rotation of body j relative to body i about the axis since the start"},
+                {"rate", "rad/s", "rate of the angle"}};
+    }
+
+    int saved_numbers() const override { return 1; }
+    void update(const State& x, double* saved) const override { *saved = hinge.nearest(x, *saved); }
+    void values(const State& x, const double* saved, double* out) const override
+    {
+        out[0] = hinge.nearest(x, *saved), out[1] = hinge.rate(x);
+    }
+
+private:
+    /// The geometry of a hinge force without its torque
+    class Hinge final : public HingeForce {
+    public:
+        Hinge(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j, const State& start)
+            : HingeForce("angle", i, axis_bar_i, j, axis_bar_j, start)
+        {}
+        double torque(double, double) const override { return 0; }
+        double potential(double) const override { return 0; }
+
+        /// Of the angles that differ by whole turns, the one nearest to `angle`
+        double nearest(const State& x, double angle) const
+        {
+            const Vec3 u_j = motion(x, i).A.transpose() * (motion(x, j).A * u_bar_j);
+            return nearest_revolution(std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j)), angle);
+        }
+    };
+
+    const Hinge hinge;
+};
+
+const TypeSchema schema = {
+    .description =
+        "Joint angle: rotation [rad] of body j relative to body i about a common axis since the start, "
+        "counted through whole turns, and its rate [rad/s]: the columns NAME.angle and NAME.rate.",
+    .parts = {"axes"},
+    .keys = {},
+    .example = R"("name": "crank angle", "body_i": "ground", "body_j": "crank", "axis_bar_i": [0, 0, 1], )"
+               R"("axis_bar_j": [0, 0, 1])"};
+
+const bool registered = io::Registry<OutputType>::add(
+    {.name = "angle",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) {
+         const auto [i, j] = bodies.pair(o);
+         const Axes axis(o);
+         return std::unique_ptr<Output>(std::make_unique<AngleOutput>(i, axis.i, j, axis.j, x));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Output type expression: a formula in the columns of the run.
+#include "dae/outputs/output.hpp"
+
+namespace hilda::dae {
+
+namespace {
+
+class ExpressionOutput final : public Output {
+public:
+    ExpressionOutput(std::string text, std::string unit) : text(std::move(text)), unit(std::move(unit)) {}
+
+    std::vector<Quantity> quantities() const override { return {{"", unit, text}}; }
+    void values(const State&, const double*, double*) const override {}
+    std::string expression() const override { return text; }
+
+private:
+    const std::string text, unit;
+};
+
+const TypeSchema schema = {
+    .description =
+        "A formula in t and the columns of the run: those of trajectory.csv (BODY.rx, energy), forces.csv "
+        "(SPRING.force), contacts.csv (CONTACT.F_N) and of the preceding outputs. A column whose name has "
+        "other "
+        "characters than letters, digits, _ and . is written in braces: {ball-floor.F_N}. The column has the "
+        "name of "
+        "the output.",
+    .parts = {"named"},
+    .keys = {{"value", "The formula. Operators and functions as in other formulas.",
+              R"("type": "string", "minLength": 1, "maxLength": 4096, "examples": ["2*bar.vx^2"])", true},
+             {"unit", "Unit, for the documentation of the column.",
+              R"("type": "string", "default": "", "examples": ["J"])"}},
+    .example = R"("name": "height", "value": "bar.rz + 0.5")"};
+
+const bool registered = io::Registry<OutputType>::add(
+    {.name = "expression", .schema = schema, .read = [](ObjectReader& o, const BodyFinder&, const State&) {
+         std::string value = o.text("value");
+         if (value.empty()) o.fail("value", "value must be a formula, got \"\"");
+         std::string unit = o.text("unit", "");
+         auto output = std::make_unique<ExpressionOutput>(std::move(value), std::move(unit));
+         output->place = o.place("value");
+         return std::unique_ptr<Output>(std::move(output));
+     }});
+
+}  // namespace
+
+}  // namespace hilda::dae

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/output_columns.hpp"
+
+#include "dae/model.hpp"
+#include "io/expression.hpp"
+#include "lie/check.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace hilda::studies {
+
+struct OutputColumns::Part {
+    const dae::Output* output;
+    size_t count;  ///< of the columns
+    std::vector<double> saved;
+    std::optional<io::Expression> expression;
+};
+
+namespace {
+
+/// Kinetic plus potential energy, as in trajectory.csv
+class EnergyColumn final : public ColumnGroup {
+public:
+    explicit EnergyColumn(const dae::Model& model)
+        : ColumnGroup({{"energy", "J", "kinetic energy plus potential energy of gravity and springs"}}),
+          model(model)
+    {}
+    void values(const lie::State& x, double* out) override { *out = lie::energy(model, x); }
+
+private:
+    const dae::Model& model;
+};
+
+std::unique_ptr<ColumnGroup> energy_column(const dae::Model& model)
+{
+    return std::make_unique<EnergyColumn>(model);
+}
+
+std::vector<Column> columns_of(const std::vector<std::unique_ptr<dae::Output>>& outputs)
+{
+    std::vector<Column> all;
+    for (const auto& output : outputs)
+        for (const dae::Output::Quantity& q : output->quantities())
+            all.push_back({q.name.empty() ? output->name : output->name + '.' + q.name, q.unit, q.meaning});
+    return all;
+}
+
+}  // namespace
+
+OutputColumns::OutputColumns(const dae::Model& model,
+                             const std::vector<std::unique_ptr<dae::Output>>& outputs)
+    : ColumnGroup(columns_of(outputs))
+{
+    std::vector<std::string> names = {"t"};
+    for (auto make : {body_columns, energy_column, force_columns, contact_columns}) {
+        sources.push_back({.group = make(model), .first = names.size()});
+        for (const Column& c : sources.back().group->columns) names.push_back(c.name);
+    }
+    first_output = names.size();
+    for (const auto& output : outputs) {
+        Part part{.output = output.get(),
+                  .count = output->quantities().size(),
+                  .saved = std::vector<double>(output->saved_numbers()),
+                  .expression = {}};
+        if (const std::string text = output->expression(); !text.empty()) try {
+                part.expression.emplace(text, names);
+            } catch (const io::ExpressionError& e) {
+                throw lie::InvalidInput(output->place + ": " + e.what());
+            }
+        for (Source& source : sources)
+            for (size_t k = 0; part.expression && k < source.group->columns.size(); ++k)
+                source.is_used = source.is_used || part.expression->uses(source.first + k);
+        for (size_t k = 0; k < part.count; ++k) {
+            const std::string& name = columns[names.size() - first_output].name;
+            if (std::find(names.begin(), names.end(), name) != names.end())
+                throw lie::InvalidInput(output->place + ": the column '" + name +
+                                        "' exists already; give the output another name");
+            names.push_back(name);
+        }
+        parts.push_back(std::move(part));
+    }
+    variable.resize(names.size());
+}
+
+OutputColumns::~OutputColumns() = default;
+
+void OutputColumns::node(const lie::State& x)
+{
+    for (Part& part : parts) part.output->update(x, part.saved.data());
+}
+
+void OutputColumns::values(const lie::State& x, double* out)
+{
+    variable[0] = x.t;
+    for (const Source& source : sources)
+        if (source.is_used) source.group->values(x, variable.data() + source.first);
+    double* at = variable.data() + first_output;
+    for (const Part& part : parts) {
+        if (part.expression)
+            *at = part.expression->value({variable.data(), static_cast<size_t>(at - variable.data())});
+        else
+            part.output->values(x, part.saved.data(), at);
+        at += part.count;
+    }
+    std::copy(variable.begin() + static_cast<std::ptrdiff_t>(first_output), variable.end(), out);
+}
+
+void OutputColumns::transfer(io::Archive& a)
+{
+    for (Part& part : parts)
+        for (double& number : part.saved) a.value(number);
+}
+
+}  // namespace hilda::studies

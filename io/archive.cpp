@@ -138,13 +138,23 @@ bool CheckpointFiles::load(
         return true;
     }
     if (!damage.empty()) throw IoError(damage);
-    return false;
+    if (!exists(final)) return false;
+    read(read_file(final, most), final);
+    return true;
+}
+
+void CheckpointFiles::save_final(const std::string& bytes) const { write_file(final, bytes); }
+
+void CheckpointFiles::remove_unfinished() const
+{
+    for (const std::string& file : {last, before, last + ".new", last + ".new.tmp"})
+        std::remove(file.c_str());
 }
 
 void CheckpointFiles::remove() const
 {
-    for (const std::string& file : {last, before, last + ".new", last + ".new.tmp"})
-        std::remove(file.c_str());
+    remove_unfinished();
+    std::remove(final.c_str());
 }
 
 }  // namespace hilda::io

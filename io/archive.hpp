@@ -96,24 +96,32 @@ private:
     bool reading = false, has_format = false;
 };
 
-/// The last checkpoint, `checkpoint`, and the one before it, `checkpoint.1`. At any time at least one of them is
-/// complete.
+/// The last checkpoint of an unfinished run, `checkpoint`, and the one before it, `checkpoint.1`. At any time at least
+/// one of them is complete. The checkpoint at the end of a run, from which a longer run can continue, is
+/// `checkpoint.end`.
 class CheckpointFiles {
 public:
     explicit CheckpointFiles(const std::string& directory)
-        : last(directory + "/checkpoint"), before(last + ".1")
+        : last(directory + "/checkpoint"), before(last + ".1"), final(last + ".end")
     {}
 
+    /// Whether there are checkpoints of an unfinished run
     bool exist() const;
     /// Writes `checkpoint`; the previous one becomes checkpoint.1. IoError.
     void save(const std::string& bytes) const;
     /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one before, with
-    /// a warning. Returns false if there is no checkpoint. IoError if none can be read.
+    /// a warning. Without either, calls it for the checkpoint at the end of the run. Returns false if there is no
+    /// checkpoint. IoError if none can be read.
     bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
+    /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
+    void save_final(const std::string& bytes) const;
+    /// Removes the checkpoints of the unfinished run.
+    void remove_unfinished() const;
+    /// Removes all checkpoints.
     void remove() const;
 
 private:
-    std::string last, before;
+    std::string last, before, final;
 };
 
 }  // namespace hilda::io

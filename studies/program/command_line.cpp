@@ -185,10 +185,13 @@ private:
                append(selected_integrators, integrators));
         value(c, "--step", "H", "step size [s]; not for ida-rp, which chooses its own; default: 1e-3",
               assign(o.step, positive_number));
-        value(c, "--end", "T", "end time [s]; default: that of the model", assign(o.end, nonnegative_number));
-        value(c, "--interval", "DT",
-              "time between output rows [s], 0: a row for each step; default: end/1000",
-              assign(o.interval, nonnegative_number));
+        value(c, "--end", "T", "end time [s]; default: that of the model, with --resume that of the run",
+              assign(o.end, nonnegative_number));
+        value(
+            c, "--interval", "DT",
+            "time between output rows [s], 0: a row for each step; default: end/1000, with --resume that of "
+            "the run",
+            assign(o.interval, nonnegative_number));
         value(c, "--every", "DT", "old name of --interval", assign(every, nonnegative_number))
             ->group("");  // not in the help
         add_settings(c, o.settings);
@@ -207,7 +210,8 @@ private:
             "--force", o.force,
             "overwrite an output directory that is not empty; accept a step above the stability limit");
         c->add_flag("--resume", o.resume,
-                    "continue the run in the output directory from its last checkpoint");
+                    "continue the run in the output directory from its last checkpoint; a complete run "
+                    "continues to a later --end");
         value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
               assign(o.checkpoint, nonnegative_number));
         io::add_sink_options<RunSetup>(*c, o.outputs);

@@ -57,12 +57,14 @@ int run_model(const RunOptions& options)
             code = io::exit_code::signal + io::Interrupt::caught();
             break;
         }
-        if (options.resume && directory.size() > 1 && SingleRun::has_ended(directory[k])) {
-            if (!options.quiet) io::warning(directory[k] + ": its run is complete; skipped");
+        RunResult result;
+        try {
+            result = SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).execute();
+        } catch (const RunHasEnded& ended) {
+            if (directory.size() == 1) throw;
+            if (!options.quiet) io::warning(ended.what() + std::string("; skipped"));
             continue;
         }
-        const RunResult result =
-            SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).execute();
         if (code == io::exit_code::done) code = result.exit_code;
         if (options.json) all.push_back(summary(result));
         if (options.json || options.quiet) continue;

@@ -7,7 +7,7 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 7};
+constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 8};
 
 void transfer(io::Archive& a, lie::State& x)
 {
@@ -32,6 +32,8 @@ void transfer(io::Archive& a, contact::ContactEvent& e)
 void transfer(io::Archive& a, Checkpoint& c)
 {
     a.list(c.settings);
+    a.value(c.end), a.value(c.interval);
+    a.check(c.end >= 0 && c.interval > 0, "invalid end or interval of the rows");
     transfer(a, c.node);
     a.value(c.number), a.value(c.iterations);
     transfer(a, c.pivots);

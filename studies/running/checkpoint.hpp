@@ -16,6 +16,8 @@ namespace hilda::studies {
 
 struct Checkpoint {
     std::string settings;  ///< list of the settings of the run, as text; a resumed run must have the same
+    double end = 0;        ///< of the run [s]; a resumed run may have a later one
+    long interval = 1;     ///< nodes from one output row to the next
     lie::State node;       ///< last accepted node
     long number = 0;       ///< number of that node
     int iterations = 0;    ///< Newton iterations of the step that ends there

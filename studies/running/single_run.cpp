@@ -64,13 +64,6 @@ SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::
       directory(std::move(directory))
 {}
 
-bool SingleRun::has_ended(const std::string& directory)
-{
-    std::error_code error;
-    return std::filesystem::exists(directory + "/summary.json", error) &&
-           !io::CheckpointFiles(directory).exist();
-}
-
 RunResult SingleRun::execute()
 {
     begin = Clock::now();
@@ -88,11 +81,10 @@ RunResult SingleRun::execute()
                        .options = options.outputs,
                        .warn = [this](const std::string& what) { warn(what); }},
                       *integrator);
-    const std::optional<Checkpoint> from = options.resume ? load_checkpoint() : std::nullopt;
     check_step(from.has_value());
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
-    march(*integrator, recorder, from);
+    march(*integrator, recorder);
     if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
         for (const contact::ContactEvent& e : events->events())
             if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
@@ -107,8 +99,10 @@ void SingleRun::read()
 {
     description = named_model(options.model, options.set, options.normal_rows);
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
-    result.end = options.end.value_or(description.end);
+    if (options.resume) load_checkpoint();
+    result.end = options.end.value_or(from ? from->end : description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
+    if (from && !options.interval) grid.interval = from->interval;
     const double reached = static_cast<double>(grid.steps) * grid.h,
                  spacing = static_cast<double>(grid.interval) * grid.h;
     if (reached > result.end * (1 + 1e-9))
@@ -143,14 +137,14 @@ void SingleRun::read()
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
     settings = fmt::format(
-        "model {:016x}, integrator {}, step {}, end {}, interval {}, tolerance {}, linear solver {}, rho "
-        "{}{}{}",
-        io::checksum(description.text.data(), description.text.size()), scheme.name, grid.h, result.end,
-        result.interval, options.settings.tolerance, static_cast<int>(options.settings.linear_solver),
+        "model {:016x}, integrator {}, step {}, interval {}, tolerance {}, linear solver {}, rho {}{}{}",
+        io::checksum(description.text.data(), description.text.size()), scheme.name, grid.h, result.interval,
+        options.settings.tolerance, static_cast<int>(options.settings.linear_solver),
         options.settings.rho_infinity, options.settings.reparametrise ? ", --reparametrise" : "",
         options.fix_initial ? ", --fix-initial" : "");
     for (const auto& [option, text] : options.outputs)
         settings += ", " + option + (text.empty() ? "" : ' ' + text);
+    if (from) check_continues();
 }
 
 // A resumed run was checked when it started: it only gives a warning.
@@ -175,22 +169,39 @@ void SingleRun::check_step(bool resumed) const
     warn(what);
 }
 
-std::optional<Checkpoint> SingleRun::load_checkpoint() const
+void SingleRun::load_checkpoint()
 {
-    if (has_ended(directory))
-        throw io::UsageError(directory +
-                             ": has no checkpoint, and its run is complete; --force starts it again");
-    std::optional<Checkpoint> found;
+    std::error_code error;
+    const bool has_ended =
+        std::filesystem::exists(path("summary.json"), error) && !io::CheckpointFiles(directory).exist();
     io::CheckpointFiles(directory).load([&](const std::string& bytes, const std::string& file) {
-        found = from_bytes(bytes, file);
-        if (found->settings != settings)
-            throw io::UsageError(
-                fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})",
-                            directory, found->settings, settings));
-        check_fits(*found, *description.model, description.x, file);
+        from = from_bytes(bytes, file);
+        from_file = file;
     });
-    if (!found) warn(directory + ": has no checkpoint; starting from the initial state");
-    return found;
+    if (!from && has_ended)
+        throw RunHasEnded(directory + ": its run has ended without a checkpoint; --force starts it again");
+    if (!from) warn(directory + ": has no checkpoint; starting from the initial state");
+    extends = from && has_ended;
+}
+
+void SingleRun::check_continues() const
+{
+    if (from->settings != settings)
+        throw io::UsageError(
+            fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})", directory,
+                        from->settings, settings));
+    check_fits(*from, *description.model, description.x, from_file);
+    const bool same_end = lie::TimeGrid::over(from->end, grid.h).steps == grid.steps;
+    if (extends && same_end)
+        throw RunHasEnded(
+            fmt::format("{}: its run is complete, with the end {} s; --end with a later time extends it, "
+                        "--force starts it again",
+                        directory, from->end));
+    if (grid.steps < from->number || (grid.steps == from->number && !same_end))
+        throw io::UsageError(
+            fmt::format("run: --end must be after t = {} s, which the run in {} has reached, "
+                        "got {}; --force starts it again",
+                        from->node.t, directory, result.end));
 }
 
 // Removes the files of an earlier run, so that they cannot be taken for those of this run.
@@ -204,7 +215,7 @@ void SingleRun::clear_directory() const
                    description.text.ends_with('\n') ? description.text : description.text + '\n');
 }
 
-void SingleRun::march(lie::Integrator& integrator, Recorder& recorder, const std::optional<Checkpoint>& from)
+void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
 {
     lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
                             : lie::March(description.x, integrator, grid.h);
@@ -214,8 +225,10 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder, const std
     }
     recorder.open(from);
     begin = Clock::now();
-    // A checkpoint at the start, so that the run can be resumed at any time.
-    if (options.checkpoint > 0 && !from) save_checkpoint(march, recorder);
+    // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed at
+    // any time.
+    if (extends) std::remove(path("summary.json").c_str());
+    if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(march, recorder);
     advance(march, integrator, recorder);
     last_node = march.node().t;
     result.invariants = recorder.invariants;
@@ -276,7 +289,10 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         }
         count(march, recorder);  // before the additional step of finish(), which is not a step of the run
         line.clear();
-        if (march.number() == grid.steps) return march.finish(observers);
+        if (march.number() == grid.steps) {
+            if (!scheme.adaptive) final_checkpoint = checkpoint(march, recorder);
+            return march.finish(observers);
+        }
         result.status = "interrupted";
         result.exit_code = io::exit_code::signal + io::Interrupt::caught();
         if (!scheme.adaptive) save_checkpoint(march, recorder);
@@ -293,12 +309,19 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
     }
 }
 
-void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) const
 {
     Checkpoint c = recorder.checkpoint(march);
     c.settings = settings;
+    c.end = result.end;
+    c.interval = grid.interval;
     c.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
-    io::CheckpointFiles(directory).save(to_bytes(std::move(c)));
+    return to_bytes(std::move(c));
+}
+
+void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+{
+    io::CheckpointFiles(directory).save(checkpoint(march, recorder));
     log(fmt::format("checkpoint at step {}", march.number()));
 }
 
@@ -325,10 +348,13 @@ void SingleRun::finish(const Recorder& recorder)
     result.files = recorder.files();
     result.files.insert(result.files.begin(), "model.json");
     result.files.emplace_back("summary.json");
-    if (result.status == "ok") io::CheckpointFiles(directory).remove();
+    const bool ok = result.status == "ok";
+    // In this order, so that a run that is killed here can be resumed.
+    if (ok && !final_checkpoint.empty()) io::CheckpointFiles(directory).save_final(final_checkpoint);
     if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
     if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
     io::write_file(path("summary.json"), summary(result).text());
+    if (ok) io::CheckpointFiles(directory).remove_unfinished();
 }
 
 }  // namespace hilda::studies

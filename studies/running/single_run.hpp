@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dae/model_file.hpp"
+#include "io/error.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
@@ -22,6 +23,11 @@ class Integrator;
 
 namespace hilda::studies {
 
+/// --resume in the directory of a run that has ended, without a later end
+struct RunHasEnded : io::UsageError {
+    using UsageError::UsageError;
+};
+
 class SingleRun : private io::Verbosity {
 public:
     /// Options and scheme must outlive this object.
@@ -32,9 +38,6 @@ public:
     /// before any file is written, io::IoError.
     RunResult execute();
 
-    /// True if the directory contains the summary of a run and no checkpoint.
-    static bool has_ended(const std::string& directory);
-
 private:
     using Clock = std::chrono::steady_clock;
 
@@ -42,10 +45,13 @@ private:
     /// io::UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
     /// force has internal state variables.
     void check_step(bool resumed) const;
-    std::optional<Checkpoint> load_checkpoint() const;
+    void load_checkpoint();
+    /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
+    void check_continues() const;
     void clear_directory() const;
-    void march(lie::Integrator& integrator, Recorder& recorder, const std::optional<Checkpoint>& from);
+    void march(lie::Integrator& integrator, Recorder& recorder);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
+    std::string checkpoint(const lie::March& march, Recorder& recorder) const;
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
     void check_contacts();
@@ -60,6 +66,11 @@ private:
     dae::Description description;
     lie::TimeGrid grid;
     std::string settings;
+    std::optional<Checkpoint> from;  ///< of a resumed run
+    std::string from_file;
+    bool extends = false;  ///< continues a run that has ended
+    std::string
+        final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
     double last_node = 0;  ///< time of the last accepted node [s]
     Clock::time_point begin;
     double earlier_seconds = 0;  ///< wall time before the checkpoint [s]

@@ -48,7 +48,7 @@ const std::map<std::string, std::set<std::string>> folders = {
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},
     {"studies",
      {"", "benchmarks", "experiments", "experiments/chapter3", "experiments/chapter4",
-      "experiments/chapter4/friction", "experiments/chapter5", "experiments/chapter7", "experiments/chapter8",
+      "experiments/chapter4/friction", "experiments/chapter5", "experiments/chapter7", "experiments/chapter8", "experiments/sweep",
       "framework", "plots", "problems", "program", "running", "running/sinks"}},
 };
 

@@ -25,11 +25,15 @@ struct Expectation {
 struct StudyOptions {
     std::vector<std::string> problems;  ///< names or paths of model files
     std::vector<std::string> integrators;
-    std::vector<double> steps;     ///< [s], descending
-    std::vector<double> rtols;     ///< of adaptive integrators, descending
-    std::vector<int> bars;         ///< numbers of bars of study scaling, ascending
-    std::optional<double> end;     ///< [s]
-    std::vector<std::string> set;  ///< /json/pointer=VALUE
+    std::vector<double> steps;       ///< [s], descending
+    std::vector<double> rtols;       ///< of adaptive integrators, descending
+    std::vector<int> bars;           ///< numbers of bars of study scaling, ascending
+    std::optional<double> end;       ///< [s]
+    std::vector<std::string> set;    ///< /json/pointer=VALUE
+    bool fix_initial = false;        ///< project inconsistent initial data onto the constraints
+    std::vector<std::string> sweep;  ///< /json/pointer=VALUES of study sweep
+    std::string observable;          ///< BODY.COMPONENT of study sweep; "": that of the problem
+    bool keep = false;               ///< keep the motion of each run of study sweep
     lie::Settings settings;
 
     std::string reference;  ///< an integrator; "": the reference solution of each problem
@@ -67,7 +71,8 @@ enum : unsigned {
     check = 128,
     vtk = 256,
     normal_rows = 512,
-    all = 1024
+    all = 1024,
+    sweep = 2048
 };
 }  // namespace takes
 

@@ -45,6 +45,10 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
         {"--bars", joined(o.bars)},
         {"--end", text_of(o.end)},
         {"--set", joined(o.set)},
+        {"--fix-initial", o.fix_initial ? "yes" : "no"},
+        {"--sweep", joined(o.sweep)},
+        {"--observable", o.observable},
+        {"--keep", o.keep ? "yes" : "no"},
         {"--reference", o.reference},
         {"--reference-step", text_of(o.reference_step)},
         {"--reference-rtol", text_of(o.reference_rtol)},
@@ -103,6 +107,7 @@ void StudyContext::refuse_models(bool has_parts) const
     refuse_if(!has_parts && !options.problems.empty(), "--problem");
     refuse_if(!options.integrators.empty(), "--integrator");
     refuse_if(!options.set.empty(), "--set");
+    refuse_if(options.fix_initial, "--fix-initial");
 }
 
 Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
@@ -178,11 +183,14 @@ io::Json StudyContext::measure(const std::string& of,
 void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
 {
     failed_runs = failures(runs);
-    if (runs.empty() || !std::all_of(runs.begin(), runs.end(), [](const Run* run) { return run->failed(); }))
-        return;
-    const Run& first = *runs.front();
-    all_failed = fmt::format("hilda: error[{}]: study {}: all {} runs failed; {}: {}\n", first.status, name,
-                             runs.size(), first.name(), first.message);
+    const auto has_failed = [](const Run* run) { return run->failed(); };
+    const auto failed = static_cast<size_t>(std::count_if(runs.begin(), runs.end(), has_failed));
+    if (failed == 0 || (failed < runs.size() && !every_run_must_succeed)) return;
+    const Run& first = **std::find_if(runs.begin(), runs.end(), has_failed);
+    numerical_failure = fmt::format(
+        "hilda: error[{}]: study {}: {} runs failed; {}: {}\n", first.status, name,
+        failed < runs.size() ? fmt::format("{} of {}", failed, runs.size()) : fmt::format("all {}", failed),
+        first.name(), first.message);
 }
 
 io::Json StudyContext::whole() const
@@ -260,8 +268,8 @@ int StudyContext::finish()
         io::EndOnSignal::ignore();  // the results are complete, there is nothing left to resume
         finished->remove();
     }
-    if (!all_failed.empty()) {
-        io::message(all_failed);
+    if (!numerical_failure.empty()) {
+        io::message(numerical_failure);
         return io::exit_code::numerical_failure;
     }
     const bool passed = as_expected() && (criteria_passed || !options.check);

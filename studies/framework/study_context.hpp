@@ -70,6 +70,7 @@ public:
     std::vector<std::string> figures;                        ///< files that plots/NAME.py draws
     std::vector<Measured> measured;                          ///< compared with --expect
     bool criteria_passed = true;                             ///< set by evaluate()
+    bool every_run_must_succeed = false;  ///< exit code 4 if one run fails, not only if all do
 
     /// study.csv of runs, and their values of the columns that are keys of --expect
     template <class Columns, class Runs>
@@ -81,12 +82,13 @@ public:
     }
     /// Adds values by their keys of --expect. Returns them as a JSON object, for study.json.
     io::Json measure(const std::string& of, const std::vector<std::pair<std::string, double>>& values);
-    /// Records which runs failed. If all of them failed, so has the study.
+    /// Records which runs failed. If all of them failed, so has the study (see every_run_must_succeed).
     void end_of_runs(const std::vector<const Run*>& runs);
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
     void evaluate(const std::vector<Criterion>& criteria);
 
-    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed, 6
+    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed (or one, see
+    /// every_run_must_succeed), 6
     /// if an expectation or, with --check, a criterion failed. The common keys of study.json are study,
     /// tolerance, settings, seed, set, provenance and, if options.repeats > 0, repeats.
     int finish();
@@ -96,7 +98,8 @@ private:
     void write(const io::Json& whole_json) const;
     bool as_expected() const;
 
-    std::string failed_runs, all_failed;     ///< texts; empty if no run, or not all runs failed
+    std::string failed_runs,
+        numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
     std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory
 };
 

@@ -135,6 +135,10 @@ private:
     }
 
     static std::string unchanged(const std::string& /*option*/, const std::string& text) { return text; }
+    static std::vector<std::string> one_sweep(const std::string& /*option*/, const std::string& text)
+    {
+        return {text};
+    }
     static std::vector<std::string> one_setting(const std::string& option, const std::string& text)
     {
         return {setting(option, text)};
@@ -271,6 +275,13 @@ private:
                 return kind.empty() ? list_studies(study.json) : run_study(kind, study);
             });
         c->add_option("KIND", kind, "name of the study; default: print the list")->type_name("");
+        c->add_option_function<std::vector<std::string>>(
+             "MODEL",
+             [&o](const std::vector<std::string>& all) {
+                 o.problems.insert(o.problems.end(), all.begin(), all.end());
+             },
+             "built-in models or model files, as --problem")
+            ->type_name("");
         values(c, "--problem", "NAME[,NAME...]",
                "built-in models or model files, or the cases of the study; default: those of the study",
                append(o.problems, list));
@@ -288,6 +299,18 @@ private:
               assign(o.end, positive_number));
         values(c, "--set", "/json/pointer=VALUE", "change one entry of each model; repeatable",
                append(o.set, one_setting));
+        values(c, "--sweep", "/json/pointer=VALUES",
+               "values of an entry of the model of study sweep: V1,V2,..., or A:B:N for N numbers from A to "
+               "B, or "
+               "A:B:N:log; repeatable, for all combinations",
+               append(o.sweep, one_sweep));
+        value(c, "--observable", "BODY.COMPONENT",
+              "scalar that study sweep tabulates and draws, rx to rz, vx to vz or wx to wz of a body; "
+              "default: that "
+              "of the model",
+              assign(o.observable, unchanged));
+        c->add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
+        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
         add_settings(c, o.settings);
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force or --resume is given; default: out/KIND",

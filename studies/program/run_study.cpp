@@ -49,6 +49,9 @@ void reject_unused_options(const Study& study, const StudyOptions& options)
     reject_if(options.all, takes::all, "--all");
     reject_if(!options.grid.empty(), takes::grid, "--grid");
     reject_if(options.vtk > 0, takes::vtk, "--vtk");
+    reject_if(!options.sweep.empty(), takes::sweep, "--sweep");
+    reject_if(!options.observable.empty(), takes::sweep, "--observable");
+    reject_if(options.keep, takes::sweep, "--keep");
 }
 
 }  // namespace

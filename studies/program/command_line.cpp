@@ -171,6 +171,8 @@ private:
         RunOptions& o = run;
         CLI::App* c = add("run", "simulate a model", [this] {
             if (run.force && run.resume) throw io::UsageError("run: --force and --resume exclude each other");
+            if (run.error && run.resume)
+                throw io::UsageError("run: --error compares whole runs; --resume excludes it");
             if (every && run.interval)
                 throw io::UsageError("run: --every is the old name of --interval; give only one of them");
             if (every) run.interval = every;
@@ -220,6 +222,10 @@ private:
               assign(o.checkpoint, nonnegative_number));
         io::add_sink_options<RunSetup>(*c, o.outputs);
         c->add_flag("--plot", o.plot, "draw trajectory.png as well");
+        c->add_flag(
+            "--error", o.error,
+            "estimate the error of the run from runs with half and a quarter of the step (about seven times "
+            "the time)");
         value(c, "--threads", "N", "accepted for compatibility; a run uses one thread",
               assign(o.threads, positive_count));
         c->add_flag_callback(

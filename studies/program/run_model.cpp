@@ -38,6 +38,7 @@ void refuse_for_adaptive(const RunOptions& options)
         if (options.resume || options.checkpoint > 0)
             refuse(
                 "stores past steps outside the state; --checkpoint and --resume are for fixed-step schemes");
+        if (options.error) refuse("chooses its own steps; --error is for fixed-step schemes");
         if (options.interval && *options.interval == 0)
             refuse("chooses its own steps; --interval must be positive, got 0");
     }

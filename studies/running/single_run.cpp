@@ -82,6 +82,9 @@ RunResult SingleRun::execute()
                        .warn = [this](const std::string& what) { warn(what); }},
                       *integrator);
     check_step(from.has_value());
+    if (options.error)
+        refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
+                                                integrator_settings, grid);
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, recorder);
@@ -91,6 +94,7 @@ RunResult SingleRun::execute()
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
                      event_name(e.type), e.speed});
+    if (refined) result.error = refined->estimate(result.events.size());
     finish(recorder);
     return std::move(result);
 }
@@ -265,7 +269,8 @@ void SingleRun::check_contacts()
 
 void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
 {
-    const std::vector<lie::Observer*> observers = recorder.observers();
+    std::vector<lie::Observer*> observers = recorder.observers();
+    if (refined) observers.push_back(refined.get());
     Progress line(options.quiet, result.end, grid.steps, march.number());
     const bool watch_clock = line.shown() || options.checkpoint > 0;
     Clock::time_point saved = Clock::now();

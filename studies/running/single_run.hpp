@@ -71,7 +71,8 @@ private:
     bool extends = false;  ///< continues a run that has ended
     std::string
         final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
-    double last_node = 0;  ///< time of the last accepted node [s]
+    std::unique_ptr<RefinedRuns> refined;  ///< of --error
+    double last_node = 0;                  ///< time of the last accepted node [s]
     Clock::time_point begin;
     double earlier_seconds = 0;  ///< wall time before the checkpoint [s]
     RunResult result;

@@ -59,6 +59,7 @@ io::Json summary(const RunResult& r)
                          {"energy_end", r.invariants.energy_end},
                          {"energy_drift", r.invariants.energy_drift},
                          {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
+    if (r.error) out["error_estimate"] = r.error->json();
     if (!r.contacts.empty()) {
         out["contacts"] = io::Json::array();
         for (size_t k = 0; k < r.invariants.contact.size(); ++k) {
@@ -116,6 +117,10 @@ void print(const RunResult& r, std::ostream& out)
              fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k], r.invariants.contact[k].F_N_least,
                          r.invariants.contact[k].F_N_most));
     line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));
+    if (r.error) {
+        line("errors", r.error->text());
+        for (const std::string& doubt : r.error->doubts) line("", "not reliable: " + doubt);
+    }
     line("wall time",
          fmt::format("{:.3f} s, {:.0f} steps/s", r.wall_seconds,
                      r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0));

@@ -6,9 +6,11 @@
 #include "dae/start.hpp"
 #include "io/json.hpp"
 #include "lie/statistics.hpp"
+#include "studies/running/error_estimate.hpp"
 #include "studies/running/invariants.hpp"
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,7 @@ struct RunResult {
 
     lie::Statistics statistics;
     Invariants invariants;
+    std::optional<ErrorEstimate> error;  ///< of --error
     double setup_seconds = 0, wall_seconds = 0;
     long resumed_at = -1;  ///< number of the step; -1: not resumed
     std::string command_line;

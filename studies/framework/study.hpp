@@ -54,6 +54,7 @@ struct StudyOptions {
     bool force = false;   ///< accept a non-empty directory and a reference solution that is too coarse
     bool resume = false;  ///< continue the interrupted study of the output directory
     bool plot = true, quiet = false, json = false;
+    std::vector<std::string> figure_formats;  ///< empty: png
     std::vector<Expectation> expect;
     std::string command_line;  ///< recorded in study.json
 };

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
@@ -224,9 +223,12 @@ void StudyContext::write(const io::Json& whole_json) const
         io::write_file(in + file, content);
         written.push_back(file);
     }
-    for (const std::string& figure : figures) std::remove((in + figure).c_str());  // those of an earlier run
-    if (options.plot && plot(name + ".py", options.output))
-        written.insert(written.end(), figures.begin(), figures.end());
+    for (const std::string& figure : figures)
+        remove_figure(options.output, figure);  // those of an earlier run
+    if (options.plot && plot(name + ".py", options.output, {.formats = options.figure_formats}))
+        for (const std::string& figure : figures)
+            for (const std::string& file : existing_figures(options.output, figure, options.figure_formats))
+                written.push_back(file);
     if (options.json || options.quiet) return;
     std::cout << "\nwritten to " << options.output << ":";
     for (const std::string& file : written) std::cout << ' ' << file;

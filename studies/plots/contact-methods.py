@@ -22,7 +22,7 @@ def lines(axes, rows, x, y, xlabel, ylabel):
 
 
 def draw(folder, part, rows):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 5.0))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.8))
     if part == "bowl":
         lines(left, rows, "cpu_seconds", "error", "thread CPU time of the run [s]", "largest position error [m]")
         lines(right, rows, "h", "error", "step $h$ [s]", "largest position error [m]")

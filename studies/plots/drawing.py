@@ -3,13 +3,26 @@
 import csv
 import json
 import os
-import sys
+import textwrap
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
+
+import options
+import ticks
+from options import OF_THE_TEXT, chosen, directory, shown
+
+RESOLUTION = 200  # of raster formats [dpi]
+plt.rcParams.update({
+    "pdf.fonttype": 42, "ps.fonttype": 42,  # embedded TrueType fonts; Type 3 is refused by some publishers
+    "svg.hashsalt": "hilda",                # the same file from the same table
+    "figure.max_open_warning": 0,
+})
+# formats that contain the date unless it is removed
+UNDATED = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "ps": {}, "eps": {}}
 
 DASHES = ["-", "--", ":", "-."]
 # distinguishable with red-green colour blindness
@@ -37,13 +50,6 @@ def style(scheme, others=()):
     unknown = [name for name in others if name not in STYLES]
     k = unknown.index(scheme) if scheme in unknown else 0
     return COLOURS[-1 - k % len(COLOURS)], MARKERS[-1 - k % len(MARKERS)]
-
-
-def directory():
-    """The result directory, the only argument of a script"""
-    if len(sys.argv) != 2:
-        sys.exit(sys.modules["__main__"].__doc__)
-    return sys.argv[1]
 
 
 def read(*path):
@@ -81,13 +87,6 @@ def numbers(rows, column):
     return [number(row[column]) for row in rows]
 
 
-def width(scheme, schemes, thinnest=1.0, thickest=3.2):
-    """Line width of a scheme; earlier schemes have wider lines, so that coinciding curves are visible"""
-    if len(schemes) < 2:
-        return thinnest
-    return thickest - (thickest - thinnest) * schemes.index(scheme) / (len(schemes) - 1)
-
-
 def grid(axes):
     """Light grid behind the curves"""
     axes.grid(True, which="major", color="0.92")
@@ -104,27 +103,60 @@ def axis(axes, x="", y="", title="", size=10):
     grid(axes)
 
 
+def look(scheme, schemes):
+    """Colour, marker and order of drawing of a scheme as arguments of plot functions; earlier schemes are on top"""
+    colour, marker = style(scheme, schemes)
+    return {"color": colour, "marker": marker, "zorder": 3 - schemes.index(scheme) / len(schemes)}
+
+
 def by_scheme(rows, column="integrator"):
-    """For each scheme of a column: its name, its rows, and its colour and marker as arguments of plot functions"""
-    schemes = distinct(rows, column)
+    """For each scheme of a column that the figure shows: its name, its rows, and the arguments of plot functions"""
+    schemes = options.shown(distinct(rows, column)) if column == "integrator" else distinct(rows, column)
     for scheme in schemes:
-        colour, marker = style(scheme, schemes)
-        yield scheme, where(rows, **{column: scheme}), {"color": colour, "marker": marker}
+        yield scheme, where(rows, **{column: scheme}), look(scheme, schemes)
+
+
+def along(axes, x, y, place, of, dash="-", **points):
+    """A curve of many points with about eight markers. The markers of the curves are at different places, so that
+    coinciding curves are visible and the figure is legible without colours."""
+    stride = max(1, len(x) // 8)
+    axes.plot(x, y, dash, lw=1.2, ms=5, markevery=(place * stride // of, stride), **points)
 
 
 def legend(figure, schemes, markers=True, more=(), columns=8):
-    """Draws one legend below the figure and returns its height as a fraction of the figure height"""
+    """Draws one legend below the figure and returns its height as a fraction of the figure height. It lists the schemes
+    that the figure shows."""
+    schemes = options.in_legend or schemes
     handles = [Line2D([], [], color=style(s, schemes)[0], marker=style(s, schemes)[1] if markers else None, label=s)
                for s in schemes] + list(more)
-    lines = -(-len(handles) // columns)
-    columns = -(-len(handles) // lines)
-    lines_below(figure, handles, columns)
-    return 0.26 * lines / figure.get_figheight() + 0.01
+    return lines_below(figure, handles, columns)
+
+
+def caption(figure):
+    """The lines that name what the figure does not show"""
+    if not options.left_out:
+        return []
+    text = "not shown: " + ", ".join(options.left_out) + options.left_out_hint[0]
+    return textwrap.wrap(text, int(17 * figure.get_figwidth()), break_on_hyphens=False)
+
+
+def caption_height(figure):
+    lines = len(caption(figure))
+    return (0.16 * lines + 0.06) / figure.get_figheight() if lines else 0
 
 
 def lines_below(figure, handles, columns=None):
-    """Draws a legend of these lines below the figure, in one row unless a number of columns is given"""
-    figure.legend(handles=handles, loc="lower center", ncol=columns or len(handles), frameon=False, fontsize=9)
+    """Draws a legend of these lines below the figure, in as many columns as the figure is wide enough for, at most
+    `columns`. Returns its height as a fraction of the figure height."""
+    columns = min(columns or len(handles), len(handles))
+    while True:
+        lines = -(-len(handles) // columns)
+        box = figure.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, caption_height(figure)),
+                            ncol=-(-len(handles) // lines), frameon=False, fontsize=9)
+        if columns == 1 or box.get_window_extent(figure.canvas.get_renderer()).width <= figure.bbox.width:
+            return 0.24 * lines / figure.get_figheight() + 0.01
+        box.remove()
+        columns -= 1
 
 
 def bars(rows, column):
@@ -141,19 +173,63 @@ def times_and_ratios(time, ratio, rows, x, **points):
     ratio.plot(values, numbers(rows, "ratio_to_full"), "-", lw=1.2, **points)
 
 
-def slopes(axes, h, top):
-    """Reference lines of slope 1 and 2 over the steps h that end at the error `top`"""
-    for slope, line in ((1, ":"), (2, "--")):
-        axes.plot([h[0], h[-1]], [top * (h[0] / h[-1]) ** slope, top], line, color="0.6", lw=1, zorder=0)
+def guide(axes, slope, points, above=False, size=8):
+    """A straight line of this slope above or below the points (h, error), with its slope written on it"""
+    h = [min(x for x, _ in points), max(x for x, _ in points)]
+    ratios = [e / x ** slope for x, e in points]
+    factor = 2 * max(ratios) if above else min(ratios) / 2
+    axes.plot(h, [factor * x ** slope for x in h], "--", color="0.5", lw=0.9, zorder=1)
+    middle = (h[0] * h[1]) ** 0.5
+    axes.annotate(f"slope {slope}", (middle, factor * middle ** slope), xytext=(0, 4 if above else -4),
+                  textcoords="offset points", ha="right" if above else "left", va="bottom" if above else "top",
+                  fontsize=size, color="0.35")
 
 
-SLOPES = [Line2D([], [], color="0.6", ls=":", label="slope 1"), Line2D([], [], color="0.6", ls="--", label="slope 2")]
+def guides(axes, by_order, size=8):
+    """A guide for each order: above the points of the lowest order, below those of the others. An order with less than two
+    steps has none."""
+    by_order = {order: points for order, points in sorted(by_order.items()) if len({h for h, _ in points}) > 1}
+    if by_order:
+        axes.margins(y=0.12)  # room for the text above the uppermost line
+    for order, points in by_order.items():
+        guide(axes, order, points, above=order == min(by_order), size=size)
+
+
+def declared_order(folder, scheme, key="declared_order"):
+    """The declared order of a scheme in study.json; None if it has none"""
+    for series in record(folder).get("series") or []:
+        if series.get("integrator") == scheme:
+            return series.get(key)
+    return None
+
+
+def tidy_and_lay_out(figure, place):
+    """Ticks of logarithmic axes, and the panels in a part of the figure. The ticks depend on the size of the panels."""
+    figure.tight_layout(rect=place)
+    for _ in range(2):  # the labels change the size of the panels
+        for axes in figure.axes:
+            ticks.tidy(axes.xaxis)
+            ticks.tidy(axes.yaxis)
+        figure.tight_layout(rect=place)
 
 
 def save(figure, folder, name, below=0.0, top=0.97):
-    """Saves the figure; `below` and `top` are the margins of the panels as fractions of the figure height"""
-    figure.tight_layout(rect=(0, below, 1, top))
-    figure.savefig(os.path.join(folder, name), dpi=110)
+    """Saves the figure NAME.png in the formats of --format and prints the names of the files; `below` and `top` are the
+    margins of the panels as fractions of the figure height"""
+    options.check_all_used()
+    for line, text in enumerate(reversed(caption(figure))):
+        figure.text(0.5, (0.05 + 0.16 * line) / figure.get_figheight(), text, ha="center", va="bottom", fontsize=8,
+                    color="0.3")
+    below += caption_height(figure)
+    if figure._suptitle is not None:
+        lines = figure._suptitle.get_text().split("\n")
+        wide = int(110 * figure.get_figwidth() / figure._suptitle.get_fontsize())
+        figure._suptitle.set_text("\n".join(part for line in lines for part in textwrap.wrap(line, wide)))
+    tidy_and_lay_out(figure, (0, below, 1, top))
+    for kind in options.formats():
+        file = f"{os.path.splitext(name)[0]}.{kind}"
+        figure.savefig(os.path.join(folder, file), dpi=RESOLUTION, metadata=UNDATED.get(kind))
+        print(file)
     plt.close(figure)
 
 

@@ -18,7 +18,7 @@ def path(axes, rows, of, colour, dash, planar):
 
 def draw(folder, scene, rows):
     planar = not scene.startswith("xy")
-    figure, axes = plt.subplots(2, 3, figsize=(14, 7.8))
+    figure, axes = plt.subplots(2, 3, figsize=(10.8, 6.8))
     lines = []
     for k, run in enumerate(distinct(rows, "run")):
         mine, colour, dash = where(rows, run=run), COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
@@ -36,12 +36,12 @@ def draw(folder, scene, rows):
               r"max of $|\lambda_N|$ and tangential part of $\lambda_\Psi$ [N]",
               "change of energy $E - E_0$ [J]")
     for ax, title in zip(axes.flat, titles):
-        axis(ax, title=title)
+        axis(ax, title=title, size=9)
     for ax in (axes[0][2], *axes[1]):
         ax.set_xlabel("$t$ [s]")
     figure.suptitle(f"{scene}: ball in an ellipsoidal bowl, h = {number(rows[0]['h']):g} s", fontsize=11)
-    lines_below(figure, lines)
-    save(figure, folder, f"evolving-contact-{scene}.png", 0.04)
+    below = lines_below(figure, lines)
+    save(figure, folder, f"evolving-contact-{scene}.png", below)
 
 
 def figures(folder):

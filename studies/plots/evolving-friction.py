@@ -22,7 +22,7 @@ def legend(figure, rows, etas):
               for k, (run, h) in enumerate(of)]
     if any(row["run"] == "ideal" for row in rows):
         lines.append(Line2D([], [], label="ideal limit: rolling without slip, no friction springs", **IDEAL))
-    lines_below(figure, lines, len(lines) if len(lines) < 8 else 5)
+    return lines_below(figure, lines, 6)
 
 
 def draw(axes, rows, etas, across, up, x, y):
@@ -36,7 +36,7 @@ def draw(axes, rows, etas, across, up, x, y):
 
 
 def point(folder, rows, etas):
-    figure, axes = plt.subplots(1, 2, figsize=(13, 4.8))
+    figure, axes = plt.subplots(1, 2, figsize=(10.8, 4.8))
     draw(axes[0], rows, etas, "t", "y", "$t$ [s]", "$y$ of the contact point [m]")
     # shifted, because all curves are on the same ellipse
     for k, eta in enumerate(etas):
@@ -48,12 +48,11 @@ def point(folder, rows, etas):
     axis(axes[1], "$y$ [m]", r"$z$ [m], shifted by 0.12 m for each $\eta_r$")
     axes[1].set_aspect("equal", adjustable="datalim")
     figure.suptitle("ball in a bowl with rolling resistance: contact point on the bowl", fontsize=11)
-    legend(figure, rows, etas)
-    save(figure, folder, "evolving-friction-point.png", 0.07)
+    save(figure, folder, "evolving-friction-point.png", legend(figure, rows, etas))
 
 
 def forces(folder, rows, etas):
-    figure, axes = plt.subplots(5, 1, figsize=(11, 12), sharex=True)
+    figure, axes = plt.subplots(5, 1, figsize=(9, 11), sharex=True)
     names = {"F_N": "$|F_N|$ [N]", "F_f": "$|F_f|$ [N]", "torque": "rolling torque [N m]", "v": "$|v|$ [m/s]",
              "omega": r"$|\omega|$ [rad/s]"}
     for ax, (column, name) in zip(axes, names.items()):
@@ -61,8 +60,7 @@ def forces(folder, rows, etas):
     # the axis excludes the transient of the friction springs after the release
     late = [number(row["F_f"]) for row in rows if row["run"] != "ideal" and number(row["t"]) > 0.1]
     axes[1].set_ylim(0, 1.1 * max(late, default=1))
-    legend(figure, rows, etas)
-    save(figure, folder, "evolving-friction-forces.png", 0.03)
+    save(figure, folder, "evolving-friction-forces.png", legend(figure, rows, etas))
 
 
 def figures(folder):

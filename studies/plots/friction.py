@@ -6,7 +6,7 @@
 """
 import os
 
-from drawing import COLOURS, Line2D, axis, directory, lines_below, number, numbers, plt, read, save
+from drawing import COLOURS, DASHES, Line2D, axis, directory, lines_below, number, numbers, plt, read, save
 
 # EXPERIMENT: rows of panels; a panel is (column, label, limits of t or None)
 PANELS = {
@@ -38,11 +38,13 @@ def split(run):
 
 
 def styles(runs):
-    """Colour by the varied parameter; dashes for the preset `dissertation` if both presets are present"""
+    """Colour by the varied parameter; dashes for the preset `dissertation` if both presets are present, otherwise by the
+    parameter as well, so that the curves differ without colours"""
     varied = list(dict.fromkeys(split(run)[1] or split(run)[0] for run in runs))
     both = len({split(run)[0] for run in runs} - {""}) > 1 and any(split(run)[1] for run in runs)
-    return {run: (COLOURS[varied.index(split(run)[1] or split(run)[0]) % len(COLOURS)],
-                  "--" if both and split(run)[0] == "dissertation" else "-") for run in runs}
+    place = {run: varied.index(split(run)[1] or split(run)[0]) for run in runs}
+    return {run: (COLOURS[place[run] % len(COLOURS)],
+                  DASHES[split(run)[0] == "dissertation"] if both else DASHES[place[run] % len(DASHES)]) for run in runs}
 
 
 def curve(rows, column):
@@ -52,8 +54,7 @@ def curve(rows, column):
 def below(figure, lines, columns=4):
     """Draws a legend below the figure and returns its height as a fraction of the figure height"""
     handles = [Line2D([], [], color=colour, ls=dash, label=label) for label, (colour, dash) in lines.items()]
-    lines_below(figure, handles, min(columns, len(handles)))
-    return 0.22 * -(-len(handles) // columns) / figure.get_figheight() + 0.01
+    return lines_below(figure, handles, columns)
 
 
 def within(rows, limits):
@@ -62,7 +63,7 @@ def within(rows, limits):
 
 def panels(folder, name, title, by_run):
     layout = PANELS[name]
-    figure, axes = plt.subplots(len(layout), len(layout[0]), figsize=(11, 1.2 + 2.7 * len(layout)), squeeze=False)
+    figure, axes = plt.subplots(len(layout), len(layout[0]), figsize=(10, 1.2 + 2.4 * len(layout)), squeeze=False)
     lines = styles(list(by_run))
     for row, row_axes in zip(layout, axes):
         for (column, label, limits), ax in zip(row, row_axes):
@@ -78,7 +79,7 @@ def panels(folder, name, title, by_run):
 
 def spinning(folder, name, title, by_run, groups, columns):
     """A row of panels for each group of runs, coloured by K_E"""
-    figure, axes = plt.subplots(len(groups), len(columns), figsize=(11, 1.2 + 2.6 * len(groups)), squeeze=False)
+    figure, axes = plt.subplots(len(groups), len(columns), figsize=(10, 1.2 + 2.4 * len(groups)), squeeze=False)
     stiffness = list(dict.fromkeys(run.rpartition("-")[2] for run in by_run))
     for group, row_axes in zip(groups, axes):
         for (column, label), ax in zip(columns, row_axes):
@@ -96,7 +97,7 @@ def spinning(folder, name, title, by_run, groups, columns):
 
 
 def orbits(folder, name, title, by_run):
-    figure, (plane, radius) = plt.subplots(1, 2, figsize=(11, 5))
+    figure, (plane, radius) = plt.subplots(1, 2, figsize=(10, 4.6))
     runs = [run for run in by_run if run.startswith("beta")]
     lines = {run.replace("beta=", r"$\beta$ = "): (COLOURS[k], "-") for k, run in enumerate(runs)}
     for (colour, _), run in zip(lines.values(), runs):

@@ -11,7 +11,7 @@ def draw(folder):
     rows, motion = read(folder, "study.csv"), read(folder, "motion.csv")
     mindlin, incremental = where(rows, law="mindlin"), where(rows, law="mindlin-incremental")
     mu = numbers(mindlin, "mu")
-    figure, (speed, distance, difference) = plt.subplots(1, 3, figsize=(15, 4.6))
+    figure, (speed, distance, difference) = plt.subplots(1, 3, figsize=(11, 4))
 
     for k, row in enumerate(r for r in mindlin if round(number(r["mu"]), 6) in (0.1, 0.2, 0.5)):
         mine = where(motion, mu=row["mu"])
@@ -19,8 +19,8 @@ def draw(folder):
         stops = 2 * number(row["coulomb"]) / v[0]
         speed.plot([0, stops], [v[0], 0], "-", color=COLOURS[k], lw=1)
         speed.plot(t[::10] + t[-1:], v[::10] + v[-1:], "o", color=COLOURS[k], ms=4.5)
-        speed.annotate(rf"$\mu = {number(row['mu']):g}$", (0.72 * stops, 0.28 * v[0]), xytext=(7, 3),
-                       textcoords="offset points", color=COLOURS[k], fontsize=10)
+        speed.annotate(rf"$\mu = {number(row['mu']):g}$", (0.88 * stops, 0.12 * v[0]), xytext=(4, 2),
+                       textcoords="offset points", color=COLOURS[k], fontsize=9)
     speed.set(xlabel="time $t$ [s]", ylabel="speed $v$ [m/s]", xlim=(0, 5.6), ylim=(-0.05, 5.2))
     speed.legend(handles=[Line2D([], [], color="0.35", lw=1, label=r"$v_i - \mu g t$"),
                           Line2D([], [], color="0.35", ls="", marker="o", ms=4.5, label="measured")], frameon=False)

@@ -22,7 +22,7 @@ def draw_rebound(axes, rows, clamped):
     axes.plot([0, 1.05], [0, 1.05], "-", color="0.35", lw=1.2, label=r"$|v_\mathrm{end}/v_i| =$ COR")
     axes.plot(numbers(mine, "restitution"), numbers(mine, "rebound"), label="symplectic-euler", **measured | {"ms": 6})
     axes.plot(numbers(clamped, "restitution"), numbers(clamped, "rebound"), "x", color="0.35", ms=6,
-              label="symplectic-euler, tensile force set to zero")
+              label="the same, tensile\nforce set to zero")
     axes.legend(loc="upper left", frameon=False, fontsize=9)
     axes.set(xlabel="coefficient of restitution COR", ylabel=r"rebound $|v_\mathrm{end}/v_i|$", xlim=(0, 1.05), ylim=(0, 1.05))
 
@@ -43,7 +43,7 @@ def draw_refinement(axes, rows, schemes):
         axes.loglog(numbers(mine, "h"), numbers(mine, "worst"), **points(scheme, ""))
     h, top = [3e-5, 1e-6], 2.2 * max(numbers(rows, "worst_double"))
     axes.loglog(h, [top, top * h[1] / h[0]], "--", color="0.6", lw=1, zorder=0)
-    axes.set(xlabel="step $h$ [s]", ylabel="largest difference over all COR and contact times within a step")
+    axes.set(xlabel="step $h$ [s]", ylabel="largest difference over all COR\nand contact times within a step")
     axes.legend(handles=[Line2D([], [], color="0.35", ls="", marker="o", ms=5, label="integer positions"),
                          Line2D([], [], color="0.35", lw=1, label="double precision"),
                          Line2D([], [], color="0.6", ls="--", lw=1, label="slope 1")],
@@ -53,15 +53,14 @@ def draw_refinement(axes, rows, schemes):
 def draw(folder):
     rows = read(folder, "study.csv")
     schemes = distinct(rows, "integrator")
-    figure, axes = plt.subplots(1, 3, figsize=(15, 4.8))
+    figure, axes = plt.subplots(1, 3, figsize=(11, 4.4))
     draw_rebound(axes[0], rows, read(folder, "clamped.csv"))
     draw_differences(axes[1], rows, schemes)
     draw_refinement(axes[2], read(folder, "refinement.csv"), schemes)
     for ax in axes:
         grid(ax)
     handles = [Line2D([], [], label=scheme, **points(scheme, "-")) for scheme in schemes]
-    lines_below(figure, handles, 5)
-    save(figure, folder, "granular-head-on.png", below=0.065, top=1)
+    save(figure, folder, "granular-head-on.png", below=lines_below(figure, handles, 5), top=1)
 
 
 draw(directory())

@@ -14,7 +14,7 @@ def draw(folder):
     rows, reference = read(folder, "study.csv"), read(folder, "reference.csv")
     sliding = sorted(where(reference, law="sliding"), key=lambda row: number(row["from_normal"]))
     critical = number(sliding[0]["from_normal"])
-    figure, both = plt.subplots(1, 2, figsize=(12.6, 5.2))
+    figure, both = plt.subplots(1, 2, figsize=(10.8, 4.8))
     for axes, column in zip(both, ("e_t", "omega")):
         for law, (marker, colour, _) in LAWS.items():
             curve, mine = where(reference, law=law), where(rows, law=law)
@@ -39,8 +39,7 @@ def draw(folder):
     handles = [Line2D([], [], color="k", lw=1.4, label="sliding during the whole impact, Eqs. 7.2, 7.3")] + [
         Line2D([], [], color=colour, ls="--", lw=0.9, marker=marker, mfc=colour if marker == "o" else "none", label=label)
         for marker, colour, label in LAWS.values()]
-    lines_below(figure, handles, 3)
-    save(figure, folder, "granular-oblique.png", below=0.07, top=1)
+    save(figure, folder, "granular-oblique.png", below=lines_below(figure, handles, 3), top=1)
 
 
 draw(directory())

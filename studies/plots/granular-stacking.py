@@ -17,7 +17,7 @@ def draw(folder):
     rows, friction = read(folder, "study.csv"), read(folder, "friction.csv")
     gaps = distinct(rows, "gap")
     colours = {gap: COLOURS[k % len(COLOURS)] for k, gap in enumerate(gaps)}
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12.6, 5.2), width_ratios=(1.5, 1), sharey=True)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10.8, 5.2), width_ratios=(1.5, 1), sharey=True)
     for gap, colour in colours.items():
         mine = ordered(where(rows, gap=gap, rolling=TORQUE), "mu_r")
         spring = ordered(where(rows, gap=gap, rolling=SPRING), "mu_r")
@@ -49,8 +49,7 @@ def draw(folder):
                       label=r"spring and dashpot, $\mu_r N R^*$ ($R$ on the ground)"),
                Line2D([], [], color="0.3", ls=":", lw=1, label="static equilibrium, first and last gap"),
                Line2D([], [], color="0.5", lw=5, alpha=0.35, label="plateaus of the dissertation")]
-    lines_below(figure, handles, 4)
-    save(figure, folder, "granular-stacking.png", below=0.06, top=1)
+    save(figure, folder, "granular-stacking.png", below=lines_below(figure, handles, 4), top=1)
 
 
 draw(directory())

@@ -15,7 +15,7 @@ def draw(folder):
     laws, frictions, forces = (distinct(rows, column) for column in ("stiffness", "mu", "F"))
     shades = plt.get_cmap("viridis")
     colours = {F: shades(0.85 * k / max(1, len(forces) - 1)) for k, F in enumerate(forces)}
-    figure, axes = plt.subplots(len(laws), len(frictions) + 1, figsize=(15, 3.7 * len(laws)), squeeze=False)
+    figure, axes = plt.subplots(len(laws), len(frictions) + 1, figsize=(11, 3.4 * len(laws)), squeeze=False)
     low = min(numbers(profiles, "share"))
     high = max(numbers(profiles, "share"))
     for of_law, law in zip(axes, laws):
@@ -48,8 +48,7 @@ def draw(folder):
         grid(last)
     handles = [Line2D([], [], color=colours[F], lw=1.5, marker=".", label=rf"$F_{{\mathrm{{ext}}}} = {number(F):g}\,mg$")
                for F in forces]
-    lines_below(figure, handles, len(forces))
-    save(figure, folder, "granular-waves.png", below=0.045, top=1)
+    save(figure, folder, "granular-waves.png", below=lines_below(figure, handles, len(forces)), top=1)
 
 
 draw(directory())

@@ -60,10 +60,9 @@ def draw(folder):
         label = f"published state differs: {len(differ)} of {len(rows)}"
         handles.append(Line2D([], [], color="#d1001f", ls="", marker="x", ms=5, label=label) if few else
                        Patch(fill=False, hatch="...", lw=0, label=label))
-    lines_below(figure, handles, 3)
     axes.set_title(f"State {study['end']:g} s after a start with 0.5 m/s up the slope: {study['preset']} friction, "
                    f"{len(etas)} x {len(angles)} runs", fontsize=11)
-    save(figure, folder, "incline-sweep.png", below=0.125, top=1)
+    save(figure, folder, "incline-sweep.png", below=lines_below(figure, handles, 3), top=1)
 
 
 draw(directory())

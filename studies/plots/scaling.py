@@ -9,7 +9,7 @@ from drawing import Line2D, axis, by_scheme, directory, distinct, legend, number
 
 def draw(folder):
     rows = [row for row in read(folder, "study.csv") if row["status"] == "ok"]
-    figure, (time, ratio, iterations) = plt.subplots(1, 3, figsize=(14.5, 4.9))
+    figure, (time, ratio, iterations) = plt.subplots(1, 3, figsize=(10.8, 4.4))
     for _, mine, look in by_scheme(rows):
         times_and_ratios(time, ratio, mine, "bars", ms=5, **look)
         iterations.plot(numbers(mine, "bars"), numbers(mine, "iterations_per_step"), "-", lw=1.2, ms=5, **look)
@@ -28,7 +28,7 @@ def draw(folder):
         axis(axes, "number of bars $N$")
     figure.suptitle(f"N-bar pendulum, h = {number(rows[0]['h']):g} s: CPU time per step, median of the repeats", fontsize=11)
     more = [Line2D([], [], color="0.6", ls=":", label="slope 1")]
-    save(figure, folder, "scaling.png", legend(figure, distinct(rows, "integrator"), more=more))
+    save(figure, folder, "scaling.png", legend(figure, distinct(rows, "integrator"), more=more, columns=6))
 
 
 draw(directory())

@@ -4,13 +4,14 @@
 
     timing.py DIR       reads DIR/study.csv, writes DIR/timing.png
 """
-from drawing import axis, by_scheme, directory, distinct, legend, plt, read, save, times_and_ratios, where
+from drawing import axis, by_scheme, directory, distinct, legend, plt, read, save, shown, times_and_ratios, where
 
 
 def draw(folder):
     rows = [row for row in read(folder, "study.csv") if row["status"] == "ok"]
-    problems, schemes = distinct(rows, "problem"), distinct(rows, "integrator")
-    figure, panels = plt.subplots(2, len(problems), figsize=(1 + 4.4 * len(problems), 7.4), squeeze=False, sharex=True)
+    problems, schemes = distinct(rows, "problem"), shown(distinct(rows, "integrator"))
+    figure, panels = plt.subplots(2, len(problems), figsize=(1 + min(4.4, 10 / len(problems)) * len(problems), 7.4),
+                                  squeeze=False, sharex=True)
     for problem, time, ratio in zip(problems, panels[0], panels[1]):
         for _, mine, look in by_scheme(rows):
             times_and_ratios(time, ratio, where(mine, problem=problem), "h", ms=6, **look)
@@ -27,7 +28,7 @@ def draw(folder):
     panels[0][0].set_ylabel("thread CPU time per step [µs]")
     panels[1][0].set_ylabel("CPU time relative to rA-full-1")
     figure.suptitle("CPU time per step: median of the repeats, bars from minimum to maximum", fontsize=11)
-    save(figure, folder, "timing.png", legend(figure, schemes))
+    save(figure, folder, "timing.png", legend(figure, schemes, columns=5))
 
 
 draw(directory())

@@ -4,7 +4,10 @@
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
 #include "studies/problems/n_pendulum.hpp"
+#include "studies/running/plot.hpp"
 #include "studies/running/vtk.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +60,20 @@ std::string preset(const std::string& option, const std::string& text)
 std::string normal_rows(const std::string& option, const std::string& text)
 {
     return one_of(option, text, std::vector<std::string>{"tangent", "fixed-xy"});
+}
+
+std::vector<std::string> formats_of_figures(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> selected = list(option, text);
+    const std::vector<std::string>& known = figure_formats();
+    for (auto format = selected.begin(); format != selected.end(); ++format) {
+        if (std::find(known.begin(), known.end(), *format) == known.end())
+            throw io::UsageError(fmt::format("{}: unknown format{} (formats: {})", option,
+                                             with_nearest(*format, known), fmt::join(known, ", ")));
+        if (std::find(selected.begin(), format, *format) != format)
+            refuse_option(option, "must contain each format once", text);
+    }
+    return selected;
 }
 
 int frames(const std::string& option, const std::string& text)

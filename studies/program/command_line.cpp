@@ -166,6 +166,12 @@ private:
               assign(s.atol, absolute_tolerance));
     }
 
+    static void add_figure_format(CLI::App* c, std::vector<std::string>& to)
+    {
+        value(c, "--figure-format", "F[,F...]", "formats of the figures, such as png,pdf,svg; default: png",
+              assign(to, formats_of_figures));
+    }
+
     void add_run()
     {
         RunOptions& o = run;
@@ -178,6 +184,8 @@ private:
             if (every) run.interval = every;
             if (every && !run.quiet)
                 io::warning("--every was renamed to --interval; the old name is still read");
+            if (!run.figure_formats.empty() && !run.plot)
+                throw io::UsageError("run: --figure-format is for figures; it needs --plot");
             if (!selected_integrators.empty()) run.integrators = selected_integrators;
             run.command_line = command_line_text;
             return run_model(run);
@@ -226,6 +234,7 @@ private:
             "--error", o.error,
             "estimate the error of the run from runs with half and a quarter of the step (about seven times "
             "the time)");
+        add_figure_format(c, o.figure_formats);
         value(c, "--threads", "N", "accepted for compatibility; a run uses one thread",
               assign(o.threads, positive_count));
         c->add_flag_callback(
@@ -364,6 +373,7 @@ private:
                }));
         c->add_flag_callback(
             "--no-plot", [this] { study.plot = false; }, "draw no figures");
+        add_figure_format(c, o.figure_formats);
         c->add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
         c->add_flag("-v,--verbose", verbose, "no effect");
         c->add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
@@ -380,11 +390,25 @@ private:
 
     void add_plot()
     {
-        CLI::App* c = add("plot", "draw the figures of a run or study from its CSV files", [this] {
-            return plot(script_for(directory), directory) ? io::exit_code::done
-                                                          : io::exit_code::not_available;
-        });
+        CLI::App* c =
+            add("plot", "draw the figures of a run, a granular run or a study from its CSV files", [this] {
+                const auto files = plot(script_for(directory), directory, figures);
+                if (!files) return io::exit_code::not_available;
+                std::cout << "written to " << directory << ":";
+                for (const std::string& file : *files) std::cout << ' ' << file;
+                std::cout << '\n';
+                return io::exit_code::done;
+            });
         c->add_option("DIR", directory, "output directory of a run or a study")->required()->type_name("");
+        add_figure_format(c, figures.formats);
+        values(c, "--integrator", "NAME[,NAME...]",
+               "integrators to show, of those in the table; default: at most eight, those of the "
+               "dissertation first",
+               append(figures.integrators, list));
+        values(
+            c, "--quantity", "NAME[,NAME...]",
+            "quantities to show, such as r,v,omega; default: all. An unknown name lists those of the figure",
+            append(figures.quantities, list));
     }
 
     void add_info()
@@ -466,6 +490,7 @@ private:
     std::vector<std::string> selected_integrators;
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;
+    FigureOptions figures;  ///< of hilda plot
     bool json = false, verbose = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };

@@ -25,9 +25,10 @@ struct RunOptions {
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
     bool plot = false;
-    bool error = false;       ///< estimate the discretisation error
-    io::SinkOptions outputs;  ///< options of the output formats, such as --reactions
-    double checkpoint = 0;    ///< wall time between checkpoints [s]; 0: no checkpoints
+    bool error = false;  ///< estimate the discretisation error
+    std::vector<std::string> figure_formats;  ///< empty: png
+    io::SinkOptions outputs;                  ///< options of the output formats, such as --reactions
+    double checkpoint = 0;                    ///< wall time between checkpoints [s]; 0: no checkpoints
 
     bool json = false, quiet = false, verbose = false;
     int threads = 1;

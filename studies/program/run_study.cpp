@@ -66,6 +66,9 @@ int run_study(const std::string& kind, StudyOptions options)
     if (options.jobs == 0)
         options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json) options.output = "out/" + kind;
+    if (!options.figure_formats.empty() && (!options.plot || options.output.empty()))
+        throw io::UsageError("study " + kind + ": --figure-format is for figures; " +
+                             (options.plot ? "with --json they need --output" : "--no-plot draws none"));
     if (options.resume && options.output.empty())
         throw io::UsageError("study " + kind + ": --resume needs the --output of the interrupted study");
     if (options.resume && options.force)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/plot.hpp"
 
+#include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "io/message.hpp"
@@ -13,10 +14,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <vector>
+#include <sstream>
 
 extern char** environ;
 
@@ -113,13 +116,60 @@ std::string failure_reason(const ProcessResult& result)
 
 void add_script_directory(const std::string& directory) { more_places().emplace_back(directory); }
 
-bool plot(const std::string& script, const std::string& directory)
+const std::vector<std::string>& figure_formats()
+{
+    static const std::vector<std::string> all = {"png",  "pdf", "svg",  "eps", "ps",  "svgz",
+                                                 "jpeg", "jpg", "tiff", "tif", "webp"};
+    return all;
+}
+
+std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
+                                             const FigureOptions& options)
 {
     const std::string path = find_script(script);
-    const std::string why = path.empty() ? "the script " + script + " was not found"
-                                         : failure_reason(run({python(), path, directory}));
-    if (!why.empty()) io::warning("no figures: " + why);
-    return why.empty();
+    std::vector<std::string> words = {python(), path, directory};
+    const auto add = [&](const char* option, const std::vector<std::string>& values) {
+        if (values.empty()) return;
+        words.emplace_back(option);
+        words.push_back(fmt::format("{}", fmt::join(values, ",")));
+    };
+    add("--format", options.formats);
+    add("--integrator", options.integrators);
+    add("--quantity", options.quantities);
+    const ProcessResult result = path.empty() ? ProcessResult{} : run(std::move(words));
+    constexpr int refused = 2;  // see studies/plots/options.py
+    if (result.code == refused && !(options.integrators.empty() && options.quantities.empty()))
+        throw io::UsageError("plot: " + last_line(result.output));
+    const std::string why = path.empty() ? "the script " + script + " was not found" : failure_reason(result);
+    if (!why.empty()) {
+        io::warning("no figures: " + why);
+        return std::nullopt;
+    }
+    std::vector<std::string> files;
+    std::istringstream lines(result.output);
+    std::error_code error;
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty() && fs::is_regular_file(fs::path(directory) / line, error)) files.push_back(line);
+    return files;
+}
+
+void remove_figure(const std::string& directory, const std::string& name)
+{
+    std::error_code error;
+    for (const std::string& format : figure_formats())
+        fs::remove((fs::path(directory) / name).replace_extension(format), error);
+}
+
+std::vector<std::string> existing_figures(const std::string& directory, const std::string& name,
+                                          const std::vector<std::string>& formats)
+{
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const std::string& format : formats.empty() ? std::vector<std::string>{"png"} : formats) {
+        const std::string file = fs::path(name).replace_extension(format).string();
+        if (fs::is_regular_file(fs::path(directory) / file, error)) files.push_back(file);
+    }
+    return files;
 }
 
 std::string script_for(const std::string& directory)
@@ -137,8 +187,9 @@ std::string script_for(const std::string& directory)
         return *kind->value.string() + ".py";
     }
     if (fs::is_regular_file(fs::path(directory) / "trajectory.csv", error)) return "trajectory.py";
-    throw lie::InvalidInput(directory +
-                            ": contains neither study.csv nor trajectory.csv; hilda plot needs one of them");
+    if (fs::is_regular_file(fs::path(directory) / "run.csv", error)) return "granular-run.py";
+    throw lie::InvalidInput(
+        directory + ": contains no study.csv, trajectory.csv or run.csv; hilda plot needs one of them");
 }
 
 std::string python_and_matplotlib()

@@ -357,7 +357,9 @@ void SingleRun::finish(const Recorder& recorder)
     // In this order, so that a run that is killed here can be resumed.
     if (ok && !final_checkpoint.empty()) io::CheckpointFiles(directory).save_final(final_checkpoint);
     if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
-    if (options.plot && plot("trajectory.py", directory)) result.files.emplace_back("trajectory.png");
+    if (options.plot)
+        if (const auto figures = plot("trajectory.py", directory, {.formats = options.figure_formats}))
+            result.files.insert(result.files.end(), figures->begin(), figures->end());
     io::write_file(path("summary.json"), summary(result).text());
     if (ok) io::CheckpointFiles(directory).remove_unfinished();
 }

@@ -1,0 +1,252 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scripts in studies/plots, on tables with known orders: which curves and panels a figure has, slope guides, hollow
+markers, the caption, and tick labels that do not overlap.
+
+    figures_test.py PLOTS       PLOTS: the folder studies/plots
+"""
+import contextlib
+import csv
+import io
+import json
+import math
+import os
+import runpy
+import sys
+import tempfile
+import unittest
+
+PLOTS = os.path.abspath(sys.argv.pop(1))
+sys.path.insert(0, PLOTS)
+try:
+    import matplotlib
+    matplotlib.use("Agg")
+    import drawing
+    import options
+    import ticks
+except ModuleNotFoundError as missing:
+    print(f"not tested: {missing}")
+    sys.exit(0)
+plt = drawing.plt
+drawing.RESOLUTION = 50  # faster; the layout is the same
+
+SCHEMES = ["ida-like", "rA-full-1", "rA-full-1-exact", "rA-genalpha", "rA-half-1", "rA-half-1-kick", "rA-half-1-momentum",
+           "rA-half-2", "rA-half-2-bdf2", "rA-rattle", "rA-rkmk-4", "rp-full-1"]
+ORDER = {"rA-full-1": 1, "rA-full-1-exact": 1, "rA-half-1": 1, "rp-full-1": 1, "rA-rkmk-4": 4}
+NORMS = ["r", "A", "v", "omega", "Q", "r_end", "A_end", "v_end", "omega_end", "observable"]
+SHOWN = ["rA-full-1", "rA-half-1", "rA-half-2", "rA-half-1-kick", "rA-half-1-momentum", "rA-half-2-bdf2", "rA-rattle",
+         "rA-rkmk-4"]
+
+
+def write(folder, name, rows):
+    with open(os.path.join(folder, name), "w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(rows[0]))
+        table.writeheader()
+        table.writerows(rows)
+
+
+def convergence_table(folder, steps, joints=True, schemes=SCHEMES):
+    """study.csv and study.json of errors h^order; those below 1e-12 are at rounding"""
+    rows, series = [], []
+    for k, scheme in enumerate(schemes):
+        order = ORDER.get(scheme, 2)
+        series.append({"problem": "p", "integrator": scheme, "declared_order": order, "declared_order_lambda": order})
+        for h in steps:
+            row = {"problem": "p", "integrator": scheme, "h": h, "observable_scalar": "bar.rz", "status": "ok"}
+            for norm in NORMS:
+                error = (1 + 0.2 * k) * h ** order
+                without = norm == "Q" and not joints
+                row |= {norm: "" if without else error, "floor_" + norm: "" if without else int(error < 1e-12)}
+            rows.append(row)
+    write(folder, "study.csv", rows)
+    with open(os.path.join(folder, "study.json"), "w", encoding="utf-8") as file:
+        json.dump({"study": "convergence", "selection": "selected", "series": series}, file)
+
+
+def draw(script, folder, *arguments):
+    """Runs a script and returns its figures by file name, not closed"""
+    figures = {}
+    save = save_of_drawing
+
+    def keep(figure, place, name, *more, **other):
+        save(figure, place, name, *more, **other)
+        figures[name] = figure
+    options.arguments = options.Arguments([folder, *arguments])
+    options.used.clear()
+    options.leave_out([])
+    options.in_legend.clear()
+    drawing.save, drawing.plt.close = keep, lambda figure: None
+    try:
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            runpy.run_path(os.path.join(PLOTS, script))
+    finally:
+        drawing.save, drawing.plt.close = save_of_drawing, close_of_matplotlib
+    return figures, out.getvalue().split()
+
+
+save_of_drawing, close_of_matplotlib = drawing.save, plt.close
+
+
+def labels_of(axis):
+    """Boxes of the tick labels that are visible"""
+    low, high = sorted(axis.get_view_interval())
+    renderer = axis.axes.figure.canvas.get_renderer()
+    return [label.get_window_extent(renderer) for tick, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels())
+            if low <= tick <= high and label.get_text() and label.get_visible()] + [
+        label.get_window_extent(renderer) for label in axis.get_minorticklabels() if label.get_text()]
+
+
+def overlapping(axis):
+    boxes = labels_of(axis)
+    return [(a, b) for k, a in enumerate(boxes) for b in boxes[k + 1:] if a.overlaps(b)]
+
+
+def legend_texts(figure):
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+class Figures(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def tearDown(self):
+        plt.close("all")
+
+    def check(self, figure):
+        """No panel is empty and no labels overlap"""
+        figure.canvas.draw()
+        for axes in figure.axes:
+            finite = [y for line in axes.lines for y in line.get_ydata() if math.isfinite(y)]
+            self.assertTrue(finite, "a panel without a point")
+            for axis in (axes.xaxis, axes.yaxis):
+                self.assertFalse(overlapping(axis), axis.axis_name)
+        for legend in figure.legends:
+            box = legend.get_window_extent()
+            self.assertGreaterEqual(box.x0, 0)
+            self.assertLessEqual(box.x1, figure.bbox.width)
+
+    def test_at_most_eight_curves_those_of_the_text_first_and_the_others_named_in_the_caption(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3])
+        figures, files = draw("convergence.py", self.folder)
+        figure = figures["convergence-p.png"]
+        self.check(figure)
+        self.assertEqual(files, ["convergence-p.png"])
+        names = [text for text in legend_texts(figure) if text in SCHEMES]
+        self.assertEqual(names[:3], SHOWN[:3])
+        self.assertEqual(sorted(names), sorted(SHOWN))
+        caption = " ".join(text.get_text() for text in figure.texts)
+        for scheme in SCHEMES:
+            self.assertEqual(scheme in caption.replace(",", " ").split(), scheme not in SHOWN, scheme)
+        # on top: drawn later than all others
+        order = {line.get_color(): line.get_zorder() for line in figure.axes[0].lines}
+        of_text = [order[drawing.style(s)[0]] for s in SHOWN[:3]]
+        self.assertGreater(min(of_text), max(order[drawing.style(s)[0]] for s in SHOWN[3:]))
+
+    def test_named_integrators_and_quantities_are_shown_and_no_other(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3])
+        figures, _ = draw("convergence.py", self.folder, "--integrator", "rp-full-1,rA-half-2", "--quantity", "v,Q")
+        figure = figures["convergence-p.png"]
+        self.check(figure)
+        self.assertEqual([t for t in legend_texts(figure) if t in SCHEMES], ["rA-half-2", "rp-full-1"])
+        self.assertEqual(len(figure.axes), 2)
+        self.assertNotIn("not shown", " ".join(text.get_text() for text in figure.texts))
+
+    def test_slope_guides_are_those_of_the_orders_in_the_figure(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3])
+        for names, slopes in (("rA-half-1,rA-half-2", {1, 2}), ("rA-rkmk-4", {4}), ("rA-half-1,rA-rkmk-4", {1, 4})):
+            figures, _ = draw("convergence.py", self.folder, "--integrator", names, "--quantity", "r,Q")
+            for axes in figures["convergence-p.png"].axes:
+                texts = {text.get_text() for text in axes.texts}
+                self.assertEqual(texts, {f"slope {k}" for k in slopes}, names)
+                # the guide has the slope that is written on it
+                for line in axes.lines:
+                    if line.get_color() == "0.5":
+                        (x, y), (log_x, log_y) = line.get_data(), ([], [])
+                        log_x, log_y = [math.log(v) for v in x], [math.log(v) for v in y]
+                        slope = (log_y[-1] - log_y[0]) / (log_x[-1] - log_x[0])
+                        self.assertAlmostEqual(min(abs(slope - k) for k in slopes), 0, 9)
+
+    def test_points_at_rounding_are_hollow_and_the_others_are_not(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3, 5e-4, 2e-4])
+        figures, _ = draw("convergence.py", self.folder, "--integrator", "rA-rkmk-4,rA-half-2", "--quantity",
+                          "r,observable")
+        for axes in figures["convergence-p.png"].axes:
+            seen = set()
+            for line in axes.lines:
+                if line.get_marker() in ("None", "", None):
+                    continue
+                for y in line.get_ydata():
+                    hollow = line.get_markerfacecolor() == "white"
+                    self.assertEqual(hollow, y < 1e-12)
+                    seen.add(hollow)
+            self.assertEqual(seen, {True, False})
+
+    def test_a_model_without_joints_has_no_panel_of_loads(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3], joints=False)
+        figures, _ = draw("convergence.py", self.folder)
+        figure = figures["convergence-p.png"]
+        self.check(figure)
+        self.assertEqual(len(figure.axes), len(NORMS) - 1)
+        rows = [{"problem": "p", "integrator": s, "r": 1e-3 / k, "v": 1e-2 / k, "Q": "0", "cpu_seconds": 1e-3 * k, "end": 1,
+                 "reference": "closed form", "status": "ok"} for s in ("rA-half-1", "rA-half-2") for k in (1, 2)]
+        write(self.folder, "study.csv", rows)
+        figures, _ = draw("work-precision.py", self.folder)
+        self.assertEqual(len(figures["work-precision-p.png"].axes), 2)
+        self.check(figures["work-precision-p.png"])
+
+    def test_a_run_without_constraints_has_no_panel_of_residuals(self):
+        rows = [{"t": 0.1 * k, "energy": 1 + k, "constraint_norm": 0} | {f"b.{q}{a}": k for q in "rw" for a in "xyz"}
+                for k in range(5)]
+        write(self.folder, "trajectory.csv", rows)
+        figures, _ = draw("trajectory.py", self.folder)
+        self.assertEqual(len(figures["trajectory.png"].axes), 3)
+        self.check(figures["trajectory.png"])
+
+    def test_a_granular_run_is_drawn_and_the_least_loaded_of_many_boundaries_are_named(self):
+        rows = []
+        for k in range(20):
+            row = {"t": 0.01 * k, "kinetic_energy": 1e-3 / (1 + k), "contacts": k, "pairs": 2 * k}
+            row |= {f"stress_{a}{b}": k * (a == b) for a in "xyz" for b in "xyz"}
+            for n in range(10):
+                row |= {f"wall{n}_{q}{a}": n * k for q in "FT" for a in "xyz"}
+            rows.append(row)
+        write(self.folder, "run.csv", rows)
+        figures, files = draw("granular-run.py", self.folder, "--format", "png,pdf")
+        self.assertEqual(files, ["run.png", "run.pdf"])
+        self.check(figures["run.png"])
+        self.assertEqual(len(figures["run.png"].axes), 5)
+        self.assertEqual(legend_texts(figures["run.png"]), [f"wall{n}" for n in range(2, 10)])
+        self.assertIn("not shown: wall1", " ".join(text.get_text() for text in figures["run.png"].texts))
+
+    def test_options_that_a_figure_cannot_use_and_unknown_names_are_refused(self):
+        convergence_table(self.folder, [4e-3, 2e-3])
+        for arguments, expected in ((["--integrator", "rA-half1"], "did you mean 'rA-half-1'?"),
+                                    (["--quantity", "omegaa"], "did you mean 'omega'?")):
+            with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as err:
+                draw("convergence.py", self.folder, *arguments)
+            self.assertEqual(ended.exception.code, 2)
+            self.assertIn(expected, err.getvalue())
+        write(self.folder, "trajectory.csv", [{"t": k, "energy": k, "constraint_norm": 0} for k in range(3)])
+        with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as err:
+            draw("trajectory.py", self.folder, "--integrator", "rA-half-1")
+        self.assertEqual(ended.exception.code, 2)
+        self.assertIn("--integrator is not an option", err.getvalue())
+
+    def test_tick_labels_of_logarithmic_axes_do_not_overlap_whatever_the_range(self):
+        for low, high in ((1e-3, 4e-3), (2e-4, 5e-4), (1e-3, 1.1e-3), (3e-7, 4e-7), (0.7, 0.9), (1, 99), (1e-5, 3e-4),
+                          (1e-12, 1), (2.0, 2.0001), (5e4, 6e4), (1e-3, 1e-3)):
+            for size in ((2, 1.6), (3.4, 2.8), (8, 6)):
+                figure, axes = plt.subplots(figsize=size)
+                axes.loglog([low, high], [low, high], "o")
+                drawing.tidy_and_lay_out(figure, (0, 0, 1, 1))
+                figure.canvas.draw()
+                for axis in (axes.xaxis, axes.yaxis):
+                    self.assertFalse(overlapping(axis), (low, high, size, axis.axis_name))
+                    self.assertGreaterEqual(len(labels_of(axis)), 1, (low, high, size, axis.axis_name))
+                plt.close(figure)
+
+
+if __name__ == "__main__":
+    unittest.main()

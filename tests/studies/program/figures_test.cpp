@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Formats and choice of figures: --figure-format, --integrator and --quantity. What a figure shows is tested by
+/// tests/studies/figures_test.py.
+
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+/// Pixels per metre of a PNG file, from its chunk pHYs
+long pixels_per_metre(const std::string& png)
+{
+    const size_t at = png.find("pHYs");
+    if (at == std::string::npos || at + 8 > png.size()) return 0;
+    long value = 0;
+    for (size_t k = at + 4; k < at + 8; ++k) value = 256 * value + static_cast<unsigned char>(png[k]);
+    return value;
+}
+
+bool has_matplotlib(const Scratch& in)
+{
+    return call(in, {"info"}).out.find("matplotlib 3") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a figure is written in each format of the option --figure-format, with embedded fonts",
+          "[studies][figures]")
+{
+    const Scratch in;
+    if (!has_matplotlib(in)) {
+        WARN("no matplotlib here: no figure was drawn");
+        return;
+    }
+    const Ended ended =
+        call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator", "rA-half-1,rA-half-2",
+                  "--end", "0.2", "--figure-format", "png,pdf,svg", "--output", "a"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 0);
+    for (const char* format : {"png", "pdf", "svg"}) {
+        const std::string file = std::string("energy-double_pendulum.") + format;
+        CHECK(fs::file_size(in / ("a/" + file)) > 4000);
+        CHECK_THAT(ended.out, Contains(file));
+    }
+    CHECK(pixels_per_metre(read(in / "a/energy-double_pendulum.png")) >= 7874);  // 200 dots per inch
+    const std::string pdf = read(in / "a/energy-double_pendulum.pdf");
+    CHECK_THAT(pdf, Contains("/FontFile2"));  // an embedded TrueType font
+    CHECK(pdf.find("/Type3") == std::string::npos);
+
+    // another format removes the figures of the earlier run, and the same table gives the same file
+    CHECK(call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator", "rA-half-1,rA-half-2",
+                    "--end", "0.2", "--figure-format", "pdf", "--output", "a", "--force"})
+              .code == 0);
+    CHECK_FALSE(fs::exists(in / "a/energy-double_pendulum.png"));
+    CHECK(read(in / "a/energy-double_pendulum.pdf") == pdf);
+
+    CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--plot", "--figure-format", "svg", "--output",
+                    "b"})
+              .code == 0);
+    CHECK_THAT(read(in / "b/summary.json"), Contains("trajectory.svg"));
+    CHECK(fs::exists(in / "b/trajectory.svg"));
+    CHECK_FALSE(fs::exists(in / "b/trajectory.png"));
+    const Ended drawn = call(in, {"plot", "b", "--figure-format", "pdf", "--quantity", "energy,r"});
+    CHECK(drawn.out == "written to b: trajectory.pdf\n");
+}
+
+TEST_CASE("a wrong figure option is refused before the first run", "[studies][figures]")
+{
+    const Scratch in;
+    const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
+        {{"study", "energy", "--figure-format", "pngg"},
+         "unknown format 'pngg'; did you mean 'png'? (formats: png, pdf"},
+        {{"study", "energy", "--figure-format", "PDF"}, "did you mean 'pdf'?"},
+        {{"study", "energy", "--figure-format", "docx"}, "unknown format 'docx' (formats: png, pdf, svg"},
+        {{"study", "energy", "--figure-format", "png,png"}, "each format once"},
+        {{"study", "energy", "--figure-format", "png,"}, "--figure-format"},
+        {{"study", "energy", "--figure-format", ""}, "--figure-format"},
+        {{"study", "energy", "--figure-format", "pdf", "--no-plot"}, "--no-plot draws none"},
+        {{"study", "energy", "--figure-format", "pdf", "--json"}, "with --json they need --output"},
+        {{"run", "double_pendulum", "--figure-format", "pdf"}, "it needs --plot"},
+        {{"run", "double_pendulum", "--plot", "--figure-format", "sgv"}, "did you mean 'svg'?"},
+        {{"plot", "a", "--figure-format", "pfd"}, "did you mean 'pdf'?"},
+    };
+    for (const auto& [arguments, expected] : all) {
+        const Ended ended = call(in, arguments);
+        CAPTURE(arguments, ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(expected));
+        CHECK(ended.err.find('\n') == ended.err.size() - 1);
+    }
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("an integrator or a quantity that the results do not have is refused with the nearest name",
+          "[studies][figures]")
+{
+    const Scratch in;
+    if (!has_matplotlib(in)) {
+        WARN("no matplotlib here: no figure was drawn");
+        return;
+    }
+    REQUIRE(call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator",
+                      "rA-half-1,rA-half-2", "--end", "0.1", "--no-plot", "--output", "a"})
+                .code == 0);
+    const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
+        {{"--integrator", "rA-half-3"}, "unknown name 'rA-half-3'; did you mean 'rA-half-"},
+        {{"--integrator", "ida-rp"}, "known names: rA-half-1, rA-half-2"},
+        {{"--quantity", "r"}, "--quantity is not an option of these figures"}};
+    for (const auto& [options, expected] : all) {
+        std::vector<std::string> arguments = {"plot", "a"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Ended ended = call(in, arguments);
+        CAPTURE(ended.err);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: plot: ") && Contains(expected));
+        CHECK_FALSE(fs::exists(in / "a/energy-double_pendulum.png"));
+    }
+    CHECK(call(in, {"plot", "a", "--integrator", "rA-half-2"}).code == 0);
+    CHECK(fs::exists(in / "a/energy-double_pendulum.png"));
+}

@@ -102,4 +102,49 @@ std::string setting(const std::string& option, const std::string& text)
     return text;
 }
 
+namespace {
+
+/// Number of characters of a UTF-8 text
+size_t characters(std::string_view text)
+{
+    return static_cast<size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// Column of the description in "  --option TYPE   description" or "name  description"; without one the column of the
+/// first letter
+size_t column_of_description(const std::string& line)
+{
+    const size_t first = line.find_first_not_of(' ');
+    if (first == std::string::npos) return 0;
+    const size_t gap = line.find("  ", first);
+    const size_t after = gap == std::string::npos ? gap : line.find_first_not_of(' ', gap);
+    return after == std::string::npos ? first : after;
+}
+
+}  // namespace
+
+std::string wrapped_help(const std::string& text, size_t width)
+{
+    std::string out;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size());
+        std::string line = text.substr(begin, end - begin);
+        begin = end + 1;
+        const size_t indent = column_of_description(line);
+        while (characters(line) > width) {
+            // the last blank of the first `width` characters that is not part of the indentation
+            size_t at = 0;
+            for (size_t count = 0; at < line.size() && count <= width; ++at)
+                count += (static_cast<unsigned char>(line[at]) & 0xC0) != 0x80;
+            at = line.rfind(' ', at - 1);
+            if (at == std::string::npos || at <= indent) break;  // one long word
+            out += line.substr(0, line.find_last_not_of(' ', at) + 1) + '\n';
+            line = std::string(indent, ' ') + line.substr(at + 1);
+        }
+        out += line + '\n';
+    }
+    return out;
+}
+
 }  // namespace hilda::io

@@ -31,6 +31,8 @@ struct Scheme {
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
+    bool rho_infinity =
+        false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
 
     /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of

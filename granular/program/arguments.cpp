@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <iostream>
 #include <set>
 
 namespace hilda::granular {
@@ -110,6 +111,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         if (!every.empty() && !interval.empty())
             throw io::UsageError("--every is the old name of --interval; give only one of them");
     } catch (const CLI::ParseError& e) {
+        if (dynamic_cast<const CLI::CallForHelp*>(&e) != nullptr) {
+            std::cout << io::wrapped_help(app.help());
+            return io::exit_code::done;
+        }
         if (e.get_exit_code() == 0) return app.exit(e);
         return io::report(io::UsageError(std::string("granular: ") + e.what()));
     } catch (const io::UsageError& e) {

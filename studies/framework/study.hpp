@@ -12,6 +12,10 @@
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+struct Scheme;
+}
+
 namespace hilda::studies {
 
 /// Expected value of a result: --expect KEY=VALUE[+-TOL]
@@ -35,6 +39,7 @@ struct StudyOptions {
     std::string observable;          ///< BODY.COMPONENT of study sweep; "": that of the problem
     bool keep = false;               ///< keep the motion of each run of study sweep
     lie::Settings settings;
+    std::vector<std::string> given_settings;  ///< the options of `settings` that were given, such as --rtol
 
     std::string reference;  ///< an integrator; "": the reference solution of each problem
     std::optional<double> reference_step, reference_rtol;  ///< [s], 1
@@ -43,9 +48,9 @@ struct StudyOptions {
     std::string against;      ///< a CSV file to compare with; "": none
     std::string grid;         ///< name of a parameter grid of a sweep; "": its default
 
-    int vtk = 0;      ///< frames of each run for ParaView; 0: none
-    int repeats = 0;  ///< of time measurements; 0: the default
-    std::uint64_t seed = 0;
+    int vtk = 0;                        ///< frames of each run for ParaView; 0: none
+    int repeats = 0;                    ///< of time measurements; 0: the default
+    std::optional<std::uint64_t> seed;  ///< default: 0
 
     std::string output;  ///< existing output directory; "": no files (--json without --output)
     int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
@@ -73,9 +78,22 @@ enum : unsigned {
     vtk = 256,
     normal_rows = 512,
     all = 1024,
-    sweep = 2048
+    sweep = 2048,
+    rtol = 4096,
+    seed = 8192
 };
 }  // namespace takes
+
+/// Flags of the common options that a study does not have (Study::lacking)
+namespace lacks {
+enum : unsigned {
+    problem = 1,
+    models = 2,  ///< --integrator, --set and the options of lie::Settings
+    steps = 4,
+    end = 8,
+    all = 15
+};
+}  // namespace lacks
 
 class StudyContext;
 
@@ -84,7 +102,10 @@ struct Study {
     std::string name;
     std::string answers;                 ///< one line: figure or table of the dissertation, or question
     unsigned accepted = 0;               ///< flags of `takes`
+    unsigned lacking = 0;                ///< flags of `lacks`
     std::vector<std::string> keys = {};  ///< keys of --expect
+    /// For the help: files beside study.csv and study.json. Words in capitals stand for names, as in energy-PROBLEM.png.
+    std::vector<std::string> files = {};
     std::function<void(StudyContext&)> run = {};  ///< the experiment: fills the results of the context
 };
 
@@ -93,6 +114,11 @@ struct Study {
 extern template class hilda::io::Registry<hilda::studies::Study>;
 
 namespace hilda::studies {
+
+/// io::UsageError "WHERE: ..." if an option of lie::Settings that was given (--rtol, --atol, --rho-infinity,
+/// --reparametrise) is used by none of the schemes; the message names the schemes that use it.
+void refuse_unused_settings(const std::string& where, const std::vector<std::string>& given,
+                            const std::vector<const lie::Scheme*>& schemes);
 
 /// All registered studies, sorted by name. A file adds one by io::Registry<Study>::add.
 const std::vector<Study>& studies();

@@ -56,7 +56,7 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
         {"--grid", o.grid},
         {"--vtk", std::to_string(o.vtk)},
         {"--repeats", std::to_string(o.repeats)},
-        {"--seed", std::to_string(o.seed)},
+        {"--seed", std::to_string(o.seed.value_or(0))},
         {"--check", o.check ? "yes" : "no"},
         {"--all", o.all ? "yes" : "no"},
         {"numerical settings",
@@ -113,12 +113,16 @@ Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
 {
     Schemes selected;
     for (const std::string& scheme : options.integrators) selected.push_back(&lie::scheme(scheme));
-    if (!selected.empty()) return selected;
-    for (const std::string& scheme : defaults)
-        for (const lie::Scheme& s : lie::schemes())
-            if (s.name == scheme) selected.push_back(&s);
-    if (defaults.empty())
-        for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
+    if (selected.empty()) {
+        for (const std::string& scheme : defaults)
+            for (const lie::Scheme& s : lie::schemes())
+                if (s.name == scheme) selected.push_back(&s);
+        if (defaults.empty())
+            for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
+    }
+    Schemes users = selected;
+    if (!options.reference.empty()) users.push_back(&lie::scheme(options.reference));
+    refuse_unused_settings("study " + name, options.given_settings, users);
     return selected;
 }
 
@@ -205,7 +209,7 @@ io::Json StudyContext::whole() const
                       {"reparametrise", s.reparametrise},
                       {"rtol", s.rtol},
                       {"atol", s.atol > 0 ? io::Json(s.atol) : io::Json("as rtol")}}},
-                    {"seed", options.seed},
+                    {"seed", options.seed.value_or(0)},
                     {"set", options.set},
                     {"provenance", provenance(options.command_line, options.jobs)}};
     if (options.repeats > 0) all["repeats"] = options.repeats;

@@ -20,8 +20,10 @@
 #include "io/provenance.hpp"
 #include "lie/settings.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -68,8 +70,9 @@ public:
         try {
             app.parse(argc, argv);
         } catch (const CLI::CallForHelp&) {
-            std::cout << app.help();
-            return io::exit_code::done;
+            for (const auto& [command, action] : actions)
+                if (command->parsed()) return help_of(command->get_name(), kind);
+            return help_of("", "");
         } catch (const CLI::CallForVersion&) {
             std::cout << version_line() << '\n';
             return io::exit_code::done;
@@ -144,26 +147,38 @@ private:
         return {setting(option, text)};
     }
 
-    /// The options of lie::Settings, common to run and study
-    static void add_settings(CLI::App* c, lie::Settings& s)
+    /// The options of lie::Settings, common to run and study; `given` receives the names of those that were given.
+    static void add_settings(CLI::App* c, lie::Settings& s, std::vector<std::string>& given)
     {
+        const auto note = [&given](const Setter& set) {
+            return [&given, set](const std::string& option, const std::string& text) {
+                given.push_back(option);
+                set(option, text);
+            };
+        };
         value(c, "--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
-              assign(s.tolerance, positive_number));
+              note(assign(s.tolerance, positive_number)));
         value(c, "--linear-solver", "auto|klu|condensed",
               "solver of the saddle-point system; default: auto, the one with fewer operations",
-              assign(s.linear_solver, linear_solver));
+              note(assign(s.linear_solver, linear_solver)));
         value(c, "--rho-infinity", "RHO",
               "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest damping) to 1 (no "
-              "damping); "
-              "default: 0.8",
-              assign(s.rho_infinity, fraction));
-        c->add_flag(
-            "--reparametrise", s.reparametrise,
+              "damping); default: 0.8",
+              note(assign(s.rho_infinity, fraction)));
+        c->add_flag_callback(
+            "--reparametrise",
+            [&s, &given] {
+                s.reparametrise = true;
+                given.emplace_back("--reparametrise");
+            },
             "change the body frame when Euler angles approach a singular orientation, instead of stopping");
-        value(c, "--rtol", "RTOL", "relative local error tolerance of ida-rp; default: 1e-10",
-              assign(s.rtol, relative_tolerance));
-        value(c, "--atol", "ATOL", "absolute local error tolerance of ida-rp; default: that of --rtol",
-              assign(s.atol, absolute_tolerance));
+        value(c, "--rtol", "RTOL",
+              "relative local error tolerance of integrators with adaptive steps, such as ida-rp; default: "
+              "1e-10",
+              note(assign(s.rtol, relative_tolerance)));
+        value(c, "--atol", "ATOL",
+              "absolute local error tolerance of integrators with adaptive steps; default: that of --rtol",
+              note(assign(s.atol, absolute_tolerance)));
     }
 
     static void add_figure_format(CLI::App* c, std::vector<std::string>& to)
@@ -208,7 +223,7 @@ private:
             assign(o.interval, nonnegative_number));
         value(c, "--every", "DT", "old name of --interval", assign(every, nonnegative_number))
             ->group("");  // not in the help
-        add_settings(c, o.settings);
+        add_settings(c, o.settings, o.given_settings);
         values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
                append(o.set, one_setting));
         value(c, "--normal-rows", "tangent|fixed-xy",
@@ -326,7 +341,7 @@ private:
               assign(o.observable, unchanged));
         c->add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
         c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
-        add_settings(c, o.settings);
+        add_settings(c, o.settings, o.given_settings);
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force or --resume is given; default: out/KIND",
               assign(o.output, io::path));
@@ -359,7 +374,7 @@ private:
               assign(o.vtk, frames));
         value(c, "--repeats", "N", "repetitions of each time measurement; default: 5",
               assign(o.repeats, positive_count));
-        value(c, "--seed", "N", "seed of random initial velocities; default: 0", assign(o.seed, seed));
+        value(c, "--seed", "N", "seed of random initial velocities; default: 0", assign(o.seed, io::seed));
         c->add_flag("--force", o.force,
                     "overwrite an output directory that is not empty; accept a reference solution that is "
                     "too coarse");
@@ -429,18 +444,54 @@ private:
 
     void add_help()
     {
-        CLI::App* c = add("help", "print this text, or the options of a command", [this] {
-            const CLI::App* command = nullptr;
-            for (const auto& known : actions)
-                if (known.first->get_name() == name) command = known.first;
-            if (!name.empty() && command == nullptr)
-                throw io::UsageError("help: unknown command" + with_nearest(name, names()));
-            // app.help() would print the help of the command "help", because that command has been parsed
-            std::cout << (command != nullptr ? command->help("hilda")
-                                             : Commands(command_line_text).app.help());
-            return io::exit_code::done;
-        });
+        CLI::App* c = add("help", "print this text, the options of a command, or those of a study",
+                          [this] { return help_of(name, kind); });
         c->add_option("COMMAND", name, "name of a command")->type_name("");
+        c->add_option("KIND", kind, "after study: name of the study")->type_name("");
+    }
+
+    /// The text of --help, with lines of at most 100 characters
+    static void print_help(const CLI::App& of) { std::cout << io::wrapped_help(of.help("hilda")); }
+
+    /// Prints the help of a command, or that of the program without a name.
+    int help_of(const std::string& command_name, const std::string& of_kind)
+    {
+        // app.help() would print the help of a command that has been parsed
+        if (command_name.empty()) {
+            std::cout << io::wrapped_help(Commands(command_line_text).app.help());
+            return io::exit_code::done;
+        }
+        if (command_name == "granular") return start_granular({"--help"});
+        const auto known = std::find_if(actions.begin(), actions.end(), [&](const auto& one) {
+            return one.first->get_name() == command_name;
+        });
+        if (known == actions.end())
+            throw io::UsageError("help: unknown command" + with_nearest(command_name, names()));
+        if (command_name == "study" && !of_kind.empty())
+            return help_of_study(*known->first, find_study(of_kind));
+        if (command_name != "new" && !of_kind.empty())
+            throw io::UsageError("help " + command_name + ": one argument too many: '" + of_kind + "'");
+        print_help(*known->first);
+        return io::exit_code::done;
+    }
+
+    /// Prints the options that a study takes, its keys and its files.
+    static int help_of_study(CLI::App& command, const Study& of)
+    {
+        for (CLI::Option* option : command.get_options())
+            if (option->get_positional() || !takes_option(of, option->get_name()) ||
+                (option->get_name() == "--expect" && of.keys.empty()))
+                command.remove_option(option);
+        command.name("study " + of.name);
+        command.description(of.answers);
+        std::vector<std::string> files = {"study.csv", "study.json"};
+        files.insert(files.end(), of.files.begin(), of.files.end());
+        command.footer(
+            (of.keys.empty() ? "" : fmt::format("Keys of --expect: {}\n", fmt::join(of.keys, ", "))) +
+            fmt::format("Files: {}\n", fmt::join(files, ", ")) +
+            "Words in capitals stand for names; docs/guide/outputs.md describes the columns.");
+        print_help(command);
+        return io::exit_code::done;
     }
 
     std::vector<std::string> names() const

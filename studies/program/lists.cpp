@@ -5,6 +5,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/option_values.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 using Line = std::vector<std::string>;
 
-/// Prints left-aligned columns, separated by two blanks
+/// Prints left-aligned columns, separated by two blanks; two columns in lines of at most 100 characters
 void print_aligned(const std::vector<Line>& lines)
 {
     std::vector<size_t> width;
@@ -29,10 +30,12 @@ void print_aligned(const std::vector<Line>& lines)
         width.resize(std::max(width.size(), line.size()));
         for (size_t c = 0; c < line.size(); ++c) width[c] = std::max(width[c], line[c].size());
     }
+    std::string text;
     for (const Line& line : lines) {
-        for (size_t c = 0; c + 1 < line.size(); ++c) std::cout << fmt::format("{:<{}}  ", line[c], width[c]);
-        std::cout << line.back() << '\n';
+        for (size_t c = 0; c + 1 < line.size(); ++c) text += fmt::format("{:<{}}  ", line[c], width[c]);
+        text += line.back() + '\n';
     }
+    std::cout << (width.size() == 2 ? io::wrapped_help(text) : text);
 }
 
 /// Prints JSON objects with these keys, or aligned lines without the keys

@@ -5,6 +5,7 @@
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
+#include "studies/framework/study.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/single_run.hpp"
 
@@ -49,6 +50,9 @@ void refuse_for_adaptive(const RunOptions& options)
 int run_model(const RunOptions& options)
 {
     refuse_for_adaptive(options);
+    std::vector<const lie::Scheme*> schemes;
+    for (const std::string& name : options.integrators) schemes.push_back(&lie::scheme(name));
+    refuse_unused_settings("run", options.given_settings, schemes);
     const std::vector<std::string> directory = directories(options);
     const io::Interrupt interrupt;
     int code = io::exit_code::done;

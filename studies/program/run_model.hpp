@@ -18,8 +18,9 @@ struct RunOptions {
     std::optional<double> step;           ///< [s]; default: 1e-3
     std::optional<double> end, interval;  ///< [s]; defaults: end of the model, end/1000
     lie::Settings settings;
-    std::vector<std::string> set;  ///< /json/pointer=VALUE
-    std::string normal_rows;       ///< of contact constraints: tangent or fixed-xy; "": the model's
+    std::vector<std::string> given_settings;  ///< the options of `settings` that were given, such as --rtol
+    std::vector<std::string> set;             ///< /json/pointer=VALUE
+    std::string normal_rows;  ///< of contact constraints: tangent or fixed-xy; "": the model's
     bool fix_initial = false;
 
     std::string output;  ///< directory; "": out/NAME

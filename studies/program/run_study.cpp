@@ -15,7 +15,82 @@ namespace hilda::studies {
 
 namespace {
 
-const Study& find(const std::string& kind)
+/// An option that not every study has
+struct OptionOfSome {
+    std::string name;
+    unsigned taken = 0;    ///< the flags of `takes` with which a study has it; 0: all studies
+    unsigned lacking = 0;  ///< the flags of `lacks` without which a study has it
+    std::function<bool(const StudyOptions&)> given;
+};
+
+bool has(const Study& study, const OptionOfSome& option)
+{
+    return (option.taken == 0 || (study.accepted & option.taken) != 0) &&
+           (study.lacking & option.lacking) == 0;
+}
+
+const std::vector<OptionOfSome>& options_of_some()
+{
+    const auto setting = [](const std::string& name, unsigned taken = 0) {
+        return OptionOfSome{name, taken, lacks::models, [name](const StudyOptions& o) {
+                                const auto& given = o.given_settings;
+                                return std::find(given.begin(), given.end(), name) != given.end();
+                            }};
+    };
+    static const std::vector<OptionOfSome> all = {
+        {"--problem", 0, lacks::problem, [](const auto& o) { return !o.problems.empty(); }},
+        {"--integrator", 0, lacks::models, [](const auto& o) { return !o.integrators.empty(); }},
+        {"--steps", 0, lacks::steps, [](const auto& o) { return !o.steps.empty(); }},
+        {"--end", 0, lacks::end, [](const auto& o) { return o.end.has_value(); }},
+        {"--set", 0, lacks::models, [](const auto& o) { return !o.set.empty(); }},
+        setting("--tolerance"),
+        setting("--linear-solver"),
+        setting("--rho-infinity"),
+        setting("--reparametrise"),
+        setting("--rtol", takes::rtol),
+        setting("--atol", takes::rtol | takes::rtols),
+        {"--reference", takes::reference, 0, [](const auto& o) { return !o.reference.empty(); }},
+        {"--reference-step", takes::reference, 0, [](const auto& o) { return o.reference_step.has_value(); }},
+        {"--reference-rtol", takes::reference, 0, [](const auto& o) { return o.reference_rtol.has_value(); }},
+        {"--rtols", takes::rtols, 0, [](const auto& o) { return !o.rtols.empty(); }},
+        {"--repeats", takes::repeats, 0, [](const auto& o) { return o.repeats > 0; }},
+        {"--bars", takes::bars, 0, [](const auto& o) { return !o.bars.empty(); }},
+        {"--preset", takes::preset, 0, [](const auto& o) { return !o.preset.empty(); }},
+        {"--normal-rows", takes::normal_rows, 0, [](const auto& o) { return !o.normal_rows.empty(); }},
+        {"--against", takes::against, 0, [](const auto& o) { return !o.against.empty(); }},
+        {"--check", takes::check, 0, [](const auto& o) { return o.check; }},
+        {"--all", takes::all, 0, [](const auto& o) { return o.all; }},
+        {"--grid", takes::grid, 0, [](const auto& o) { return !o.grid.empty(); }},
+        {"--vtk", takes::vtk, 0, [](const auto& o) { return o.vtk > 0; }},
+        {"--fix-initial", 0, lacks::models, [](const auto& o) { return o.fix_initial; }},
+        {"--sweep", takes::sweep, 0, [](const auto& o) { return !o.sweep.empty(); }},
+        {"--observable", takes::sweep, 0, [](const auto& o) { return !o.observable.empty(); }},
+        {"--keep", takes::sweep, 0, [](const auto& o) { return o.keep; }},
+        {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }}};
+    return all;
+}
+
+/// Rejects options that the study does not use; the message names the studies that use them.
+void reject_unused_options(const Study& study, const StudyOptions& options)
+{
+    for (const OptionOfSome& option : options_of_some()) {
+        if (!option.given(options) || has(study, option)) continue;
+        const bool of_models = ((option.lacking & lacks::models) != 0 || option.name == "--problem") &&
+                               (study.lacking & lacks::models) != 0;
+        // the study itself refuses with the option to use instead
+        if (option.name == "--problem" && !of_models) continue;
+        std::string those;
+        for (const Study& other : studies())
+            if (has(other, option)) those += (those.empty() ? "" : ", ") + other.name;
+        throw io::UsageError("study " + study.name + ": " + option.name + " is for " +
+                             (of_models ? "studies of models; this study defines its own bodies"
+                                        : (those.empty() ? "other studies" : those)));
+    }
+}
+
+}  // namespace
+
+const Study& find_study(const std::string& kind)
 {
     std::vector<std::string> known;
     for (const Study& study : studies()) {
@@ -25,40 +100,16 @@ const Study& find(const std::string& kind)
     throw io::UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
 
-/// Rejects options that the study does not use; the message names the studies that use them.
-void reject_unused_options(const Study& study, const StudyOptions& options)
+bool takes_option(const Study& study, const std::string& option)
 {
-    const auto reject_if = [&](bool given, unsigned option, const std::string& name) {
-        if (!given || (study.accepted & option) != 0) return;
-        std::string those;
-        for (const Study& other : studies())
-            if ((other.accepted & option) != 0) those += (those.empty() ? "" : ", ") + other.name;
-        throw io::UsageError("study " + study.name + ": " + name + " is for " +
-                             (those.empty() ? "other studies" : those));
-    };
-    reject_if(!options.reference.empty(), takes::reference, "--reference");
-    reject_if(options.reference_step.has_value(), takes::reference, "--reference-step");
-    reject_if(options.reference_rtol.has_value(), takes::reference, "--reference-rtol");
-    reject_if(!options.rtols.empty(), takes::rtols, "--rtols");
-    reject_if(options.repeats > 0, takes::repeats, "--repeats");
-    reject_if(!options.bars.empty(), takes::bars, "--bars");
-    reject_if(!options.preset.empty(), takes::preset, "--preset");
-    reject_if(!options.normal_rows.empty(), takes::normal_rows, "--normal-rows");
-    reject_if(!options.against.empty(), takes::against, "--against");
-    reject_if(options.check, takes::check, "--check");
-    reject_if(options.all, takes::all, "--all");
-    reject_if(!options.grid.empty(), takes::grid, "--grid");
-    reject_if(options.vtk > 0, takes::vtk, "--vtk");
-    reject_if(!options.sweep.empty(), takes::sweep, "--sweep");
-    reject_if(!options.observable.empty(), takes::sweep, "--observable");
-    reject_if(options.keep, takes::sweep, "--keep");
+    const std::vector<OptionOfSome>& all = options_of_some();
+    return std::all_of(all.begin(), all.end(),
+                       [&](const OptionOfSome& some) { return some.name != option || has(study, some); });
 }
-
-}  // namespace
 
 int run_study(const std::string& kind, StudyOptions options)
 {
-    const Study& study = find(kind);
+    const Study& study = find_study(kind);
     reject_unused_options(study, options);
     const bool timed =
         (study.accepted & takes::repeats) != 0;  // concurrent runs would disturb the measurement

@@ -9,6 +9,11 @@
 
 namespace hilda::studies {
 
+/// The study with this name. io::UsageError with the nearest name if there is none.
+const Study& find_study(const std::string& kind);
+/// Whether a study takes an option of hilda study, such as --reference
+bool takes_option(const Study& study, const std::string& option);
+
 /// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
 /// it must be new or empty unless options.force is set. With options.json and without options.output no files
 /// are written. io::UsageError for an unknown study or for an option that the study does not use.

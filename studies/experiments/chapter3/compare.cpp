@@ -152,8 +152,9 @@ const bool registered = io::Registry<Study>::add(
     {.name = "compare",
      .answers =
          "trajectories of several integrators on one model and their differences to the reference solution",
-     .accepted = takes::reference,
+     .accepted = takes::reference | takes::rtol,
      .keys = {"max_r", "end_r", "max_A", "end_A", "max_v", "end_v", "max_omega", "end_omega"},
+     .files = {"compare.csv", "compare.png"},
      .run = compare});
 
 }  // namespace

@@ -261,6 +261,7 @@ const bool registered = io::Registry<Study>::add(
      .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
      .accepted = takes::reference | takes::all,
      .keys = study.keys(),
+     .files = {"convergence-position.png", "convergence-loads.png", "convergence-PROBLEM.png"},
      .run = convergence});
 
 }  // namespace

@@ -112,6 +112,7 @@ const bool registered =
     io::Registry<Study>::add({.name = "energy",
                               .answers = "energy drift of undamped systems over time (Fig. 3.5)",
                               .keys = {"end_drift", "max_drift", "max_drift_relative"},
+                              .files = {"energy.csv", "energy-PROBLEM.png"},
                               .run = energy});
 
 }  // namespace

@@ -130,6 +130,7 @@ const bool registered = io::Registry<Study>::add(
     {.name = "iterations",
      .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
      .keys = {"iterations", "max_iterations"},
+     .files = {"iterations.csv", "iterations-PROBLEM.png"},
      .run = iterations});
 
 }  // namespace

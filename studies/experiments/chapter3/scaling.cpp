@@ -49,7 +49,8 @@ std::vector<Chain> chains(const StudyContext& s)
     s.pool(all.size(), ", reading models").run([&](long k) {
         Chain& chain = all[static_cast<size_t>(k)];
         const auto begin = std::chrono::steady_clock::now();
-        chain.benchmark = make_benchmark(spinning_n_pendulum(chain.N, s.options.seed), s.options, end);
+        chain.benchmark =
+            make_benchmark(spinning_n_pendulum(chain.N, s.options.seed.value_or(0)), s.options, end);
         chain.start_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     });
     return all;
@@ -90,6 +91,7 @@ void scaling(StudyContext& s)
 {
     if (!s.options.problems.empty())
         s.refuse("the model is the N-bar pendulum and --problem is not accepted; set N by --bars N1,N2,...");
+    const std::uint64_t seed = s.options.seed.value_or(0);
     const double h = s.one_step(1e-3);
     const Schemes schemes = s.fixed_step_schemes({"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
     const std::vector<Chain> all = chains(s);
@@ -123,7 +125,7 @@ void scaling(StudyContext& s)
         Columns<ScalingRun>{{"start_seconds", &ScalingRun::start_seconds}, column::status};
     s.text << fmt::format(
         "\nN-bar pendulum, h = {:g} s, end time {:g} s, seed {}: thread CPU time per step\n", h,
-        all.front().benchmark.end, s.options.seed);
+        all.front().benchmark.end, seed);
     columns.print(s.text, runs,
                   {"bars", "integrator", "us_per_step", "us_per_step_min", "us_per_step_max", "us/step/N",
                    "iterations_per_step", "ratio_to_full", "status"});
@@ -151,8 +153,10 @@ void scaling(StudyContext& s)
 const bool registered =
     io::Registry<Study>::add({.name = "scaling",
                               .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                              .accepted = takes::repeats | takes::bars,
+                              .accepted = takes::repeats | takes::bars | takes::seed,
+                              .lacking = lacks::problem,
                               .keys = {"exponent", "largest_exponent", "ratio_to_full"},
+                              .files = {"scaling.png"},
                               .run = scaling});
 
 }  // namespace

@@ -74,6 +74,7 @@ const bool registered =
                               .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
                               .accepted = takes::repeats,
                               .keys = {"us_per_step", "ratio_to_full"},
+                              .files = {"timing.png"},
                               .run = timing});
 
 }  // namespace

@@ -170,6 +170,7 @@ const bool registered = io::Registry<Study>::add(
      .answers = "error against CPU time of all integrators, including those with step-size control",
      .accepted = takes::reference | takes::rtols | takes::repeats,
      .keys = {"cpu_seconds_needed"},
+     .files = {"work-precision-PROBLEM.png"},
      .run = work_precision});
 
 }  // namespace

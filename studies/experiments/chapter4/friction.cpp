@@ -174,7 +174,9 @@ const bool registered = io::Registry<Study>::add(
          "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
          "4.15-4.18, Table 4.7)",
      .accepted = takes::against | takes::check | takes::vtk,
+     .lacking = lacks::models | lacks::steps | lacks::end,
      .keys = {"difference"},
+     .files = {"EXPERIMENT.csv", "friction-EXPERIMENT.png"},
      .run = friction_experiments});
 
 }  // namespace

@@ -282,7 +282,9 @@ const bool registered = io::Registry<Study>::add(
          "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
          "dissertation",
      .accepted = takes::preset | takes::against | takes::grid | takes::check,
+     .lacking = lacks::problem | lacks::models,
      .keys = keys(),
+     .files = {"stacking.png"},
      .run = stacking});
 
 }  // namespace

@@ -342,6 +342,7 @@ const bool registered =
                                          "residuals and energy (Figs. 5.2-5.6)",
                               .accepted = takes::reference | takes::check | takes::vtk | takes::normal_rows,
                               .keys = {"r", "alpha", "F_N", "energy"},
+                              .files = {"SCENE.csv", "evolving-contact-SCENE.png"},
                               .run = evolving_contact});
 
 }  // namespace

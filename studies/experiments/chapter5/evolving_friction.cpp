@@ -260,6 +260,7 @@ const bool registered = io::Registry<Study>::add(
                 "rest position (Figs. 5.7, 5.8)",
      .accepted = takes::check | takes::vtk,
      .keys = {"r", "F_f", "rest", "stops"},
+     .files = {"curves.csv", "evolving-friction-point.png", "evolving-friction-forces.png"},
      .run = evolving_friction});
 
 }  // namespace

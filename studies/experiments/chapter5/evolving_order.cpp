@@ -151,6 +151,7 @@ const bool registered =
                               .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
                               .accepted = takes::reference | takes::check | takes::normal_rows,
                               .keys = study.keys(),
+                              .files = {"evolving-order-PROBLEM.png"},
                               .run = evolving_order});
 
 }  // namespace

@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 namespace hilda::studies {
 
 namespace {
@@ -34,19 +36,6 @@ Table as_table(const ValidationTable& validation_table)
     return table;
 }
 
-/// io::UsageError for options that a validation does not have.
-void reject_unused_options(const StudyContext& study)
-{
-    const StudyOptions& options = study.options;
-    for (const auto& [given, option] :
-         {std::pair(!options.problems.empty(), "--problem"),
-          std::pair(!options.integrators.empty(), "--integrator"),
-          std::pair(!options.steps.empty(), "--steps"), std::pair(options.end.has_value(), "--end"),
-          std::pair(!options.set.empty(), "--set")})
-        if (given) study.refuse(std::string(option) + " is not an option of this study");
-    if (!options.grid.empty()) io::one_of("--grid", options.grid, std::vector<std::string>{"full"});
-}
-
 granular::ValidationResult result_of(const Validation& validation, const StudyContext& study)
 {
     granular::ValidationOptions options;
@@ -65,7 +54,7 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
 
 void validate(const Validation& validation, StudyContext& s)
 {
-    reject_unused_options(s);
+    if (!s.options.grid.empty()) io::one_of("--grid", s.options.grid, std::vector<std::string>{"full"});
     const granular::ValidationResult result = result_of(validation, s);
     s.json["grid"] = s.options.grid.empty() ? "quick" : s.options.grid;
     s.text << validation.description << '\n';
@@ -87,6 +76,21 @@ void validate(const Validation& validation, StudyContext& s)
     s.figures = {s.name + ".png"};
 }
 
+/// For the help: the tables after the first one, and the figure
+std::vector<std::string> files_of(const std::string& study)
+{
+    const std::map<std::string, std::vector<std::string>> tables = {
+        {"granular-head-on", {"refinement.csv", "clamped.csv"}},
+        {"granular-brick", {"motion.csv"}},
+        {"granular-oblique", {"reference.csv", "steps.csv"}},
+        {"granular-stacking", {"friction.csv"}},
+        {"granular-waves", {"profiles.csv"}}};
+    const auto found = tables.find(study);
+    std::vector<std::string> files = found == tables.end() ? std::vector<std::string>{} : found->second;
+    files.push_back(study + ".png");
+    return files;
+}
+
 std::vector<Study> all()
 {
     std::vector<Study> studies;
@@ -94,6 +98,8 @@ std::vector<Study> all()
         studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
                            .accepted = takes::check | takes::grid,
+                           .lacking = lacks::all,
+                           .files = files_of("granular-" + v.name),
                            .run = [v](StudyContext& study) { validate(v, study); }});
     return studies;
 }

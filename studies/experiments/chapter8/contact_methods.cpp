@@ -303,7 +303,9 @@ const bool registered = io::Registry<Study>::add(
     {.name = "contact-methods",
      .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
                 "number of contacts (Sec. 8.2)",
+     .lacking = lacks::models | lacks::steps | lacks::end,
      .keys = {"error"},
+     .files = {"contact-methods-PART.png"},
      .run = contact_methods});
 
 }  // namespace

@@ -289,7 +289,7 @@ void sweep(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "sweep",
      .answers = "one model over a grid of values of its entries (--sweep): end states, energy, largest loads",
-     .accepted = takes::sweep,
+     .accepted = takes::sweep | takes::rtol,
      .keys = {"observable_end", "observable_min", "observable_max", "energy_drift", "constraint_norm",
               "max_force", "max_torque"},
      .run = sweep});

@@ -102,6 +102,17 @@ TEST_CASE("the incline sweep checks its limits", "[studies][incline]")
 }
 #endif
 
+TEST_CASE("a grid that ends at eta_r = 1/2 is not asked for slip without rolling (long)",
+          "[studies][incline]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "incline-sweep", "--grid", "dissertation", "--steps", "1e-3",
+                                  "--check", "--no-plot", "--jobs", "1"});
+    CAPTURE(ended.out, ended.err);
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("of a grid up to eta_r = 1/2") && Contains("5 of 5 passed"));
+}
+
 TEST_CASE("the incline sweep rejects invalid options before the first run", "[studies][incline]")
 {
     const Scratch in;

@@ -137,8 +137,8 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
             "one surface does not fit into the other: the sum of their curvatures must not be negative",
             least, "1/m");
     // Surfaces that are still apart may have positive curvature when they come into contact: a disk parallel
-    // to the plane has zero curvature, but usually touches it tilted. A foot and a plane, both of size 0, have
-    // zero curvature always.
+    // to the plane has zero curvature, but usually touches it tilted. A foot and a plane, both of size 0,
+    // have zero curvature always.
     const bool may_curve = contact_point.gap > 0 && (i.surface->size() > 0 || j.surface->size() > 0);
     if (mean <= rounding && !may_curve && (law->needs_curvature() || friction->needs_curvature()))
         return got("the normal or friction law needs curvature: the sum of the curvatures must be positive",
@@ -153,8 +153,8 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
         const double length = round ? radius : size;
         if (!(-contact_point.gap > max_relative_overlap * length)) return std::string();
         std::ostringstream what;
-        what << "the surfaces must not overlap by more than a tenth of "
-             << (round ? "the radius of curvature " : "the size ") << length << " m";
+        what << "the surfaces must not overlap by more than " << max_relative_overlap * length
+             << " m, a tenth of " << (round ? "the radius of curvature " : "the size ") << length << " m";
         return got(what.str(), -contact_point.gap, "m");
     };
     if (std::string why = too_deep(*i.surface, contact_point.K_i); !why.empty()) return why;

@@ -136,8 +136,8 @@ TEST_CASE("an invalid contact is rejected with its position in the file", "[cont
         {friction(R"({"mu_s": 0.2})"), "m.json:6:1 (/contacts/0/friction): missing key 'K_E'"},
         // errors found by the contact itself
         {ball(sphere, flat, steel, rough, 0.17),
-         "m.json:2:2 (/contacts/0): contact 'c': the surfaces must not overlap by more than a tenth of "
-         "the radius"},
+         "m.json:2:2 (/contacts/0): contact 'c': the surfaces must not overlap by more than 0.02 m, "
+         "a tenth of the radius"},
         {ball(sphere, R"({"type": "sphere", "radius": 0.1, "concave": true})"),
          "m.json:2:2 (/contacts/0): contact::make_detector: the radius of a sphere must be less than that of "
          "the concave sphere around it, got 0.2 m in 0.1 m"},

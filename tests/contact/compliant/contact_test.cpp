@@ -179,7 +179,8 @@ TEST_CASE("an invalid initial pose of a contact is rejected", "[contact]")
     CHECK(start_error(sphere(0.2), plane, {0, 0, 0.2}, rolls).empty());
     CHECK(start_error(sphere(0.2), plane, {0, 0, 0.1801}, slides).empty());
     CHECK(start_error(sphere(0.2), plane, {0, 0, 0.17}, slides) ==
-          "the surfaces must not overlap by more than a tenth of the radius of curvature 0.2 m, got 0.03 m");
+          "the surfaces must not overlap by more than 0.02 m, a tenth of the radius of curvature 0.2 m, got "
+          "0.03 m");
     CHECK(start_error(sphere(0.2), sphere(0.5, true), {0, 0, -0.3}, rolls).empty());
     const Shape flat{
         std::make_shared<contact::Ellipsoid>(Vec3(0.4, 0.4, 0.2))};  // curvature 1.25 1/m at the pole
@@ -202,18 +203,19 @@ TEST_CASE("the initial overlap is compared with the smallest radius of curvature
                                           friction({.K_E = 1, .eta_r = eta_r}));
         return c.start_error(bi, Motion());
     };
-    const std::string deep = "the surfaces must not overlap by more than a tenth of ";
+    const std::string deep = "the surfaces must not overlap by more than ";
     const Shape shaft{std::make_shared<contact::Cylinder>(0.3)};
     CHECK(start_error(sphere(0.9), shaft, at({1.171, 0, 0})).empty());
     CHECK(start_error(sphere(0.9), shaft, at({1.16, 0, 0})) ==
-          deep + "the radius of curvature 0.3 m, got 0.04 m");
+          deep + "0.03 m, a tenth of the radius of curvature 0.3 m, got 0.04 m");
     const Shape box{std::make_shared<contact::Superquadric>(Vec3(0.1, 0.1, 0.1), 8)};
     CHECK(start_error(box, plane, at({0, 0, 0.091})).empty());
-    CHECK(start_error(box, plane, at({0, 0, -0.05})) == deep + "the size 0.1 m, got 0.15 m");
+    CHECK(start_error(box, plane, at({0, 0, -0.05})) ==
+          deep + "0.01 m, a tenth of the size 0.1 m, got 0.15 m");
     const Shape coin{std::make_shared<contact::Disk>(0.1)};
     Motion leaning = at({0, 0, -0.01});
     leaning.A = lie::exp({0.05, 0, 0});
-    CHECK(start_error(coin, plane, leaning) == deep + "the size 0.1 m, got 0.0149979 m");
+    CHECK(start_error(coin, plane, leaning) == deep + "0.01 m, a tenth of the size 0.1 m, got 0.0149979 m");
     // parallel to the plane and above it, where the curvature is zero
     CHECK(start_error(coin, plane, at({0, 0, 1}), 0.1).empty());
     CHECK(start_error(coin, plane, at({0, 0, 0})) ==

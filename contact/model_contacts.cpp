@@ -118,7 +118,8 @@ ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair&
     if (!pair.normal_rows.empty()) {
         rows = pair.normal_rows;
         o.record("rows", rows);
-        pair.changes.push_back(o.pointer("rows") + '=' + rows);
+        const std::string change = o.pointer("rows") + '=' + rows;
+        if (pair.changes.empty() || pair.changes.back() != change) pair.changes.push_back(change);
     }
     if (rows == "fixed-xy") settings.rows = EvolvingContact::NormalRows::fixed_xy;
     if (o.has("fallback")) {
@@ -184,8 +185,8 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& 
     const ConstraintNormal settings = read_constraint_normal(normal, pair);
     o.record("normal", normal.finish());
     const ConstraintFriction friction = read_constraint_friction(o, settings);
-    check_smooth(o, "surface_i", i);
-    check_smooth(o, "surface_j", j);
+    check_smooth(o, pair.surface_i, i);
+    check_smooth(o, pair.surface_j, j);
     auto constraint =
         friction.within_step
             ? std::make_unique<EvolvingContact>(pair.i, i, pair.j, j, *friction.within_step, settings.rows,
@@ -207,9 +208,27 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& 
     pair.model.load(std::move(force));
 }
 
+/// The surfaces of a contact. All pairs of a group share them, so that a mesh is read once.
+struct Surfaces {
+    Shape i, j;
+    io::Json text_i, text_j;  ///< canonical form
+
+    Surfaces(ObjectReader& o, const dae::ContactPair& pair)
+    {
+        i = read_shape(o, pair.surface_i, text_i);
+        j = pair.surface_j == pair.surface_i ? i : read_shape(o, pair.surface_j, text_j);
+        if (pair.surface_j == pair.surface_i) text_j = text_i;
+    }
+};
+
 void read_contact(ObjectReader& o, const dae::ContactPair& pair)
 {
-    const Shape i = read_shape(o, "surface_i"), j = read_shape(o, "surface_j");
+    if (pair.shared == nullptr) pair.shared = std::make_shared<const Surfaces>(o, pair);
+    const Surfaces& surfaces = *static_cast<const Surfaces*>(pair.shared.get());
+    for (const std::string& key : {pair.surface_i, pair.surface_j}) o.find(key);
+    o.record("surface_i", surfaces.text_i);
+    o.record("surface_j", surfaces.text_j);
+    const Shape &i = surfaces.i, &j = surfaces.j;
     ObjectReader normal = o.object("normal");
     std::vector<std::string> types = normal_laws(false);
     types.emplace_back("constraint");

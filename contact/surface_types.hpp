@@ -37,9 +37,12 @@ namespace hilda::contact {
 ///     {"type": "sphere", "radius": 0.2, "concave": false, "position": [x, y, z], "A": [[...], [...], [...]]}
 ///
 /// The pose is given in the body frame. `position` defaults to the origin of the body frame. The orientation
-/// is one of A, p, axis_angle and the key SurfaceType::z, and defaults to the identity. If only z is given, x
-/// and y are chosen by tangent_basis(). The canonical text has A. Throws dae::PlacedError.
+/// is one of A, p, axis_angle, euler_angles and the key SurfaceType::z, and defaults to the identity. If only
+/// z is given, x and y are chosen by tangent_basis(). The canonical text has A. Throws dae::PlacedError.
 Shape read_shape(dae::ObjectReader& parent, std::string_view key);
+
+/// The same, with the canonical text in `canonical` instead of a record in `parent`
+Shape read_shape(dae::ObjectReader& parent, std::string_view key, io::Json& canonical);
 
 /// Reads the key "semi_axes": three positive lengths [m]
 Vec3 read_semi_axes(dae::ObjectReader& o);

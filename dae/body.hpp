@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include "dae/body_shape.hpp"
 #include "lie/state.hpp"
 
+#include <optional>
 #include <string>
 
 namespace hilda::dae {
@@ -39,8 +41,9 @@ struct PointPair {
 
 struct Body {
     std::string name;
-    double m = 1;                   ///< mass [kg]
-    Mat3 J_bar = Mat3::Identity();  ///< inertia about the centre of mass [kg m²], body frame
+    double m = 1;                         ///< mass [kg]
+    Mat3 J_bar = Mat3::Identity();        ///< inertia about the centre of mass [kg m²], body frame
+    std::optional<BodyShape> shape = {};  ///< for pictures; without effect on the motion
 
     /// Throws lie::InvalidInput unless m is positive and finite and J̄ is symmetric, positive definite and
     /// physical: no principal moment exceeds the sum of the other two.

@@ -2,7 +2,10 @@
 /// ModelReader: builds a model from the JSON tree, and writes the canonical form of what it reads.
 #include "dae/model_file.hpp"
 
+#include "dae/body_reader.hpp"
+#include "dae/contact_pairs.hpp"
 #include "dae/model_types.hpp"
+#include "dae/parameters.hpp"
 #include "io/expression.hpp"
 #include "io/nearest.hpp"
 
@@ -18,15 +21,6 @@
 namespace hilda::dae {
 
 namespace {
-
-/// The inertia of a body, given by three principal moments or by a full matrix
-Mat3 inertia(ObjectReader& o)
-{
-    const Json* v = o.find("inertia");
-    const bool full =
-        v != nullptr && v->list() != nullptr && !v->list()->empty() && v->list()->front().list() != nullptr;
-    return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
-}
 
 class ModelReader final : public BodyFinder {
 public:
@@ -54,6 +48,8 @@ public:
         if (o.has("outputs"))
             o.record("outputs", each(o, "outputs", false,
                                      [this](const Json& v, const std::string& at) { return output(v, at); }));
+        o.find("parameters");  // read by Parameters
+        o.allow_schema();
         out.text = written(o.finish()) + "\n";
         if (ignored > 0)
             out.warnings.push_back(ignored_place +
@@ -70,8 +66,8 @@ private:
             out.warnings.push_back(o.place() +
                                    ": the key 'hilda_model' is missing; the file is read as version 1");
             o.record("hilda_model", 1.0);
-        } else if (const double v = o.number("hilda_model"); v != 1) {
-            o.fail("hilda_model", "the version of the format must be 1, got " + shortest(v));
+        } else if (const int v = o.integer("hilda_model"); v != 1) {
+            o.fail("hilda_model", "the version of the format must be 1, got " + std::to_string(v));
         }
     }
 
@@ -93,14 +89,14 @@ private:
     {
         ObjectReader o(source, v, at);
         const std::string name = o.name("name");
-        if (o.has("id") && !o.has("r") && !o.has("mass") && !o.has("inertia")) return ground_body(o, name);
+        if (o.has("id") && !o.has("r") && !o.has("mass") && !o.has("inertia") && !o.has("shape"))
+            return ground_body(o, name);
         if (name == "ground")
             o.fail("name", "the name 'ground' is reserved for the fixed body, got \"ground\"");
         register_body(o, name, model.bodies());
         Body b;
         b.name = name;
-        b.m = o.positive("mass");
-        b.J_bar = inertia(o);
+        read_mass(o, b);
 
         Motion m;
         m.r = o.vec3("r");
@@ -109,8 +105,9 @@ private:
         m.rdot = o.vec3("r_dot", Vec3::Zero());
         m.omega_bar = o.vec3("omega", Vec3::Zero());
         Json recorded = o.finish();
-        std::erase_if(std::get<Json::Object>(recorded.value),
-                      [](const Json::Member& k) { return k.key == "p" || k.key == "axis_angle"; });
+        std::erase_if(std::get<Json::Object>(recorded.value), [](const Json::Member& k) {
+            return k.key == "p" || k.key == "axis_angle" || k.key == "euler_angles" || k.key == "density";
+        });
         try {
             model.add(std::move(b));
         } catch (const lie::InvalidInput& e) {
@@ -142,6 +139,13 @@ private:
                 o.fail("id", "two bodies have the same id, got " + std::to_string(id));
     }
 
+    std::optional<int> named(const std::string& name) const override
+    {
+        if (name == "ground") return ground;
+        const auto found = by_name.find(name);
+        return found != by_name.end() ? std::optional(found->second) : std::nullopt;
+    }
+
     /// Number of the body whose name or id is given by a key
     int body(ObjectReader& o, std::string_view key) const override
     {
@@ -156,17 +160,35 @@ private:
         if (v != nullptr && v->string() == nullptr)
             o.fail(key, std::string(key) + " must be the name or the id of a body, got " + described(*v));
         const std::string name = o.text(key);
-        const auto found = by_name.find(name);
-        if (name != "ground" && found == by_name.end()) {
-            std::vector<std::string> known = {"ground"};
-            for (const auto& entry : by_name) known.push_back(entry.first);
-            const std::string meant = io::nearest(name, known);
-            o.fail(key, "no body has this name, got " + described(name) +
-                            (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+        const std::optional<int> number = named(name);
+        if (!number) o.fail(key, no_such_body(name));
+        o.record(key, model.body_name(*number));
+        return *number;
+    }
+
+    int body_of_list(ObjectReader& o, std::string_view key, size_t element) const override
+    {
+        const Json& v = o.list(key, true).at(element);
+        if (const double* id = v.number(); id != nullptr) {
+            const auto found = std::find_if(by_id.begin(), by_id.end(),
+                                            [&](const auto& known) { return known.first == *id; });
+            if (found == by_id.end()) o.fail(key, element, "no body has this id, got " + shortest(*id));
+            return found->second;
         }
-        const int number = name == "ground" ? ground : found->second;
-        o.record(key, model.body_name(number));
-        return number;
+        if (v.string() == nullptr)
+            o.fail(key, element,
+                   "an element of " + std::string(key) + " must be the name or the id of a body, got " +
+                       described(v));
+        const std::optional<int> number = named(*v.string());
+        if (!number) o.fail(key, element, no_such_body(*v.string()));
+        return *number;
+    }
+
+    std::string no_such_body(const std::string& name) const
+    {
+        std::vector<std::string> known = {"ground"};
+        for (const auto& entry : by_name) known.push_back(entry.first);
+        return "no body has this name, got " + described(name) + io::did_you_mean(name, known);
     }
 
     /// body_i and body_j, which must differ
@@ -252,7 +274,8 @@ private:
         return recorded;
     }
 
-    /// The canonical form has the key only if there are contacts.
+    /// The canonical form has the key only if there are contacts. It has one element for each pair of a
+    /// group.
     void contacts(ObjectReader& o)
     {
         const Json::List& list = o.list("contacts", false);
@@ -261,28 +284,56 @@ private:
         if (read == nullptr)
             o.fail("contacts", "this program is built without contacts; the list must be empty, got " +
                                    std::to_string(list.size()));
-        o.record("contacts", each(o, "contacts", false, [&](const Json& v, const std::string& at) {
-                     return contact(read, v, at);
-                 }));
+        Json::List recorded;
+        for (size_t k = 0; k < list.size(); ++k)
+            contact(read, list[k], pointer_to("/contacts", std::to_string(k)), recorded);
+        o.record("contacts", std::move(recorded));
     }
 
-    Json contact(ReadContact read, const Json& v, const std::string& at)
+    void contact(ReadContact read, const Json& v, const std::string& at, Json::List& recorded)
     {
-        ObjectReader o(source, v, at);
-        const std::string name = unique_name(o, "contact", contact_names);
-        const auto [i, j] = pair(o);
-        o.located([&, i = i, j = j] {
-            read(o, {.name = name,
-                     .i = i,
-                     .j = j,
-                     .model = model,
-                     .start = out.x,
-                     .normal_rows = normal_rows,
-                     .changes = out.changes});
-        });
-        out.force_place.resize(model.forces().size(), o.place());
-        out.general_place.resize(model.general_constraints().size(), o.place());
-        return o.finish();
+        std::shared_ptr<const void> shared;
+        ObjectReader entry(source, v, at);
+        const std::string entry_name = unique_name(entry, "contact", contact_names);
+        const ContactPairs all = read_contact_pairs(entry, *this, model.bodies());
+        for (const auto& [i, j] : all.pairs) {
+            ObjectReader o(source, v, at);
+            const std::string name = all.is_group ? pair_name(entry_name, i, j) : entry_name;
+            o.record("name", name);
+            for (const auto& [key, number] : {std::pair("body_i", i), std::pair("body_j", j)})
+                o.find(key), o.record(key, model.body_name(number));
+            for (const char* key : {"name", "bodies"}) o.find(key);
+            const auto read_pair = [&, i = i, j = j] {
+                read(o, {.name = name,
+                         .i = i,
+                         .j = j,
+                         .model = model,
+                         .start = out.x,
+                         .normal_rows = normal_rows,
+                         .changes = out.changes,
+                         .surface_i = all.surface_i,
+                         .surface_j = all.surface_j,
+                         .shared = shared});
+            };
+            o.located([&] {
+                try {
+                    read_pair();
+                } catch (const io::PlacedError&) {
+                    throw;
+                } catch (const lie::InvalidInput& e) {
+                    if (!all.is_group) throw;
+                    throw lie::InvalidInput("contact '" + name + "': " + e.what());
+                }
+            });
+            out.force_place.resize(model.forces().size(), o.place());
+            out.general_place.resize(model.general_constraints().size(), o.place());
+            recorded.push_back(o.finish());
+        }
+    }
+
+    std::string pair_name(const std::string& group, int i, int j) const
+    {
+        return group + ": " + model.body_name(i) + '-' + model.body_name(j);
     }
 
     const JsonSource& source;
@@ -300,14 +351,21 @@ private:
 }  // namespace
 
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set,
-                       const std::string& normal_rows)
+                       const std::string& normal_rows, const std::string& folder)
 {
     JsonSource source{std::string(text), file};
+    source.folder = folder;
     for (const std::string& change : set) source.set(change);
+    const Parameters parameters(source);
+    source.parameters = &parameters;
     Description description;
     description.model = std::make_unique<Model>();
     description.changes.assign(set.begin(), set.end());
     ModelReader(source, normal_rows, description).read();
+    parameters.check_added();
+    const std::vector<std::string> warnings = parameters.warnings();
+    description.warnings.insert(description.warnings.end(), warnings.begin(), warnings.end());
+    description.parameters = parameters.all();
     return description;
 }
 
@@ -328,7 +386,7 @@ Description load_model(const std::string& path, std::span<const std::string> set
     if (error || !in.read(text.data(), static_cast<std::streamsize>(size)))
         throw lie::InvalidInput(
             path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
-    return read_model(text, path, set, normal_rows);
+    return read_model(text, path, set, normal_rows, fs::path(path).parent_path().string());
 }
 
 StartReport start(Description& description, const StartOptions& options)

@@ -18,12 +18,15 @@ struct Description {
     double end = 1;  ///< default end time of a run [s]
     std::unique_ptr<Model> model;
     State x;
-    std::string text;  ///< canonical form of the model: JSON with defaults filled in and --set applied
-    /// Changes of the text by the arguments of the reader: `set`, then /contacts/K/normal/rows=ROWS for each contact K
-    /// to which `normal_rows` applies
+    /// Canonical form of the model: JSON with defaults filled in and --set applied, in which expressions of
+    /// parameters are replaced by numbers
+    std::string text;
+    /// Changes of the text by the arguments of the reader: `set`, then /contacts/K/normal/rows=ROWS for each
+    /// contact K to which `normal_rows` applies
     std::vector<std::string> changes;
     std::vector<std::unique_ptr<Output>> outputs;
-    std::vector<std::string> warnings;  ///< one line each, with the location
+    std::vector<std::pair<std::string, double>> parameters;  ///< names and values in the order of the file
+    std::vector<std::string> warnings;                       ///< one line each, with the location
     std::vector<std::string>
         constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint
     std::vector<std::string> force_place;    ///< location of each element of Model::forces()
@@ -32,13 +35,14 @@ struct Description {
 
 /// Reads a model from a text. `file` is the file name used in messages. Each element of `set` has the form
 /// "/json/pointer=VALUE" and changes one value, or adds a key, before the model is built. A VALUE that is not
-/// valid JSON is taken as a string. `normal_rows` replaces the key "rows" of all contact constraints: tangent or
-/// fixed-xy; "": as in the text.
+/// valid JSON is taken as a string. `normal_rows` replaces the key "rows" of all contact constraints: tangent
+/// or fixed-xy; "": as in the text. `folder` contains the files that the text names by relative paths;
+/// "": the current directory.
 ///
 /// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for invalid
 /// syntax, for unknown, missing and duplicate keys, and for invalid types, ranges, names and expressions.
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {},
-                       const std::string& normal_rows = "");
+                       const std::string& normal_rows = "", const std::string& folder = "");
 
 /// Reads a model from a regular file of at most 64 MiB. Throws lie::InvalidInput without a line number if the
 /// file cannot be read.

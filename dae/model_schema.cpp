@@ -28,6 +28,22 @@ void set_definitions(io::Json& definitions, const std::string& title, const std:
     });
 }
 
+/// Allows an expression in a string wherever a number is allowed.
+void allow_expressions(io::Json& node)
+{
+    if (auto* list = std::get_if<io::Json::List>(&node.value))
+        for (io::Json& element : *list) allow_expressions(element);
+    auto* members = std::get_if<io::Json::Object>(&node.value);
+    if (members == nullptr) return;
+    for (io::Json::Member& m : *members) {
+        const std::string* word = m.value.string();
+        if (m.key == "type" && word != nullptr && *word == "number")
+            m.value = io::Json::List{"number", "string"};
+        else if (m.key != "examples" && m.key != "default" && m.key != "const")
+            allow_expressions(m.value);
+    }
+}
+
 }  // namespace
 
 io::Json model_schema()
@@ -37,6 +53,7 @@ io::Json model_schema()
     set_definitions<ForceType>(schema["$defs"], "Force", "force");
     set_definitions<OutputType>(schema["$defs"], "Output", "output");
     for (const SchemaPart& part : io::Registry<SchemaPart>::all()) part.add(schema["$defs"]);
+    allow_expressions(schema);
     return schema;
 }
 

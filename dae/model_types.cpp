@@ -3,7 +3,6 @@
 #include "dae/model_types.hpp"
 
 #include "dae/driver.hpp"
-#include "io/expression.hpp"
 #include "io/jet.hpp"
 
 #include <cmath>
@@ -24,29 +23,6 @@ Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<st
     } catch (const io::ExpressionError& e) {
         o.fail(key, e.what());
     }
-}
-
-std::array<io::Expression, 3> read_expressions(ObjectReader& o, std::string_view key,
-                                               const std::vector<std::string>& variables)
-{
-    std::string names;
-    for (const std::string& name : variables) names += (names.empty() ? "" : ", ") + name;
-    const Json::List& list = o.list(key, true);
-    if (list.size() != 3)
-        o.fail(key, std::string(key) + " must be three numbers or expressions in " + names +
-                        ", got a list of " + std::to_string(list.size()));
-    const auto component = [&](size_t k) {
-        const Json& v = list[k];
-        if (v.number() == nullptr && v.string() == nullptr)
-            o.fail(key, k, "a component must be a number or an expression in a string, got " + described(v));
-        try {
-            return io::Expression(v.number() != nullptr ? shortest(*v.number()) : *v.string(), variables);
-        } catch (const io::ExpressionError& e) {
-            o.fail(key, k, e.what());
-        }
-    };
-    o.record(key, list);
-    return {component(0), component(1), component(2)};
 }
 
 namespace {

@@ -29,6 +29,10 @@ public:
     virtual ~BodyFinder() = default;
     /// Number of the body whose name or id is given by a key
     virtual int body(ObjectReader& o, std::string_view key) const = 0;
+    /// The same for an element of the list under a key
+    virtual int body_of_list(ObjectReader& o, std::string_view key, std::size_t element) const = 0;
+    /// Number of the body with this name, or nothing
+    virtual std::optional<int> named(const std::string& name) const = 0;
     /// body_i and body_j, which must differ
     virtual std::pair<int, int> pair(ObjectReader& o) const = 0;
 };
@@ -65,10 +69,6 @@ namespace hilda::dae {
 /// The function f(t) given by a key. f, ḟ and f̈ must be finite at t = 0.
 Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {});
 
-/// Three expressions given by a list of numbers or texts
-std::array<io::Expression, 3> read_expressions(ObjectReader& o, std::string_view key,
-                                               const std::vector<std::string>& variables = {"t"});
-
 /// Points P and Q of the two bodies in the body frames [m], by default the centres of mass
 struct Points {
     Vec3 i, j;
@@ -101,11 +101,16 @@ struct ContactPair {
     const State& start;
     const std::string& normal_rows;     ///< argument of read_model()
     std::vector<std::string>& changes;  ///< of Description, for each contact to which normal_rows applies
+    /// Keys of the surfaces of body i and j. A group of equal bodies has one key "surface" for both.
+    std::string surface_i = "surface_i", surface_j = "surface_j";
+    /// What the reader keeps from one pair of a group for the next, empty for the first pair
+    std::shared_ptr<const void>& shared;
 };
 
-/// Reads an element of "contacts", except for the keys name, body_i and body_j, and adds its forces and
-/// general constraints to the model. Throws PlacedError, or lie::InvalidInput or io::ExpressionError without a
-/// location from the constructor of the contact.
+/// Reads an element of "contacts", except for the keys name, body_i, body_j and bodies, and adds the forces
+/// and general constraints of one pair of bodies to the model. It is called for each pair of a group. Throws
+/// PlacedError, or lie::InvalidInput or io::ExpressionError without a location from the constructor of the
+/// contact.
 using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
 
 /// Registers the reader of contacts and returns true. It replaces the earlier one; nullptr removes it. Called

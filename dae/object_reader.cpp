@@ -2,6 +2,7 @@
 #include "dae/object_reader.hpp"
 
 #include "lie/euler_parameters.hpp"
+#include "lie/euler_sequence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,11 +58,11 @@ Mat3 ObjectReader::matrix(std::string_view key)
 
 Mat3 read_orientation(ObjectReader& o)
 {
-    const std::vector<std::string> forms = {"A", "p", "axis_angle"};
+    const std::vector<std::string> forms = {"A", "p", "axis_angle", "euler_angles"};
     const auto given = std::count_if(forms.begin(), forms.end(),
                                      [&](const std::string& key) { return o.find(key) != nullptr; });
     if (given > 1)
-        o.fail("the orientation must be given once, as one of A, p and axis_angle; got " +
+        o.fail("the orientation must be given once, as one of A, p, axis_angle and euler_angles; got " +
                std::to_string(given));
 
     const auto deviation_message = [](const std::string& what, double value) {
@@ -87,6 +88,19 @@ Mat3 read_orientation(ObjectReader& o)
         if (!(std::abs(u.norm() - 1) <= orientation_tolerance))
             o.fail("axis_angle", deviation_message("the axis of axis_angle must have length 1", u.norm()));
         A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
+    } else if (o.has("euler_angles")) {
+        ObjectReader e = o.object("euler_angles");
+        const std::string name = e.text("sequence");
+        const auto sequence = lie::EulerSequence::named(name);
+        if (!sequence)
+            e.fail("sequence",
+                   "a sequence must be three of the letters x, y and z in which neighbours differ, such as "
+                   "zxz, got " +
+                       described(name));
+        Vec3 angles = e.vec3("angles");
+        for (double& angle : angles) angle = std::remainder(angle, 2 * std::numbers::pi);
+        A = sequence->rotation(angles);
+        e.finish();
     }
     return A;
 }

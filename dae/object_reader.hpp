@@ -29,8 +29,8 @@ public:
     ObjectReader object(std::string_view key) { return io::ObjectReader::object(key); }
 };
 
-/// Orientation given by one of the keys A, p and axis_angle, or the identity. Deviations from a rotation of
-/// up to 1e-6 are corrected. Throws PlacedError for larger ones.
+/// Orientation given by one of the keys A, p, axis_angle and euler_angles, or the identity. Deviations from a
+/// rotation of up to 1e-6 are corrected. Throws PlacedError for larger ones.
 Mat3 read_orientation(ObjectReader& o);
 
 /// A vector or matrix as a JSON list; a matrix by rows

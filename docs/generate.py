@@ -225,6 +225,8 @@ class SchemaPage:
         if "if" in node and "$ref" in node.get("then", {}):
             return " or ".join(self.type_of(node[word]) for word in ("then", "else"))
         kind = node.get("type", "any value")
+        if kind == ["number", "string"]:  # every number of a model can be an expression
+            return "number"
         if isinstance(kind, list):
             return " or ".join(kind)
         if kind != "array":
@@ -296,8 +298,8 @@ class SchemaPage:
             lines.append(table(["one of", "meaning"], [
                 [short_link(v["title"], title), self.prose(first_sentence(v["description"]))] for v in variants]))
         for k, example in enumerate(node.get("examples", [])):
-            heading = "Example:" if k == 0 else "Second example:"
-            lines.append(f"{heading}\n\n```json\n{pretty(example)}\n```")
+            heading = ("Example", "Second example", "Third example")[k]
+            lines.append(f"{heading}:\n\n```json\n{pretty(example)}\n```")
         return "\n\n".join(lines)
 
     def contents(self):

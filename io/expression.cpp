@@ -382,7 +382,7 @@ private:
         const bool called = !at_end() && text[place] == '(';
         std::vector<std::string> known;
         if (called) {
-            for (const Function& f : functions) known.emplace_back(f.name);
+            known = Expression::function_names();
         } else {
             known = variables;
             known.insert(known.end(), {"pi", "e"});
@@ -412,6 +412,13 @@ private:
 Expression::Expression(std::string_view text, const std::vector<std::string>& variables)
     : source(text), arity(variables.size()), program(Parser(text, variables).parse())
 {}
+
+std::vector<std::string> Expression::function_names()
+{
+    std::vector<std::string> names;
+    for (const Function& f : functions) names.emplace_back(f.name);
+    return names;
+}
 
 double Expression::value(std::span<const double> x) const noexcept
 {

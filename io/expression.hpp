@@ -69,6 +69,8 @@ public:
 
     /// Whether the value depends on variable k
     bool uses(std::size_t k) const;
+    /// Names of all functions
+    static std::vector<std::string> function_names();
 
     enum class Op {
         // clang-format off

@@ -15,6 +15,18 @@ public:
     using InvalidInput::InvalidInput;
 };
 
+/// Named constants of a text. Where a number is expected, a string is an expression in their names.
+class Parameters {
+public:
+    virtual ~Parameters() = default;
+    /// Value of an expression, finite. Throws ExpressionError.
+    virtual double value(const std::string& expression) const = 0;
+    /// An expression in `variables`, in which the names of parameters are replaced by their values. A
+    /// variable takes precedence over a parameter of the same name.
+    virtual std::string substituted(const std::string& expression,
+                                    const std::vector<std::string>& variables) const = 0;
+};
+
 /// Strict JSON (RFC 8259, UTF-8), with changes by --set.
 ///
 /// The constructor throws PlacedError for invalid JSON, for duplicate keys of an object, for numbers outside
@@ -27,6 +39,8 @@ public:
     static constexpr std::size_t max_values = 2000000;  ///< each takes about 50 bytes of memory
 
     Json root;
+    std::string folder;                      ///< of the files that the text names; "": the current directory
+    const Parameters* parameters = nullptr;  ///< of the readers; nullptr: numbers are written as digits
 
     /// `file` is the file name used in messages. A file of the program itself may have longer strings.
     JsonSource(std::string text, std::string file, std::size_t longest_string = max_string);

@@ -68,6 +68,8 @@ double ObjectReader::fraction(std::string_view key, std::optional<double> fallba
 
 int ObjectReader::integer(std::string_view key)
 {
+    if (const Json* v = lookup(key, true); v->number() == nullptr)
+        fail(key, std::string(key) + " must be a number, got " + described(*v));
     const double x = number(key);
     constexpr double most = 2147483647;
     if (x != std::trunc(x) || std::abs(x) > most)
@@ -132,6 +134,15 @@ std::string ObjectReader::name(std::string_view key, const std::optional<std::st
     return s;
 }
 
+std::string ObjectReader::file(std::string_view key)
+{
+    const Json& v = *lookup(key, true);
+    const std::string* path = v.string();
+    if (path == nullptr || path->empty() || std::any_of(path->begin(), path->end(), is_control))
+        fail(key, std::string(key) + " must be the path of a file, got " + described(v));
+    return path->front() == '/' || source.folder.empty() ? *path : source.folder + '/' + *path;
+}
+
 std::string ObjectReader::one_of(std::string_view key, const std::vector<std::string>& allowed,
                                  const std::optional<std::string>& fallback)
 {
@@ -141,33 +152,51 @@ std::string ObjectReader::one_of(std::string_view key, const std::vector<std::st
     return s;
 }
 
-std::string ObjectReader::formula(std::string_view key, const std::optional<std::string>& fallback)
+std::string ObjectReader::formula(std::string_view key, const std::optional<std::string>& fallback,
+                                  const std::vector<std::string>& variables)
 {
     const Json* v = lookup(key, !fallback);
-    if (v == nullptr || v->string() != nullptr) return text(key, fallback);
-    if (v->number() == nullptr)
+    if (v != nullptr && v->number() != nullptr) return shortest(number(key));
+    if (v != nullptr && v->string() == nullptr)
         fail(key, std::string(key) + " must be a number or an expression in a string, got " + described(*v));
-    return shortest(number(key));
+    std::string formula = text(key, fallback);
+    if (source.parameters != nullptr) try {
+            record(key, formula = source.parameters->substituted(formula, variables));
+        } catch (const ExpressionError& e) {
+            fail(key, e.what());
+        }
+    return formula;
 }
 
-std::array<Expression, 3> ObjectReader::expressions(std::string_view key)
+std::array<Expression, 3> ObjectReader::expressions(std::string_view key,
+                                                    const std::vector<std::string>& variables)
 {
     const Json::List& parts = list(key, true);
-    if (parts.size() != 3)
-        fail(key, std::string(key) + " must be three numbers or expressions in t, got " + described(parts));
+    if (parts.size() != 3) {
+        std::string names;
+        for (const std::string& name : variables) names += (names.empty() ? "" : ", ") + name;
+        fail(key, std::string(key) + " must be three numbers or expressions in " + names + ", got " +
+                      described(parts));
+    }
+    Json::List recorded = parts;
     const auto expression = [&](std::size_t k) {
         if (parts[k].number() == nullptr && parts[k].string() == nullptr)
             fail(key, k,
                  "a component must be a number or an expression in a string, got " + described(parts[k]));
         if (const std::string* s = parts[k].string(); s != nullptr) try {
-                return Expression(*s);
+                const std::string formula =
+                    source.parameters != nullptr ? source.parameters->substituted(*s, variables) : *s;
+                recorded[k].value = formula;
+                return Expression(formula, variables);
             } catch (const ExpressionError& e) {
                 fail(key, k, e.what());
             }
-        return Expression(shortest(number_at(parts[k], pointer_to(pointer(key), std::to_string(k)), key)));
+        return Expression(shortest(number_at(parts[k], pointer_to(pointer(key), std::to_string(k)), key)),
+                          variables);
     };
-    record(key, parts);
-    return {expression(0), expression(1), expression(2)};
+    std::array<Expression, 3> all = {expression(0), expression(1), expression(2)};
+    record(key, std::move(recorded));
+    return all;
 }
 
 ObjectReader ObjectReader::object(std::string_view key) { return {source, *lookup(key, true), pointer(key)}; }
@@ -197,6 +226,12 @@ void ObjectReader::record(std::string_view key, Json as)
             return;
         }
     recorded.push_back({std::string(key), 0, std::move(as)});
+}
+
+void ObjectReader::allow_schema()
+{
+    if (const Json* v = find("$schema"); v != nullptr && v->string() == nullptr)
+        fail("$schema", "$schema must be a string, got " + described(*v));
 }
 
 Json ObjectReader::finish()
@@ -236,13 +271,21 @@ const Json* ObjectReader::lookup(std::string_view key, bool required)
 
 double ObjectReader::number_at(const Json& v, const std::string& at, std::string_view key) const
 {
-    if (v.number() == nullptr)
+    const double* literal = v.number();
+    const bool expression = v.string() != nullptr && source.parameters != nullptr;
+    if (literal == nullptr && !expression)
         source.fail(v, at, std::string(key) + " must be a number, got " + described(v));
-    if (std::abs(*v.number()) > largest)
-        source.fail(v, at,
-                    std::string(key) + " must be at most " + shortest(largest) + " in magnitude, got " +
-                        described(v));
-    return *v.number();
+    double x = literal != nullptr ? *literal : 0;
+    if (expression) try {
+            x = source.parameters->value(*v.string());
+        } catch (const ExpressionError& e) {
+            source.fail(v, at, std::string(key) + " must be a number or an expression: " + e.what());
+        }
+    if (std::abs(x) > largest)
+        source.fail(
+            v, at,
+            std::string(key) + " must be at most " + shortest(largest) + " in magnitude, got " + shortest(x));
+    return x;
 }
 
 /// Reports a missing key. If an unknown key of the object resembles it, that key is reported instead. Keys

@@ -32,15 +32,23 @@ public:
     std::string text(std::string_view key, const std::optional<std::string>& fallback = {});
     /// A text that is not empty and has no control characters, for use in messages and table headers
     std::string name(std::string_view key, const std::optional<std::string>& fallback = {});
+    /// Path of a file, relative to the folder of the text (JsonSource::folder) unless it is absolute. It is
+    /// not recorded.
+    std::string file(std::string_view key);
     /// One of the allowed words
     std::string one_of(std::string_view key, const std::vector<std::string>& allowed,
                        const std::optional<std::string>& fallback = {});
-    /// A number or an expression, returned as the text of an expression
-    std::string formula(std::string_view key, const std::optional<std::string>& fallback = {});
-    /// Three numbers or expressions in t
-    std::array<Expression, 3> expressions(std::string_view key);
+    /// A number or an expression in `variables`, returned as the text of an expression without parameters
+    std::string formula(std::string_view key, const std::optional<std::string>& fallback = {},
+                        const std::vector<std::string>& variables = {"t"});
+    /// Three numbers or expressions in `variables`
+    std::array<Expression, 3> expressions(std::string_view key,
+                                          const std::vector<std::string>& variables = {"t"});
     /// Reader of the object under a key. Call record(key, reader.finish()) when it has been read.
     ObjectReader object(std::string_view key);
+    /// A number, or the value of an expression if the text has parameters. `at` is the pointer of v, `key`
+    /// its name in messages.
+    double number_at(const Json& v, const std::string& at, std::string_view key) const;
     /// The elements of a list. Empty if the key is missing and not required.
     const Json::List& list(std::string_view key, bool required);
 
@@ -51,6 +59,10 @@ public:
     void exclude(std::string_view key, std::string_view other);
     /// Records the value of a key for the canonical form. A value recorded earlier is replaced.
     void record(std::string_view key, Json as);
+
+    /// Accepts the key "$schema" of the root object, a string. Editors find the schema by it; it has no other
+    /// effect.
+    void allow_schema();
 
     /// Throws PlacedError for unknown keys, and returns the canonical form of the object. "note" is always
     /// allowed.
@@ -85,10 +97,10 @@ public:
 
 protected:
     const Json* lookup(std::string_view key, bool required);
-    double number_at(const Json& v, const std::string& at, std::string_view key) const;
 
     const JsonSource& source;
-    /// Range of the precision in which the numbers are used: the largest magnitude, and the least positive value
+    /// Range of the precision in which the numbers are used: the largest magnitude, and the least positive
+    /// value
     double largest = std::numeric_limits<double>::max(), least_positive = 0;
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/mesh/mesh_surface.hpp"
 
+#include "contact/mesh/mesh_file.hpp"
 #include "contact/surface_types.hpp"
 #include "contact/tangent_basis.hpp"
 #include "contact/tessellation.hpp"
@@ -244,8 +245,44 @@ PolygonMesh MeshSurface::drawing(const DrawingExtent&) const
 
 namespace {
 
+/// The mesh of a file. The canonical form has its vertices and triangles, so that it is independent of the
+/// file.
+std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
+{
+    o.exclude("file", "vertices");
+    o.exclude("file", "triangles");
+    const std::string path = o.file("file");
+    double scale = 1;
+    if (const dae::Json* v = o.find("scale"); v != nullptr) {
+        scale = o.number_at(*v, o.pointer("scale"), "scale");
+        if (!(scale > 0)) o.fail("scale", "scale must be positive, got " + dae::shortest(scale));
+    }
+    try {
+        MeshFile mesh = read_mesh_file(path);
+        for (Vec3& x : mesh.vertices) x *= scale;
+        if (const auto fault = TriangleMesh::fault(mesh.vertices, mesh.triangles))
+            throw lie::InvalidInput(mesh.message(*fault));
+        dae::Json::List vertices, triangles;
+        for (const Vec3& x : mesh.vertices) vertices.push_back(dae::json(x));
+        for (const Triangle& t : mesh.triangles) triangles.push_back(dae::json(Vec3(t[0], t[1], t[2])));
+        o.record("vertices", std::move(vertices));
+        o.record("triangles", std::move(triangles));
+        const bool concave = o.flag("concave", false);
+        return std::make_shared<MeshSurface>(
+            TriangleMesh(std::move(mesh.vertices), std::move(mesh.triangles)), concave);
+    } catch (const dae::PlacedError&) {
+        throw;
+    } catch (const lie::InvalidInput& e) {
+        const std::string what = e.what();
+        o.fail("file",
+               what.starts_with(where) ? path + ": " + what.substr(std::string_view(where).size()) : what);
+    }
+}
+
 std::shared_ptr<const Surface> read(dae::ObjectReader& o)
 {
+    if (o.find("file") != nullptr) return read_from_file(o);
+    if (o.has("scale")) o.fail("scale", "scale is for a mesh from a file");
     std::vector<Vec3> vertices;
     std::vector<Triangle> triangles;
     const Eigen::MatrixXd x = read_rows(o, "vertices", 3), t = read_rows(o, "triangles", 3);
@@ -284,19 +321,29 @@ const bool registered = io::Registry<SurfaceType>::add(
           .keys =
               {{"vertices", "Vertices of the mesh [m], in the surface frame.",
                 R"("type": "array", "minItems": 1, "items": {"$ref": "#/$defs/vector"}, "examples": [[[1, )"
-                R"(0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]])",
-                true},
+                R"(0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]])"},
                {"triangles",
                 "Triangles as triples of vertex numbers counted from 0, counterclockwise seen from outside.",
                 R"("type": "array", "minItems": 1, "items": {"type": "array", "items": {"type": )"
                 R"("integer", "minimum": 0}, "minItems": 3, "maxItems": 3}, "examples": [[[0, 1, 2], [1, )"
-                R"(3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]])",
-                true},
+                R"(3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]])"},
+               {"file",
+                "Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder of the "
+                "model file, instead of vertices and triangles. Corners of an STL file with equal "
+                "coordinates become one vertex. At most 64 MiB and 200000 triangles.",
+                R"("type": "string", "minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$", )"
+                R"("examples": ["stone.stl"])"},
+               {"scale", "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.",
+                R"("type": "number", "exclusiveMinimum": 0, "default": 1, "examples": [0.001])"},
                concave_key},
           .example =
               R"("vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], )"
               R"("triangles": [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, )"
-              R"(5], [0, 4, 5]])"},
+              R"(5], [0, 4, 5]])",
+          .rest = R"("oneOf": [{"required": ["vertices", "triangles"], "not": {"required": ["file"]}}, )"
+                  R"({"required": ["file"], )"
+                  R"("not": {"anyOf": [{"required": ["vertices"]}, {"required": ["triangles"]}]}}], )"
+                  R"("dependentRequired": {"scale": ["file"]})"},
      .read = read});
 
 }  // namespace

@@ -139,11 +139,11 @@ std::optional<TriangleMesh::Fault> TriangleMesh::fault(const std::vector<Vec3>& 
                                                        const std::vector<Triangle>& triangles)
 {
     for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
-        if (!vertices[v].allFinite()) return Fault{true, numbered("vertex", v) + " is not finite"};
+        if (!vertices[v].allFinite()) return Fault{true, numbered("vertex", v) + " is not finite", v};
     if (triangles.empty()) return Fault{false, "a mesh must have triangles"};
     for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
         if (const std::string what = fault_of_triangle(vertices, triangles[t]); !what.empty())
-            return Fault{false, numbered("triangle", t) + " " + what};
+            return Fault{false, numbered("triangle", t) + " " + what, t};
     if (const std::string what = fault_of_edges(triangles); !what.empty()) return Fault{false, what};
 
     const std::vector<std::vector<int>> around = triangles_around(vertices.size(), triangles);
@@ -270,50 +270,6 @@ TriangleMesh::Nearest TriangleMesh::nearest(const Vec3& a) const
     }
     best.distance = std::sqrt(least);
     return best;
-}
-
-TriangleMesh read_obj(std::istream& text, const std::string& name)
-{
-    std::vector<Vec3> vertices;
-    std::vector<Triangle> triangles;
-    std::string line;
-    for (int number = 1; std::getline(text, line); ++number) {
-        const auto refuse = [&](const std::string& what) {
-            std::ostringstream message;
-            message << "contact::read_obj: " << name << ":" << number << ": " << what;
-            throw lie::InvalidInput(message.str());
-        };
-        std::istringstream words(line);
-        std::string word;
-        words >> word;
-        if (word == "v") {
-            Vec3 x;
-            if (!(words >> x[0] >> x[1] >> x[2])) refuse("a vertex must have three numbers, got " + line);
-            vertices.push_back(x);
-        } else if (word == "f") {
-            // a corner is v, v/vt, v//vn or v/vt/vn; v counts from 1, or from the last vertex if negative
-            std::vector<int> corners;
-            const int known = static_cast<int>(vertices.size());
-            while (words >> word) {
-                int v = 0;
-                try {
-                    v = std::stoi(word.substr(0, word.find('/')));
-                } catch (const std::exception&) {
-                    refuse("a corner of a face must be the number of a vertex, got " + word);
-                }
-                if (v == 0 || v > known || v < -known)
-                    refuse("vertex " + std::to_string(v) + " is not defined; the number of vertices is " +
-                           std::to_string(known));
-                corners.push_back(v > 0 ? v - 1 : known + v);
-            }
-            if (corners.size() < 3) refuse("a face must have at least three corners, got " + line);
-            for (size_t k = 1; k + 1 < corners.size(); ++k)
-                triangles.push_back({corners[0], corners[k], corners[k + 1]});
-        }
-    }
-    if (const auto found = TriangleMesh::fault(vertices, triangles))
-        throw lie::InvalidInput("contact::read_obj: " + name + ": " + found->what);
-    return {std::move(vertices), std::move(triangles)};
 }
 
 }  // namespace hilda::contact

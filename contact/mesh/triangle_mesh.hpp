@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Closed triangle meshes: validation, closest-point queries and reading of OBJ files.
+/// Closed triangle meshes: validation and closest-point queries.
 
 #pragma once
 
 #include "lie/so3.hpp"
 
 #include <array>
-#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +28,7 @@ public:
     struct Fault {
         bool of_vertices;  ///< true: in the vertices; false: in the triangles
         std::string what;
+        int number = -1;  ///< of the vertex or triangle; -1: not of a single one
     };
     /// The first reason why vertices and triangles are not a closed oriented surface, or nothing: a
     /// coordinate that is not finite, a vertex number out of range, a triangle of zero area, an open edge,
@@ -73,9 +73,5 @@ private:
     std::vector<Node> nodes;
     std::vector<int> order;
 };
-
-/// Reads the lines v and f of a Wavefront OBJ text. A polygon is split into a fan of triangles. `name` is the
-/// file name for messages. InvalidInput with the line number for invalid lines and for a mesh with a fault.
-TriangleMesh read_obj(std::istream& text, const std::string& name);
 
 }  // namespace hilda::contact

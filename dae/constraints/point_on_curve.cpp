@@ -145,7 +145,7 @@ const bool registered = io::Registry<ConstraintType>::add(
      .schema = schema,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Vec3 s_bar_i = o.vec3("s_bar_p_i", Vec3::Zero());
-         std::array<io::Expression, 3> curve = read_expressions(o, "curve", {"s"});
+         std::array<io::Expression, 3> curve = o.expressions("curve", {"s"});
          return std::make_unique<PointOnCurve>(i, s_bar_i, j, std::move(curve), o.number("s", 0));
      }});
 

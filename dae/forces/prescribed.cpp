@@ -26,7 +26,7 @@ Frame frame(ObjectReader& o)
 /// Components of a force or torque, finite at t = 0
 std::array<io::Expression, 3> components(ObjectReader& o)
 {
-    std::array<io::Expression, 3> all = read_expressions(o, "components");
+    std::array<io::Expression, 3> all = o.expressions("components");
     for (size_t k = 0; k < 3; ++k)
         if (const double value = all[k].value(0); !std::isfinite(value))
             o.fail("components", k,

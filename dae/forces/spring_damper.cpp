@@ -36,9 +36,10 @@ const bool registered = io::Registry<ForceType>::add(
          const double k = o.not_negative("stiffness"), c = o.not_negative("damping", 0);
          SpringDamper spring(i, s.i, j, s.j, k, c, o.not_negative("free_length"));
          if (o.find("force") != nullptr) {
-             const std::string law = o.formula("force");
+             const std::vector<std::string> variables = {"l", "ldot", "t"};
+             const std::string law = o.formula("force", {}, variables);
              try {
-                 spring.law.emplace(law, std::vector<std::string>{"l", "ldot", "t"});
+                 spring.law.emplace(law, variables);
              } catch (const io::ExpressionError& e) {
                  o.fail("force", e.what());
              }

@@ -38,6 +38,7 @@ struct Problem {
     /// To be called after dae::start(). Empty: that of a model file, see problem_or_file().
     ReferenceSolution reference_solution = {};
     Observable observable = {};  ///< scalar shown in figures
+    std::string folder = {};     ///< of the files that the model names
 };
 
 }  // namespace hilda::studies
@@ -46,7 +47,8 @@ extern template class hilda::io::Registry<hilda::studies::Problem>;
 
 namespace hilda::studies {
 
-/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. n_pendulum represents the family n_pendulum_N.
+/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. n_pendulum
+/// represents the family n_pendulum_N.
 inline const std::vector<Problem>& problems() { return io::Registry<Problem>::all(); }
 
 /// The problem with this name: one of the list, or n_pendulum_N with N from 1 to 100000. lie::InvalidInput

@@ -145,7 +145,7 @@ TEST_CASE("an invalid surface is rejected with its position and value", "[contac
          "(/on_i/concave): concave must be true or false, got 1");
     says(R"({"type": "sphere", "radius": 1, "xyzzy": 1})",
          "(/on_i/xyzzy): unknown key \"xyzzy\"; allowed: type, radius, concave, position, A, p, axis_angle, "
-         "note");
+         "euler_angles, note");
     says(R"({"type": "ellipsoid", "semi_axes": [1, 0, 2]})",
          "(/on_i/semi_axes): semi_axes must be positive, got [1, 0, 2]");
     says(R"({"type": "torus", "ring_radius": 1, "tube_radius": 1})",
@@ -168,7 +168,7 @@ TEST_CASE("an invalid surface is rejected with its position and value", "[contac
          "(/on_i/axis_angle): the orientation must be given once, got normal and axis_angle");
     says(
         R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "axis_angle": [0, 0, 1, 2]})",
-        "(/on_i): the orientation must be given once, as one of A, p and axis_angle; got 2");
+        "(/on_i): the orientation must be given once, as one of A, p, axis_angle and euler_angles; got 2");
     says(R"({"type": "disk", "radius": 1, "A": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]})",
          "(/on_i/A): A must be a rotation matrix, got a reflection (det A = -1)");
     says(R"({"type": "disk", "radius": 1, "axis_angle": [0, 0, 2, 2]})",
@@ -188,7 +188,8 @@ TEST_CASE("an invalid height map is rejected with its position and value", "[con
     says("[]", "", "(/on_i/heights): heights must not be empty");
     says("[1, 2]", "", "(/on_i/heights): heights[0] must be a list of 1 numbers, got 1");
     says("[" + row + ", [0, 1]]", "", "(/on_i/heights): heights[1] must be a list of 4 numbers, got [0, 1]");
-    says("[" + row + ", [0, 1, 2, \"x\"]]", "", "(/on_i/heights): heights[1][3] must be a number, got \"x\"");
+    says("[" + row + ", [0, 1, 2, \"x\"]]", "",
+         "(/on_i/heights/1/3): heights[1][3] must be a number, got \"x\"");
     says("[" + row + ", " + row + "]", "",
          "(/on_i/heights): heights must have at least 4 rows of at least 4 numbers, got 2 of 4");
     says(four, "", "(/on_i): missing key 'spacing'");

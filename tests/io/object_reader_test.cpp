@@ -53,3 +53,27 @@ TEST_CASE("a reader refuses other types and values outside the range with their 
           "f:1:10 (/xx): unknown key \"xx\"; did you mean 'x'?");
     CHECK(refusal(R"({"x": 1, "note": "any object may have one"})", number).empty());
 }
+
+TEST_CASE("the schema that an editor uses may be named in the root object", "[io][object_reader]")
+{
+    const auto root = [](io::ObjectReader& o) { o.allow_schema(); };
+    CHECK(refusal(R"({"$schema": "../case.schema.json"})", root).empty());
+    CHECK(refusal("{}", root).empty());
+    CHECK(refusal(R"({"$schema": 1})", root) == "f:1:13 (/$schema): $schema must be a string, got 1");
+    CHECK(refusal(R"({"$schema": ""})", [](io::ObjectReader&) {}) ==
+          "f:1:2 (/$schema): unknown key \"$schema\"; allowed: note");
+}
+
+TEST_CASE("a path in a text is relative to the folder of the text", "[io][object_reader]")
+{
+    io::JsonSource source(R"({"a": "mesh/s.stl", "b": "/tmp/s.stl", "c": "", "d": 1, "e": "a\nb"})", "f");
+    io::ObjectReader in_current_folder(source, source.root, "");
+    CHECK(in_current_folder.file("a") == "mesh/s.stl");
+    source.folder = "models";
+    io::ObjectReader o(source, source.root, "");
+    CHECK(o.file("a") == "models/mesh/s.stl");
+    CHECK(o.file("b") == "/tmp/s.stl");
+    for (const char* key : {"c", "d", "e"})
+        CHECK_THROWS_WITH(o.file(key),
+                          Catch::Contains(std::string(key) + " must be the path of a file, got"));
+}

@@ -29,14 +29,14 @@ EDITS = [
     ('"note": "n"', '"note": "\\ud800"'), ('"note": "n"', '"nöte": "n"'), ('"note": "n"', '"note" "n"'), ('"note": "n"', '"note": n'),
     ('"note": "n"', '"note": "n", "note": "m"'), ('"note": "n"', "'note': 1"), ('"note": "n"', '"note": "n", // comment'),
     ('"note": "n"', '"note": ' + 70 * "["), ('"note": "n"', '"note": "' + 5000 * "n" + '"'),
-    ('"gravity"', '"gravty"'), ('"end": 1', '"end": 0'), ('"end": 1', '"end": -1'), ('"end": 1', '"end": "1"'), ('"end": 1', '"end": NaN'),
+    ('"gravity"', '"gravty"'), ('"end": 1', '"end": 0'), ('"end": 1', '"end": -1'), ('"end": 1', '"end": true'), ('"end": 1', '"end": NaN'),
     ('"end": 1', '"end": 1e999'), ('"end": 1', '"end": 01'), ('"end": 1', '"end": 99999999999999999999'), ('"end": 1', '"end": {}'),
     ('"end": 1,', '"end": 1'), ('"end": 1,', '"end": 1,,'), ("[0, 0, -9.81]", "[0, -9.81]"), ("[0, 0, -9.81]", "[0, 0, null]"),
     ("[0, 0, -9.81]", "[0, 0, -9.81,]"), ("[0, 0, -9.81]", "9.81"), ("[0, 0, -9.81]", '"down"'), ('"name": "input"', '"name": 7'),
     ("]}\n", "]} x"), ("]}\n", "]}\0"), ("]}\n", "]}{}"), ("]}\n", "]"), ('"name": "b"', '"name": "a"'), ('"name": "b"', '"name": ""'),
     ('"name": "b"', '"name": "b\\n"'), ('"name": "b", ', ""),
 ]
-SETS = ["end=1", "/end", "/end=-1", "/end=x", "/end=", "/gravity/3=1", "/gravity/-1=1", "/gravity/x=1", "/nothing/x=1", "/a~2=1", "/gravty=1",
+SETS = ["end=1", "/end", "/end=-1", "/end=true", "/end=null", "/gravity/3=1", "/gravity/-1=1", "/gravity/x=1", "/nothing/x=1", "/a~2=1", "/gravty=1",
         "/end={\"a\": 1, \"a\": 2}", "/note=5", "/gravity=[1]", "/gravity=[1", "/name={}"]
 
 

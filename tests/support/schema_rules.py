@@ -36,7 +36,7 @@ def faults_of_text(schema):
             return True
         if name is not None:
             return is_numeric(definitions[name])
-        return node.get("type") == "number" or (node.get("type") == "array" and is_numeric(node["items"]))
+        return node.get("type") in ("number", ["number", "string"]) or (node.get("type") == "array" and is_numeric(node["items"]))
 
     def invalid_values(node, words):
         with_definitions = {**{k: v for k, v in node.items() if k != "$defs"}, "$defs": definitions}

@@ -296,31 +296,3 @@ TEST_CASE("a mesh that is too coarse for a smooth surface is rejected with the v
     CHECK(refusal(with_more) == "accepted");
     CHECK(MeshSurface(TriangleMesh(with_more.vertices, with_more.triangles)).size() < 1.01);
 }
-
-TEST_CASE("an OBJ text is read and its errors are reported with the line", "[contact][mesh]")
-{
-    const auto read = [](const std::string& text) {
-        std::istringstream in(text);
-        return read_obj(in, "box.obj");
-    };
-    const std::string corners = "# a tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\n\nv 0 0 1 1.0\nvn 0 0 1\n";
-    const TriangleMesh mesh = read(corners + "f 1 3 2\nf 1/1 2/2/2 4//3\nf -4 -1 -2\nf 2 3 4\n");
-    CHECK(mesh.vertices[3] == Vec3(0, 0, 1));
-    CHECK(mesh.triangles == tetrahedron().triangles);
-    const TriangleMesh pyramid =
-        read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
-    CHECK(pyramid.triangles.size() == 6);
-
-    CHECK_THROWS_WITH(read("v 0 0 0\nv 1 x 0\n"),
-                      "contact::read_obj: box.obj:2: a vertex must have three numbers, got v 1 x 0");
-    CHECK_THROWS_WITH(read(corners + "f 1 2\n"),
-                      "contact::read_obj: box.obj:8: a face must have at least three corners, got f 1 2");
-    CHECK_THROWS_WITH(read(corners + "f 1 2 5\n"),
-                      "contact::read_obj: box.obj:8: vertex 5 is not defined; the number of vertices is 4");
-    CHECK_THROWS_WITH(
-        read(corners + "f 1 2 x\n"),
-        "contact::read_obj: box.obj:8: a corner of a face must be the number of a vertex, got x");
-    CHECK_THROWS_WITH(read(corners + "f 1 3 2\n"),
-                      "contact::read_obj: box.obj: the edge of the vertices 0 and 1 is open: it belongs to "
-                      "triangle 0 only");
-}

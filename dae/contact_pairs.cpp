@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/contact_pairs.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace hilda::dae {
+
+namespace {
+
+/// Whether the value of a key denotes several bodies
+bool is_group(ObjectReader& o, std::string_view key, const BodyFinder& bodies)
+{
+    const Json* v = o.find(key);
+    if (v == nullptr) return false;
+    return v->list() != nullptr || (v->string() != nullptr && *v->string() == "all" && !bodies.named("all"));
+}
+
+std::vector<int> read_group(ObjectReader& o, std::string_view key, const BodyFinder& bodies, int count)
+{
+    std::vector<int> numbers;
+    if (o.find(key)->list() == nullptr) {
+        numbers.resize(static_cast<std::size_t>(count));
+        std::iota(numbers.begin(), numbers.end(), 0);
+        return numbers;
+    }
+    const Json::List& list = o.list(key, true);
+    if (list.empty()) o.fail(key, std::string(key) + " must not be an empty list");
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        numbers.push_back(bodies.body_of_list(o, key, k));
+        if (std::find(numbers.begin(), numbers.end() - 1, numbers.back()) != numbers.end() - 1)
+            o.fail(key, k, std::string(key) + " lists a body twice, got " + described(list[k]));
+    }
+    return numbers;
+}
+
+/// Each of `first` with each of `second`, without pairs of a body with itself and repeated pairs
+std::vector<std::pair<int, int>> pairs_of(ObjectReader& o, std::string_view key,
+                                          const std::vector<int>& first, const std::vector<int>& second)
+{
+    std::vector<std::pair<int, int>> pairs;
+    std::set<std::pair<int, int>> known;
+    for (const int i : first)
+        for (const int j : second) {
+            if (i == j || !known.emplace(std::minmax(i, j)).second) continue;
+            pairs.emplace_back(i, j);
+            if (pairs.size() > ContactPairs::most)
+                o.fail(key, "a group may have at most " + std::to_string(ContactPairs::most) +
+                                " pairs of bodies, got more");
+        }
+    return pairs;
+}
+
+}  // namespace
+
+ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count)
+{
+    ContactPairs all;
+    if (o.find("bodies") != nullptr) {
+        for (const char* key : {"body_i", "body_j", "surface_i", "surface_j"})
+            if (o.has(key))
+                o.fail(
+                    key,
+                    std::string(key) +
+                        " does not go with bodies, whose pairs have one key surface; give body_i and body_j "
+                        "for two different surfaces");
+        if (!is_group(o, "bodies", bodies))
+            o.fail("bodies",
+                   "bodies must be a list of bodies or \"all\", got " + described(*o.find("bodies")));
+        const std::vector<int> group = read_group(o, "bodies", bodies, count);
+        all = {.pairs = pairs_of(o, "bodies", group, group),
+               .is_group = true,
+               .surface_i = "surface",
+               .surface_j = "surface"};
+        if (all.pairs.empty())
+            o.fail("bodies", "a group must have at least two bodies, got " + std::to_string(group.size()));
+        return all;
+    }
+    const bool group_i = is_group(o, "body_i", bodies), group_j = is_group(o, "body_j", bodies);
+    if (!group_i && !group_j) {
+        all.pairs = {bodies.pair(o)};
+        return all;
+    }
+    const auto read = [&](const char* key, bool group) {
+        return group ? read_group(o, key, bodies, count) : std::vector<int>{bodies.body(o, key)};
+    };
+    const std::vector<int> first = read("body_i", group_i), second = read("body_j", group_j);
+    all.pairs = pairs_of(o, group_i ? "body_i" : "body_j", first, second);
+    all.is_group = true;
+    if (all.pairs.empty())
+        o.fail("body_j", "body_i and body_j must contain two different bodies, got the same body");
+    return all;
+}
+
+}  // namespace hilda::dae

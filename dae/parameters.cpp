@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/parameters.hpp"
+
+#include "io/expression.hpp"
+#include "io/nearest.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace hilda::dae {
+
+namespace {
+
+bool is_digit(char c) { return '0' <= c && c <= '9'; }
+bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
+
+/// A name in an expression, without those of functions
+struct Name {
+    std::size_t begin;
+    std::string text;
+};
+
+/// The names in an expression in the order of the text. The text is split as by io::Expression: 2e-3 is a
+/// number.
+std::vector<Name> names_in(std::string_view text)
+{
+    std::vector<Name> names;
+    for (std::size_t k = 0; k < text.size();) {
+        if (is_digit(text[k]) || text[k] == '.') {
+            double x = 0;
+            const char* const begin = text.data() + k;
+            const char* const end = std::from_chars(begin, text.data() + text.size(), x).ptr;
+            k += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - begin, 1));
+        } else if (is_letter(text[k])) {
+            const std::size_t begin = k;
+            while (k < text.size() && (is_letter(text[k]) || is_digit(text[k]))) ++k;
+            const std::size_t next = text.find_first_not_of(" \t", k);
+            if (next == std::string_view::npos || text[next] != '(')
+                names.push_back({begin, std::string(text.substr(begin, k - begin))});
+        } else {
+            ++k;
+        }
+    }
+    return names;
+}
+
+/// Reason why a name cannot be that of a parameter, or ""
+std::string fault_of_name(const std::string& name)
+{
+    if (name.empty() || !is_letter(name[0]) ||
+        !std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || is_digit(c); }))
+        return "the name of a parameter must consist of letters, digits and _ and begin with a letter or _";
+    const std::vector<std::string> functions = io::Expression::function_names();
+    if (std::find(functions.begin(), functions.end(), name) != functions.end())
+        return "the name of a parameter must not be that of a function";
+    for (const auto& [word, meaning] :
+         {std::pair("t", "the time"), std::pair("pi", "a constant"), std::pair("e", "a constant")})
+        if (name == word) return std::string("the name of a parameter must not be ") + word + ", " + meaning;
+    return "";
+}
+
+}  // namespace
+
+Parameters::Parameters(const io::JsonSource& source) : source(source)
+{
+    const io::Json::Member* all = source.root.member("parameters");
+    if (all == nullptr) return;
+    if (all->value.members() == nullptr)
+        source.fail(all->value, "/parameters",
+                    "parameters must be an object, got " + io::described(all->value));
+    for (const io::Json::Member& m : *all->value.members()) {
+        if (m.key == "note") continue;
+        io::Json at;
+        at.offset = m.offset;
+        at.change = m.value.change;
+        if (const std::string fault = fault_of_name(m.key); !fault.empty())
+            source.fail(at, io::pointer_to("/parameters", m.key), fault + ", got " + io::in_quotes(m.key));
+        given.push_back(&m);
+        names.push_back(m.key);
+    }
+    if (names.size() > most)
+        source.fail(all->value, "/parameters",
+                    "at most " + std::to_string(most) + " parameters are allowed, got " +
+                        std::to_string(names.size()));
+    values.resize(names.size());
+    known.resize(names.size());
+    used.resize(names.size());
+    shadowed.resize(names.size());
+    std::vector<std::size_t> path;
+    for (std::size_t k = 0; k < names.size(); ++k) evaluate(k, path);
+}
+
+std::string Parameters::pointer(std::size_t k) const { return io::pointer_to("/parameters", names[k]); }
+
+/// Evaluates parameter k, and before it those that its expression contains. `path`: the parameters that wait
+/// for it
+void Parameters::evaluate(std::size_t k, std::vector<std::size_t>& path)
+{
+    if (known[k]) return;
+    const io::Json& v = given[k]->value;
+    const auto begin = std::find(path.begin(), path.end(), k);
+    if (begin != path.end()) {
+        std::string cycle;
+        for (auto p = begin; p != path.end(); ++p) cycle += names[*p] + " -> ";
+        source.fail(v, pointer(k), "the parameters depend on each other in a cycle: " + cycle + names[k]);
+    }
+    if (v.number() != nullptr) {
+        values[k] = *v.number();
+    } else if (v.string() == nullptr) {
+        source.fail(v, pointer(k),
+                    "a parameter must be a number or an expression in a string, got " + io::described(v));
+    } else {
+        path.push_back(k);
+        for (const Name& name : names_in(*v.string()))
+            if (const auto at = std::find(names.begin(), names.end(), name.text); at != names.end())
+                evaluate(static_cast<std::size_t>(at - names.begin()), path);
+        path.pop_back();
+        try {
+            values[k] = value(*v.string());
+        } catch (const io::ExpressionError& e) {
+            source.fail(v, pointer(k), e.what());
+        }
+    }
+    known[k] = true;
+}
+
+double Parameters::value(const std::string& expression) const
+{
+    mark_used(expression);
+    const double x = evaluated(expression);
+    if (std::isfinite(x)) return x;
+    std::string with;
+    for (const Name& name : names_in(expression)) {
+        const auto at = std::find(names.begin(), names.end(), name.text);
+        if (at == names.end()) continue;
+        const std::string equation = name.text + " = " + io::shortest(values[at - names.begin()]);
+        if (with.find(equation) == std::string::npos) with += (with.empty() ? " with " : ", ") + equation;
+    }
+    throw io::ExpressionError(io::in_quotes(expression) + " must be finite, got " + io::shortest(x) + with,
+                              1);
+}
+
+double Parameters::evaluated(const std::string& expression) const
+{
+    // Parameters are variables of the expression, so that messages quote the text of the file. Those in an
+    // exponent, which must be constant, are replaced by their values.
+    std::optional<io::Expression> compiled;
+    try {
+        compiled.emplace(expression, names);
+    } catch (const io::ExpressionError& e) {
+        if (!std::string_view(e.what()).starts_with("the exponent must be constant")) throw;
+    }
+    return compiled ? compiled->value(values)
+                    : io::Expression(substituted(expression, {}), std::vector<std::string>{}).value({});
+}
+
+/// Throws ExpressionError for a name that is neither a variable nor a parameter nor a constant.
+void Parameters::check_known(const std::string& expression, const std::vector<std::string>& variables) const
+{
+    if (names.empty()) return;  // io::Expression finds unknown names
+    std::vector<std::string> all = variables;
+    all.insert(all.end(), names.begin(), names.end());
+    all.insert(all.end(), {"pi", "e"});
+    for (const Name& name : names_in(expression))
+        if (std::find(all.begin(), all.end(), name.text) == all.end())
+            throw io::ExpressionError("unknown name '" + name.text + "' in " + io::in_quotes(expression) +
+                                          " at column " + std::to_string(name.begin + 1) +
+                                          io::did_you_mean(name.text, all),
+                                      static_cast<int>(name.begin) + 1);
+}
+
+void Parameters::mark_used(const std::string& expression) const
+{
+    for (const Name& name : names_in(expression))
+        if (const auto at = std::find(names.begin(), names.end(), name.text); at != names.end())
+            used[at - names.begin()] = true;
+}
+
+std::string Parameters::substituted(const std::string& expression,
+                                    const std::vector<std::string>& variables) const
+{
+    check_known(expression, variables);
+    std::string text;
+    std::size_t done = 0;
+    for (const Name& name : names_in(expression)) {
+        const auto at = std::find(names.begin(), names.end(), name.text);
+        if (at == names.end()) continue;
+        if (std::find(variables.begin(), variables.end(), name.text) != variables.end()) {
+            shadowed[at - names.begin()] = true;
+            continue;
+        }
+        used[at - names.begin()] = true;
+        text.append(expression, done, name.begin - done);
+        text += '(' + io::shortest(values[at - names.begin()]) + ')';
+        done = name.begin + name.text.size();
+    }
+    return text.append(expression, done);
+}
+
+std::vector<std::pair<std::string, double>> Parameters::all() const
+{
+    std::vector<std::pair<std::string, double>> pairs;
+    for (std::size_t k = 0; k < names.size(); ++k) pairs.emplace_back(names[k], values[k]);
+    return pairs;
+}
+
+// JsonSource::set() gives an added member the location of the object.
+void Parameters::check_added() const
+{
+    const io::Json::Member* object = source.root.member("parameters");
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const bool added = given[k]->value.change >= 0 && given[k]->offset == object->value.offset;
+        if (!added || used[k] || shadowed[k]) continue;
+        std::vector<std::string> others;
+        for (const std::string& name : names)
+            if (name != names[k]) others.push_back(name);
+        source.fail(given[k]->value, pointer(k),
+                    "the model does not use a parameter " + io::in_quotes(names[k]) +
+                        io::did_you_mean(names[k], others));
+    }
+}
+
+std::vector<std::string> Parameters::warnings() const
+{
+    std::vector<std::string> lines;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const std::string place = source.place(given[k]->value.offset, pointer(k));
+        if (shadowed[k])
+            lines.push_back(place + ": the parameter " + names[k] +
+                            " has the name of a variable of an expression; there it denotes the variable");
+        else if (!used[k])
+            lines.push_back(place + ": nothing uses the parameter " + names[k]);
+    }
+    return lines;
+}
+
+}  // namespace hilda::dae

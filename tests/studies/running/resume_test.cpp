@@ -21,8 +21,9 @@ constexpr const char* fine_step = "1e-3";
 /// About 100 000 steps, half a second
 std::vector<std::string> long_run(const std::string& integrator, const std::string& directory)
 {
-    return {"run",        "slider_crank", "--integrator", integrator,    "--step",  fine_step,  "--end",  "1",
-            "--interval", "1e-3",         "--reactions",  "--log-steps", "--quiet", "--output", directory};
+    return {"run",     "slider_crank", "--integrator", integrator,    "--step",      fine_step, "--end",
+            "1",       "--interval",   "1e-3",         "--reactions", "--log-steps", "--euler", "zxz",
+            "--quiet", "--output",     directory};
 }
 
 std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
@@ -77,6 +78,7 @@ TEST_CASE("an interrupted and killed run, resumed, gives the result of an uninte
     if (code == 137) code = call(in, with(parts, {"--resume"})).code;
     REQUIRE(code == 0);
     CHECK(read(in / "parts/trajectory.csv") == read(in / "whole/trajectory.csv"));
+    CHECK(read(in / "parts/euler.csv") == read(in / "whole/euler.csv"));
     CHECK(without_times(in / "parts/steps.csv") == without_times(in / "whole/steps.csv"));
     CHECK(counters_and_invariants(in / "parts") == counters_and_invariants(in / "whole"));
     CHECK_FALSE(fs::exists(in / "parts/checkpoint"));

@@ -207,6 +207,11 @@ private:
     std::pair<std::string, const Type*> heading(ObjectReader& o, std::set<std::string>& used_names)
     {
         o.record("name", {});  // so that the name precedes the type
+        if (const Json* v = o.find("type"); v != nullptr && v->string() != nullptr)
+            if (const std::string meant = type_with_other_name(*v->string());
+                io::Registry<Type>::find(*v->string()) == nullptr &&
+                io::Registry<Type>::find(meant) != nullptr)
+                o.fail("type", "unknown type " + described(*v) + "; did you mean '" + meant + "'?");
         const std::string type = o.one_of("type", io::Registry<Type>::names());
         return {unique_name(o, type, used_names), io::Registry<Type>::find(type)};
     }
@@ -387,6 +392,20 @@ Description load_model(const std::string& path, std::span<const std::string> set
         throw lie::InvalidInput(
             path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
     return read_model(text, path, set, normal_rows, fs::path(path).parent_path().string());
+}
+
+std::string text_at(const Description& description, const State& x)
+{
+    JsonSource source(description.text, description.name);
+    Json::List& bodies = std::get<Json::List>(source.root["bodies"].value);
+    for (size_t b = 0; b < bodies.size(); ++b) {
+        const Motion& m = x.body.at(b);
+        bodies[b]["r"] = json(m.r);
+        bodies[b]["A"] = json(m.A);
+        bodies[b]["r_dot"] = json(m.rdot);
+        bodies[b]["omega"] = json(m.omega_bar);
+    }
+    return written(source.root) + "\n";
 }
 
 StartReport start(Description& description, const StartOptions& options)

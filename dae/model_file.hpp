@@ -49,6 +49,11 @@ Description read_model(std::string_view text, const std::string& file, std::span
 Description load_model(const std::string& path, std::span<const std::string> set = {},
                        const std::string& normal_rows = "");
 
+/// The canonical form of the model with the positions, orientations and velocities of x as initial data, for
+/// example those that start() has projected onto the constraints. Angles, displacements and orientations that
+/// a joint, driver or force measures from the start are then measured from x.
+std::string text_at(const Description& description, const State& x);
+
 /// Calls start() for the model and adds the location in the file to the messages of its exceptions.
 StartReport start(Description& description, const StartOptions& options = {});
 

@@ -5,7 +5,10 @@
 #include "dae/driver.hpp"
 #include "io/jet.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 
 namespace hilda::dae {
 
@@ -23,6 +26,34 @@ Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<st
     } catch (const io::ExpressionError& e) {
         o.fail(key, e.what());
     }
+}
+
+std::string type_with_other_name(const std::string& name)
+{
+    static const std::map<std::string, std::string> known = {{"prismatic", "translational"},
+                                                             {"slider", "translational"},
+                                                             {"hinge", "revolute"},
+                                                             {"pin", "revolute"},
+                                                             {"ball", "spherical"},
+                                                             {"ball-and-socket", "spherical"},
+                                                             {"cardan", "universal"},
+                                                             {"hooke", "universal"},
+                                                             {"weld", "fixed"},
+                                                             {"rigid", "fixed"},
+                                                             {"rod", "distance"},
+                                                             {"link", "distance"},
+                                                             {"helical", "screw"},
+                                                             {"motor", "hinge-driver"},
+                                                             {"spring", "spring-damper"},
+                                                             {"damper", "spring-damper"},
+                                                             {"tsda", "spring-damper"},
+                                                             {"rsda", "torsion-spring"},
+                                                             {"moment", "torque"}};
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return c == '_' ? '-' : static_cast<char>(std::tolower(c)); });
+    const auto found = known.find(lower);
+    return found != known.end() ? found->second : "";
 }
 
 namespace {

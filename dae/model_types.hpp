@@ -66,6 +66,10 @@ extern template class hilda::io::Registry<hilda::dae::ForceType>;
 
 namespace hilda::dae {
 
+/// The name of a registered type for another usual name of the same joint or force, such as "translational"
+/// for "prismatic"; "" if there is none
+std::string type_with_other_name(const std::string& name);
+
 /// The function f(t) given by a key. f, ḟ and f̈ must be finite at t = 0.
 Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {});
 

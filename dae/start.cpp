@@ -2,6 +2,9 @@
 /// Removal of redundant rows, projection and consistent internal states at a start.
 #include "dae/start.hpp"
 
+#include "dae/constraints/d.hpp"
+#include "dae/constraints/dp1.hpp"
+#include "dae/constraints/driven_hinge.hpp"
 #include "dae/model.hpp"
 #include "dae/rank.hpp"
 #include "lie/solver/saddle.hpp"
@@ -27,6 +30,52 @@ std::string number(double value)
     text.precision(3);
     text << value;
     return text.str();
+}
+
+/// Violation of a row in its unit: a distance, or an angle for a row that concerns orientations only
+struct Violation {
+    double value;
+    std::string unit;  ///< m or rad
+};
+
+Violation violation(const Model& model, const Model::Row& row, const State& x)
+{
+    const Block& block = row.active_block(x);
+    const Constraint::Arguments at = Model::arguments(block, x);
+    const double phi = block.phi(at);
+    if (const auto* dp1 = dynamic_cast<const DP1*>(&block)) {
+        const double scale = dp1->a_bar_i.norm() * dp1->a_bar_j.norm(), f = dp1->f.f(x.t);
+        const auto angle = [&](double product) { return std::acos(std::clamp(product / scale, -1., 1.)); };
+        return {std::abs(angle(f + phi) - angle(f)), "rad"};
+    }
+    // Φ is the sine of the angle
+    if (dynamic_cast<const DrivenHinge*>(&block) != nullptr)
+        return {std::asin(std::min(std::abs(phi), 1.)), "rad"};
+    const Variation v = block.variation(at);
+    const double distance = std::max(v.r_i.norm(), v.r_j.norm()),
+                 angle = std::max(v.pi_i.norm(), v.pi_j.norm());
+    if (dynamic_cast<const D*>(&block) != nullptr) {  // Φ = l² - f, Φ_r = 2 l
+        const double l = distance / 2;
+        return {std::abs(l - std::sqrt(std::max(0., l * l - phi))), "m"};
+    }
+    if (distance > 0) return {std::abs(phi) / distance, "m"};
+    if (angle > 0) return {std::abs(phi) / angle, "rad"};
+    return {std::abs(model.scaled_residual(row, x)), "m or rad"};
+}
+
+/// The same for the velocities
+Violation velocity_violation(const Model& model, const Model::Row& row, const State& x)
+{
+    const Block& block = row.active_block(x);
+    const Constraint::Arguments at = Model::arguments(block, x);
+    const Variation v = block.variation(at);
+    const double residual = std::abs(v.r_i.dot(at.bi.rdot) + v.pi_i.dot(at.bi.omega_bar) +
+                                     v.r_j.dot(at.bj.rdot) + v.pi_j.dot(at.bj.omega_bar) - block.nu(at));
+    const double distance = std::max(v.r_i.norm(), v.r_j.norm()),
+                 angle = std::max(v.pi_i.norm(), v.pi_j.norm());
+    if (distance > 0) return {residual / distance, "m/s"};
+    if (angle > 0) return {residual / angle, "rad/s"};
+    return {std::abs(model.scaled_velocity_residual(row, x)), "m/s or rad/s"};
 }
 
 /// Linear solver of a start. KLU is the most accurate. With general constraints `automatic` is used, which
@@ -139,11 +188,12 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
     return redundant;
 }
 
-/// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the initial
-/// state may be projected. Records the largest violation.
+/// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the
+/// initial state may be projected. Records the largest violation.
 template <class ViolationOf>
 void check_general_constraints(const Model& model, const State& x, const StartOptions& options,
-                               ViolationOf violation_of, double& residual, std::string& worst)
+                               ViolationOf violation_of, double& residual, std::string& worst,
+                               std::string& text)
 {
     for (size_t k = 0; k < model.general_constraints().size(); ++k) {
         const Constraint& c = *model.general_constraints()[k];
@@ -155,7 +205,11 @@ void check_general_constraints(const Model& model, const State& x, const StartOp
                                       " is allowed; use --fix-initial to project the initial state onto the "
                                       "constraints",
                                   static_cast<int>(k), true);
-        if (v.value > residual) residual = v.value, worst = model.name_of(c);
+        if (v.value > residual) {
+            residual = v.value;
+            worst = model.name_of(c);
+            text = number(v.value) + ' ' + v.unit;
+        }
     }
 }
 
@@ -174,10 +228,12 @@ StartReport start(Model& model, State& x, const StartOptions& options)
             throw ConstraintError(report.worst_position + ": the residual at the start must be finite, got " +
                                       number(position.value),
                                   model.all_rows()[position.row].constraint);
+        const Violation v = violation(model, model.all_rows()[position.row], x);
+        report.position_violation = number(v.value) + ' ' + v.unit;
         if (!options.fix_initial && position.value > options.tolerance)
             throw ConstraintError("the initial positions violate " + report.worst_position + " by " +
-                                      number(position.value) + ", more than " + number(options.tolerance) +
-                                      " m or rad; use --fix-initial to project them onto the constraints",
+                                      report.position_violation + ", more than " + number(options.tolerance) +
+                                      "; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[position.row].constraint);
     }
 
@@ -186,7 +242,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         [&](const Constraint& c, const Constraint::Arguments& at) {
             return c.position_violation(at, options.tolerance);
         },
-        report.position_residual, report.worst_position);
+        report.position_residual, report.worst_position, report.position_violation);
     const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().algebraic_variables();
@@ -203,10 +259,12 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         const Model::Residual velocity = model.largest_velocity_residual(x);
         report.velocity_residual = velocity.value;
         report.worst_velocity = model.name_of(model.all_rows()[velocity.row]);
+        const Violation v = velocity_violation(model, model.all_rows()[velocity.row], x);
+        report.velocity_violation = number(v.value) + ' ' + v.unit;
         if (!options.fix_initial && !(velocity.value <= options.tolerance))
             throw ConstraintError("the initial velocities violate " + report.worst_velocity + " by " +
-                                      number(velocity.value) + ", more than " + number(options.tolerance) +
-                                      " m/s or rad/s; use --fix-initial to project them onto the constraints",
+                                      report.velocity_violation + ", more than " + number(options.tolerance) +
+                                      "; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[velocity.row].constraint);
     }
     check_general_constraints(
@@ -214,7 +272,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         [&](const Constraint& c, const Constraint::Arguments& at) {
             return c.velocity_violation(at, options.tolerance);
         },
-        report.velocity_residual, report.worst_velocity);
+        report.velocity_residual, report.worst_velocity, report.velocity_violation);
     if (model.rows() > 0) {
         lie::project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;

@@ -26,7 +26,10 @@ struct StartReport {
     std::vector<std::string> dropped;                     ///< names of the redundant rows that were removed
     double position_residual = 0, velocity_residual = 0;  ///< largest scaled residuals of the data as given
     std::string worst_position, worst_velocity;           ///< names of the rows with these residuals
-    bool projected = false;                               ///< whether one of them exceeded the tolerance
+    /// Violations of these rows in their units, such as "0.1 m" for the distance of two points that must
+    /// coincide, or "0.02 rad"
+    std::string position_violation, velocity_violation;
+    bool projected = false;  ///< whether one of them exceeded the tolerance
 };
 
 /// Prepares the model and the state for a run.

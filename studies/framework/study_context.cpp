@@ -212,6 +212,7 @@ io::Json StudyContext::whole() const
                     {"seed", options.seed.value_or(0)},
                     {"set", options.set},
                     {"provenance", provenance(options.command_line, options.jobs)}};
+    if (options.fix_initial) all["fix_initial"] = true;
     if (options.repeats > 0) all["repeats"] = options.repeats;
     all.update(json);
     return all;
@@ -239,8 +240,8 @@ void StudyContext::write(const io::Json& whole_json) const
     std::cout << '\n';
 }
 
-/// Compares all expectations with all measured values of their keys. Prints a line on stderr for each difference
-/// above the tolerance and for each key that was not measured.
+/// Compares all expectations with all measured values of their keys. Prints a line on stderr for each
+/// difference above the tolerance and for each key that was not measured.
 bool StudyContext::as_expected() const
 {
     bool passed = true;

@@ -237,11 +237,26 @@ io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body
 
 }  // namespace
 
+namespace {
+
+/// Writes the model with its projected initial state. The text is checked as hilda check would.
+void write_projected(const dae::Description& d, const std::string& file)
+{
+    const std::string text = dae::text_at(d, d.x);
+    dae::Description written = dae::read_model(text, file);
+    dae::start(written);
+    io::write_file(file, text);
+}
+
+}  // namespace
+
 int check_model(const CheckOptions& options)
 {
+    const bool fix_initial = options.fix_initial || !options.write.empty();
     dae::Description d = named_model(options.model, options.set, options.normal_rows);
     const lie::State given = d.x;
-    const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
+    const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
+    if (!options.write.empty()) write_projected(d, options.write);
     const dae::Model& model = *d.model;
     const size_t output_columns = OutputColumns(model, d.outputs).columns.size();
     const double energy = lie::energy(model, d.x);
@@ -282,11 +297,13 @@ int check_model(const CheckOptions& options)
             {"end", d.end},
             {"warnings", d.warnings}};
         if (output_columns > 0) out["output_columns"] = output_columns;
+        if (!d.parameters.empty())
+            for (const auto& [name, value] : d.parameters) out["parameters"][name] = value;
         for (const CompliantContactInfo& c : compliant) out["contacts"].push_back(as_json(c));
         for (const ContactConstraintInfo& c : constrained) out["evolving_contacts"].push_back(as_json(c));
         if (!constrained.empty())
             out.update({{"condition", condition}, {"recommended_integrator", recommended}});
-        if (options.fix_initial)
+        if (fix_initial)
             out["fix_initial"] = {{"projected", start.projected},
                                   {"r", as_json(change_of_start.r)},
                                   {"A", as_json(change_of_start.A)},
@@ -313,6 +330,12 @@ int check_model(const CheckOptions& options)
          fmt::format("{} with {} rows of rank {}", constraints, rows, start.rank - general.of_contacts));
     line("forces", std::to_string(other_forces));
     if (output_columns > 0) line("outputs", fmt::format("{} columns in outputs.csv", output_columns));
+    if (!d.parameters.empty()) {
+        std::string all;
+        for (const auto& [name, value] : d.parameters)
+            all += (all.empty() ? "" : ", ") + name + " = " + io::shortest(value);
+        line("parameters", all);
+    }
     if (!compliant.empty()) line("contacts", std::to_string(compliant.size()));
     if (!constrained.empty()) {
         line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), general.of_contacts));
@@ -324,8 +347,14 @@ int check_model(const CheckOptions& options)
     for (const CompliantContactInfo& c : compliant) line(("  " + c.name + " ").c_str(), to_text(c));
     line("degrees of freedom", std::to_string(start.degrees_of_freedom));
     for (const std::string& row : start.dropped) line("redundant", row);
-    line("position residual", residual(start.position_residual, "m or rad", start.worst_position));
-    line("velocity residual", residual(start.velocity_residual, "m/s or rad/s", start.worst_velocity));
+    const auto initial = [&](double value, const char* unit, const std::string& row,
+                             const std::string& violation) {
+        return value > dae::StartOptions{}.tolerance ? violation + ", " + row : residual(value, unit, row);
+    };
+    line("position residual",
+         initial(start.position_residual, "m or rad", start.worst_position, start.position_violation));
+    line("velocity residual",
+         initial(start.velocity_residual, "m/s or rad/s", start.worst_velocity, start.velocity_violation));
     if (!constrained.empty()) {
         line("condition", fmt::format("{:.1e} of the row-scaled saddle matrix", condition));
         line("recommended",
@@ -336,13 +365,14 @@ int check_model(const CheckOptions& options)
     line("energy", fmt::format("{:.6e} J", energy));
     line("largest reaction", at(loads.F, "N") + ", " + at(loads.T, "N m"));
     line("end", fmt::format("{:g} s", d.end));
-    if (options.fix_initial) {
+    if (fix_initial) {
         line("--fix-initial", start.projected ? "changes the initial state by:"
                                               : "changes the initial state by rounding errors only:");
         line("  r", at(change_of_start.r, "m"));
         line("  A", at(change_of_start.A, "rad"));
         line("  r_dot", at(change_of_start.rdot, "m/s"));
         line("  omega", at(change_of_start.omega_bar, "rad/s"));
+        if (!options.write.empty()) line("written", options.write);
     }
     return io::exit_code::done;
 }

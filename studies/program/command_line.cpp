@@ -262,8 +262,8 @@ private:
     void add_check()
     {
         CheckOptions& o = check;
-        CLI::App* c = add("check", "validate a model and print its properties; write no file",
-                          [this] { return check_model(check); });
+        CLI::App* c =
+            add("check", "validate a model and print its properties", [this] { return check_model(check); });
         c->add_option("MODEL", o.model, "path of a model file, or name of a built-in model")
             ->required()
             ->type_name("");
@@ -273,6 +273,9 @@ private:
               assign(o.normal_rows, normal_rows));
         c->add_flag("--fix-initial", o.fix_initial,
                     "project inconsistent initial data onto the constraints and report the change");
+        value(c, "--fix", "FILE",
+              "as --fix-initial, and write the model with the projected initial data to this file",
+              assign(o.write, io::path));
         c->add_flag("--json", o.json, "print the result as JSON");
         c->add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
         c->add_flag("-v,--verbose", verbose, "no effect");
@@ -340,7 +343,7 @@ private:
               "of the model",
               assign(o.observable, unchanged));
         c->add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
-        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
+        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data of the models onto the constraints");
         add_settings(c, o.settings, o.given_settings);
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force or --resume is given; default: out/KIND",
@@ -546,8 +549,8 @@ private:
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
-/// Loads the plug-ins of the options --load FILE before the command, and returns the other words. The options of a
-/// command name registered integrators, so that these must exist before the command line is read.
+/// Loads the plug-ins of the options --load FILE before the command, and returns the other words. The options
+/// of a command name registered integrators, so that these must exist before the command line is read.
 void load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
 {
     size_t k = 0;

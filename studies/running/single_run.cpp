@@ -137,6 +137,7 @@ void SingleRun::read()
         result.contacts.push_back(c->name);
     result.warnings = description.warnings;
     result.set = description.changes;
+    result.parameters = description.parameters;
     result.command_line = options.command_line;
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
@@ -216,7 +217,7 @@ void SingleRun::clear_directory() const
     io::Sinks<RunSetup>::remove(directory);
     for (const char* file : {"summary.json", "trajectory.png"}) std::remove(path(file).c_str());
     io::write_file(path("model.json"),
-                   description.text.ends_with('\n') ? description.text : description.text + '\n');
+                   result.start.projected ? dae::text_at(description, description.x) : description.text);
 }
 
 void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)

@@ -40,6 +40,7 @@ io::Json summary(const RunResult& r)
                     {"initial_projected", r.start.projected},
                     {"set", r.set},
                     {"warnings", r.warnings}};
+    for (const auto& [name, value] : r.parameters) out["model"]["parameters"][name] = value;
     out["integrator"] = {{"name", r.integrator}};
     if (r.rtol > 0)
         out["integrator"].update(

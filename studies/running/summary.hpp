@@ -37,6 +37,7 @@ struct RunResult {
     std::vector<Event> events;
     dae::StartReport start;
     std::vector<std::string> warnings, set;
+    std::vector<std::pair<std::string, double>> parameters;  ///< of the model
 
     lie::Statistics statistics;
     Invariants invariants;

@@ -23,7 +23,7 @@ struct Name {
 };
 
 /// The names in an expression in the order of the text. The text is split as by io::Expression: 2e-3 is a
-/// number.
+/// number, a.b is one name, and names in braces are left out.
 std::vector<Name> names_in(std::string_view text)
 {
     std::vector<Name> names;
@@ -35,10 +35,12 @@ std::vector<Name> names_in(std::string_view text)
             k += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - begin, 1));
         } else if (is_letter(text[k])) {
             const std::size_t begin = k;
-            while (k < text.size() && (is_letter(text[k]) || is_digit(text[k]))) ++k;
+            while (k < text.size() && (is_letter(text[k]) || is_digit(text[k]) || text[k] == '.')) ++k;
             const std::size_t next = text.find_first_not_of(" \t", k);
             if (next == std::string_view::npos || text[next] != '(')
                 names.push_back({begin, std::string(text.substr(begin, k - begin))});
+        } else if (text[k] == '{') {
+            k = std::min(text.find('}', k), text.size());
         } else {
             ++k;
         }
@@ -182,6 +184,12 @@ std::string Parameters::substituted(const std::string& expression,
                                     const std::vector<std::string>& variables) const
 {
     check_known(expression, variables);
+    return replaced(expression, variables);
+}
+
+std::string Parameters::replaced(const std::string& expression,
+                                 const std::vector<std::string>& variables) const
+{
     std::string text;
     std::size_t done = 0;
     for (const Name& name : names_in(expression)) {

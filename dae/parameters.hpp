@@ -23,6 +23,8 @@ public:
     double value(const std::string& expression) const override;
     std::string substituted(const std::string& expression,
                             const std::vector<std::string>& variables) const override;
+    std::string replaced(const std::string& expression,
+                         const std::vector<std::string>& variables) const override;
 
     /// Names and values in the order of the file
     std::vector<std::pair<std::string, double>> all() const;

@@ -25,6 +25,9 @@ public:
     /// variable takes precedence over a parameter of the same name.
     virtual std::string substituted(const std::string& expression,
                                     const std::vector<std::string>& variables) const = 0;
+    /// The same without a check of the other names
+    virtual std::string replaced(const std::string& expression,
+                                 const std::vector<std::string>& variables) const = 0;
 };
 
 /// Strict JSON (RFC 8259, UTF-8), with changes by --set.

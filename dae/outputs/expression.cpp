@@ -20,7 +20,8 @@ private:
 
 const TypeSchema schema = {
     .description =
-        "A formula in t and the columns of the run: those of trajectory.csv (BODY.rx, energy), forces.csv "
+        "A formula in t, the parameters of the model and the columns of the run: those of trajectory.csv "
+        "(BODY.rx, energy), forces.csv "
         "(SPRING.force), contacts.csv (CONTACT.F_N) and of the preceding outputs. A column whose name has "
         "other "
         "characters than letters, digits, _ and . is written in braces: {ball-floor.F_N}. The column has the "
@@ -35,8 +36,7 @@ const TypeSchema schema = {
 
 const bool registered = io::Registry<OutputType>::add(
     {.name = "expression", .schema = schema, .read = [](ObjectReader& o, const BodyFinder&, const State&) {
-         std::string value = o.text("value");
-         if (value.empty()) o.fail("value", "value must be a formula, got \"\"");
+         std::string value = o.formula_of_names("value");
          std::string unit = o.text("unit", "");
          auto output = std::make_unique<ExpressionOutput>(std::move(value), std::move(unit));
          output->place = o.place("value");

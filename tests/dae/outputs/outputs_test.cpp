@@ -95,6 +95,14 @@ TEST_CASE("outputs are part of the canonical form, and wrong outputs are rejecte
         R"({"type": "point", "body": "a"}, {"name": "E", "type": "expression", "value": "a.rx"})");
     CHECK(model.outputs[0]->name == "point-1");
     CHECK(model.outputs[1]->expression() == "a.rx");
+    const Description with_parameters =
+        read_model(R"({"hilda_model": 1, "name": "p", "parameters": {"m": "1 + 1", "a": 3},
+        "bodies": [{"name": "a", "mass": "m", "inertia": [1, 1, 1], "r": [0, 0, "a"]}],
+        "outputs": [{"type": "expression", "value": "0.5*m*a.vx^2 + {a.m} + a"}]})",
+                   "p.json");
+    CHECK(with_parameters.outputs[0]->expression() == "0.5*(2)*a.vx^2 + {a.m} + (3)");
+    CHECK(with_parameters.warnings.empty());
+
     const Description again = read_model(model.text, "again.json");
     CHECK(again.text == model.text);
     CHECK(again.outputs.size() == 2);

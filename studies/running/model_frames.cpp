@@ -3,7 +3,7 @@
 
 #include "dae/constraints/d.hpp"
 #include "dae/model.hpp"
-#include "studies/running/equivalent_solid.hpp"
+#include "studies/running/body_drawing.hpp"
 
 namespace hilda::studies {
 
@@ -18,7 +18,7 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapsho
     };
     for (const ContactOutputs::Contact& c : contacts.contacts) add(c.i, c.shape_i), add(c.j, c.shape_j);
     for (size_t b = 0; b < has_surface.size(); ++b)
-        if (!has_surface[b]) to.add_solid(static_cast<int>(b), equivalent_solid(model.all_bodies()[b]));
+        if (!has_surface[b]) to.add_solid(static_cast<int>(b), body_drawing(model.all_bodies()[b]));
 }
 
 void add_joints(const dae::Model& model, Snapshots& to)

@@ -12,7 +12,7 @@
 namespace hilda::studies {
 
 /// Collects frames of a model: its bodies, joints, springs and contacts. A body is drawn by the surfaces of its
-/// contacts, or by equivalent_solid() if it has no bounded surface. The model must outlive this object.
+/// contacts, or by body_drawing() if it has no bounded surface. The model must outlive this object.
 class ModelFrames final : public lie::Observer {
 public:
     /// A frame at each output row of the grid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The drawing of a body without a surface.
+/// The drawing of a body without a contact surface.
 
 #pragma once
 
@@ -7,6 +7,10 @@
 #include "dae/body.hpp"
 
 namespace hilda::studies {
+
+/// Polygons of a body, in the body frame: its shape if it has one, otherwise its equivalent_solid(). The polygons are
+/// counterclockwise seen from outside.
+contact::PolygonMesh body_drawing(const dae::Body& body);
 
 /// The homogeneous box or sphere with the mass and the inertia of the body, in the body frame:
 ///

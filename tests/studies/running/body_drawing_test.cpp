@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/equivalent_solid.hpp"
+#include "studies/running/body_drawing.hpp"
 
 #include "tests/support/random_motion.hpp"
 
@@ -62,4 +62,23 @@ TEST_CASE("a body with equal moments is drawn as a sphere, and a slender bar wit
     Eigen::AlignedBox3d box;
     for (const Vec3& a : studies::equivalent_solid(bar).point) box.extend(a);
     CHECK(box.sizes().isApprox(Vec3(1, 0.02, 0.02), 1e-6));
+}
+
+TEST_CASE("a body with a shape is drawn as this shape", "[studies][vtk]")
+{
+    const std::vector<dae::BodyShape> shapes = {{.type = "box", .dimensions = {0.1, 0.2, 0.3}},
+                                                {.type = "sphere", .dimensions = {0.2}},
+                                                {.type = "ellipsoid", .dimensions = {0.1, 0.2, 0.3}},
+                                                {.type = "cylinder", .dimensions = {0.1, 0.5}, .axis = 0},
+                                                {.type = "cone", .dimensions = {0.2, 0.6}, .axis = 1}};
+    for (const dae::BodyShape& shape : shapes) {
+        CAPTURE(shape.type);
+        dae::Body body{.name = shape.type, .m = 2, .J_bar = shape.inertia(2)};
+        body.shape = shape;
+        const Polyhedron drawn(studies::body_drawing(body));
+        // Inscribed polyhedra: the volume is smaller, by 5 % for the sphere; the orientation is outward.
+        const double margin = shape.type == "box" ? 1e-12 : 0.05;
+        CHECK(drawn.volume == Approx(shape.volume()).epsilon(margin));
+        CHECK((2 / drawn.volume * drawn.J - shape.inertia(2)).norm() < margin * shape.inertia(2).norm());
+    }
 }

@@ -5,8 +5,10 @@
 #include "io/message.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/check_model.hpp"
+#include "studies/program/columns_help.hpp"
 #include "studies/program/granular_program.hpp"
 #include "studies/program/info.hpp"
+#include "studies/program/kinematics.hpp"
 #include "studies/program/lists.hpp"
 #include "studies/program/new_plugin.hpp"
 #include "studies/program/plugin.hpp"
@@ -52,6 +54,7 @@ public:
             "4 numerical failure, 5 input/output, 6 --expect or --check failed, 7 not available,\n"
             "129/130/143 interrupted.");
         add_run();
+        add_kinematics();
         add_check();
         add_models();
         add_integrators();
@@ -259,6 +262,32 @@ private:
         c->add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
     }
 
+    void add_kinematics()
+    {
+        KinematicsOptions& o = kinematics;
+        CLI::App* c =
+            add("kinematics",
+                "compute the motion and the driver loads of a mechanism without degrees of freedom", [this] {
+                    kinematics.command_line = command_line_text;
+                    return run_kinematics(kinematics);
+                });
+        c->add_option("MODEL", o.model, "path of a model file, or name of a built-in model")
+            ->required()
+            ->type_name("");
+        value(c, "--end", "T", "end time [s]; default: that of the model", assign(o.end, positive_number));
+        value(c, "--interval", "DT", "time between output rows [s]; default: end/1000",
+              assign(o.interval, positive_number));
+        values(c, "--set", "/json/pointer=VALUE", "change one entry of the model; repeatable",
+               append(o.set, one_setting));
+        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data onto the constraints");
+        value(c, "--output", "DIR",
+              "output directory, new or empty unless --force is given; default: out/NAME",
+              assign(o.output, io::path));
+        c->add_flag("--force", o.force, "overwrite an output directory that is not empty");
+        io::add_sink_options<RunSetup>(*c, o.outputs);
+        c->add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
+        c->add_flag("--quiet", o.quiet, "print no result and no warnings");
+    }
     void add_check()
     {
         CheckOptions& o = check;
@@ -343,7 +372,8 @@ private:
               "of the model",
               assign(o.observable, unchanged));
         c->add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
-        c->add_flag("--fix-initial", o.fix_initial, "project inconsistent initial data of the models onto the constraints");
+        c->add_flag("--fix-initial", o.fix_initial,
+                    "project inconsistent initial data of the models onto the constraints");
         add_settings(c, o.settings, o.given_settings);
         value(c, "--output", "DIR",
               "output directory, new or empty unless --force or --resume is given; default: out/KIND",
@@ -449,7 +479,8 @@ private:
     {
         CLI::App* c = add("help", "print this text, the options of a command, or those of a study",
                           [this] { return help_of(name, kind); });
-        c->add_option("COMMAND", name, "name of a command")->type_name("");
+        c->add_option("COMMAND", name, "name of a command, or outputs: the columns of the tables of a run")
+            ->type_name("");
         c->add_option("KIND", kind, "after study: name of the study")->type_name("");
     }
 
@@ -465,6 +496,10 @@ private:
             return io::exit_code::done;
         }
         if (command_name == "granular") return start_granular({"--help"});
+        if (command_name == "outputs") {
+            std::cout << columns_help();
+            return io::exit_code::done;
+        }
         const auto known = std::find_if(actions.begin(), actions.end(), [&](const auto& one) {
             return one.first->get_name() == command_name;
         });
@@ -539,6 +574,7 @@ private:
 
     RunOptions run;
     std::optional<double> every;  ///< value of --every, the old name of --interval
+    KinematicsOptions kinematics;
     CheckOptions check;
     StudyOptions study;
     std::vector<std::string> selected_integrators;

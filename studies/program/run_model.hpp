@@ -26,7 +26,7 @@ struct RunOptions {
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
     bool plot = false;
-    bool error = false;  ///< estimate the discretisation error
+    bool error = false;                       ///< estimate the discretisation error
     std::vector<std::string> figure_formats;  ///< empty: png
     io::SinkOptions outputs;                  ///< options of the output formats, such as --reactions
     double checkpoint = 0;                    ///< wall time between checkpoints [s]; 0: no checkpoints

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/kinematics.hpp"
+
+#include "dae/kinematics.hpp"
+#include "dae/model_file.hpp"
+#include "io/files.hpp"
+#include "io/json.hpp"
+#include "io/message.hpp"
+#include "io/program.hpp"
+#include "studies/running/named_model.hpp"
+#include "studies/running/progress.hpp"
+#include "studies/running/provenance.hpp"
+#include "studies/running/sink.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+
+namespace hilda::studies {
+
+namespace {
+
+/// What the analysis has reached
+struct Reached {
+    long rows = 0;
+    double t = 0, constraint_norm = 0;  ///< [s], [m or rad]
+    dae::Reaction largest;              ///< with the largest force and the largest torque on a body
+    std::string status = "ok", message;
+    int exit_code = io::exit_code::done;
+};
+
+void analyse(const dae::Model& model, lie::State x, const lie::TimeGrid& grid, io::Sinks<RunSetup>& sinks,
+             Reached& reached)
+{
+    dae::Kinematics kinematics(model);
+    lie::Rows C = model.pattern();
+    std::vector<dae::Reaction> loads;
+    for (long n = 0; n <= grid.steps && io::Interrupt::caught() == 0; ++n) {
+        kinematics.move_to(x, static_cast<double>(n) * grid.h);
+        const double constraint_norm = model.largest_residual(x).value;
+        sinks.node(n, {.x = x,
+                       .n = n,
+                       .is_row = true,
+                       .energy = lie::energy(model, x),
+                       .constraint_norm = constraint_norm,
+                       .iterations = 0,
+                       .cost = {}});
+        dae::reactions(model, x, C, loads);
+        for (const dae::Reaction& on : loads) {
+            if (on.F.norm() > reached.largest.F.norm()) reached.largest.F = on.F;
+            if (on.T.norm() > reached.largest.T.norm()) reached.largest.T = on.T;
+        }
+        reached.rows = n + 1, reached.t = x.t;
+        reached.constraint_norm = std::max(reached.constraint_norm, constraint_norm);
+    }
+}
+
+}  // namespace
+
+int run_kinematics(const KinematicsOptions& options)
+{
+    dae::Description d = named_model(options.model, options.set, "");
+    const dae::StartReport start = dae::start(d, {.fix_initial = options.fix_initial});
+    const double end = options.end.value_or(d.end);
+    const double interval = options.interval.value_or(end / 1000);
+    if (!(interval > 0))
+        throw io::UsageError("kinematics: --interval must be positive, and --end for its default");
+    const lie::TimeGrid grid = lie::TimeGrid::over(end, interval);
+    const std::string directory =
+        options.output.empty() ? "out/" + short_name(options.model) : options.output;
+    io::check_output_directory(directory, options.force, io::force_overwrites);
+    const dae::Kinematics check_degrees_of_freedom(*d.model);
+    io::Sinks<RunSetup> sinks(RunSetup{.model = *d.model,
+                                       .outputs = d.outputs,
+                                       .model_name = d.name,
+                                       .grid = grid,
+                                       .end = end,
+                                       .directory = directory,
+                                       .options = options.outputs,
+                                       .warn = [&](const std::string& what) {
+                                           if (!options.quiet) io::warning(what);
+                                       }});
+    if (!options.quiet)
+        for (const std::string& w : d.warnings) io::warning(w);
+
+    io::make_directory(directory);
+    io::Sinks<RunSetup>::remove(directory);
+    for (const char* file : {"summary.json", "trajectory.png", "checkpoint", "checkpoint.1"})
+        std::remove((directory + '/' + file).c_str());
+    io::write_file(directory + "/model.json", d.text);
+    const io::Interrupt interrupt;
+    Reached reached;
+    sinks.open();
+    try {
+        analyse(*d.model, d.x, grid, sinks, reached);
+    } catch (const lie::NumericalFailure& failure) {
+        reached.status = failure.status, reached.message = failure.what();
+        reached.exit_code = io::exit_code::numerical_failure;
+        io::message(
+            fmt::format("hilda: error[{}]: t={:.6g}: {}\n", failure.status, reached.t, failure.what()));
+    }
+    if (io::Interrupt::caught() != 0) {
+        reached.status = "interrupted";
+        reached.exit_code = io::exit_code::signal + io::Interrupt::caught();
+    }
+    sinks.close();
+
+    std::vector<std::string> files = sinks.files();
+    files.insert(files.begin(), "model.json");
+    files.emplace_back("summary.json");
+    const io::Json summary = {{"status", reached.status},
+                              {"exit_code", reached.exit_code},
+                              {"message", reached.message},
+                              {"model", d.name},
+                              {"analysis", "kinematics"},
+                              {"dropped_rows", start.dropped},
+                              {"end", end},
+                              {"interval", interval},
+                              {"rows", reached.rows},
+                              {"t", reached.t},
+                              {"constraint_norm", reached.constraint_norm},
+                              {"largest_force", reached.largest.F.norm()},
+                              {"largest_torque", reached.largest.T.norm()},
+                              {"files", files},
+                              {"provenance", provenance(options.command_line, 1)}};
+    io::write_file(directory + "/summary.json", summary.text());
+    if (options.json) std::cout << summary.text();
+    if (options.json || options.quiet) return reached.exit_code;
+    const auto line = [](const char* what, const std::string& text) {
+        std::cout << fmt::format("{:<14}{}\n", what, text);
+    };
+    line("model", fmt::format("{}: {} bodies, {} constraint rows, 0 degrees of freedom", d.name,
+                              d.model->bodies(), start.rows));
+    line("reached", fmt::format("t = {:.6g} s, {} rows", reached.t, reached.rows));
+    line("residual", fmt::format("{:.1e} m or rad", reached.constraint_norm));
+    line("largest load",
+         fmt::format("{:.4g} N, {:.4g} N m on a body", reached.largest.F.norm(), reached.largest.T.norm()));
+    std::string names;
+    for (const std::string& file : files) names += (names.empty() ? "" : ", ") + file;
+    line("written", directory + ": " + names);
+    return reached.exit_code;
+}
+
+}  // namespace hilda::studies

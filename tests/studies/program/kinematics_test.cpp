@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// hilda kinematics: motion and driver loads of driven mechanisms, against time integration and a closed form.
+#include "tests/studies/csv.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A bar of 1 kg and 1 m that is turned about x by angle = t^2
+const std::string driven_bar = R"({"hilda_model": 1, "name": "bar", "end": 1,
+ "bodies": [{"name": "bar", "mass": 1, "inertia": [0.25, 0.001, 0.25], "r": [0, 0.5, 0]}],
+ "constraints": [
+  {"name": "pivot", "type": "revolute", "body_i": "ground", "body_j": "bar", "s_bar_q_j": [0, -0.5, 0],
+   "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]},
+  {"name": "motor", "type": "hinge-driver", "body_i": "ground", "body_j": "bar", "axis_bar_i": [1, 0, 0],
+   "axis_bar_j": [1, 0, 0], "angle": "t^2"}]})";
+
+}  // namespace
+
+TEST_CASE("kinematics computes the motion and the torque of a driven bar", "[studies][kinematics]")
+{
+    const Scratch in;
+    write(in / "bar.json", driven_bar);
+    const Ended ended = call(in, {"kinematics", "bar.json", "--interval", "0.05", "--reactions"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("21 rows"));
+    const auto rows = csv(in / "out/bar/trajectory.csv");
+    REQUIRE(rows.size() == 21);
+    for (const CsvRow& row : rows) {
+        const double t = number(row, "t"), angle = t * t;
+        CHECK(number(row, "bar.ry") == Approx(0.5 * std::cos(angle)).margin(1e-12));
+        CHECK(number(row, "bar.rz") == Approx(0.5 * std::sin(angle)).margin(1e-12));
+        CHECK(number(row, "bar.wx") == Approx(2 * t).margin(1e-11));
+        CHECK(number(row, "bar.alx") == Approx(2).epsilon(1e-9));
+        // The constraint loads on the bar are the force of the pivot and the torque of the motor, which is
+        // J alpha + m g l/2 cos(angle) with J = 0.25 + 1/4.
+        const double y = -number(row, "bar.ry"), z = -number(row, "bar.rz");  // arm of the pivot
+        const double motor = number(row, "bar.Tx") - (y * number(row, "bar.Fz") - z * number(row, "bar.Fy"));
+        CHECK(motor == Approx(0.5 * 2 + 9.81 * 0.5 * std::cos(angle)).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("kinematics and time integration give the same motion of a driven mechanism",
+          "[studies][kinematics]")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"kinematics", "four_link", "--end", "1", "--interval", "0.1", "--output", "k"}).code ==
+            0);
+    REQUIRE(call(in, {"run", "four_link", "--integrator", "rA-rkmk-4", "--end", "1", "--interval", "0.1",
+                      "--output", "r"})
+                .code == 0);
+    const auto k = csv(in / "k/trajectory.csv"), r = csv(in / "r/trajectory.csv");
+    REQUIRE(k.size() == r.size());
+    for (size_t n = 0; n < k.size(); ++n)
+        for (const auto& [column, text] : k[n])
+            if (column != "constraint_norm" && column != "energy")
+                CHECK(std::stod(text) == Approx(number(r[n], column)).margin(1e-6).epsilon(1e-7));
+}
+
+TEST_CASE("kinematics rejects a model with degrees of freedom before it writes a file",
+          "[studies][kinematics]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"kinematics", "double_pendulum"});
+    CHECK(ended.code == 3);
+    CHECK_THAT(ended.err, Contains("degrees of freedom"));
+    CHECK_FALSE(fs::exists(in / "out"));
+}
+
+TEST_CASE("help outputs lists the columns of the tables", "[studies][help]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"help", "outputs"});
+    REQUIRE(ended.code == 0);
+    for (const char* text :
+         {"BODY.rx, ry, rz\n      [m] position of the centre of mass", "SPRING.force\n      [N]",
+          "CONTACT.F_N\n      [N] normal force", "POINT.vx, vy, vz", "ANGLE.angle", "LENGTH.rate"})
+        CHECK_THAT(ended.out, Contains(text));
+    std::istringstream lines(ended.out);
+    for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 110);
+}

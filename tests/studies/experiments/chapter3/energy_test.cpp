@@ -100,3 +100,29 @@ TEST_CASE("an expectation of the energy study applies to every run", "[studies][
     CHECK(unknown.code == 2);
     CHECK_THAT(unknown.err, Contains("'max_drif'; did you mean 'max_drift'?"));
 }
+
+TEST_CASE("the energy study balances the work of a driven model and says which models are conservative",
+          "[studies][energy]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "energy", "--problem", "double_pendulum,single_pendulum",
+                                  "--integrator", "rA-rattle", "--end", "0.5", "--no-plot"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK_THAT(
+        ended.out,
+        Contains("double_pendulum, end time 0.5 s: change of the energy E = T + V (conservative model)"));
+    CHECK_THAT(ended.out, Contains("single_pendulum, end time 0.5 s: balance of the energy"));
+    CHECK_THAT(ended.out, Contains("not conservative: driver 'DP1-drive'"));
+    const auto rows = csv(in / "out/energy/study.csv");
+    REQUIRE(rows.size() == 2);
+    CHECK(number(rows[0], "end_balance") == number(rows[0], "end_drift"));
+    CHECK(number(rows[0], "work_drivers") == 0);
+    CHECK(std::abs(number(rows[1], "end_drift")) > 1);
+    CHECK(number(rows[1], "work_drivers") == Approx(number(rows[1], "end_drift")).epsilon(1e-7));
+    CHECK(std::abs(number(rows[1], "max_balance")) < 1e-6 * std::abs(number(rows[1], "end_drift")));
+    const nlohmann::json study = nlohmann::json::parse(read(in / "out/energy/study.json"));
+    CHECK(study.at("models")[0].at("conservative") == true);
+    CHECK(study.at("models")[1].at("conservative") == false);
+    CHECK(study.at("models")[1].at("work_of")[0] == "driver 'DP1-drive'");
+}

@@ -6,6 +6,7 @@
 #include "lie/check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>

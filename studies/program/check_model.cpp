@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 
 namespace hilda::studies {
@@ -239,9 +240,12 @@ io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body
 
 namespace {
 
-/// Writes the model with its projected initial state. The text is checked as hilda check would.
-void write_projected(const dae::Description& d, const std::string& file)
+/// Writes the model with its projected initial state. The text is checked as hilda check would. io::UsageError if the
+/// file is that of the model, which has its parameters and notes.
+void write_projected(const dae::Description& d, const std::string& model, const std::string& file)
 {
+    if (std::error_code error; std::filesystem::equivalent(model, file, error))
+        throw io::UsageError("check: --fix would replace the model " + model + " itself; give another file");
     const std::string text = dae::text_at(d, d.x);
     dae::Description written = dae::read_model(text, file);
     dae::start(written);
@@ -256,7 +260,7 @@ int check_model(const CheckOptions& options)
     dae::Description d = named_model(options.model, options.set, options.normal_rows);
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
-    if (!options.write.empty()) write_projected(d, options.write);
+    if (!options.write.empty()) write_projected(d, options.model, options.write);
     const dae::Model& model = *d.model;
     const size_t output_columns = OutputColumns(model, d.outputs).columns.size();
     const double energy = lie::energy(model, d.x);
@@ -330,12 +334,16 @@ int check_model(const CheckOptions& options)
          fmt::format("{} with {} rows of rank {}", constraints, rows, start.rank - general.of_contacts));
     line("forces", std::to_string(other_forces));
     if (output_columns > 0) line("outputs", fmt::format("{} columns in outputs.csv", output_columns));
-    if (!d.parameters.empty()) {
-        std::string all;
-        for (const auto& [name, value] : d.parameters)
-            all += (all.empty() ? "" : ", ") + name + " = " + io::shortest(value);
-        line("parameters", all);
+    std::string parameters;
+    const char* label = "parameters";
+    for (const auto& [name, value] : d.parameters) {
+        constexpr size_t width = 80;
+        const std::string equation = name + " = " + io::shortest(value);
+        if (!parameters.empty() && parameters.size() + equation.size() > width)
+            line(label, parameters + ','), parameters.clear(), label = "";
+        parameters += (parameters.empty() ? "" : ", ") + equation;
     }
+    if (!parameters.empty()) line(label, parameters);
     if (!compliant.empty()) line("contacts", std::to_string(compliant.size()));
     if (!constrained.empty()) {
         line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), general.of_contacts));

@@ -8,9 +8,11 @@
 #include "dae/model_file.hpp"
 #include "tests/support/icosphere.hpp"
 
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 using namespace hilda;
 using namespace hilda::contact;

@@ -129,6 +129,10 @@ TEST_CASE(
     CHECK(body["omega"][0].get<double>() == Approx(2 * std::numbers::pi));
     CHECK_FALSE(fs::exists(in / "out"));
     CHECK(call(in, {"check", "m.json", "--fix", "no/f.json"}).code == 5);
+    const Ended itself = call(in, {"check", "m.json", "--fix", "./m.json"});
+    CHECK(itself.code == 2);
+    CHECK_THAT(itself.err, Contains("--fix would replace the model m.json itself; give another file"));
+    CHECK(read(in / "m.json") == driven(moved));
     const Ended as_json = call(in, {"check", "m.json", "--fix", "j.json", "--json"});
     CHECK(nlohmann::json::parse(as_json.out)["fix_initial"]["projected"] == true);
     CHECK(read(in / "j.json") == read(in / "f.json"));

@@ -36,7 +36,7 @@ struct StudyOptions {
     std::vector<std::string> set;    ///< /json/pointer=VALUE
     bool fix_initial = false;        ///< project inconsistent initial data onto the constraints
     std::vector<std::string> sweep;  ///< /json/pointer=VALUES of study sweep
-    std::string observable;          ///< BODY.COMPONENT of study sweep; "": that of the problem
+    std::string observable;          ///< column of study sweep; "": that of the problem
     bool keep = false;               ///< keep the motion of each run of study sweep
     lie::Settings settings;
     std::vector<std::string> given_settings;  ///< the options of `settings` that were given, such as --rtol

@@ -7,7 +7,6 @@ of the others.
 """
 from drawing import Line2D, axis, directory, distinct, lines_below, numbers, plt, read, record, save, where
 
-UNITS = {"r": "m", "v": "m/s", "w": "rad/s"}
 MOST_CURVES = 8  # with more, a colour bar of the second entry replaces the legend
 
 
@@ -46,7 +45,7 @@ def draw(folder):
     first = swept[0]
     others = [c for c in swept[1:] + ["integrator", "h"] if len(distinct(rows, c)) > 1]
     at, drawn = places(distinct(rows, first)), []
-    panels = [("observable_end", f"{study['observable']} at the end [{UNITS[study['observable'].split('.')[-1][0]]}]"), ("max_force", "largest constraint force [N]")]
+    panels = [("observable_end", f"{study['observable']} at the end" + (f" [{study['observable_unit']}]" if study["observable_unit"] else "")), ("max_force", "largest constraint force [N]")]
     if not any(numbers(rows, "max_force")):
         panels.pop()
     figure, axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels) + 1, 4.4), squeeze=False)

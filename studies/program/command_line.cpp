@@ -366,11 +366,11 @@ private:
                "B, or "
                "A:B:N:log; repeatable, for all combinations",
                append(o.sweep, one_sweep));
-        value(c, "--observable", "BODY.COMPONENT",
-              "scalar that study sweep tabulates and draws, rx to rz, vx to vz or wx to wz of a body; "
-              "default: that "
-              "of the model",
-              assign(o.observable, unchanged));
+        value(
+            c, "--observable", "COLUMN",
+            "quantity that study sweep tabulates and draws: a column of hilda help outputs, such as BODY.rz; "
+            "default: that of the model",
+            assign(o.observable, unchanged));
         c->add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
         c->add_flag("--fix-initial", o.fix_initial,
                     "project inconsistent initial data of the models onto the constraints");

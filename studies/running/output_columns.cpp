@@ -2,7 +2,9 @@
 #include "studies/running/output_columns.hpp"
 
 #include "dae/model.hpp"
+#include "io/error.hpp"
 #include "io/expression.hpp"
+#include "io/nearest.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -110,6 +112,35 @@ void OutputColumns::transfer(io::Archive& a)
 {
     for (Part& part : parts)
         for (double& number : part.saved) a.value(number);
+}
+
+ObservedColumn::ObservedColumn(const dae::Model& model,
+                               const std::vector<std::unique_ptr<dae::Output>>& outputs,
+                               const std::string& option, const std::string& name)
+{
+    std::vector<std::unique_ptr<ColumnGroup>> groups;
+    for (auto make : {body_columns, energy_column, force_columns, contact_columns})
+        groups.push_back(make(model));
+    groups.push_back(std::make_unique<OutputColumns>(model, outputs));
+    std::vector<std::string> names;
+    for (std::unique_ptr<ColumnGroup>& candidate : groups)
+        for (size_t k = 0; k < candidate->columns.size(); ++k) {
+            names.push_back(candidate->columns[k].name);
+            if (names.back() != name) continue;
+            index = k;
+            value.resize(candidate->columns.size());
+            group = std::move(candidate);
+            return;
+        }
+    throw io::UsageError(option + ": the model has no column" + io::with_nearest(name, names) +
+                         " (hilda help outputs lists the columns)");
+}
+
+double ObservedColumn::at(const lie::State& x)
+{
+    group->node(x);
+    group->values(x, value.data());
+    return value[index];
 }
 
 }  // namespace hilda::studies

@@ -39,4 +39,21 @@ private:
     size_t first_output = 0;       ///< index of the first variable of the outputs
 };
 
+/// One column of a run by its name: of bodies, energy, forces, contacts or outputs
+class ObservedColumn {
+public:
+    /// The model and the outputs must outlive this object. io::UsageError with `option` for an unknown name.
+    ObservedColumn(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
+                   const std::string& option, const std::string& name);
+
+    /// The value in the state x. To be called at each node of a run, in order.
+    double at(const lie::State& x);
+    const Column& column() const { return group->columns[index]; }
+
+private:
+    std::unique_ptr<ColumnGroup> group;
+    size_t index = 0;
+    std::vector<double> value;
+};
+
 }  // namespace hilda::studies

@@ -14,6 +14,7 @@
 #include "studies/experiments/sweep/swept_model.hpp"
 #include "studies/running/invariants.hpp"
 #include "studies/running/named_model.hpp"
+#include "studies/running/output_columns.hpp"
 #include "studies/running/sink.hpp"
 
 #include <fmt/format.h>
@@ -63,9 +64,11 @@ struct SweptRun : Run {
 /// Collects the results at all nodes, and passes the nodes to the sinks of a run that is kept.
 class SweptNodes final : public lie::Observer {
 public:
-    SweptNodes(SweptRun::Results& to, const Benchmark& c, const lie::TimeGrid& grid)
+    SweptNodes(SweptRun::Results& to, const Benchmark& c, const std::string& observable,
+               const lie::TimeGrid& grid)
         : to(to), model(*c.started->model), grid(grid), body(model.find(c.observable.body)),
-          component_name(c.observable.component), contacts(evolving_contacts(model)), C(model.pattern())
+          observed(model, c.started->outputs, "--observable", observable), contacts(evolving_contacts(model)),
+          C(model.pattern())
     {}
 
     void accepted(const lie::State& x, long n, int iterations) override
@@ -82,7 +85,7 @@ public:
                             .cost = {}});
         to.t = x.t;
         for (size_t k = 0; k < components.size(); ++k) to.end[k] = component(x, body, components[k]);
-        to.observed_end = component(x, body, component_name);
+        to.observed_end = observed.at(x);
         to.observed_least = n == 0 ? to.observed_end : std::min(to.observed_least, to.observed_end);
         to.observed_most = n == 0 ? to.observed_end : std::max(to.observed_most, to.observed_end);
         to.energy_start = invariants.energy_start, to.energy_end = invariants.energy_end;
@@ -102,7 +105,7 @@ private:
     const dae::Model& model;
     const lie::TimeGrid& grid;
     const int body;
-    const std::string component_name;
+    ObservedColumn observed;
     const std::vector<const contact::EvolvingContact*> contacts;
     Invariants invariants;
     lie::Rows C;
@@ -126,11 +129,11 @@ void remove_kept(const StudyContext& s)
     fs::remove(s.options.output + "/runs", error);
 }
 
-void compute(SweptRun& run, const StudyContext& s)
+void compute(SweptRun& run, const std::string& observable, const StudyContext& s)
 {
     const Benchmark& c = *run.c;
     const lie::TimeGrid grid = lie::TimeGrid::over(c.end, run.h, c.end / adaptive_rows);
-    SweptNodes nodes(run.result, c, grid);
+    SweptNodes nodes(run.result, c, observable, grid);
     std::optional<io::Sinks<RunSetup>> sinks;
     const std::string folder = folder_of(s, run.number);
     const io::SinkOptions no_options;
@@ -160,7 +163,7 @@ Table::Cell cell_of(const std::string& value)
     return std::isnan(number) ? Table::Cell(value) : Table::Cell(number);
 }
 
-Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const std::string& observable)
+Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const Column& observable)
 {
     using Results = SweptRun::Results;
     const auto value = [](double Results::*member) {
@@ -175,9 +178,8 @@ Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const std::
     all.push_back(column::rtol);
     all.push_back({"end", [](const SweptRun& run) { return run.c->end; }});
     all.push_back({"t", "t [s]", "{:.6g}", value(&Results::t)});
-    const char kind = observable[observable.rfind('.') + 1];
-    const std::string unit = kind == 'r' ? " [m]" : kind == 'v' ? " [m/s]" : " [rad/s]";
-    all.push_back({"observable_end", observable + unit, "{:.6g}", value(&Results::observed_end)});
+    const std::string unit = observable.unit.empty() ? "" : " [" + observable.unit + "]";
+    all.push_back({"observable_end", observable.name + unit, "{:.6g}", value(&Results::observed_end)});
     all.push_back({"observable_min", "least", "{:.6g}", value(&Results::observed_least)});
     all.push_back({"observable_max", "largest", "{:.6g}", value(&Results::observed_most)});
     for (size_t k = 0; k < components.size(); ++k)
@@ -194,22 +196,6 @@ Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const std::
     all.push_back(column::cpu_seconds);
     all.push_back(column::status);
     return Columns<SweptRun>(all);
-}
-
-/// BODY.COMPONENT of --observable, or the observable of the problem
-Observable observable_of(const StudyContext& s, const Benchmark& c)
-{
-    const std::string& text = s.options.observable;
-    if (text.empty()) return c.observable;
-    const size_t dot = text.rfind('.');
-    std::vector<std::string> bodies;
-    for (const dae::Body& body : c.started->model->all_bodies()) bodies.push_back(body.name);
-    if (dot == std::string::npos || dot == 0)
-        io::refuse_option("--observable", "must be BODY.COMPONENT, such as " + bodies.back() + ".rz", text);
-    io::one_of("--observable: the component", text.substr(dot + 1),
-               std::vector<std::string>(components.begin(), components.end()));
-    io::one_of("--observable: the body", text.substr(0, dot), bodies);
-    return {.body = text.substr(0, dot), .component = text.substr(dot + 1)};
 }
 
 void sweep(StudyContext& s)
@@ -231,7 +217,7 @@ void sweep(StudyContext& s)
 
     // The models are read again when they run: a grid of large models would not fit into the memory.
     std::vector<Benchmark> benchmarks;
-    Observable observable;
+    std::optional<Column> observable;
     for (size_t k = 0; k < combinations(entries); ++k) {
         Benchmark& c = benchmarks.emplace_back();
         try {
@@ -241,7 +227,11 @@ void sweep(StudyContext& s)
             c.end = s.options.end.value_or(0);
             continue;
         }
-        if (observable.body.empty()) observable = observable_of(s, c);
+        if (!observable)
+            observable =
+                ObservedColumn(*c.started->model, c.started->outputs, "study sweep: --observable",
+                               s.options.observable.empty() ? c.observable.name() : s.options.observable)
+                    .column();
         check_steps(s.name, c, steps);
         c.started.reset();
     }
@@ -259,15 +249,15 @@ void sweep(StudyContext& s)
     runs.compute(s, [&](SweptRun& run) {
         const Benchmark* const without_model = run.c;
         Benchmark c = model.benchmark(static_cast<size_t>(without_model - benchmarks.data()));
-        c.observable = observable;
         run.c = &c;
-        compute(run, s);
+        compute(run, observable->name, s);
         run.c = without_model;
     });
 
-    const Columns<SweptRun> columns = columns_of(entries, observable.name());
+    if (!observable) observable.emplace();  // no model has a consistent start
+    const Columns<SweptRun> columns = columns_of(entries, *observable);
     s.text << fmt::format("\n{}, {} runs; {} at the end, its least and largest value\n", short_name(name),
-                          runs.size(), observable.name());
+                          runs.size(), observable->name);
     std::vector<std::string> shown = {"run"};
     for (const SweptEntry& entry : entries) shown.push_back(entry.pointer);
     if (schemes.size() > 1) shown.emplace_back("integrator");
@@ -277,7 +267,8 @@ void sweep(StudyContext& s)
         shown.emplace_back(column);
     columns.print(s.text, runs, shown);
     s.json["model"] = short_name(name);
-    s.json["observable"] = observable.name();
+    s.json["observable"] = observable->name;
+    s.json["observable_unit"] = observable->unit;
     for (const SweptEntry& entry : entries)
         s.json["sweep"].push_back({{"pointer", entry.pointer}, {"values", entry.values}});
     s.json["runs"] = columns.array(runs);

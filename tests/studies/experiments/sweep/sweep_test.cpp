@@ -127,9 +127,10 @@ TEST_CASE("a wrong value of a sweep is refused before the first run", "[studies]
     refused(3, {"--sweep", "/bodies/0/mass=1,heavy"}, "thrown");
     refused(2, {"--sweep", "/bodies/0/mass=1,"}, "without empty values");
     refused(2, {"--sweep", "/bodies/0/mass=1", "--set", "/bodies/0/mass=2"}, "change the same entry");
-    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "bal.rz"}, "the body: must be ball");
-    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "ball.rq"}, "the component");
-    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "ball"}, "must be BODY.COMPONENT");
+    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "bal.rz"},
+            "the model has no column 'bal.rz'; did you mean 'ball.rz'");
+    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "ball.rq"}, "did you mean");
+    refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "ball"}, "the model has no column 'ball'");
     refused(2, {"--sweep", "/bodies/0/mass=1", "--steps", "0.3"}, "must divide the end");
     refused(2, {}, "needs --sweep");
     const Ended other = call(in, {"study", "energy", "--sweep", "/a=1"});
@@ -179,4 +180,23 @@ TEST_CASE("an interrupted sweep, resumed, gives the table of an uninterrupted sw
     for (const char* run : {"0001", "0002", "0012"})
         CHECK(read(in / "parts/runs" / run / "trajectory.csv") ==
               read(in / "whole/runs" / run / "trajectory.csv"));
+}
+
+TEST_CASE("the observable of a sweep may be any column of the run", "[studies][sweep]")
+{
+    const Scratch in;
+    const std::string outputs =
+        R"("outputs": [{"name": "twice", "type": "expression", "value": "2*ball.vz", "unit": "m/s"}], )";
+    std::string model = thrown;
+    model.insert(model.find('{') + 1, outputs);
+    write(in / "thrown.json", model);
+    const auto swept = [&](const std::string& observable) {
+        REQUIRE(call(in, {"study", "sweep", "thrown.json", "--sweep", "/gravity/2=-10,-5", "--observable",
+                          observable, "--no-plot", "--force"})
+                    .code == 0);
+        return csv(in / "out/sweep/study.csv");
+    };
+    for (const CsvRow& row : swept("twice")) CHECK(number(row, "observable_end") == 2 * number(row, "vz"));
+    for (const CsvRow& row : swept("energy"))
+        CHECK(number(row, "observable_end") == number(row, "energy_end"));
 }

@@ -162,9 +162,9 @@ TEST_CASE("an interrupted sweep, resumed, gives the table of an uninterrupted sw
 {
     const Scratch in;
     const std::vector<std::string> study = {
-        "study",   "sweep", "slider_crank", "--sweep",   "/gravity/2=-10:0:12",
-        "--steps", "1e-4",  "--keep",       "--no-plot", "--quiet",
-        "--jobs",  "2",     "--output"};
+        "study",     "sweep",   "slider_crank", "--sweep", "/gravity/2=-10:0:12",
+        "--end",     "0.5",     "--steps",      "1e-4",    "--keep",
+        "--no-plot", "--quiet", "--jobs",       "2",       "--output"};
     REQUIRE(call(in, with(study, {"whole"})).code == 0);
     const Program part(in, with(study, {"parts"}));
     REQUIRE(appears(in / "parts/runs/0002/trajectory.csv"));

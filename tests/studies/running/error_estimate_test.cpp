@@ -134,7 +134,7 @@ TEST_CASE("an unreliable estimate of the error says so", "[studies][run][error]"
     CHECK_THAT(refined.estimate(0).doubts.at(0), Contains("the order is not measured"));
 }
 
-TEST_CASE("--error does not change the files of a run, and needs a whole run with a fixed step",
+TEST_CASE("the option --error does not change the files of a run, and needs a whole run with a fixed step",
           "[studies][run][error]")
 {
     const tests::Scratch in;

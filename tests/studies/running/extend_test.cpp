@@ -152,7 +152,7 @@ TEST_CASE("without --end and --interval a resumed run keeps those of the run", "
     CHECK(read(in / "a/trajectory.csv") == before);
 }
 
-TEST_CASE("--resume with several integrators extends each of them", "[studies][resume]")
+TEST_CASE("the option --resume with several integrators extends each of them", "[studies][resume]")
 {
     const Scratch in;
     const auto run = [&](const std::string& integrators, const std::vector<std::string>& more) {

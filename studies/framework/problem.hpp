@@ -37,8 +37,9 @@ struct Problem {
     std::string reference_name = {};  ///< description of the reference solution, for tables
     /// To be called after dae::start(). Empty: that of a model file, see problem_or_file().
     ReferenceSolution reference_solution = {};
-    Observable observable = {};  ///< scalar shown in figures
-    std::string folder = {};     ///< of the files that the model names
+    Observable observable = {};      ///< scalar shown in figures
+    std::string folder = {};         ///< of the files that the model names
+    bool general_reference = false;  ///< reference_solution is that of a model file
 };
 
 }  // namespace hilda::studies
@@ -57,7 +58,7 @@ Problem problem(const std::string& name);
 
 /// The problem with this name, or the model file at this path. The reference solution of a model file is
 /// kinematic analysis if it has no degree of freedom, and the index-1 equations of motion, integrated with
-/// tolerance 1e-13, otherwise.
+/// tolerance 1e-13, otherwise. It does not cover models with internal states: Reference selects an integrator for these.
 Problem problem_or_file(const std::string& name_or_path);
 
 }  // namespace hilda::studies

@@ -24,6 +24,7 @@ Problem problem_or_file(const std::string& name_or_path)
         p.model = io::read_file(name_or_path, most);
     }
     if (!p.reference_solution) {
+        p.general_reference = true;
         p.reference_name = "kinematic analysis or index-1 equations (GSL rk8pd), 1e-13";
         p.reference_solution = [](dae::Description& d, const std::vector<double>& t) {
             return reference::reference_solution(*d.model, d.x, t);

@@ -4,6 +4,7 @@
 #include "contact/evolving/unilateral.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
+#include "io/message.hpp"
 #include "lie/settings.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/running/diagnosis.hpp"
@@ -35,9 +36,10 @@ Evaluated finest(const Schemes& schemes, double step, double rtol)
 }
 
 Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
-    : context(context), options(context.options)
+    : context(context), options(context.options), highest_order(evaluated.highest_order)
 {
     if (options.reference.empty()) {
+        h = evaluated.smallest_step / 10;
         if (options.reference_step || options.reference_rtol)
             context.refuse("--reference-step and --reference-rtol need --reference NAME");
         return;
@@ -88,18 +90,33 @@ void Reference::evaluate(std::vector<Benchmark>& benchmarks, const std::vector<d
 
 void Reference::evaluate(Benchmark& c) const
 {
-    if (scheme == nullptr) {
+    const lie::Scheme* const reference = scheme_for(c);
+    if (reference == nullptr) {
         dae::Description d = read_and_start(c.problem, options);
         std::vector<double> times;
         for (long k = 0; k <= c.instants.count; ++k) times.push_back(static_cast<double>(k) * c.instants.dt);
         c.reference_solution = c.problem.reference_solution(d, times);
     } else {
-        c.reference_solution = by_integrator(c);
-        c.reference_name = scheme->adaptive ? fmt::format("{} at rtol {}", scheme->name, step_text(rtol))
-                                            : fmt::format("{} at h = {:.6g} s", scheme->name, step(c));
+        c.reference_solution = by_integrator(c, *reference);
+        c.reference_name = reference->adaptive
+                               ? fmt::format("{} at rtol {}", reference->name, step_text(rtol))
+                               : fmt::format("{} at h = {:.6g} s", reference->name, step(c));
+        if (scheme == nullptr && !options.quiet)
+            io::warning(
+                fmt::format("{}: the internal states of its forces exclude a reference solution with "
+                            "adaptive steps; the reference is {}; --reference selects another",
+                            c.problem.name, c.reference_name));
     }
     for (const lie::State& x : c.reference_solution.row) dae::check_dropped_rows(*c.started->model, x);
     c.size = sizes(*c.started->model, c.reference_solution, c.instants, c.observable);
+}
+
+/// The integrator of the reference solution; nullptr: the reference solution of the problem
+const lie::Scheme* Reference::scheme_for(const Benchmark& c) const
+{
+    if (scheme != nullptr || !c.problem.general_reference || c.started->x.internal_state.empty())
+        return scheme;
+    return &lie::scheme(highest_order > 2 ? "rA-rkmk-4" : "rA-half-1-momentum");
 }
 
 /// Step of the reference integrator [s], which divides the interval of the instants. The default is reduced
@@ -114,12 +131,12 @@ double Reference::step(const Benchmark& c) const
     return c.instants.dt / std::max(1., std::ceil(nodes - 1e-6));
 }
 
-lie::Trajectory Reference::by_integrator(const Benchmark& c) const
+lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& reference) const
 {
     lie::Settings settings = options.settings;
     settings.tolerance = std::min(settings.tolerance, 1e-12);  // not coarser than that of the runs
     lie::TimeGrid grid{.h = c.instants.dt, .steps = c.instants.count};
-    if (scheme->adaptive) {
+    if (reference.adaptive) {
         settings.rtol = rtol;
         settings.atol = 0;  // as rtol
     } else {
@@ -127,7 +144,7 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c) const
         grid.interval = std::lround(c.instants.dt / grid.h);
         grid.steps = c.instants.count * grid.interval;
     }
-    const auto integrator = contact::make_integrator(*c.started->model, *scheme, settings);
+    const auto integrator = contact::make_integrator(*c.started->model, reference, settings);
     return lie::march(c.started->x, *integrator, grid);
 }
 

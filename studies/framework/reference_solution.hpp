@@ -25,18 +25,22 @@ public:
     Reference(const StudyContext& context, const Evaluated& evaluated);
 
     /// Computes the reference solution of each benchmark at its instants, with a row for each from t = 0 on.
-    /// The benchmarks are computed concurrently.
+    /// The benchmarks are computed concurrently. A model file with internal states (compliant contacts, friction) has no
+    /// reference solution with adaptive steps: without --reference its reference is rA-half-1-momentum, or rA-rkmk-4 for
+    /// runs of a higher order, with a tenth of the smallest step, after a warning.
     /// io::UsageError for steps [s] that do not have these instants as nodes.
     void evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps = {}) const;
 
 private:
     void evaluate(Benchmark& c) const;
-    lie::Trajectory by_integrator(const Benchmark& c) const;
+    const lie::Scheme* scheme_for(const Benchmark& c) const;
+    lie::Trajectory by_integrator(const Benchmark& c, const lie::Scheme& reference) const;
     double step(const Benchmark& c) const;
 
     const StudyContext& context;
     const StudyOptions& options;
     const lie::Scheme* scheme = nullptr;  ///< nullptr: the reference solution of the problem
+    int highest_order = 0;                ///< of the integrators with a fixed step that are evaluated
     double h = 0;                         ///< requested step [s]; 0: the interval of the instants
     double rtol = 0;
 };

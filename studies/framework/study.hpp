@@ -60,6 +60,7 @@ struct StudyOptions {
     bool resume = false;  ///< continue the interrupted study of the output directory
     bool plot = true, quiet = false, json = false;
     std::vector<std::string> figure_formats;  ///< empty: png
+    bool latex = false;                       ///< write study.tex
     std::vector<Expectation> expect;
     std::string command_line;  ///< recorded in study.json
 };

@@ -6,6 +6,7 @@
 #include "io/message.hpp"
 #include "io/nearest.hpp"
 #include "io/program.hpp"
+#include "studies/running/latex.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
@@ -75,8 +76,9 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
 }  // namespace
 
 StudyContext::StudyContext(const Study& study, const StudyOptions& options)
-    : name(study.name), keys(study.keys), options(options)
+    : name(study.name), keys(study.keys), options(options), answers(study.answers)
 {
+    if (options.latex) kept = std::make_unique<KeptTables>(text);
     for (const Expectation& e : options.expect) {
         if (std::find(keys.begin(), keys.end(), e.key) != keys.end()) continue;
         if (keys.empty()) refuse("--expect is not an option of this study");
@@ -218,12 +220,36 @@ io::Json StudyContext::whole() const
     return all;
 }
 
+/// The tables of the text, to be read by the command input of a LaTeX document
+std::string StudyContext::latex_tables() const
+{
+    std::string command = options.command_line;
+    std::replace_if(
+        command.begin(), command.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::string out = "% " + command + "\n% needs \\usepackage{booktabs}\n";
+    for (size_t k = 0; k < kept->tables.size(); ++k) {
+        const KeptTables::Kept& table = kept->tables[k];
+        std::string caption = answers + (table.title.empty() ? "" : ". ");
+        caption.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(caption.front())));
+        for (const char c : table.title) caption += c == '\n' ? std::string("; ") : std::string(1, c);
+        out += '\n' + latex_table(table.rows, caption, fmt::format("{}-{}", name, k + 1));
+    }
+    return out;
+}
+
 void StudyContext::write(const io::Json& whole_json) const
 {
     const std::string in = options.output + "/";
     std::vector<std::string> written = {"study.csv", "study.json"};
     io::write_file(in + "study.csv", table);
     io::write_file(in + "study.json", whole_json.text());
+    if (kept) {
+        io::write_file(in + "study.tex", latex_tables());
+        written.emplace_back("study.tex");
+    } else {
+        std::error_code error;
+        std::filesystem::remove(in + "study.tex", error);  // that of an earlier run
+    }
     for (const auto& [file, content] : files) {
         io::write_file(in + file, content);
         written.push_back(file);

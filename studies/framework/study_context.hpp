@@ -10,6 +10,7 @@
 #include "studies/framework/pool.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
+#include "studies/framework/table.hpp"
 #include "studies/running/finished_jobs.hpp"
 
 #include <algorithm>
@@ -98,6 +99,10 @@ private:
     void write(const io::Json& whole_json) const;
     bool as_expected() const;
 
+    std::string latex_tables() const;
+
+    const std::string& answers;        ///< of the study
+    std::unique_ptr<KeptTables> kept;  ///< of the text, for study.tex; nullptr without --latex
     std::string failed_runs,
         numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
     std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <ostream>
+#include <string_view>
 
 namespace hilda::studies {
 
@@ -19,6 +19,22 @@ std::string for_people(const Table::Cell& cell, const std::string& format)
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
 }
 
+/// Place of the pointer to KeptTables in a stream
+int slot()
+{
+    static const int index = std::ios_base::xalloc();
+    return index;
+}
+
+/// The lines after the last empty line
+std::string last_paragraph(std::string_view text)
+{
+    while (text.ends_with('\n')) text.remove_suffix(1);
+    while (text.starts_with('\n')) text.remove_prefix(1);
+    const size_t at = text.rfind("\n\n");
+    return std::string(at == std::string_view::npos ? text : text.substr(at + 2));
+}
+
 }  // namespace
 
 void Table::add(std::vector<Cell> row)
@@ -27,23 +43,34 @@ void Table::add(std::vector<Cell> row)
     cells.push_back(std::move(row));
 }
 
+std::vector<std::vector<std::string>> Table::shown() const
+{
+    std::vector<std::vector<std::string>> rows(1);
+    for (const Column& column : columns) rows.front().push_back(column.name);
+    for (const auto& row : cells) {
+        std::vector<std::string>& texts = rows.emplace_back();
+        for (size_t c = 0; c < columns.size(); ++c) texts.push_back(for_people(row[c], columns[c].format));
+    }
+    return rows;
+}
+
 void Table::print(std::ostream& out) const
 {
-    std::vector<size_t> width;
-    for (size_t c = 0; c < columns.size(); ++c) {
-        width.push_back(columns[c].name.size());
-        for (const auto& row : cells)
-            width[c] = std::max(width[c], for_people(row[c], columns[c].format).size());
-    }
-    for (size_t c = 0; c < columns.size(); ++c)
-        out << fmt::format("{:>{}}", columns[c].name, width[c] + (c == 0 ? 0 : 2));
-    out << '\n';
-    for (const auto& row : cells) {
+    const std::vector<std::vector<std::string>> rows = shown();
+    if (auto* kept = static_cast<KeptTables*>(out.pword(slot())))
+        kept->tables.push_back({last_paragraph(kept->stream.view()), rows});
+    std::vector<size_t> width(columns.size());
+    for (const auto& row : rows)
+        for (size_t c = 0; c < columns.size(); ++c) width[c] = std::max(width[c], row[c].size());
+    for (const auto& row : rows) {
         for (size_t c = 0; c < columns.size(); ++c)
-            out << fmt::format("{:>{}}", for_people(row[c], columns[c].format), width[c] + (c == 0 ? 0 : 2));
+            out << fmt::format("{:>{}}", row[c], width[c] + (c == 0 ? 0 : 2));
         out << '\n';
     }
 }
+
+KeptTables::KeptTables(std::ostringstream& stream) : stream(stream) { stream.pword(slot()) = this; }
+KeptTables::~KeptTables() { stream.pword(slot()) = nullptr; }
 
 std::string Table::csv() const
 {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cmath>
-#include <iosfwd>
+#include <sstream>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,12 +28,34 @@ public:
     void add(std::vector<Cell> row);
     size_t rows() const { return cells.size(); }
 
+    /// Prints the table; the stream of a KeptTables also keeps it.
     void print(std::ostream& out) const;
     std::string csv() const;
+    /// The headings and the cells as print() shows them
+    std::vector<std::vector<std::string>> shown() const;
 
 private:
     std::vector<Column> columns;
     std::vector<std::vector<Cell>> cells;
+};
+
+/// Keeps the tables that are printed to a stream during its lifetime, each with the paragraph before it.
+class KeptTables {
+public:
+    explicit KeptTables(std::ostringstream& stream);
+    ~KeptTables();
+    KeptTables(const KeptTables&) = delete;
+    KeptTables& operator=(const KeptTables&) = delete;
+
+    struct Kept {
+        std::string title;  ///< the line or lines directly above the table
+        std::vector<std::vector<std::string>> rows;
+    };
+    std::vector<Kept> tables;
+
+private:
+    friend class Table;
+    std::ostringstream& stream;
 };
 
 /// The number in a cell; NaN for a text

@@ -422,6 +422,8 @@ private:
         c->add_flag_callback(
             "--no-plot", [this] { study.plot = false; }, "draw no figures");
         add_figure_format(c, o.figure_formats);
+        c->add_flag("--latex", o.latex,
+                    "write study.tex as well: the tables of the text for LaTeX, with the package booktabs");
         c->add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
         c->add_flag("-v,--verbose", verbose, "no effect");
         c->add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");

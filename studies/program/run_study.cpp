@@ -120,6 +120,8 @@ int run_study(const std::string& kind, StudyOptions options)
     if (!options.figure_formats.empty() && (!options.plot || options.output.empty()))
         throw io::UsageError("study " + kind + ": --figure-format is for figures; " +
                              (options.plot ? "with --json they need --output" : "--no-plot draws none"));
+    if (options.latex && options.output.empty())
+        throw io::UsageError("study " + kind + ": --latex writes a file: with --json it needs --output");
     if (options.resume && options.output.empty())
         throw io::UsageError("study " + kind + ": --resume needs the --output of the interrupted study");
     if (options.resume && options.force)

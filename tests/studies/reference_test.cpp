@@ -150,3 +150,25 @@ TEST_CASE("adaptive schemes are accepted as --reference and rejected by studies 
         }
     }
 }
+
+TEST_CASE("a model file with friction is compared with a finer run of a fixed-step integrator",
+          "[studies][reference]")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"models", "rolling_ball", "--write", "ball.json"}).code == 0);
+    const Ended ended = call(in, {"study", "compare", "--problem", "ball.json", "--integrator",
+                                  "rA-half-1,rA-half-2", "--end", "0.1", "--no-plot"});
+    CAPTURE(ended.err);
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("reference solution: rA-half-1-momentum at h = 0.0001 s"));
+    CHECK_THAT(ended.err, Contains("hilda: warning: ball: the internal states") &&
+                              Contains("--reference selects another"));
+    // the reference of a scheme of fourth order, and one that is selected
+    const Ended fourth = call(in, {"study", "compare", "--problem", "ball.json", "--integrator", "rA-rkmk-4",
+                                   "--end", "0.1", "--no-plot", "--force"});
+    CHECK_THAT(fourth.out, Contains("reference solution: rA-rkmk-4 at h = 0.0001 s"));
+    const Ended selected = call(in, {"study", "compare", "--problem", "ball.json", "--end", "0.1",
+                                     "--no-plot", "--force", "--reference", "rA-half-2"});
+    CHECK_THAT(selected.out, Contains("reference solution: rA-half-2 at h = 0.0001 s"));
+    CHECK(selected.err.empty());
+}

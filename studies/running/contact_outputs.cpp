@@ -3,7 +3,7 @@
 
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
-#include "studies/running/columns.hpp"
+#include "studies/running/state_columns.hpp"
 
 namespace hilda::studies {
 
@@ -61,9 +61,9 @@ public:
     }
 
 private:
-    static std::vector<Column> columns_of(const ContactOutputs& outputs)
+    static std::vector<StateColumn> columns_of(const ContactOutputs& outputs)
     {
-        std::vector<Column> all;
+        std::vector<StateColumn> all;
         for (const ContactOutputs::Contact& c : outputs.contacts) {
             const auto add = [&](const char* name, const char* unit, const char* meaning) {
                 all.push_back({c.name + '.' + name, unit, meaning});

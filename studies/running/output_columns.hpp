@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/outputs/output.hpp"
-#include "studies/running/columns.hpp"
+#include "studies/running/state_columns.hpp"
 
 namespace hilda::studies {
 
@@ -48,7 +48,7 @@ public:
 
     /// The value in the state x. To be called at each node of a run, in order.
     double at(const lie::State& x);
-    const Column& column() const { return group->columns[index]; }
+    const StateColumn& column() const { return group->columns[index]; }
 
 private:
     std::unique_ptr<ColumnGroup> group;

@@ -163,7 +163,7 @@ Table::Cell cell_of(const std::string& value)
     return std::isnan(number) ? Table::Cell(value) : Table::Cell(number);
 }
 
-Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const Column& observable)
+Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const StateColumn& observable)
 {
     using Results = SweptRun::Results;
     const auto value = [](double Results::*member) {
@@ -217,7 +217,7 @@ void sweep(StudyContext& s)
 
     // The models are read again when they run: a grid of large models would not fit into the memory.
     std::vector<Benchmark> benchmarks;
-    std::optional<Column> observable;
+    std::optional<StateColumn> observable;
     for (size_t k = 0; k < combinations(entries); ++k) {
         Benchmark& c = benchmarks.emplace_back();
         try {

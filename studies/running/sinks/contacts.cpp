@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// contacts.csv: forces and motion of all contacts at the output rows.
 
-#include "studies/running/columns.hpp"
+#include "studies/running/state_columns.hpp"
 
 namespace hilda::studies {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// forces.csv: lengths, angles and forces of springs, dampers, limits and bushings at the output rows.
 
-#include "studies/running/columns.hpp"
+#include "studies/running/state_columns.hpp"
 
 namespace hilda::studies {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/columns.hpp"
+#include "studies/running/state_columns.hpp"
 
 #include "dae/model.hpp"
 #include "io/csv.hpp"
@@ -8,9 +8,9 @@ namespace hilda::studies {
 
 namespace {
 
-std::vector<Column> columns_of_bodies(const dae::Model& model)
+std::vector<StateColumn> columns_of_bodies(const dae::Model& model)
 {
-    std::vector<Column> all;
+    std::vector<StateColumn> all;
     const auto add = [&](const std::string& body, std::initializer_list<const char*> names, const char* unit,
                          const char* meaning) {
         for (const char* name : names) all.push_back({body + '.' + name, unit, meaning});
@@ -44,9 +44,9 @@ public:
     }
 };
 
-std::vector<Column> columns_of_forces(const dae::Model& model)
+std::vector<StateColumn> columns_of_forces(const dae::Model& model)
 {
-    std::vector<Column> all;
+    std::vector<StateColumn> all;
     for (const auto& force : model.forces())
         for (const dae::Force::Quantity& q : force->quantities())
             all.push_back({force->name + '.' + q.name, q.unit, q.meaning});
@@ -99,7 +99,7 @@ void ColumnsSink::transfer(io::Archive& a)
 std::string ColumnsSink::header() const
 {
     std::string row = "t";
-    for (const Column& column : group->columns) row += ',' + io::csv_field(column.name);
+    for (const StateColumn& column : group->columns) row += ',' + io::csv_field(column.name);
     return row + '\n';
 }
 

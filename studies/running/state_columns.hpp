@@ -12,7 +12,7 @@
 namespace hilda::studies {
 
 /// A column of an output table
-struct Column {
+struct StateColumn {
     std::string name;           ///< ENTITY.quantity
     std::string unit, meaning;  ///< meaning with frame and sign convention
 };
@@ -20,7 +20,7 @@ struct Column {
 /// Columns that are computed together from the state at a node
 class ColumnGroup {
 public:
-    explicit ColumnGroup(std::vector<Column> columns) : columns(std::move(columns)) {}
+    explicit ColumnGroup(std::vector<StateColumn> columns) : columns(std::move(columns)) {}
     virtual ~ColumnGroup() = default;
 
     /// Takes every node of the run, in order and before values().
@@ -30,7 +30,7 @@ public:
     /// The values of all columns. The function does not allocate memory.
     virtual void values(const lie::State& x, double* out) = 0;
 
-    const std::vector<Column> columns;
+    const std::vector<StateColumn> columns;
 };
 
 /// Position, rotation matrix, velocities and accelerations of all bodies, as in trajectory.csv

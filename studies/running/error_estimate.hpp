@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Estimated discretisation error of a run.
 ///
-/// The model is integrated with h/2 beside the run with h, and with h/4 if that is cheap. With the declared order p of a
-/// quantity, Richardson's estimate of the error of the run with h is
+/// The model is integrated with h/2 beside the run with h, and with h/4 if that is cheap. With the declared
+/// order p of a quantity, Richardson's estimate of the error of the run with h is
 ///
 ///     e = |x_h - x_{h/2}| 2^p / (2^p - 1)
 ///
-/// for the largest difference over the output rows and bodies. The observed order log2(|x_h - x_{h/2}| / |x_{h/2} -
-/// x_{h/4}|), from the largest differences, shows whether the estimate holds: not after an impact, in chaotic motion, or
-/// with a step that is too large.
+/// for the largest difference over the output rows and bodies. The observed order log2(|x_h - x_{h/2}| /
+/// |x_{h/2} - x_{h/4}|), from the largest differences, shows whether the estimate holds: not after an impact,
+/// in chaotic motion, or with a step that is too large.
 
 #pragma once
 
@@ -39,8 +39,8 @@ struct ErrorEstimate {
 
         bool is_at_resolution() const { return error <= resolution; }
     };
-    /// r [m], A (angle of rotation) [rad], v [m/s], omega [rad/s], resultant constraint force F [N] and torque T
-    /// [N m] on a body
+    /// r [m], A (angle of rotation) [rad], v [m/s], omega [rad/s], resultant constraint force F [N] and
+    /// torque T [N m] on a body
     std::array<Quantity, 6> quantities;
     double until = 0;                 ///< time of the last compared row [s]
     std::vector<std::string> doubts;  ///< why the estimate may be wrong; empty if nothing indicates that
@@ -58,8 +58,8 @@ public:
                 const lie::Settings& settings, const lie::TimeGrid& grid);
     ~RefinedRuns() override;
 
-    /// Compares a node if it is an output row. A numerical failure of a finer run ends the comparison and becomes a
-    /// doubt.
+    /// Compares a node if it is an output row. A numerical failure of a finer run ends the comparison and
+    /// becomes a doubt.
     void accepted(const lie::State& node, long n, int iterations) override;
     /// The estimate at the end. contact_events: number of impacts, lift-offs and the like in the run
     ErrorEstimate estimate(size_t contact_events) const;

@@ -230,8 +230,8 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
     }
     recorder.open(from);
     begin = Clock::now();
-    // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed at
-    // any time.
+    // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed
+    // at any time.
     if (extends) std::remove(path("summary.json").c_str());
     if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(march, recorder);
     advance(march, integrator, recorder);

@@ -17,8 +17,8 @@ public:
 
     /// "double_pendulum with /bodies/0/mass=2": the model with combination k
     std::string name(size_t k) const;
-    /// The benchmark of combination k, with its model. lie::InvalidInput, which names --sweep; lie::NumericalFailure
-    /// if there is no consistent start.
+    /// The benchmark of combination k, with its model. lie::InvalidInput, which names --sweep;
+    /// lie::NumericalFailure if there is no consistent start.
     Benchmark benchmark(size_t k) const;
 
 private:

@@ -23,8 +23,8 @@ struct SweptEntry {
 /// io::UsageError for another form, for an empty part and for a value that occurs twice.
 SweptEntry swept_entry(const std::string& text);
 
-/// Reads all --sweep of a command. io::UsageError as above, for an entry that is given twice, and for more than 100000
-/// combinations.
+/// Reads all --sweep of a command. io::UsageError as above, for an entry that is given twice, and for more
+/// than 100000 combinations.
 std::vector<SweptEntry> swept_entries(const std::vector<std::string>& texts);
 
 /// Combination number k of the values: the last entry changes fastest.

@@ -55,9 +55,9 @@ void check_same(const fs::path& a, const fs::path& b)
 
 }  // namespace
 
-// The first end is between two output rows and between two frames: their last row and frame must disappear. The driver
-// of the slider-crank makes the integrator choose new pivots. rA-half-1 and rA-half-2 have staggered velocities: their
-// last node needs a further step.
+// The first end is between two output rows and between two frames: their last row and frame must disappear.
+// The driver of the slider-crank makes the integrator choose new pivots. rA-half-1 and rA-half-2 have
+// staggered velocities: their last node needs a further step.
 TEST_CASE("a run extended by a later end gives the files of a run with this end", "[studies][resume]")
 {
     const std::string integrator =

@@ -12,6 +12,7 @@
 #include "studies/program/lists.hpp"
 #include "studies/program/new_plugin.hpp"
 #include "studies/program/plugin.hpp"
+#include "studies/program/reproduce.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/running/plot.hpp"
@@ -60,6 +61,7 @@ public:
         add_integrators();
         add_schema();
         add_study();
+        add_reproduce();
         add_granular();
         add_plot();
         add_info();
@@ -429,6 +431,34 @@ private:
         c->add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
     }
 
+    void add_reproduce()
+    {
+        ReproduceOptions& o = reproduction;
+        CLI::App* c =
+            add("reproduce", "run the studies of the dissertation and write one page with all results",
+                [this] { return reproduce(reproduction); });
+        values(c, "--chapter", "N[,N...]", "chapters 3, 4, 5, 7, 8; default: all",
+               append(o.chapters, [](const std::string& option, const std::string& text) {
+                   std::vector<int> chapters;
+                   for (const std::string& part : list(option, text))
+                       chapters.push_back(io::count_up_to(99, option, part));
+                   return chapters;
+               }));
+        c->add_flag("--quick", o.quick, "reduced grids, 4.5 minutes of CPU time (the default)");
+        c->add_flag("--full", o.full, "the grids of the dissertation, hours");
+        value(c, "--output", "DIR",
+              "output directory, new or empty unless --force or --resume is given; default: out/reproduce",
+              assign(o.output, io::path));
+        c->add_flag("--resume", o.resume,
+                    "continue in the output directory; finished studies are not run again");
+        c->add_flag("--force", o.force, "overwrite an output directory that is not empty");
+        value(c, "--jobs", "N", "number of concurrent runs; default: the number of cores",
+              assign(o.jobs, positive_count));
+        c->add_flag_callback(
+            "--no-plot", [this] { reproduction.plot = false; }, "draw no figures");
+        c->add_flag("--quiet", o.quiet, "print no result and no progress");
+    }
+
     void add_granular()
     {
         CLI::App* c = add("granular", "simulate a granular case, by the program hilda-granular",
@@ -579,6 +609,7 @@ private:
     KinematicsOptions kinematics;
     CheckOptions check;
     StudyOptions study;
+    ReproduceOptions reproduction;
     std::vector<std::string> selected_integrators;
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;

@@ -159,9 +159,11 @@ std::string latex_table(const std::vector<std::vector<std::string>>& rows, const
                                                     })
                          ? 'r'
                          : 'l';
-    std::string out = "\\begin{table}\n  \\centering\n  \\caption{" + latex(caption) +
-                      "}\n  \\label{tab:" + label + "}\n  \\begin{tabular}{" + alignment +
-                      "}\n    \\toprule\n";
+    constexpr size_t wide = 8;  // such a table is set in a smaller size
+    std::string out = "\\begin{table}\n  \\centering\n" +
+                      std::string(columns < wide ? "" : "  \\footnotesize\\setlength{\\tabcolsep}{3pt}\n") +
+                      "  \\caption{" + latex(caption) + "}\n  \\label{tab:" + label +
+                      "}\n  \\begin{tabular}{" + alignment + "}\n    \\toprule\n";
     for (size_t r = 0; r < rows.size(); ++r) {
         out += "    ";
         for (size_t c = 0; c < columns; ++c) {

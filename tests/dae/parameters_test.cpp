@@ -89,7 +89,7 @@ TEST_CASE("the canonical form has the values of the parameters and is read as th
     CHECK(again.end == d.end);
 }
 
-TEST_CASE("--set changes a parameter, and a number to an expression", "[dae][parameters]")
+TEST_CASE("the option --set changes a parameter, and a number to an expression", "[dae][parameters]")
 {
     const dae::Description d = read(pendulum(length), {"/parameters/l=3", "/bodies/0/mass=\"2*m\""});
     CHECK(d.model->all_bodies()[0].m == 18);

@@ -89,16 +89,17 @@ TEST_CASE("a contact point that is not found ends the run with the contact, the 
     CHECK_THAT(tests::read(in / "out/on/summary.json"), Catch::Contains("contact_not_converged"));
 }
 
-TEST_CASE("a study of a model file with contacts needs --reference", "[studies][contact]")
+TEST_CASE("a study of a model file with contacts has a reference of fixed step", "[studies][contact]")
 {
     const tests::Scratch in;
     tests::write(in / "m.json", in_bowl("0.89"));
     const std::vector<std::string> study = {
         "study",   "convergence",          "--problem", "m.json",   "--integrator", "rA-half-1",
         "--steps", "7.8125e-4,3.90625e-4", "--no-plot", "--output", "out",          "--force"};
-    const Ended refused = call(in, study);
-    CHECK(refused.code == io::exit_code::invalid_input);
-    CHECK_THAT(refused.err, Catch::Contains("select an integrator as the reference (--reference NAME)"));
+    const Ended by_default = call(in, study);
+    CHECK(by_default.code == io::exit_code::done);
+    CHECK_THAT(by_default.err, Catch::Contains("the reference is rA-half-1-momentum at h = ") &&
+                                   Catch::Contains("--reference selects another"));
     std::vector<std::string> evaluated = study;
     evaluated.insert(evaluated.end(), {"--reference", "rA-rattle"});
     CHECK(call(in, evaluated).code == io::exit_code::done);

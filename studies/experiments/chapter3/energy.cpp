@@ -9,9 +9,9 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "studies/experiments/chapter3/work_balance.hpp"
 #include "studies/framework/curve.hpp"
 #include "studies/framework/sweep.hpp"
-#include "studies/running/work_balance.hpp"
 
 #include <fmt/format.h>
 

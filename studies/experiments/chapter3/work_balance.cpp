@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/work_balance.hpp"
+#include "studies/experiments/chapter3/work_balance.hpp"
 
 #include <algorithm>
 #include <cmath>

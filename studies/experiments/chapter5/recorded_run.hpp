@@ -7,7 +7,7 @@
 #include "dae/model_file.hpp"
 #include "studies/framework/curve.hpp"
 #include "studies/framework/sweep.hpp"
-#include "studies/running/model_frames.hpp"
+#include "studies/running/frames/model_frames.hpp"
 
 #include <optional>
 

@@ -284,6 +284,7 @@ const bool registered = io::Registry<Study>::add(
      .accepted = takes::sweep | takes::rtol,
      .keys = {"observable_end", "observable_min", "observable_max", "energy_drift", "constraint_norm",
               "max_force", "max_torque"},
+     .files = {"sweep.png"},
      .run = sweep});
 
 }  // namespace

@@ -3,7 +3,7 @@
 /// Snapshots); a checkpoint contains the frames.
 
 #include "studies/program/arguments.hpp"
-#include "studies/running/model_frames.hpp"
+#include "studies/running/frames/model_frames.hpp"
 #include "studies/running/sink.hpp"
 
 #include <fmt/format.h>

@@ -113,7 +113,7 @@ TEST_CASE("the help of a study has its options, its keys and its files, and no o
         const std::set<std::string> options = matches(text, "\\n  (?:-h,)?(--[a-z-]+)");
         CHECK(options.contains("--reference") == ((study.accepted & studies::takes::reference) != 0));
         CHECK(options.contains("--seed") == (study.name == "scaling"));
-        CHECK(options.contains("--rtol") == (study.name == "compare"));
+        CHECK(options.contains("--rtol") == (study.name == "compare" || study.name == "sweep"));
         CHECK(options.contains("--integrator") == ((study.lacking & studies::lacks::models) == 0));
         CHECK(options.contains("--expect") == !study.keys.empty());
         CHECK(options.contains("--output"));
@@ -174,7 +174,7 @@ TEST_CASE("an option of the integrators that none of them uses is refused with t
         {{"run", "double_pendulum", "--rho-infinity", "0.8"}, "--rho-infinity; it is for rA-genalpha"},
         {{"run", "double_pendulum", "--reparametrise"}, "--reparametrise; it is for reps-half-1"},
         {{"study", "energy", "--rtol", "1e-6"}, "--rtol is for compare"},
-        {{"study", "energy", "--atol", "1e-6"}, "--atol is for compare, work-precision"},
+        {{"study", "energy", "--atol", "1e-6"}, "--atol is for compare, sweep, work-precision"},
         {{"study", "compare", "--rtol", "1e-6"}, "no selected integrator uses --rtol"},
         {{"study", "energy", "--integrator", "rA-half-1", "--rho-infinity", "0.5"}, "it is for rA-genalpha"},
         {{"study", "energy", "--seed", "0"}, "--seed is for scaling"},

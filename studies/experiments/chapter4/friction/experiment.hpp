@@ -6,7 +6,7 @@
 #include "contact/scenes/scene.hpp"
 #include "io/registry.hpp"
 #include "studies/framework/curve.hpp"
-#include "studies/running/vtk.hpp"
+#include "studies/running/frames/vtk.hpp"
 
 #include <functional>
 #include <string>

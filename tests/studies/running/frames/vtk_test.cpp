@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/vtk.hpp"
+#include "studies/running/frames/vtk.hpp"
 
 #include "contact/implicit_surface.hpp"
 #include "contact/mesh/height_map.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/body_drawing.hpp"
+#include "studies/running/frames/body_drawing.hpp"
 
 #include "tests/support/random_motion.hpp"
 
@@ -76,8 +76,8 @@ TEST_CASE("a body with a shape is drawn as this shape", "[studies][vtk]")
         dae::Body body{.name = shape.type, .m = 2, .J_bar = shape.inertia(2)};
         body.shape = shape;
         const Polyhedron drawn(studies::body_drawing(body));
-        // Inscribed polyhedra: the volume is smaller, by 5 % for the sphere; the orientation is outward.
-        const double margin = shape.type == "box" ? 1e-12 : 0.05;
+        // Inscribed polyhedra: the volume is smaller, by up to 8 % for the ellipsoid; the orientation is outward.
+        const double margin = shape.type == "box" ? 1e-12 : 0.08;
         CHECK(drawn.volume == Approx(shape.volume()).epsilon(margin));
         CHECK((2 / drawn.volume * drawn.J - shape.inertia(2)).norm() < margin * shape.inertia(2).norm());
     }

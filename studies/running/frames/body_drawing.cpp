@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/body_drawing.hpp"
+#include "studies/running/frames/body_drawing.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/model_frames.hpp"
+#include "studies/running/frames/model_frames.hpp"
 
 #include "dae/constraints/d.hpp"
 #include "dae/model.hpp"
-#include "studies/running/body_drawing.hpp"
+#include "studies/running/frames/body_drawing.hpp"
 
 namespace hilda::studies {
 

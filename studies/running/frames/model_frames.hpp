@@ -5,7 +5,7 @@
 
 #include "lie/trajectory.hpp"
 #include "studies/running/contact_outputs.hpp"
-#include "studies/running/vtk.hpp"
+#include "studies/running/frames/vtk.hpp"
 
 #include <functional>
 

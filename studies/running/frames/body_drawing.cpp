@@ -62,12 +62,18 @@ PolygonMesh drawing(const dae::BodyShape& shape)
 
 }  // namespace
 
+bool has_equal_moments(const dae::Body& body)
+{
+    const Vec3 J = Eigen::SelfAdjointEigenSolver<Mat3>(body.J_bar, Eigen::EigenvaluesOnly).eigenvalues();
+    return J[2] - J[0] <= 1e-9 * J[2];
+}
+
 PolygonMesh equivalent_solid(const dae::Body& body)
 {
-    constexpr double equal = 1e-9, thinnest = 0.02;  // relative to the largest moment, to the longest side
+    constexpr double thinnest = 0.02;  // relative to the longest side
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.J_bar);
     const Vec3 J = principal.eigenvalues();
-    if (J[2] - J[0] <= equal * J[2])
+    if (has_equal_moments(body))
         return contact::tessellate(contact::Sphere(std::sqrt(2.5 * J[2] / body.m)), {});
 
     Mat3 axes = principal.eigenvectors();

@@ -20,4 +20,7 @@ contact::PolygonMesh body_drawing(const dae::Body& body);
 /// A side of the box is drawn with at least a fiftieth of the longest side, so that a slender bar is visible.
 contact::PolygonMesh equivalent_solid(const dae::Body& body);
 
+/// Whether the principal moments are equal, so that the equivalent solid is a sphere
+bool has_equal_moments(const dae::Body& body);
+
 }  // namespace hilda::studies

@@ -5,10 +5,47 @@
 #include "dae/model.hpp"
 #include "studies/running/frames/body_drawing.hpp"
 
+#include <algorithm>
+
 namespace hilda::studies {
 
 namespace {
 
+using lie::Vec3;
+
+/// The points of a body at which its joints and forces act
+std::vector<std::vector<Vec3>> attachments(const dae::Model& model)
+{
+    std::vector<std::vector<Vec3>> points(model.all_bodies().size());
+    const auto add = [&](int body, const Vec3& s_bar) {
+        if (body == dae::ground) return;
+        std::vector<Vec3>& of_body = points[body];
+        const auto same = [&](const Vec3& p) { return (p - s_bar).norm() <= 1e-9 * (1 + s_bar.norm()); };
+        if (std::none_of(of_body.begin(), of_body.end(), same)) of_body.push_back(s_bar);
+    };
+    const auto add_both = [&](const std::optional<dae::PointPair>& pair) {
+        if (pair) add(pair->i, pair->s_bar_i), add(pair->j, pair->s_bar_j);
+    };
+    for (const dae::Model::Row& row : model.all_rows()) add_both(row.block->points());
+    for (const auto& constraint : model.general_constraints()) add_both(constraint->points());
+    for (const auto& force : model.forces()) add_both(force->points());
+    return points;
+}
+
+/// Draws a body as bars between its points: one bar for two points, else a bar from each point to their mean.
+void add_bars(int body, const std::vector<Vec3>& points, Snapshots& to)
+{
+    const auto add = [&](const Vec3& from, const Vec3& end) {
+        to.add_line({body, body, from, end}, Snapshots::bar);
+    };
+    if (points.size() == 2) return add(points[0], points[1]);
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+    for (const Vec3& p : points) add(p, mean);
+}
+
+/// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing about its
+/// form, as in planar mechanisms that state one moment only.
 void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapshots& to)
 {
     std::vector<bool> has_surface(model.all_bodies().size());
@@ -17,8 +54,15 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapsho
         if (body >= 0 && !shape.surface->is_unbounded()) has_surface[body] = true;
     };
     for (const ContactOutputs::Contact& c : contacts.contacts) add(c.i, c.shape_i), add(c.j, c.shape_j);
-    for (size_t b = 0; b < has_surface.size(); ++b)
-        if (!has_surface[b]) to.add_solid(static_cast<int>(b), body_drawing(model.all_bodies()[b]));
+    const std::vector<std::vector<Vec3>> points = attachments(model);
+    for (size_t b = 0; b < has_surface.size(); ++b) {
+        const dae::Body& body = model.all_bodies()[b];
+        if (has_surface[b]) continue;
+        if (!body.shape && points[b].size() >= 2 && has_equal_moments(body))
+            add_bars(static_cast<int>(b), points[b], to);
+        else
+            to.add_solid(static_cast<int>(b), body_drawing(body));
+    }
 }
 
 void add_joints(const dae::Model& model, Snapshots& to)

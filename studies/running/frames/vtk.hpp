@@ -44,7 +44,7 @@ private:
 class Snapshots {
 public:
     /// What a cell shows
-    enum Kind { contact_point, joint, spring, link, solid, surface };
+    enum Kind { contact_point, joint, spring, link, solid, surface, bar };
 
     /// Adds a surface of a body (-1: ground). A surface that was added before is ignored.
     void add_surface(int body, const contact::Shape& shape);

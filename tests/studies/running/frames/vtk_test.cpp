@@ -449,6 +449,27 @@ TEST_CASE("a run writes frames of a mechanism without contacts", "[studies][vtk]
     }
 }
 
+TEST_CASE("a body with equal moments and several joints is drawn as bars between them", "[studies][vtk]")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"run", "andrews_squeezer", "--step", "1e-5", "--end", "2e-3", "--vtk", "1e-3",
+                      "--output", "out"})
+                .code == 0);
+    const Frame first(in / "out/vtk/run-000000.vtp"), last(in / "out/vtk/run-000002.vtp");
+    const auto length = [](const Frame& frame, size_t line) {
+        return (frame.point[frame.line[line][1]] - frame.point[frame.line[line][0]]).norm();
+    };
+    size_t bars = 0;
+    REQUIRE(first.line.size() == last.line.size());
+    for (size_t k = 0; k < first.line.size(); ++k) {
+        if (first.kind[first.vertex.size() + k] != double(Snapshots::bar)) continue;
+        ++bars;
+        CHECK(length(first, k) > 1e-3);
+        CHECK(length(last, k) == Approx(length(first, k)).epsilon(1e-5));
+    }
+    CHECK(bars >= 7);
+}
+
 TEST_CASE("the drawn patch of an unbounded surface covers the region of the other bodies", "[studies][vtk]")
 {
     // A cone of 45 degrees: the point above (x, y) is at the height sqrt(x² + y²), its projection is elsewhere.

@@ -271,7 +271,10 @@ private:
     {
         ObjectReader o(source, v, at);
         const auto [name, type] = heading<OutputType>(o, output_names);
-        std::unique_ptr<Output> output = o.located([&, type = type] { return type->read(o, *this, out.x); });
+        std::vector<std::string> columns = {"t", "energy"};
+        for (const auto& preceding : out.outputs) columns.push_back(preceding->name);
+        std::unique_ptr<Output> output =
+            o.located([&, type = type] { return type->read(o, *this, out.x, columns); });
         output->name = name;
         if (output->place.empty()) output->place = o.place();
         Json recorded = o.finish();

@@ -168,11 +168,11 @@ std::string ObjectReader::formula(std::string_view key, const std::optional<std:
     return formula;
 }
 
-std::string ObjectReader::formula_of_names(std::string_view key)
+std::string ObjectReader::formula_of_names(std::string_view key, const std::vector<std::string>& variables)
 {
     std::string formula = text(key);
     if (formula.empty()) fail(key, std::string(key) + " must be an expression, got \"\"");
-    if (source.parameters != nullptr) record(key, formula = source.parameters->replaced(formula, {"t"}));
+    if (source.parameters != nullptr) record(key, formula = source.parameters->replaced(formula, variables));
     return formula;
 }
 

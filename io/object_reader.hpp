@@ -41,8 +41,8 @@ public:
     /// A number or an expression in `variables`, returned as the text of an expression without parameters
     std::string formula(std::string_view key, const std::optional<std::string>& fallback = {},
                         const std::vector<std::string>& variables = {"t"});
-    /// An expression in t and in names that are checked later, without parameters
-    std::string formula_of_names(std::string_view key);
+    /// An expression in names that are checked later, without parameters. `variables` are not parameters.
+    std::string formula_of_names(std::string_view key, const std::vector<std::string>& variables);
     /// Three numbers or expressions in `variables`
     std::array<Expression, 3> expressions(std::string_view key,
                                           const std::vector<std::string>& variables = {"t"});

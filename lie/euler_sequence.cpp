@@ -32,7 +32,8 @@ Vec3 EulerSequence::angles(const Mat3& A) const
     const double sign = (j - i + 3) % 3 == 1 ? 1 : -1;  // of the permutation (i, j, l)
     const double across = std::hypot(A(i, j), is_proper() ? A(i, l) : A(i, i));
     const double second = is_proper() ? std::atan2(across, A(i, i)) : std::atan2(sign * A(i, l), across);
-    if (across == 0) return {std::atan2(sign * A(l, j), A(j, j)), second, 0};
+    constexpr double rounding = 1e-14;  // of the elements of A
+    if (across <= rounding) return {std::atan2(sign * A(l, j), A(j, j)), second, 0};
     if (is_proper())
         return {std::atan2(A(j, i), -sign * A(l, i)), second, std::atan2(A(i, j), sign * A(i, l))};
     return {std::atan2(-sign * A(j, l), A(l, l)), second, std::atan2(-sign * A(i, j), A(i, i))};

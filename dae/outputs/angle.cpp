@@ -5,15 +5,14 @@
 #include "dae/outputs/output.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace hilda::dae {
 
 namespace {
 
 /// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start, counted through
-/// whole turns from node to node. The saved number is the angle at the last node, so a step must rotate the bodies by
-/// less than half a turn.
+/// whole turns from node to node. The number of turns is that of the angle nearest to the prediction by the mean of the
+/// rates of both nodes. It is right as long as the prediction is right to half a turn.
 class AngleOutput final : public Output {
 public:
     AngleOutput(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j, const State& start)
@@ -26,11 +25,17 @@ public:
                 {"rate", "rad/s", "rate of the angle"}};
     }
 
-    int saved_numbers() const override { return 1; }
-    void update(const State& x, double* saved) const override { *saved = hinge.nearest(x, *saved); }
+    /// Angle [rad], time [s] and rate [rad/s] of the last node; the time is not used at the start
+    int saved_numbers() const override { return 3; }
+    void update(const State& x, double* saved) const override
+    {
+        const double rate = hinge.rate(x);
+        saved[0] = hinge.nearest(x, saved[0] + (x.t - saved[1]) * 0.5 * (saved[2] + rate));
+        saved[1] = x.t, saved[2] = rate;
+    }
     void values(const State& x, const double* saved, double* out) const override
     {
-        out[0] = hinge.nearest(x, *saved), out[1] = hinge.rate(x);
+        out[0] = hinge.nearest(x, saved[0]), out[1] = hinge.rate(x);
     }
 
 private:
@@ -66,7 +71,7 @@ const TypeSchema schema = {
 const bool registered = io::Registry<OutputType>::add(
     {.name = "angle",
      .schema = schema,
-     .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) {
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x, const std::vector<std::string>&) {
          const auto [i, j] = bodies.pair(o);
          const Axes axis(o);
          return std::unique_ptr<Output>(std::make_unique<AngleOutput>(i, axis.i, j, axis.j, x));

@@ -35,8 +35,10 @@ const TypeSchema schema = {
     .example = R"("name": "height", "value": "bar.rz + 0.5")"};
 
 const bool registered = io::Registry<OutputType>::add(
-    {.name = "expression", .schema = schema, .read = [](ObjectReader& o, const BodyFinder&, const State&) {
-         std::string value = o.formula_of_names("value");
+    {.name = "expression",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder&, const State&, const std::vector<std::string>& columns) {
+         std::string value = o.formula_of_names("value", columns);
          std::string unit = o.text("unit", "");
          auto output = std::make_unique<ExpressionOutput>(std::move(value), std::move(unit));
          output->place = o.place("value");

@@ -42,7 +42,9 @@ const TypeSchema schema = {.description =
                            .example = R"("name": "stroke", "body_i": "ground", "body_j": "slider")"};
 
 const bool registered = io::Registry<OutputType>::add(
-    {.name = "length", .schema = schema, .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) {
+    {.name = "length",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);
          return std::unique_ptr<Output>(std::make_unique<LengthOutput>(i, s.i, j, s.j));

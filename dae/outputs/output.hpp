@@ -45,8 +45,10 @@ public:
 struct OutputType {
     std::string name;  ///< value of the key "type"
     TypeSchema schema;
-    /// Reads the keys of the type, including those of the bodies. Throws as ConstraintType::read.
-    std::unique_ptr<Output> (*read)(ObjectReader& o, const BodyFinder& bodies, const State& x);
+    /// Reads the keys of the type, including those of the bodies. `columns`: columns with names that a parameter may
+    /// have. Throws as ConstraintType::read.
+    std::unique_ptr<Output> (*read)(ObjectReader& o, const BodyFinder& bodies, const State& x,
+                                    const std::vector<std::string>& columns);
 };
 
 }  // namespace hilda::dae

@@ -67,7 +67,9 @@ const TypeSchema schema = {
     .example = R"("name": "tip", "body": "bar", "point_bar": [0.5, 0, 0])"};
 
 const bool registered = io::Registry<OutputType>::add(
-    {.name = "point", .schema = schema, .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) {
+    {.name = "point",
+     .schema = schema,
+     .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
          const int body = bodies.body(o, "body");
          const Vec3 s_bar = o.vec3("point_bar", Vec3::Zero());
          const int observer = o.has("observer") ? bodies.body(o, "observer") : ground;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/study_context.hpp"
 
+#include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
@@ -24,7 +25,7 @@ namespace {
 template <class Value>
 std::string joined(const std::vector<Value>& list)
 {
-    return fmt::format("{}", fmt::join(list, ","));
+    return fmt::format("{}", fmt::join(list, "\n"));
 }
 template <class Value>
 std::string text_of(const std::optional<Value>& value)
@@ -67,7 +68,12 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
     constexpr size_t most = 64 << 20;  // as for a model file
     for (const std::string& problem : o.problems)
         if (is_model_path(problem) && std::filesystem::exists(problem)) {
-            const std::string text = io::read_file(problem, most);
+            std::string text = io::read_file(problem, most);
+            try {  // the canonical form contains the meshes that the model names
+                text += named_model(problem, o.set, "").text;
+            } catch (const io::InvalidInput&) {
+                // reported when the study reads the model
+            }
             all["content of " + problem] = std::to_string(io::checksum(text.data(), text.size()));
         }
     return all;

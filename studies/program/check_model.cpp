@@ -236,10 +236,6 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
 
 io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
-}  // namespace
-
-namespace {
-
 /// Writes the model with its projected initial state. The text is checked as hilda check would. io::UsageError if the
 /// file is that of the model, which has its parameters and notes.
 void write_projected(const dae::Description& d, const std::string& model, const std::string& file)

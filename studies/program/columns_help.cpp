@@ -53,7 +53,7 @@ std::string columns_help()
     text += "\ntrajectory.csv\n";
     append(text, *body_columns(*d.model));
     text +=
-        "  energy\n      [J] kinetic energy plus potential energy of gravity and springs\n"
+        "  energy\n      [J] kinetic energy plus potential energy of gravity, springs and contacts\n"
         "  constraint_norm\n      [m or rad] largest scaled residual of the position constraints\n"
         "  With --reactions: loads of the constraints, see docs/guide/outputs.md.\n";
     text += "\nforces.csv (--forces)\n";

@@ -3,17 +3,20 @@
 
 #include "dae/kinematics.hpp"
 #include "dae/model_file.hpp"
+#include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "studies/running/named_model.hpp"
-#include "studies/running/progress.hpp"
+#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 #include "studies/running/sink.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -41,7 +44,7 @@ void analyse(const dae::Model& model, lie::State x, const lie::TimeGrid& grid, i
         const double constraint_norm = model.largest_residual(x).value;
         sinks.node(n, {.x = x,
                        .n = n,
-                       .is_row = true,
+                       .is_row = grid.is_row(n),
                        .energy = lie::energy(model, x),
                        .constraint_norm = constraint_norm,
                        .iterations = 0,
@@ -51,7 +54,7 @@ void analyse(const dae::Model& model, lie::State x, const lie::TimeGrid& grid, i
             if (on.F.norm() > reached.largest.F.norm()) reached.largest.F = on.F;
             if (on.T.norm() > reached.largest.T.norm()) reached.largest.T = on.T;
         }
-        reached.rows = n + 1, reached.t = x.t;
+        reached.rows += grid.is_row(n), reached.t = x.t;
         reached.constraint_norm = std::max(reached.constraint_norm, constraint_norm);
     }
 }
@@ -66,7 +69,14 @@ int run_kinematics(const KinematicsOptions& options)
     const double interval = options.interval.value_or(end / 1000);
     if (!(interval > 0))
         throw io::UsageError("kinematics: --interval must be positive, and --end for its default");
-    const lie::TimeGrid grid = lie::TimeGrid::over(end, interval);
+    // The nodes are at most 5 ms apart and divide the interval, so that angles are counted through whole turns.
+    constexpr double longest = 5e-3;
+    const lie::TimeGrid grid = lie::TimeGrid::over(end, interval / std::ceil(interval / longest), interval);
+    if (start.degrees_of_freedom != 0)
+        throw lie::InvalidInput(
+            fmt::format("{}: kinematics needs a model without degrees of freedom, got {}; add drivers, or "
+                        "integrate it by hilda run",
+                        d.name, start.degrees_of_freedom));
     const std::string directory =
         options.output.empty() ? "out/" + short_name(options.model) : options.output;
     io::check_output_directory(directory, options.force, io::force_overwrites);
@@ -86,9 +96,10 @@ int run_kinematics(const KinematicsOptions& options)
 
     io::make_directory(directory);
     io::Sinks<RunSetup>::remove(directory);
-    for (const char* file : {"summary.json", "trajectory.png", "checkpoint", "checkpoint.1"})
-        std::remove((directory + '/' + file).c_str());
-    io::write_file(directory + "/model.json", d.text);
+    io::CheckpointFiles(directory).remove();
+    std::remove((directory + "/summary.json").c_str());
+    remove_figure(directory, "trajectory.png");
+    io::write_file(directory + "/model.json", start.projected ? dae::text_at(d, d.x) : d.text);
     const io::Interrupt interrupt;
     Reached reached;
     sinks.open();

@@ -5,6 +5,7 @@
 #include "contact/normal/normal_law.hpp"
 #include "contact/surface_types.hpp"
 #include "dae/model_types.hpp"
+#include "dae/outputs/output.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
@@ -39,8 +40,8 @@ size_t entries()
 /// Number of the entries that a plug-in can add
 size_t registered_entries()
 {
-    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::SchemaPart, contact::SurfaceType,
-                   contact::NormalLawType, contact::FrictionLaw, Problem, SinkType>() +
+    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart,
+                   contact::SurfaceType, contact::NormalLawType, contact::FrictionLaw, Problem, SinkType>() +
            studies().size();
 }
 

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -175,7 +176,9 @@ private:
             if (queue.empty() && running.empty() && !timed.empty()) start_next(timed, running, 1);
             for (size_t k = 0; k < running.size();) {
                 int status = 0;
-                if (waitpid(running[k].process, &status, WNOHANG) != running[k].process) {
+                const pid_t found = waitpid(running[k].process, &status, WNOHANG);
+                if (found == -1 && errno == ECHILD) status = 1 << 8;  // its exit code is not known
+                if (found != running[k].process && !(found == -1 && errno == ECHILD)) {
                     ++k;
                     continue;
                 }

@@ -116,6 +116,7 @@ ErrorEstimate RefinedRuns::estimate(size_t contact_events) const
             fmt::format("{} contact event{}: the order of the scheme does not hold across them",
                         contact_events, contact_events == 1 ? "" : "s"));
     if (!quarter) e.doubts.emplace_back("the order is not measured: the run with h/4 would take too long");
+    if (!(until > 0)) e.doubts.emplace_back("no node after the start was compared");
     // The Newton tolerance bounds positions; it is tolerance/h in velocities and tolerance/h² in loads.
     const double levels[] = {1, 1, 1 / grid.h, 1 / grid.h, 1 / (grid.h * grid.h), 1 / (grid.h * grid.h)};
     for (size_t q = 0; q < quantities; ++q) {

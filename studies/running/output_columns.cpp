@@ -8,6 +8,7 @@
 #include "lie/check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 namespace hilda::studies {
@@ -25,7 +26,8 @@ namespace {
 class EnergyColumn final : public ColumnGroup {
 public:
     explicit EnergyColumn(const dae::Model& model)
-        : ColumnGroup({{"energy", "J", "kinetic energy plus potential energy of gravity and springs"}}),
+        : ColumnGroup({{"energy", "J",
+                        "kinetic energy plus potential energy of gravity, springs and contact springs"}}),
           model(model)
     {}
     void values(const lie::State& x, double* out) override { *out = lie::energy(model, x); }
@@ -48,6 +50,17 @@ std::vector<StateColumn> columns_of(const std::vector<std::unique_ptr<dae::Outpu
     return all;
 }
 
+/// Hint for a formula that contains the name of a column that must be in braces
+std::string hint_of_braces(const std::string& text, const std::vector<std::string>& names)
+{
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.'; };
+    for (const std::string& name : names)
+        if (!std::all_of(name.begin(), name.end(), is_plain) && text.find(name) != std::string::npos &&
+            text.find('{' + name + '}') == std::string::npos)
+            return "; write {" + name + "} in braces";
+    return "";
+}
+
 }  // namespace
 
 OutputColumns::OutputColumns(const dae::Model& model,
@@ -68,7 +81,7 @@ OutputColumns::OutputColumns(const dae::Model& model,
         if (const std::string text = output->expression(); !text.empty()) try {
                 part.expression.emplace(text, names);
             } catch (const io::ExpressionError& e) {
-                throw lie::InvalidInput(output->place + ": " + e.what());
+                throw lie::InvalidInput(output->place + ": " + e.what() + hint_of_braces(text, names));
             }
         for (Source& source : sources)
             for (size_t k = 0; part.expression && k < source.group->columns.size(); ++k)

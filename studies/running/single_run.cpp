@@ -215,7 +215,8 @@ void SingleRun::clear_directory() const
     io::make_directory(directory);
     io::CheckpointFiles(directory).remove();
     io::Sinks<RunSetup>::remove(directory);
-    for (const char* file : {"summary.json", "trajectory.png"}) std::remove(path(file).c_str());
+    std::remove(path("summary.json").c_str());
+    remove_figure(directory, "trajectory.png");
     io::write_file(path("model.json"),
                    result.start.projected ? dae::text_at(description, description.x) : description.text);
 }

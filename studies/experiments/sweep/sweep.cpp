@@ -219,6 +219,7 @@ void sweep(StudyContext& s)
     // The models are read again when they run: a grid of large models would not fit into the memory.
     std::vector<Benchmark> benchmarks;
     std::optional<StateColumn> observable;
+    std::string observed_body;
     for (size_t k = 0; k < combinations(entries); ++k) {
         Benchmark& c = benchmarks.emplace_back();
         try {
@@ -234,6 +235,13 @@ void sweep(StudyContext& s)
                                s.options.observable.empty() ? c.observable.name() : s.options.observable)
                     .column();
         check_steps(s.name, c, steps);
+        if (observed_body.empty()) {  // of the columns rx to wz: that of the observable, else of the problem
+            const std::string prefix = observable->name.substr(0, observable->name.rfind('.'));
+            const auto& bodies = c.started->model->all_bodies();
+            const bool is_body = std::any_of(bodies.begin(), bodies.end(),
+                                             [&](const dae::Body& body) { return body.name == prefix; });
+            observed_body = is_body ? prefix : c.observable.body;
+        }
         c.started.reset();
     }
     Sweep<SweptRun> runs;
@@ -248,11 +256,15 @@ void sweep(StudyContext& s)
             }
     if (!s.options.output.empty() && !s.options.resume) remove_kept(s);
     runs.compute(s, [&](SweptRun& run) {
-        const Benchmark* const without_model = run.c;
-        Benchmark c = model.benchmark(static_cast<size_t>(without_model - benchmarks.data()));
+        struct Restore {
+            SweptRun& run;
+            const Benchmark* without_model = run.c;
+            ~Restore() { run.c = without_model; }
+        } const restore{run};
+        Benchmark c = model.benchmark(static_cast<size_t>(run.c - benchmarks.data()));
+        if (!observed_body.empty()) c.observable.body = observed_body;
         run.c = &c;
         compute(run, observable->name, s);
-        run.c = without_model;
     });
 
     if (!observable) observable.emplace();  // no model has a consistent start
@@ -269,6 +281,7 @@ void sweep(StudyContext& s)
     columns.print(s.text, runs, shown);
     s.json["model"] = short_name(name);
     s.json["observable"] = observable->name;
+    s.json["body"] = observed_body;
     s.json["observable_unit"] = observable->unit;
     for (const SweptEntry& entry : entries)
         s.json["sweep"].push_back({{"pointer", entry.pointer}, {"values", entry.values}});

@@ -88,6 +88,21 @@ TEST_CASE("an angle in the outputs counts whole turns in both directions", "[dae
     CHECK(std::abs(angle) < 10);
 }
 
+TEST_CASE("an angle in the outputs is counted over intervals of several turns", "[dae][outputs]")
+{
+    const Description model = with_outputs(
+        R"({"name": "phi", "type": "angle", "body_i": "a", "body_j": "b", "axis_bar_i": [0, 0, 1],
+            "axis_bar_j": [0, 0, 1]})");
+    State x = model.x;
+    std::vector<double> saved;
+    for (int k = 0; k < 20; ++k) {
+        x.t = 0.7 * k;
+        x.body[1].A = lie::exp(Vec3(0, 0, 10 * x.t + 0.5 * x.t * x.t));
+        x.body[1].omega_bar = {0, 0, 10 + x.t};
+        CHECK(values(*model.outputs[0], x, saved)[0] == Approx(10 * x.t + 0.5 * x.t * x.t).margin(1e-12));
+    }
+}
+
 TEST_CASE("outputs are part of the canonical form, and wrong outputs are rejected with their place",
           "[dae][outputs]")
 {
@@ -102,6 +117,16 @@ TEST_CASE("outputs are part of the canonical form, and wrong outputs are rejecte
                    "p.json");
     CHECK(with_parameters.outputs[0]->expression() == "0.5*(2)*a.vx^2 + {a.m} + (3)");
     CHECK(with_parameters.warnings.empty());
+    // A column takes precedence over a parameter of the same name, with a warning.
+    const Description shadowed =
+        read_model(R"({"hilda_model": 1, "name": "p", "parameters": {"energy": 3, "x": 7},
+        "bodies": [{"name": "a", "mass": "energy", "inertia": [1, 1, 1], "r": [0, 0, "x"]}],
+        "outputs": [{"name": "x", "type": "expression", "value": "energy"},
+                    {"type": "expression", "value": "2*x"}]})",
+                   "p.json");
+    CHECK(shadowed.outputs[0]->expression() == "energy");
+    CHECK(shadowed.outputs[1]->expression() == "2*x");
+    CHECK(shadowed.warnings.size() == 2);
 
     const Description again = read_model(model.text, "again.json");
     CHECK(again.text == model.text);

@@ -61,6 +61,40 @@ TEST_CASE("kinematics and time integration give the same motion of a driven mech
                 CHECK(std::stod(text) == Approx(number(r[n], column)).margin(1e-6).epsilon(1e-7));
 }
 
+TEST_CASE("kinematics replaces the files of a run, and writes the projected initial data",
+          "[studies][kinematics]")
+{
+    const Scratch in;
+    std::string moved = driven_bar;
+    moved.replace(moved.find("[0, 0.5, 0]"), 11, "[0, 0.52, 0]");
+    write(in / "bar.json", moved);
+    REQUIRE(call(in, {"run", "bar.json", "--fix-initial", "--end", "0.1", "--output", "d"}).code == 0);
+    REQUIRE(fs::exists(in / "d/checkpoint.end"));
+    CHECK(call(in, {"kinematics", "bar.json", "--output", "d", "--force"}).code ==
+          3);  // 0.02 m off the pivot
+    REQUIRE(call(in, {"kinematics", "bar.json", "--fix-initial", "--output", "d", "--force"}).code == 0);
+    CHECK_FALSE(fs::exists(in / "d/checkpoint.end"));
+    CHECK(call(in, {"check", "d/model.json"}).code == 0);
+}
+
+TEST_CASE("kinematics counts the turns between two rows and ends at the end",
+          "[studies][kinematics][outputs]")
+{
+    const Scratch in;
+    std::string model = driven_bar;
+    model.replace(model.find("t^2"), 3, "20*t");
+    model.insert(model.rfind('}'), R"(, "outputs": [{"name": "turn", "type": "angle", "body_i": "ground",
+        "body_j": "bar", "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}])");
+    write(in / "bar.json", model);
+    REQUIRE(call(in, {"kinematics", "bar.json", "--fix-initial", "--interval", "0.7", "--end", "2"}).code ==
+            0);
+    const auto rows = csv(in / "out/bar/outputs.csv");
+    REQUIRE(rows.size() == 4);
+    for (const CsvRow& row : rows)
+        CHECK(number(row, "turn.angle") == Approx(20 * number(row, "t")).margin(1e-9));
+    CHECK(number(rows.back(), "t") == Approx(2).epsilon(1e-12));
+}
+
 TEST_CASE("kinematics rejects a model with degrees of freedom before it writes a file",
           "[studies][kinematics]")
 {

@@ -87,6 +87,7 @@ TEST_CASE("an output that names an unknown column is rejected with its place bef
     rejected(expression("bar.rxx"), "unknown name 'bar.rxx'");
     rejected(expression("bar.rxx"), "did you mean 'bar.rx'");
     rejected(expression("{ball-flor.F_N}"), "did you mean 'ball-floor.F_N'");
+    rejected(expression("ball-floor.F_N"), "write {ball-floor.F_N} in braces");
     rejected(expression("{bar.rx"), "'{' is never closed");
     rejected(expression("2*"), "ends where a value is expected");
     rejected(expression("x"), "unknown name 'x'");  // an output does not see itself

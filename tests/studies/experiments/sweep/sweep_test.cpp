@@ -197,6 +197,11 @@ TEST_CASE("the observable of a sweep may be any column of the run", "[studies][s
         return csv(in / "out/sweep/study.csv");
     };
     for (const CsvRow& row : swept("twice")) CHECK(number(row, "observable_end") == 2 * number(row, "vz"));
+    model.replace(model.find("\"bodies\": ["), 11,
+                  "\"bodies\": [{\"name\": \"first\", \"mass\": 1, \"inertia\": [1, 1, 1], "
+                  "\"r\": [7, 0, 0]}, ");
+    write(in / "thrown.json", model);
+    for (const CsvRow& row : swept("first.rx")) CHECK(number(row, "rx") == 7);  // not of the last body
     for (const CsvRow& row : swept("energy"))
         CHECK(number(row, "observable_end") == number(row, "energy_end"));
 }

@@ -4,6 +4,10 @@
 #include "dae/model.hpp"
 #include "io/csv.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace hilda::studies {
 
 namespace {
@@ -87,7 +91,8 @@ std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model)
 }
 
 ColumnsSink::ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group)
-    : RowsSink(run.directory, file), group(std::move(group)), value(this->group->columns.size())
+    : RowsSink(run.directory, file), file(file), warn(run.warn), group(std::move(group)),
+      value(this->group->columns.size())
 {}
 
 void ColumnsSink::transfer(io::Archive& a)
@@ -109,9 +114,14 @@ void ColumnsSink::append(std::string& row, const RunNode& node)
     if (!node.is_row) return;
     group->values(node.x, value.data());
     io::append_number(row, node.x.t);
-    for (const double number : value) {
+    for (size_t k = 0; k < value.size(); ++k) {
         row += ',';
-        io::append_number(row, number);
+        io::append_number(row,
+                          std::abs(value[k]) >= 0 ? value[k] : std::abs(value[k]));  // nan without a sign
+        if (std::isfinite(value[k]) || has_warned) continue;
+        has_warned = true;
+        if (warn)
+            warn(fmt::format("{}: {} is not finite at t = {:.6g} s", file, group->columns[k].name, node.x.t));
     }
     row += '\n';
 }

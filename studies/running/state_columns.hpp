@@ -40,7 +40,7 @@ std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model);
 /// Normal force, gap, contact point, normal, friction and slip of all contacts, see ContactOutput
 std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model);
 
-/// A CSV file with a row of these columns at each output row of the run
+/// A CSV file with a row of these columns at each output row of the run. Warns once of a value that is not finite.
 class ColumnsSink final : public RowsSink {
 public:
     ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group);
@@ -51,8 +51,11 @@ private:
     std::string header() const override;
     void append(std::string& row, const RunNode& node) override;
 
+    const std::string file;
+    const std::function<void(const std::string&)> warn;
     const std::unique_ptr<ColumnGroup> group;
     std::vector<double> value;
+    bool has_warned = false;
 };
 
 }  // namespace hilda::studies

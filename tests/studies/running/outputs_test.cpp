@@ -67,6 +67,18 @@ TEST_CASE("expressions in the outputs use the columns of bodies, forces, contact
     CHECK_THAT(read(in / "out/summary.json"), Contains("outputs.csv"));
 }
 
+TEST_CASE("an output that is not finite is written as nan, with one warning", "[studies][outputs]")
+{
+    const Scratch in;
+    write(in / "p.json",
+          model_with(R"x({"name": "root", "type": "expression", "value": "-sqrt(0.5 - t)"})x"));
+    const Ended ended = call(in, {"run", "p.json", "--step", "1e-3", "--interval", "0.1", "--output", "out"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.err, Contains("warning: outputs.csv: root is not finite at t = 0.6 s"));
+    CHECK(ended.err.find("root", ended.err.find("root") + 1) == std::string::npos);
+    CHECK(csv(in / "out/outputs.csv").back().at("root") == "nan");
+}
+
 TEST_CASE("an output that names an unknown column is rejected with its place before the run",
           "[studies][outputs]")
 {

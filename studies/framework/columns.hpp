@@ -97,7 +97,7 @@ public:
     {
         io::Json list = io::Json::array();
         for (const auto& element : rows) {
-            const Row* row;
+            const Row* row = nullptr;
             if constexpr (std::is_pointer_v<std::decay_t<decltype(element)>>)
                 row = element;
             else

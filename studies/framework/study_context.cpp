@@ -149,9 +149,9 @@ Schemes StudyContext::fixed_step_schemes(const std::vector<std::string>& default
     return fixed;
 }
 
-std::vector<double> StudyContext::steps(std::vector<double> defaults) const
+std::vector<double> StudyContext::steps(const std::vector<double>& defaults) const
 {
-    std::vector<double> all = options.steps.empty() ? std::move(defaults) : options.steps;
+    std::vector<double> all = options.steps.empty() ? defaults : options.steps;
     std::sort(all.rbegin(), all.rend());
     return all;
 }

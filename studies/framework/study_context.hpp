@@ -51,7 +51,7 @@ public:
     /// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive scheme.
     Schemes fixed_step_schemes(const std::vector<std::string>& defaults = {}) const;
     /// The steps of --steps, or `defaults`, in descending order [s]
-    std::vector<double> steps(std::vector<double> defaults) const;
+    std::vector<double> steps(const std::vector<double>& defaults) const;
     /// The step of --steps, or the default [s]. io::UsageError for more than one step.
     double one_step(double defaults) const;
     /// The benchmarks of --problem or of `defaults`. io::UsageError for a step that check_steps rejects.

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace hilda::dae {
 
@@ -155,7 +156,8 @@ double Parameters::evaluated(const std::string& expression) const
         if (!std::string_view(e.what()).starts_with("the exponent must be constant")) throw;
     }
     return compiled ? compiled->value(values)
-                    : io::Expression(substituted(expression, {}), std::vector<std::string>{}).value({});
+                    : io::Expression(substituted(expression, {}), std::vector<std::string>{})
+                          .value(std::span<const double>());
 }
 
 /// Throws ExpressionError for a name that is neither a variable nor a parameter nor a constant.

@@ -127,7 +127,7 @@ TEST_CASE("a body of a shape has the mass of its density and the inertia of its 
     REQUIRE(b.shape);
     CHECK(b.shape->type == "box");
     CHECK(b.shape->dimensions == std::vector<double>{0.2, 0.1, 0.3});
-    const dae::Body& same = body(R"("mass": 6, "shape": {"box": [0.2, 0.1, 0.3]})").model->all_bodies()[0];
+    const dae::Body same = body(R"("mass": 6, "shape": {"box": [0.2, 0.1, 0.3]})").model->all_bodies()[0];
     CHECK((same.J_bar - b.J_bar).norm() < 1e-16);
 
     // The canonical form has explicit mass and inertia, and is read as the same body.

@@ -5,55 +5,17 @@
 #include "io/nearest.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <span>
 
 namespace hilda::dae {
 
 namespace {
 
-bool is_digit(char c) { return '0' <= c && c <= '9'; }
-bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
-
-/// A name in an expression, without those of functions
-struct Name {
-    std::size_t begin;
-    std::string text;
-};
-
-/// The names in an expression in the order of the text. The text is split as by io::Expression: 2e-3 is a
-/// number, a.b is one name, and names in braces are left out.
-std::vector<Name> names_in(std::string_view text)
-{
-    std::vector<Name> names;
-    for (std::size_t k = 0; k < text.size();) {
-        if (is_digit(text[k]) || text[k] == '.') {
-            double x = 0;
-            const char* const begin = text.data() + k;
-            const char* const end = std::from_chars(begin, text.data() + text.size(), x).ptr;
-            k += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - begin, 1));
-        } else if (is_letter(text[k])) {
-            const std::size_t begin = k;
-            while (k < text.size() && (is_letter(text[k]) || is_digit(text[k]) || text[k] == '.')) ++k;
-            const std::size_t next = text.find_first_not_of(" \t", k);
-            if (next == std::string_view::npos || text[next] != '(')
-                names.push_back({begin, std::string(text.substr(begin, k - begin))});
-        } else if (text[k] == '{') {
-            k = std::min(text.find('}', k), text.size());
-        } else {
-            ++k;
-        }
-    }
-    return names;
-}
-
 /// Reason why a name cannot be that of a parameter, or ""
 std::string fault_of_name(const std::string& name)
 {
-    if (name.empty() || !is_letter(name[0]) ||
-        !std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || is_digit(c); }))
+    if (!io::Expression::is_name(name))
         return "the name of a parameter must consist of letters, digits and _ and begin with a letter or _";
     const std::vector<std::string> functions = io::Expression::function_names();
     if (std::find(functions.begin(), functions.end(), name) != functions.end())
@@ -87,7 +49,7 @@ Parameters::Parameters(const io::JsonSource& source) : source(source)
         source.fail(all->value, "/parameters",
                     "at most " + std::to_string(most) + " parameters are allowed, got " +
                         std::to_string(names.size()));
-    values.resize(names.size());
+    for (const std::string& name : names) parameters.emplace_back(name, 0);
     known.resize(names.size());
     used.resize(names.size());
     shadowed.resize(names.size());
@@ -110,18 +72,18 @@ void Parameters::evaluate(std::size_t k, std::vector<std::size_t>& path)
         source.fail(v, pointer(k), "the parameters depend on each other in a cycle: " + cycle + names[k]);
     }
     if (v.number() != nullptr) {
-        values[k] = *v.number();
+        parameters[k].second = *v.number();
     } else if (v.string() == nullptr) {
         source.fail(v, pointer(k),
                     "a parameter must be a number or an expression in a string, got " + io::described(v));
     } else {
         path.push_back(k);
-        for (const Name& name : names_in(*v.string()))
+        for (const io::Expression::Name& name : io::Expression::names(*v.string()))
             if (const auto at = std::find(names.begin(), names.end(), name.text); at != names.end())
                 evaluate(static_cast<std::size_t>(at - names.begin()), path);
         path.pop_back();
         try {
-            values[k] = value(*v.string());
+            parameters[k].second = value(*v.string());
         } catch (const io::ExpressionError& e) {
             source.fail(v, pointer(k), e.what());
         }
@@ -132,32 +94,19 @@ void Parameters::evaluate(std::size_t k, std::vector<std::size_t>& path)
 double Parameters::value(const std::string& expression) const
 {
     mark_used(expression);
-    const double x = evaluated(expression);
+    // Parameters are constants of the expression, so that messages quote the text of the file.
+    const std::vector<std::string> no_variables;
+    const double x = io::Expression(expression, no_variables, parameters).value(std::span<const double>());
     if (std::isfinite(x)) return x;
     std::string with;
-    for (const Name& name : names_in(expression)) {
+    for (const io::Expression::Name& name : io::Expression::names(expression)) {
         const auto at = std::find(names.begin(), names.end(), name.text);
         if (at == names.end()) continue;
-        const std::string equation = name.text + " = " + io::shortest(values[at - names.begin()]);
+        const std::string equation = name.text + " = " + io::shortest(parameters[at - names.begin()].second);
         if (with.find(equation) == std::string::npos) with += (with.empty() ? " with " : ", ") + equation;
     }
     throw io::ExpressionError(io::in_quotes(expression) + " must be finite, got " + io::shortest(x) + with,
                               1);
-}
-
-double Parameters::evaluated(const std::string& expression) const
-{
-    // Parameters are variables of the expression, so that messages quote the text of the file. Those in an
-    // exponent, which must be constant, are replaced by their values.
-    std::optional<io::Expression> compiled;
-    try {
-        compiled.emplace(expression, names);
-    } catch (const io::ExpressionError& e) {
-        if (!std::string_view(e.what()).starts_with("the exponent must be constant")) throw;
-    }
-    return compiled ? compiled->value(values)
-                    : io::Expression(substituted(expression, {}), std::vector<std::string>{})
-                          .value(std::span<const double>());
 }
 
 /// Throws ExpressionError for a name that is neither a variable nor a parameter nor a constant.
@@ -167,7 +116,7 @@ void Parameters::check_known(const std::string& expression, const std::vector<st
     std::vector<std::string> all = variables;
     all.insert(all.end(), names.begin(), names.end());
     all.insert(all.end(), {"pi", "e"});
-    for (const Name& name : names_in(expression))
+    for (const io::Expression::Name& name : io::Expression::names(expression))
         if (std::find(all.begin(), all.end(), name.text) == all.end())
             throw io::ExpressionError("unknown name '" + name.text + "' in " + io::in_quotes(expression) +
                                           " at column " + std::to_string(name.begin + 1) +
@@ -177,7 +126,7 @@ void Parameters::check_known(const std::string& expression, const std::vector<st
 
 void Parameters::mark_used(const std::string& expression) const
 {
-    for (const Name& name : names_in(expression))
+    for (const io::Expression::Name& name : io::Expression::names(expression))
         if (const auto at = std::find(names.begin(), names.end(), name.text); at != names.end())
             used[at - names.begin()] = true;
 }
@@ -194,7 +143,7 @@ std::string Parameters::replaced(const std::string& expression,
 {
     std::string text;
     std::size_t done = 0;
-    for (const Name& name : names_in(expression)) {
+    for (const io::Expression::Name& name : io::Expression::names(expression)) {
         const auto at = std::find(names.begin(), names.end(), name.text);
         if (at == names.end()) continue;
         if (std::find(variables.begin(), variables.end(), name.text) != variables.end()) {
@@ -203,17 +152,10 @@ std::string Parameters::replaced(const std::string& expression,
         }
         used[at - names.begin()] = true;
         text.append(expression, done, name.begin - done);
-        text += '(' + io::shortest(values[at - names.begin()]) + ')';
+        text += '(' + io::shortest(parameters[at - names.begin()].second) + ')';
         done = name.begin + name.text.size();
     }
     return text.append(expression, done);
-}
-
-std::vector<std::pair<std::string, double>> Parameters::all() const
-{
-    std::vector<std::pair<std::string, double>> pairs;
-    for (std::size_t k = 0; k < names.size(); ++k) pairs.emplace_back(names[k], values[k]);
-    return pairs;
 }
 
 // JsonSource::set() gives an added member the location of the object.

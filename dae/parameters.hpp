@@ -5,9 +5,8 @@
 
 #pragma once
 
+#include "io/expression.hpp"
 #include "io/json_source.hpp"
-
-#include <utility>
 
 namespace hilda::dae {
 
@@ -27,7 +26,7 @@ public:
                          const std::vector<std::string>& variables) const override;
 
     /// Names and values in the order of the file
-    std::vector<std::pair<std::string, double>> all() const;
+    const io::Expression::Constants& all() const { return parameters; }
 
     /// Throws io::PlacedError for a parameter that a --set added and that nothing uses. To be called when the
     /// model has been read.
@@ -38,7 +37,6 @@ public:
 
 private:
     void evaluate(std::size_t k, std::vector<std::size_t>& path);
-    double evaluated(const std::string& expression) const;
     void check_known(const std::string& expression, const std::vector<std::string>& variables) const;
     void mark_used(const std::string& expression) const;
     std::string pointer(std::size_t k) const;
@@ -46,7 +44,7 @@ private:
     const io::JsonSource& source;
     std::vector<const io::Json::Member*> given;
     std::vector<std::string> names;
-    std::vector<double> values;
+    io::Expression::Constants parameters;      ///< names and values
     std::vector<bool> known;                   ///< whether the value has been computed
     mutable std::vector<bool> used, shadowed;  ///< by an expression; by a variable of the same name
 };

@@ -107,6 +107,28 @@ T evaluate(std::span<const Instruction> program, std::span<const T> variables) n
 
 bool is_digit(char c) { return '0' <= c && c <= '9'; }
 bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
+bool is_name_character(char c) { return is_letter(c) || is_digit(c) || c == '.'; }
+
+/// The number at the beginning of a text; its length is 0 if there is none
+struct Literal {
+    double value = 0;
+    std::size_t length = 0;
+    std::errc error = {};
+};
+
+Literal literal_at(std::string_view text)
+{
+    Literal found;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), found.value);
+    found.length = static_cast<std::size_t>(end - text.data()), found.error = error;
+    return found;
+}
+
+/// The name at the beginning of a text
+std::string_view name_at(std::string_view text)
+{
+    return {text.begin(), std::find_if_not(text.begin(), text.end(), is_name_character)};
+}
 
 /// Part of the text for messages: one line of at most 60 characters around the given position
 std::string excerpt(std::string_view text, std::size_t place)
@@ -128,8 +150,9 @@ std::string excerpt(std::string_view text, std::size_t place)
 ///     operand = number | name | { name } | function ( sum {, sum} ) | ( sum )
 class Parser {
 public:
-    Parser(std::string_view text, const std::vector<std::string>& variables)
-        : text(text), variables(variables)
+    Parser(std::string_view text, const std::vector<std::string>& variables,
+           const Expression::Constants& constants)
+        : text(text), variables(variables), constants(constants)
     {}
 
     std::vector<Instruction> parse()
@@ -222,30 +245,31 @@ private:
     void number()
     {
         const std::size_t at = place;
-        const char* const begin = text.data() + at;
-        double c = 0;
-        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), c);
-        const std::string_view digits = text.substr(at, end - begin);
-        if (error == std::errc::result_out_of_range)
-            fail("the number '" + excerpt(digits, 0) + "' is out of range", at);
-        if (error != std::errc()) fail("'.' without digits is not a number", at);
-        place += digits.size();
+        const Literal found = literal_at(text.substr(at));
+        if (found.error == std::errc::result_out_of_range)
+            fail("the number '" + excerpt(text.substr(at, found.length), 0) + "' is out of range", at);
+        if (found.error != std::errc()) fail("'.' without digits is not a number", at);
+        place += found.length;
         skip_blanks();
-        push({.op = Op::constant, .c = c}, at);
+        push({.op = Op::constant, .c = found.value}, at);
     }
 
     void name()
     {
         const std::size_t at = place;
-        while (!at_end() && (is_letter(text[place]) || is_digit(text[place]) || text[place] == '.')) ++place;
-        const std::string_view word = text.substr(at, place - at);
+        const std::string_view word = name_at(text.substr(at));
+        place += word.size();
         skip_blanks();
 
         const auto variable = std::find(variables.begin(), variables.end(), word);
         const auto function = std::find_if(std::begin(functions), std::end(functions),
                                            [&](const Function& f) { return f.name == word; });
+        const auto constant =
+            std::find_if(constants.begin(), constants.end(), [&](const auto& c) { return c.first == word; });
         if (variable != variables.end())
             push({.op = Op::variable, .n = static_cast<int>(variable - variables.begin())}, at);
+        else if (constant != constants.end())
+            push({.op = Op::constant, .n = 1, .c = constant->second}, at);
         else if (word == "pi")
             push({.op = Op::constant, .c = std::numbers::pi}, at);
         else if (word == "e")
@@ -330,10 +354,13 @@ private:
         const auto tail = std::span(program).last(n + 1);
         const auto is_constant = [](const Instruction& i) { return i.op == Op::constant; };
         if (!std::all_of(tail.begin(), tail.end() - 1, is_constant)) return;
+        const bool has_named =
+            std::any_of(tail.begin(), tail.end() - 1, [](const Instruction& i) { return i.n != 0; });
         const double c = evaluate<double>(tail, {});
+        if (!std::isfinite(c) && has_named) return;  // it may be the other value of if(c,a,b)
         if (!std::isfinite(c)) fail("this constant part is not finite", at);
         program.resize(program.size() - tail.size());
-        program.push_back({.op = Op::constant, .c = c});
+        program.push_back({.op = Op::constant, .n = has_named, .c = c});
     }
 
     void append(const Instruction& instruction, std::size_t at)
@@ -385,6 +412,7 @@ private:
             known = Expression::function_names();
         } else {
             known = variables;
+            for (const auto& [name, value] : constants) known.push_back(name);
             known.insert(known.end(), {"pi", "e"});
         }
         std::string hint = nearest(word, known);
@@ -401,6 +429,7 @@ private:
 
     std::string_view text;
     const std::vector<std::string>& variables;
+    const Expression::Constants& constants;
     std::vector<Instruction> program;
     std::size_t place = 0;  // position of the next character
     int nesting = 0;        // recursion depth of signed_power
@@ -409,8 +438,9 @@ private:
 
 }  // namespace
 
-Expression::Expression(std::string_view text, const std::vector<std::string>& variables)
-    : source(text), arity(variables.size()), program(Parser(text, variables).parse())
+Expression::Expression(std::string_view text, const std::vector<std::string>& variables,
+                       const Constants& constants)
+    : source(text), arity(variables.size()), program(Parser(text, variables, constants).parse())
 {}
 
 std::vector<std::string> Expression::function_names()
@@ -418,6 +448,32 @@ std::vector<std::string> Expression::function_names()
     std::vector<std::string> names;
     for (const Function& f : functions) names.emplace_back(f.name);
     return names;
+}
+
+std::vector<Expression::Name> Expression::names(std::string_view text)
+{
+    std::vector<Name> names;
+    for (std::size_t k = 0; k < text.size();) {
+        if (is_digit(text[k]) || text[k] == '.') {
+            k += std::max<std::size_t>(literal_at(text.substr(k)).length, 1);
+        } else if (is_letter(text[k])) {
+            const std::string_view word = name_at(text.substr(k));
+            const std::size_t next = text.find_first_not_of(" \t", k + word.size());
+            if (next == std::string_view::npos || text[next] != '(') names.push_back({k, std::string(word)});
+            k += word.size();
+        } else if (text[k] == '{') {
+            k = std::min(text.find('}', k), text.size());
+        } else {
+            ++k;
+        }
+    }
+    return names;
+}
+
+bool Expression::is_name(std::string_view text)
+{
+    return !text.empty() && is_letter(text[0]) &&
+           std::all_of(text.begin(), text.end(), [](char c) { return is_letter(c) || is_digit(c); });
 }
 
 double Expression::value(std::span<const double> x) const noexcept

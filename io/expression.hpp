@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/jet.hpp"
@@ -50,8 +51,13 @@ public:
     static constexpr int max_instructions = 1024;
     static constexpr int max_depth = 64;  ///< of parentheses, signs and powers; size of the value stack
 
+    /// Named numbers. A part that consists of them and of digits is evaluated when the text is read, unless
+    /// its value is not finite. A variable takes precedence over a constant of the same name.
+    using Constants = std::vector<std::pair<std::string, double>>;
+
     /// Compiles the text. `variables` gives the names and the order of the variables.
-    explicit Expression(std::string_view text, const std::vector<std::string>& variables = {"t"});
+    explicit Expression(std::string_view text, const std::vector<std::string>& variables = {"t"},
+                        const Constants& constants = {});
 
     /// Value for these variables, in the order of the constructor
     double value(std::span<const double> x) const noexcept;
@@ -72,6 +78,17 @@ public:
     /// Names of all functions
     static std::vector<std::string> function_names();
 
+    /// A name in a text
+    struct Name {
+        std::size_t begin;
+        std::string text;
+    };
+    /// The names of variables and constants in the order of the text, which may be invalid otherwise. Names in
+    /// braces are left out.
+    static std::vector<Name> names(std::string_view text);
+    /// Whether a text is a name: letters, digits and _, without a digit at the beginning
+    static bool is_name(std::string_view text);
+
     enum class Op {
         // clang-format off
         constant, variable, add, subtract, multiply, divide, negate, integer_power, real_power,
@@ -81,7 +98,7 @@ public:
 
     struct Instruction {
         Op op;
-        int n = 0;     ///< number of the variable, or integer exponent
+        int n = 0;     ///< number of the variable, integer exponent, or 1 for a part with named constants
         double c = 0;  ///< constant, or real exponent
     };
 

@@ -304,6 +304,34 @@ TEST_CASE("variables have the order of their list", "[io][expression]")
     CHECK_THROWS_WITH(Expression("lbot", {"l", "ldot", "t"}), Catch::Contains("did you mean 'ldot'?"));
 }
 
+TEST_CASE("named constants are evaluated when the text is read", "[io][expression]")
+{
+    const Expression::Constants constants = {{"n", 3}, {"l", 0.5}, {"zero", 0}};
+    const Expression f("l*t^n + zero", {"t"}, constants);
+    CHECK(f.value(2) == 4);
+    CHECK(f.jet(2).fdot == 6);
+    CHECK(Expression("2*n - 6*l", {}, constants).is_constant());
+    CHECK(Expression("n + l", {"l"}, constants).value(10) == 13);  // the variable takes precedence
+    CHECK(Expression("if(zero, 1/zero, n)", {}, constants).value(std::span<const double>()) == 3);
+    CHECK(std::isinf(Expression("1/zero", {}, constants).value(std::span<const double>())));
+    CHECK_THROWS_WITH(Expression("1/0 + n", {}, constants),
+                      "this constant part is not finite in \"1/0 + n\" at column 2");
+    CHECK_THROWS_WITH(Expression("2*zeor", {}, constants),
+                      "unknown name 'zeor' in \"2*zeor\" at column 3; did you mean 'zero'?");
+}
+
+TEST_CASE("the names in a text are those of variables and constants", "[io][expression]")
+{
+    std::string found;
+    for (const Expression::Name& name :
+         Expression::names("2e-3*a.b + sin (x_1)/.5 - {not this} + y2(3) + e1"))
+        found += name.text + '@' + std::to_string(name.begin) + ' ';
+    CHECK(found == "a.b@5 x_1@16 e1@47 ");
+    CHECK(Expression::names("").empty());
+    CHECK(Expression::is_name("_l2"));
+    for (const char* text : {"", "2l", "a.b", "a b", "ä"}) CHECK_FALSE(Expression::is_name(text));
+}
+
 TEST_CASE("values at the limits are allowed", "[io][expression]")
 {
     CHECK(at(times(63, "(") + "t" + times(63, ")"), 2) == 2);

@@ -14,6 +14,12 @@
 
 namespace hilda::dae {
 
+/// A scalar quantity for the output
+struct Quantity {
+    std::string name;           ///< of a force or an output without the name of the object
+    std::string unit, meaning;  ///< meaning with frame and sign convention
+};
+
 /// An applied load on one or more bodies. Derive from Force to add a force law.
 ///
 /// A force is constant during a run. Everything that changes is in the state.
@@ -27,11 +33,7 @@ public:
     /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
 
-    /// A scalar quantity of the force for the output
-    struct Quantity {
-        std::string name, unit, meaning;  ///< meaning with the sign convention
-    };
-    /// The quantities that values() computes
+    /// The quantities that values() computes, for the output
     virtual std::vector<Quantity> quantities() const { return {}; }
     /// The quantities in the state x. The function must not allocate memory.
     virtual void values(const State& /*x*/, double* /*out*/) const {}

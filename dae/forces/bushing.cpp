@@ -58,7 +58,7 @@ double Bushing::potential_energy(const State& x) const
                   at.psi.dot(coefficients.rotational_stiffness.cwiseProduct(at.psi)));
 }
 
-std::vector<Force::Quantity> Bushing::quantities() const
+std::vector<Quantity> Bushing::quantities() const
 {
     std::vector<Quantity> all;
     for (const char* axis : {"x", "y", "z"})

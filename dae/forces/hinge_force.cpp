@@ -45,7 +45,7 @@ double HingeForce::rate(const State& x) const
     return axis.dot(bj.A * bj.omega_bar - bi.A * bi.omega_bar);
 }
 
-std::vector<Force::Quantity> HingeForce::quantities() const
+std::vector<Quantity> HingeForce::quantities() const
 {
     return {{"angle", "rad", "rotation of body j relative to body i about the axis since the start"},
             {"rate", "rad/s", "rate of the angle"},

@@ -34,7 +34,7 @@ void DistanceLimit::add(const State& x, lie::Loads& out) const
 
 double DistanceLimit::potential_energy(const State& x) const { return stop.potential(d_ij(x).norm()); }
 
-std::vector<Force::Quantity> DistanceLimit::quantities() const
+std::vector<Quantity> DistanceLimit::quantities() const
 {
     return {{"length", "m", "distance of the two points"},
             {"rate", "m/s", "rate of the distance, positive while it grows; 0 while the points coincide"},

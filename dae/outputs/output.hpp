@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "dae/force.hpp"
 #include "dae/model_types.hpp"
 
 #include <memory>
@@ -17,13 +18,9 @@ namespace hilda::dae {
 /// angle, is an array of numbers that the caller keeps.
 class Output {
 public:
-    struct Quantity {
-        std::string name;           ///< of the column, after the name of the output; "" for the name alone
-        std::string unit, meaning;  ///< meaning with frame and sign convention
-    };
-
     virtual ~Output() = default;
 
+    /// The quantities that values() computes. A quantity without a name has the name of the output alone.
     virtual std::vector<Quantity> quantities() const = 0;
     /// The quantities in the state x: quantities().size() numbers. The function must not allocate memory.
     virtual void values(const State& x, const double* saved, double* out) const = 0;

@@ -30,7 +30,7 @@ constexpr const char* example = R"({"hilda_model": 1, "name": "example",
 /// One line for successive columns with the same unit and meaning: "BODY.rx, ry, rz   m   position ..."
 void append(std::string& text, const ColumnGroup& group)
 {
-    const std::vector<StateColumn>& all = group.columns;
+    const std::vector<dae::Quantity>& all = group.columns;
     for (size_t k = 0; k < all.size();) {
         std::string names = all[k].name;
         size_t next = k + 1;

@@ -41,11 +41,11 @@ std::unique_ptr<ColumnGroup> energy_column(const dae::Model& model)
     return std::make_unique<EnergyColumn>(model);
 }
 
-std::vector<StateColumn> columns_of(const std::vector<std::unique_ptr<dae::Output>>& outputs)
+std::vector<dae::Quantity> columns_of(const std::vector<std::unique_ptr<dae::Output>>& outputs)
 {
-    std::vector<StateColumn> all;
+    std::vector<dae::Quantity> all;
     for (const auto& output : outputs)
-        for (const dae::Output::Quantity& q : output->quantities())
+        for (const dae::Quantity& q : output->quantities())
             all.push_back({q.name.empty() ? output->name : output->name + '.' + q.name, q.unit, q.meaning});
     return all;
 }
@@ -70,7 +70,7 @@ OutputColumns::OutputColumns(const dae::Model& model,
     std::vector<std::string> names = {"t"};
     for (auto make : {body_columns, energy_column, force_columns, contact_columns}) {
         sources.push_back({.group = make(model), .first = names.size()});
-        for (const StateColumn& c : sources.back().group->columns) names.push_back(c.name);
+        for (const dae::Quantity& c : sources.back().group->columns) names.push_back(c.name);
     }
     first_output = names.size();
     for (const auto& output : outputs) {

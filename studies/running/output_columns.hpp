@@ -48,7 +48,7 @@ public:
 
     /// The value in the state x. To be called at each node of a run, in order.
     double at(const lie::State& x);
-    const StateColumn& column() const { return group->columns[index]; }
+    const dae::Quantity& column() const { return group->columns[index]; }
 
 private:
     std::unique_ptr<ColumnGroup> group;

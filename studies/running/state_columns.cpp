@@ -12,9 +12,9 @@ namespace hilda::studies {
 
 namespace {
 
-std::vector<StateColumn> columns_of_bodies(const dae::Model& model)
+std::vector<dae::Quantity> columns_of_bodies(const dae::Model& model)
 {
-    std::vector<StateColumn> all;
+    std::vector<dae::Quantity> all;
     const auto add = [&](const std::string& body, std::initializer_list<const char*> names, const char* unit,
                          const char* meaning) {
         for (const char* name : names) all.push_back({body + '.' + name, unit, meaning});
@@ -48,11 +48,11 @@ public:
     }
 };
 
-std::vector<StateColumn> columns_of_forces(const dae::Model& model)
+std::vector<dae::Quantity> columns_of_forces(const dae::Model& model)
 {
-    std::vector<StateColumn> all;
+    std::vector<dae::Quantity> all;
     for (const auto& force : model.forces())
-        for (const dae::Force::Quantity& q : force->quantities())
+        for (const dae::Quantity& q : force->quantities())
             all.push_back({force->name + '.' + q.name, q.unit, q.meaning});
     return all;
 }
@@ -104,7 +104,7 @@ void ColumnsSink::transfer(io::Archive& a)
 std::string ColumnsSink::header() const
 {
     std::string row = "t";
-    for (const StateColumn& column : group->columns) row += ',' + io::csv_field(column.name);
+    for (const dae::Quantity& column : group->columns) row += ',' + io::csv_field(column.name);
     return row + '\n';
 }
 

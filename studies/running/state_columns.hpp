@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "dae/force.hpp"
 #include "studies/running/sink.hpp"
 
 #include <memory>
@@ -11,16 +12,11 @@
 
 namespace hilda::studies {
 
-/// A column of an output table
-struct StateColumn {
-    std::string name;           ///< ENTITY.quantity
-    std::string unit, meaning;  ///< meaning with frame and sign convention
-};
-
-/// Columns that are computed together from the state at a node
+/// Columns of an output table that are computed together from the state at a node. The name of a column is
+/// ENTITY.quantity.
 class ColumnGroup {
 public:
-    explicit ColumnGroup(std::vector<StateColumn> columns) : columns(std::move(columns)) {}
+    explicit ColumnGroup(std::vector<dae::Quantity> columns) : columns(std::move(columns)) {}
     virtual ~ColumnGroup() = default;
 
     /// Takes every node of the run, in order and before values().
@@ -30,7 +26,7 @@ public:
     /// The values of all columns. The function does not allocate memory.
     virtual void values(const lie::State& x, double* out) = 0;
 
-    const std::vector<StateColumn> columns;
+    const std::vector<dae::Quantity> columns;
 };
 
 /// Position, rotation matrix, velocities and accelerations of all bodies, as in trajectory.csv

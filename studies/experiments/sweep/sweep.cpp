@@ -164,7 +164,7 @@ Table::Cell cell_of(const std::string& value)
     return std::isnan(number) ? Table::Cell(value) : Table::Cell(number);
 }
 
-Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const StateColumn& observable)
+Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const dae::Quantity& observable)
 {
     using Results = SweptRun::Results;
     const auto value = [](double Results::*member) {
@@ -218,7 +218,7 @@ void sweep(StudyContext& s)
 
     // The models are read again when they run: a grid of large models would not fit into the memory.
     std::vector<Benchmark> benchmarks;
-    std::optional<StateColumn> observable;
+    std::optional<dae::Quantity> observable;
     std::string observed_body;
     for (size_t k = 0; k < combinations(entries); ++k) {
         Benchmark& c = benchmarks.emplace_back();

@@ -145,6 +145,11 @@ void TrackedForce::add(const lie::State& x, lie::Loads& out) const
     add_load(j, -F, C, w.T_j, x, out);
 }
 
+Wrench TrackedForce::friction(const Instant& now, const lie::State& x) const
+{
+    return is_active(x) ? load(now, x) : Wrench();
+}
+
 Wrench TrackedForce::friction(const lie::State& x) const { return is_active(x) ? load(at(x), x) : Wrench(); }
 
 double TrackedForce::time_of_history(const lie::State& x) const

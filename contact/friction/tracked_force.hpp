@@ -43,7 +43,9 @@ public:
         bool is_saved = false;
     };
     Instant at(const lie::State& x) const;
-    Wrench friction(const lie::State& x) const;  ///< friction loads at x, for output
+    /// Friction loads at x, for output; zero while the force is not applied. `now` is at(x).
+    Wrench friction(const Instant& now, const lie::State& x) const;
+    Wrench friction(const lie::State& x) const;
     /// False if the force is currently not applied, for example a fallback while its constraint is active
     virtual bool is_active(const lie::State&) const { return true; }
     /// The constraint that supplies the normal force of the same contact, or for which this force is the

@@ -8,7 +8,7 @@
 #include "io/json.hpp"
 #include "io/message.hpp"
 #include "lie/solver/saddle.hpp"
-#include "studies/running/contact_rows.hpp"
+#include "studies/running/contact_outputs.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
 
@@ -139,19 +139,21 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
 {
     using contact::EvolvingContact;
     std::vector<ContactConstraintInfo> all;
-    for (const EvolvingContact* c : evolving_contacts(model)) {
+    const ContactOutputs contacts(model);
+    for (size_t k = 0; k < contacts.contacts.size(); ++k) {
+        const ContactOutputs::Contact& contact = contacts.contacts[k];
+        const EvolvingContact* c = contact.constraint;
+        if (c == nullptr) continue;
         const dae::Constraint::Arguments at = model.arguments(*c, x);
-        const ContactForceElements force_elements = find_force_elements(model, *c);
         const bool fallback_active = dae::Model::mode(*c, x) == contact::EvolvingContact::fallback_active;
         const contact::ContactPoint contact_point =
-            fallback_active ? force_elements.fallback->at(x).contact_state.contact_point
-                            : c->contact_point(at);
-        const ContactLoads loads = contact_loads(model, *c, force_elements, x);
+            fallback_active ? contact.compliant->at(x).contact_state.contact_point : c->contact_point(at);
+        const ContactOutput loads = contacts.at(k, x);
         all.push_back(
             {.name = c->name,
              .friction = c->friction == EvolvingContact::Friction::rolling    ? "rolling"
                          : c->friction == EvolvingContact::Friction::implicit ? "implicit"
-                         : force_elements.friction != nullptr                 ? "tracked"
+                         : contact.friction != nullptr                        ? "tracked"
                                                                               : "none",
              .normal_rows = c->normal_rows == EvolvingContact::NormalRows::tangent ? "tangent" : "fixed-xy",
              .rows = c->position_rows(),
@@ -169,11 +171,9 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
              .of_i = contact::principal_curvatures(contact_point.K_i, contact_point.n),
              .of_j = contact::principal_curvatures(contact_point.K_j, contact_point.n),
              .least_curvature = contact::least_curvature(contact_point) * c->L,
-             .F_f = loads.friction.norm()});
-        if (force_elements.friction != nullptr)
-            all.back().stable_step = force_elements.friction->stable_step(x);
-        if (force_elements.fallback != nullptr)
-            all.back().stable_fallback = force_elements.fallback->stable_step(x);
+             .F_f = loads.F.norm()});
+        if (contact.friction != nullptr) all.back().stable_step = contact.friction->stable_step(x);
+        if (contact.compliant != nullptr) all.back().stable_fallback = contact.compliant->stable_step(x);
     }
     return all;
 }

@@ -26,7 +26,7 @@ ContactOutput geometry(const contact::ContactPoint& p, const lie::Motion& bi, co
 void add_friction(const contact::TrackedForce& force, const contact::TrackedForce::Instant& now,
                   const lie::State& x, ContactOutput& out)
 {
-    const contact::Wrench friction = force.friction(x);
+    const contact::Wrench friction = force.friction(now, x);
     out.F = friction.F, out.T = friction.T_i;
     out.slipping = now.history.deflections.slide.slipping;
     out.rolling = now.history.deflections.roll_i.slipping || now.history.deflections.roll_j.slipping;
@@ -61,9 +61,9 @@ public:
     }
 
 private:
-    static std::vector<StateColumn> columns_of(const ContactOutputs& outputs)
+    static std::vector<dae::Quantity> columns_of(const ContactOutputs& outputs)
     {
-        std::vector<StateColumn> all;
+        std::vector<dae::Quantity> all;
         for (const ContactOutputs::Contact& c : outputs.contacts) {
             const auto add = [&](const char* name, const char* unit, const char* meaning) {
                 all.push_back({c.name + '.' + name, unit, meaning});
@@ -101,15 +101,20 @@ ContactOutputs::ContactOutputs(const dae::Model& model) : model(model)
                                 .shape_j = c->contact.j,
                                 .compliant = c});
     for (const contact::EvolvingContact* c : evolving_contacts(model)) {
-        const ContactForceElements of = find_force_elements(model, *c);
         contacts.push_back({.name = c->name,
                             .i = c->i,
                             .j = c->j,
                             .shape_i = c->shape_i,
                             .shape_j = c->shape_j,
-                            .compliant = of.fallback,
-                            .constraint = c,
-                            .friction = of.friction});
+                            .constraint = c});
+        for (const auto& force : model.forces()) {
+            const auto* tracked = dynamic_cast<const contact::TrackedForce*>(force.get());
+            if (tracked == nullptr || tracked->normal_constraint() != c) continue;
+            if (const auto* friction = dynamic_cast<const contact::EvolvingFriction*>(tracked))
+                contacts.back().friction = friction;
+            else
+                contacts.back().compliant = dynamic_cast<const contact::ContactForce*>(tracked);
+        }
     }
 }
 

@@ -3,8 +3,6 @@
 
 #include "dae/model.hpp"
 
-#include <algorithm>
-
 namespace hilda::studies {
 
 std::vector<const contact::EvolvingContact*> evolving_contacts(const dae::Model& model)
@@ -21,30 +19,6 @@ contact::EvolvingContact::Multipliers forces(const dae::Model& model, const cont
 {
     if (dae::Model::inactive(c, x)) return {};
     return c.multipliers(model.arguments(c, x), x.lambda);
-}
-
-ContactForceElements find_force_elements(const dae::Model& model, const contact::EvolvingContact& c)
-{
-    ContactForceElements of;
-    for (const auto& force : model.forces()) {
-        const auto* tracked = dynamic_cast<const contact::TrackedForce*>(force.get());
-        if (tracked == nullptr || tracked->normal_constraint() != &c) continue;
-        if (const auto* friction = dynamic_cast<const contact::EvolvingFriction*>(tracked))
-            of.friction = friction;
-        else
-            of.fallback = dynamic_cast<const contact::ContactForce*>(tracked);
-    }
-    return of;
-}
-
-ContactLoads contact_loads(const dae::Model& model, const contact::EvolvingContact& c,
-                           const ContactForceElements& of, const lie::State& x)
-{
-    if (of.fallback != nullptr && of.fallback->is_active(x))
-        return {.F_N = std::max(0., of.fallback->at(x).contact_state.N),
-                .friction = of.fallback->friction(x).F};
-    const contact::EvolvingContact::Multipliers m = forces(model, c, x);
-    return {.F_N = m.F_N, .friction = of.friction != nullptr ? of.friction->friction(x).F : m.friction};
 }
 
 RowsOfGeneralConstraints rows_of_general_constraints(const dae::Model& model, const lie::State& x)

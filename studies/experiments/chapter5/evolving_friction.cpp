@@ -13,7 +13,7 @@
 /// homogeneous ball. The default step is therefore 2.5e-3 s.
 
 #include "studies/experiments/chapter5/recorded_run.hpp"
-#include "studies/running/contact_rows.hpp"
+#include "studies/running/contact_outputs.hpp"
 #include "studies/running/diagnosis.hpp"
 
 #include "dae/model.hpp"
@@ -115,8 +115,9 @@ void compare_with_reference(BrakedRun& run)
 void compute(BrakedRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
-    const contact::EvolvingContact& contact = *evolving_contacts(model).front();
-    const contact::EvolvingFriction& friction = *find_force_elements(model, contact).friction;
+    const ContactOutputs::Contact only = ContactOutputs(model).contacts.front();
+    const contact::EvolvingContact& contact = *only.constraint;
+    const contact::EvolvingFriction& friction = *only.friction;
     run.bound = model.stable_step(run.c->started->x).h;
     run.curve = Curve(quantities);
     AtNodes sampler([&](const lie::State& x) {

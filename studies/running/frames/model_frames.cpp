@@ -13,8 +13,30 @@ namespace {
 
 using lie::Vec3;
 
-/// The points of a body at which its joints and forces act
-std::vector<std::vector<Vec3>> attachments(const dae::Model& model)
+/// A constraint or force that acts between two points
+struct Connection {
+    dae::PointPair points;
+    bool is_joint, is_link;  ///< a link: a massless rod, drawn as a line between the points
+};
+
+std::vector<Connection> connections(const dae::Model& model)
+{
+    std::vector<Connection> all;
+    const auto add = [&](const dae::Constraint& c) {
+        if (const std::optional<dae::PointPair> points = c.points())
+            all.push_back({*points, true, dynamic_cast<const dae::D*>(&c) != nullptr});
+    };
+    for (const dae::Model::Row& row : model.all_rows()) add(*row.block);
+    for (const auto& constraint : model.general_constraints()) add(*constraint);
+    for (const auto& force : model.forces())
+        if (const std::optional<dae::PointPair> points = force->points())
+            all.push_back({*points, false, false});
+    return all;
+}
+
+/// The points of each body at which its joints and forces act
+std::vector<std::vector<Vec3>> attachments(const dae::Model& model,
+                                           const std::vector<Connection>& connections)
 {
     std::vector<std::vector<Vec3>> points(model.all_bodies().size());
     const auto add = [&](int body, const Vec3& s_bar) {
@@ -23,12 +45,8 @@ std::vector<std::vector<Vec3>> attachments(const dae::Model& model)
         const auto same = [&](const Vec3& p) { return (p - s_bar).norm() <= 1e-9 * (1 + s_bar.norm()); };
         if (std::none_of(of_body.begin(), of_body.end(), same)) of_body.push_back(s_bar);
     };
-    const auto add_both = [&](const std::optional<dae::PointPair>& pair) {
-        if (pair) add(pair->i, pair->s_bar_i), add(pair->j, pair->s_bar_j);
-    };
-    for (const dae::Model::Row& row : model.all_rows()) add_both(row.block->points());
-    for (const auto& constraint : model.general_constraints()) add_both(constraint->points());
-    for (const auto& force : model.forces()) add_both(force->points());
+    for (const Connection& c : connections)
+        add(c.points.i, c.points.s_bar_i), add(c.points.j, c.points.s_bar_j);
     return points;
 }
 
@@ -46,7 +64,8 @@ void add_bars(int body, const std::vector<Vec3>& points, Snapshots& to)
 
 /// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing about its
 /// form, as in planar mechanisms that state one moment only.
-void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapshots& to)
+void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
+                const std::vector<Connection>& connections, Snapshots& to)
 {
     std::vector<bool> has_surface(model.all_bodies().size());
     const auto add = [&](int body, const contact::Shape& shape) {
@@ -54,7 +73,7 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapsho
         if (body >= 0 && !shape.surface->is_unbounded()) has_surface[body] = true;
     };
     for (const ContactOutputs::Contact& c : contacts.contacts) add(c.i, c.shape_i), add(c.j, c.shape_j);
-    const std::vector<std::vector<Vec3>> points = attachments(model);
+    const std::vector<std::vector<Vec3>> points = attachments(model, connections);
     for (size_t b = 0; b < has_surface.size(); ++b) {
         const dae::Body& body = model.all_bodies()[b];
         if (has_surface[b]) continue;
@@ -65,17 +84,16 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts, Snapsho
     }
 }
 
-void add_joints(const dae::Model& model, Snapshots& to)
+void add_connections(const std::vector<Connection>& connections, Snapshots& to)
 {
-    const auto add = [&](const dae::Constraint& c) {
-        const std::optional<dae::PointPair> points = c.points();
-        if (!points) return;
-        to.add_joint(points->i, points->s_bar_i);
-        to.add_joint(points->j, points->s_bar_j);
-        if (dynamic_cast<const dae::D*>(&c) != nullptr) to.add_line(*points, Snapshots::link);
-    };
-    for (const dae::Model::Row& row : model.all_rows()) add(*row.block);
-    for (const auto& constraint : model.general_constraints()) add(*constraint);
+    for (const Connection& c : connections) {
+        if (c.is_joint) {
+            to.add_joint(c.points.i, c.points.s_bar_i);
+            to.add_joint(c.points.j, c.points.s_bar_j);
+        }
+        if (c.is_link) to.add_line(c.points, Snapshots::link);
+        if (!c.is_joint) to.add_line(c.points, Snapshots::spring);
+    }
 }
 
 }  // namespace
@@ -91,11 +109,9 @@ ModelFrames::ModelFrames(const dae::Model& model, EvenSelection selected)
 ModelFrames::ModelFrames(const dae::Model& model, std::function<bool(long)> is_selected)
     : is_selected(std::move(is_selected)), contacts(model)
 {
-    add_bodies(model, contacts, snapshots);
-    add_joints(model, snapshots);
-    for (const auto& force : model.forces())
-        if (const std::optional<dae::PointPair> points = force->points())
-            snapshots.add_line(*points, Snapshots::spring);
+    const std::vector<Connection> all = connections(model);
+    add_bodies(model, contacts, all, snapshots);
+    add_connections(all, snapshots);
 }
 
 void ModelFrames::accepted(const lie::State& x, long n, int)

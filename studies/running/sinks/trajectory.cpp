@@ -4,8 +4,8 @@
 #include "dae/model.hpp"
 #include "dae/start.hpp"
 #include "io/csv.hpp"
-#include "studies/running/contact_rows.hpp"
-#include "studies/running/sink.hpp"
+#include "studies/running/contact_outputs.hpp"
+#include "studies/running/state_columns.hpp"
 
 namespace hilda::studies {
 
@@ -15,12 +15,9 @@ class Trajectory final : public RowsSink {
 public:
     explicit Trajectory(const RunSetup& run)
         : RowsSink(run.directory, "trajectory.csv"), model(run.model),
-          with_reactions(run.options.contains("--reactions")), contacts(evolving_contacts(model)),
-          C(model.pattern())
-    {
-        for (const contact::EvolvingContact* c : contacts)
-            force_elements.push_back(find_force_elements(model, *c));
-    }
+          with_reactions(run.options.contains("--reactions")), bodies(body_columns(model)),
+          of_bodies(bodies->columns.size()), contacts(model), C(model.pattern())
+    {}
 
 private:
     std::string header() const override
@@ -29,10 +26,7 @@ private:
         const auto columns = [&](const std::string& name, std::initializer_list<const char*> of) {
             for (const char* column : of) row += ',' + io::csv_field(name + '.' + column);
         };
-        for (const dae::Body& body : model.all_bodies())
-            columns(body.name,
-                    {"rx", "ry", "rz", "A11", "A12", "A13", "A21", "A22", "A23", "A31", "A32", "A33",
-                     "vx", "vy", "vz", "wx",  "wy",  "wz",  "ax",  "ay",  "az",  "alx", "aly", "alz"});
+        for (const dae::Quantity& column : bodies->columns) row += ',' + io::csv_field(column.name);
         row += ",energy,constraint_norm";
         if (with_reactions) {
             for (const dae::Body& body : model.all_bodies())
@@ -45,12 +39,12 @@ private:
                 const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
                 row += ',' + io::csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
             }
-            for (size_t k = 0; k < contacts.size(); ++k) {
-                const contact::EvolvingContact* c = contacts[k];
-                columns(c->name, {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z",
-                                  "lambda_N"});
-                if (has_friction(k)) columns(c->name, {"Ff_x", "Ff_y", "Ff_z"});
-                if (c->may_be_inactive()) columns(c->name, {"gap"});
+            for (const ContactOutputs::Contact& c : contacts.contacts) {
+                if (c.constraint == nullptr) continue;
+                columns(c.name, {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z",
+                                 "lambda_N"});
+                if (has_friction(c)) columns(c.name, {"Ff_x", "Ff_y", "Ff_z"});
+                if (c.constraint->may_be_inactive()) columns(c.name, {"gap"});
             }
         }
         return row + '\n';
@@ -61,14 +55,8 @@ private:
         if (!node.is_row) return;
         const lie::State& x = node.x;
         io::append_number(row, x.t);
-        for (const lie::Motion& body : x.body) {
-            io::append_vector(row, body.r);
-            for (int i = 0; i < 3; ++i) io::append_vector(row, body.A.row(i));
-            io::append_vector(row, body.rdot);
-            io::append_vector(row, body.omega_bar);
-            io::append_vector(row, body.rddot);
-            io::append_vector(row, body.omegadot_bar);
-        }
+        bodies->values(x, of_bodies.data());
+        io::append_vector(row, of_bodies);
         row += ',';
         io::append_number(row, node.energy);
         row += ',';
@@ -88,20 +76,21 @@ private:
         append_contacts(row, x);
     }
 
-    /// True if contact k has friction, by multipliers or by a force element
-    bool has_friction(size_t k) const
+    /// True if a contact constraint has friction, by multipliers or by a force element
+    static bool has_friction(const ContactOutputs::Contact& c)
     {
-        return contacts[k]->velocity_rows() > 0 || force_elements[k].friction != nullptr;
+        return c.constraint->velocity_rows() > 0 || c.friction != nullptr;
     }
 
-    /// Writes F_N, the contact point (global and in both body frames), |λ_N|, the friction force on body i and
-    /// the gap
+    /// Writes F_N, the contact point of the constraint (global and in both body frames), |λ_N|, the friction
+    /// force on body i and the gap of the contact constraints
     void append_contacts(std::string& row, const lie::State& x)
     {
-        for (size_t k = 0; k < contacts.size(); ++k) {
-            const contact::EvolvingContact* c = contacts[k];
+        for (size_t k = 0; k < contacts.contacts.size(); ++k) {
+            const contact::EvolvingContact* c = contacts.contacts[k].constraint;
+            if (c == nullptr) continue;
             const dae::Constraint::Arguments at = model.arguments(*c, x);
-            const ContactLoads loads = contact_loads(model, *c, force_elements[k], x);
+            const ContactOutput loads = contacts.at(k, x);
             row += ',';
             io::append_number(row, loads.F_N);
             io::append_vector(row, c->contact_point(at).C());
@@ -109,7 +98,7 @@ private:
             io::append_vector(row, lie::Vec3::Map(at.alpha + 3));
             row += ',';
             io::append_number(row, forces(model, *c, x).N.norm());
-            if (has_friction(k)) io::append_vector(row, loads.friction);
+            if (has_friction(contacts.contacts[k])) io::append_vector(row, loads.F);
             if (!c->may_be_inactive()) continue;
             row += ',';
             io::append_number(row, c->contact_point(at).gap);
@@ -118,8 +107,9 @@ private:
 
     const dae::Model& model;
     const bool with_reactions;
-    std::vector<const contact::EvolvingContact*> contacts;
-    std::vector<ContactForceElements> force_elements;  ///< of these contacts
+    const std::unique_ptr<ColumnGroup> bodies;
+    Eigen::VectorXd of_bodies;
+    const ContactOutputs contacts;
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };

@@ -23,7 +23,12 @@ struct Header {
 
 std::string path_in(const std::string& directory) { return directory + "/study.part"; }
 
-std::string quoted(const std::string& value) { return value.empty() ? "the default" : "'" + value + "'"; }
+/// The values of a list are separated by line breaks.
+std::string quoted(std::string value)
+{
+    for (size_t at = 0; (at = value.find('\n', at)) != std::string::npos; at += 2) value.replace(at, 1, ", ");
+    return value.empty() ? "the default" : "'" + value + "'";
+}
 
 }  // namespace
 

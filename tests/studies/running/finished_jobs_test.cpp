@@ -119,6 +119,8 @@ TEST_CASE("an interrupted study continues with the same options only", "[studies
     CHECK_THROWS_WITH(
         FinishedJobs(in.path, other, true),
         Contains("needs the same --steps") && Contains("has '0.001', this command has '0.002'"));
+    other["--steps"] = "0.002\n0.001";  // a message has one line
+    CHECK_THROWS_WITH(FinishedJobs(in.path, other, true), Contains("this command has '0.002, 0.001'"));
     other = identity;
     other["--problem"] = "four_link";
     CHECK_THROWS_WITH(FinishedJobs(in.path, other, true),

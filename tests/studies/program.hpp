@@ -63,11 +63,27 @@ struct Ended {
     std::string out, err;
 };
 
+/// The arguments followed by more of them
+inline std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
+{
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+/// Ends the process at a known write to a file (tests/support/end_at_write.cpp). The files and the exit code do not
+/// depend on the speed of the machine.
+struct EndAt {
+    int signal = 0;         ///< 0: the process is not ended; -signal: its parent gets the signal
+    long write = 1;         ///< number of the write to the file, from 1; the signal comes in the middle of it
+    std::string file = {};  ///< end of the path of the file
+};
+
 /// Conditions of a call
 struct Limits {
     long file_bytes = 0;         ///< largest size of a file; 0: no limit
     std::string stdout_to = {};  ///< file for stdout; "": a temporary file that is read back
     std::string python = {};     ///< value of HILDA_PYTHON; "": unchanged
+    EndAt end_at = {};
 };
 
 /// The running program, in a scratch directory
@@ -76,7 +92,7 @@ public:
     Program(const Scratch& in, const std::vector<std::string>& arguments, const Limits& limits = {})
         : out(limits.stdout_to.empty() ? in / ".out" : fs::path(limits.stdout_to)), err(in / ".err")
     {
-        std::vector<std::string> words = {hilda_program};
+        std::vector<std::string> words = {limits.end_at.signal == 0 ? hilda_program : hilda_ending_program};
         words.insert(words.end(), arguments.begin(), arguments.end());
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());
@@ -86,6 +102,10 @@ public:
         for (const auto& [file, descriptor] : {std::pair(out, STDOUT_FILENO), std::pair(err, STDERR_FILENO)})
             dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), descriptor);
         if (!limits.python.empty()) setenv("HILDA_PYTHON", limits.python.c_str(), 1);
+        if (const EndAt& end = limits.end_at; end.signal != 0)
+            setenv("HILDA_END_AT",
+                   (std::to_string(end.signal) + ' ' + std::to_string(end.write) + ' ' + end.file).c_str(),
+                   1);
         if (chdir(in.path.c_str()) != 0) _exit(126);
         if (limits.file_bytes > 0) {
             const rlimit most{static_cast<rlim_t>(limits.file_bytes), static_cast<rlim_t>(limits.file_bytes)};

@@ -6,5 +6,6 @@ namespace hilda::tests {
 const char* const source_dir = HILDA_SOURCE_DIR;
 const char* const test_data = HILDA_SOURCE_DIR "/tests/data";
 const char* const hilda_program = HILDA_PROGRAM;
+const char* const hilda_ending_program = HILDA_ENDING_PROGRAM;
 
 }  // namespace hilda::tests

@@ -2,6 +2,7 @@
 /// Failed runs of studies, and options that a study does not use
 #include "lie/integrator.hpp"
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -18,12 +19,10 @@ const std::vector<std::string> mixed = {"--problem",    "double_pendulum",     "
 const std::vector<std::string> all_failing = {"--problem",    "double_pendulum",     "--steps",  "0.1",
                                               "--integrator", "rA-half-1,rA-full-1", "--no-plot"};
 
-Ended study(const Scratch& in, const std::string& kind, std::vector<std::string> arguments,
+Ended study(const Scratch& in, const std::string& kind, const std::vector<std::string>& arguments,
             const std::vector<std::string>& more = {})
 {
-    arguments.insert(arguments.begin(), {"study", kind});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return call(in, arguments);
+    return call(in, with(with({"study", kind}, arguments), more));
 }
 
 }  // namespace
@@ -80,37 +79,30 @@ TEST_CASE("convergence and work-precision write the rows of failed runs", "[stud
 TEST_CASE("an option that a study does not use is rejected", "[studies][member]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
-        const Ended ended = call(in, arguments);
-        CAPTURE(arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(expected));
-        CHECK(ended.err.find('\n') == ended.err.size() - 1);
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+        check_refused(in, with({"study"}, more), 2, message);
     };
-    refused({"study", "energy", "--bars", "4"}, "study energy: --bars is for scaling");
-    refused({"study", "energy", "--rtols", "1e-4"}, "--rtols is for work-precision");
-    refused({"study", "convergence", "--repeats", "3"}, "--repeats is for scaling, timing, work-precision");
-    refused({"study", "timing", "--reference", "rA-half-2"}, "--reference is for compare, convergence");
-    refused({"study", "energy", "--against", "a.csv"}, "study energy: --against is for ");
-    refused({"study", "energy", "--preset", "balanced"}, "study energy: --preset is for ");
-    refused({"study", "energy", "--preset", "thesis"}, "--preset: must be balanced or dissertation");
-    refused({"study", "energy", "--grid", "fine"}, "study energy: --grid is for ");
-    refused({"study", "timings"}, "unknown study 'timings'; did you mean 'timing'?");
-    refused({"study", "scaling", "--bars", "4,0"},
-            "--bars: N must be a whole number from 1 to 100000, got '0'");
-    refused({"study", "scaling", "--bars", "-1"}, "--bars");
-    refused({"study", "scaling", "--bars", "2.5"}, "got '2.5'");
-    refused({"study", "scaling", "--bars", "100001"}, "got '100001'");
-    refused({"study", "scaling", "--bars", "2,2"}, "each N once");
-    refused({"study", "scaling", "--problem", "four_link"}, "N-bar pendulum");
-    refused({"study", "scaling", "--seed", "-1"}, "--seed: must be a whole number");
-    refused({"study", "timing", "--repeats", "0"}, "--repeats: must be a whole number, at least 1");
-    refused({"study", "work-precision", "--rtols", "1e-4,0"}, "--rtols: must be a number from 1e-14");
-    refused({"study", "work-precision", "--rtols", "9e-15"}, "got '9e-15'");
-    refused({"study", "work-precision", "--rtols", "1e-4,1e-4"}, "each tolerance once");
-    refused({"study", "work-precision", "--integrator", "rA-half-3"},
-            "unknown integrator 'rA-half-3'; did you mean");
-    refused({"study", "energy", "--steps", "7e-3"},
-            "must divide the end of double_pendulum, 30 s, got 0.007");
+    refused({"energy", "--bars", "4"}, "study energy: --bars is for scaling");
+    refused({"energy", "--rtols", "1e-4"}, "--rtols is for work-precision");
+    refused({"convergence", "--repeats", "3"}, "--repeats is for scaling, timing, work-precision");
+    refused({"timing", "--reference", "rA-half-2"}, "--reference is for compare, convergence");
+    refused({"energy", "--against", "a.csv"}, "study energy: --against is for ");
+    refused({"energy", "--preset", "balanced"}, "study energy: --preset is for ");
+    refused({"energy", "--preset", "thesis"}, "--preset: must be balanced or dissertation");
+    refused({"energy", "--grid", "fine"}, "study energy: --grid is for ");
+    refused({"timings"}, "unknown study 'timings'; did you mean 'timing'?");
+    refused({"scaling", "--bars", "4,0"}, "--bars: N must be a whole number from 1 to 100000, got '0'");
+    refused({"scaling", "--bars", "-1"}, "--bars");
+    refused({"scaling", "--bars", "2.5"}, "got '2.5'");
+    refused({"scaling", "--bars", "100001"}, "got '100001'");
+    refused({"scaling", "--bars", "2,2"}, "each N once");
+    refused({"scaling", "--problem", "four_link"}, "N-bar pendulum");
+    refused({"scaling", "--seed", "-1"}, "--seed: must be a whole number");
+    refused({"timing", "--repeats", "0"}, "--repeats: must be a whole number, at least 1");
+    refused({"work-precision", "--rtols", "1e-4,0"}, "--rtols: must be a number from 1e-14");
+    refused({"work-precision", "--rtols", "9e-15"}, "got '9e-15'");
+    refused({"work-precision", "--rtols", "1e-4,1e-4"}, "each tolerance once");
+    refused({"work-precision", "--integrator", "rA-half-3"}, "unknown integrator 'rA-half-3'; did you mean");
+    refused({"energy", "--steps", "7e-3"}, "must divide the end of double_pendulum, 30 s, got 0.007");
     CHECK_FALSE(fs::exists(in / "out/scaling"));
 }

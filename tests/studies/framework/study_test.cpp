@@ -11,11 +11,9 @@ namespace {
 
 Ended study(const Scratch& in, const std::vector<std::string>& more)
 {
-    std::vector<std::string> arguments = {
-        "study",        "convergence", "--problem", "double_pendulum",  "--end",    "0.3",
-        "--integrator", "rA-half-2",   "--steps",   "1e-2,5e-3,2.5e-3", "--no-plot"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return call(in, arguments);
+    return call(in, with({"study", "convergence", "--problem", "double_pendulum", "--end", "0.3",
+                          "--integrator", "rA-half-2", "--steps", "1e-2,5e-3,2.5e-3", "--no-plot"},
+                         more));
 }
 
 }  // namespace

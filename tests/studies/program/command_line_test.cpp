@@ -3,6 +3,7 @@
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -54,15 +55,7 @@ TEST_CASE("an invalid command line is reported in one line with exit code 2", "[
         {{"study", "convergence", "--jobs", "many"}, "--jobs"},
     };
     const Scratch in;
-    for (const InvalidCall& invalid : all) {
-        const Ended ended = call(in, invalid.arguments);
-        CAPTURE(invalid.arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(invalid.expected));
-        CHECK(ended.err.find('\n') == ended.err.size() - 1);
-        CHECK(ended.out.empty());
-    }
-    CHECK_FALSE(fs::exists(in / "out"));
+    for (const InvalidCall& invalid : all) check_refused(in, invalid.arguments, 2, invalid.expected);
 }
 
 TEST_CASE("the old option name --every is read with a notice", "[studies][command line]")

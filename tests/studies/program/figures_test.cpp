@@ -3,13 +3,13 @@
 /// tests/studies/figures_test.py.
 
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -87,14 +87,7 @@ TEST_CASE("a wrong figure option is refused before the first run", "[studies][fi
         {{"run", "double_pendulum", "--plot", "--figure-format", "sgv"}, "did you mean 'svg'?"},
         {{"plot", "a", "--figure-format", "pfd"}, "did you mean 'pdf'?"},
     };
-    for (const auto& [arguments, expected] : all) {
-        const Ended ended = call(in, arguments);
-        CAPTURE(arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: ") && Contains(expected));
-        CHECK(ended.err.find('\n') == ended.err.size() - 1);
-    }
-    CHECK_FALSE(fs::exists(in / "out"));
+    for (const auto& [arguments, expected] : all) check_refused(in, arguments, 2, expected);
 }
 
 TEST_CASE("an integrator or a quantity that the results do not have is refused with the nearest name",
@@ -112,15 +105,7 @@ TEST_CASE("an integrator or a quantity that the results do not have is refused w
         {{"--integrator", "rA-half-3"}, "unknown name 'rA-half-3'; did you mean 'rA-half-"},
         {{"--integrator", "ida-rp"}, "known names: rA-half-1, rA-half-2"},
         {{"--quantity", "r"}, "--quantity is not an option of these figures"}};
-    for (const auto& [options, expected] : all) {
-        std::vector<std::string> arguments = {"plot", "a"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        const Ended ended = call(in, arguments);
-        CAPTURE(ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, StartsWith("hilda: error: plot: ") && Contains(expected));
-        CHECK_FALSE(fs::exists(in / "a/energy-double_pendulum.png"));
-    }
+    for (const auto& [options, expected] : all) check_refused(in, with({"plot", "a"}, options), 2, expected);
     CHECK(call(in, {"plot", "a", "--integrator", "rA-half-2"}).code == 0);
     CHECK(fs::exists(in / "a/energy-double_pendulum.png"));
 }

@@ -3,6 +3,7 @@
 
 #include "studies/framework/study.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -182,13 +183,7 @@ TEST_CASE("an option of the integrators that none of them uses is refused with t
         {{"study", "friction", "--tolerance", "1e-8"}, "this study defines its own bodies"},
         {{"study", "contact-methods", "--steps", "1e-3"}, "--steps is for"},
         {{"study", "incline-sweep", "--integrator", "rA-half-1"}, "this study defines its own bodies"}};
-    for (const auto& [arguments, expected] : refused) {
-        const Ended ended = call(in, arguments);
-        CAPTURE(arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(expected));
-        CHECK(ended.err.find('\n') == ended.err.size() - 1);
-    }
+    for (const auto& [arguments, expected] : refused) check_refused(in, arguments, 2, expected);
     const std::vector<std::vector<std::string>> accepted = {
         {"run", "double_pendulum", "--end", "0.01", "--rho-infinity", "0.8", "--integrator",
          "rA-half-1,rA-genalpha"},

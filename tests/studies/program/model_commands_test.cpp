@@ -3,6 +3,7 @@
 #include "lie/euler_sequence.hpp"
 #include "tests/studies/csv.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -204,12 +205,7 @@ TEST_CASE(
                                            "--set",   "/bodies/0/r_dot/2=\"20*pi*l\"",
                                            "--euler", "xyz"};
     write(in / "d.json", driven(consistent));
-    const auto with = [&](std::vector<std::string> more) {
-        std::vector<std::string> all = fast;
-        all.insert(all.end(), more.begin(), more.end());
-        return call(in, all);
-    };
-    const Ended done = with({"--output", "a"});
+    const Ended done = call(in, with(fast, {"--output", "a"}));
     CAPTURE(done.err);
     REQUIRE(done.code == 0);
     const Csv angles = read_csv(in / "a" / "euler.csv"), motion = read_csv(in / "a" / "trajectory.csv");
@@ -224,10 +220,8 @@ TEST_CASE(
         CHECK(A(1, 2) == Approx(motion.column("bar.A23")[k]).margin(1e-12));
     }
 
-    const Ended wrong = call(in, {"run", "d.json", "--euler", "zzx", "--output", "w"});
-    CHECK(wrong.code == 2);
-    CHECK_THAT(wrong.err,
-               Contains("--euler: must be three of the letters x, y and z in which neighbours differ"));
+    check_refused(in, {"run", "d.json", "--euler", "zzx", "--output", "w"}, 2,
+                  "--euler: must be three of the letters x, y and z in which neighbours differ");
     CHECK_THAT(first_line(read(in / "a" / "euler.csv")), Contains("bar.angle1"));
     REQUIRE(call(in, {"run", "d.json", "--euler", "zxz", "--output", "z"}).code == 0);
     CHECK(first_line(read(in / "z" / "euler.csv")) == "t,bar.theta,bar.phi,bar.psi");

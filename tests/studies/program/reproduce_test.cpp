@@ -3,8 +3,10 @@
 
 #include "studies/framework/study.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <regex>
@@ -39,6 +41,57 @@ std::set<std::string> figures_of_docs()
             figures.insert(at->str());
     }
     return figures;
+}
+
+/// index.html of hilda reproduce
+class Page {
+public:
+    /// The row of a study in the table at the top, and its section
+    struct Entry {
+        std::string chapter, figures, title, criteria, status, time;
+        std::string section;
+    };
+
+    explicit Page(const tests::fs::path& directory) : text(tests::read(directory / "index.html")) {}
+
+    std::string text;
+
+    /// Requires that the study has one row and one section, which agree.
+    Entry study(const std::string& name) const
+    {
+        CAPTURE(name);
+        const std::regex row(
+            R"re(<tr><td>(\d+)</td><td>([^<]*)</td><td><a href="#)re" + name +
+            R"re(">([^<]*)</a></td><td>([^<]*)</td><td><span class="([^"]*)">([^<]*)</span></td>)re"
+            R"re(<td class="number">([^<]*)</td></tr>)re");
+        const std::sregex_iterator first(text.begin(), text.end(), row);
+        REQUIRE(std::distance(first, std::sregex_iterator()) == 1);
+        const std::smatch& m = *first;
+        Entry e{.chapter = m[1],
+                .figures = m[2],
+                .title = m[3],
+                .criteria = m[4],
+                .status = m[6],
+                .time = m[7],
+                .section = {}};
+        const std::string begin = "<section id=\"" + name + "\">";
+        const size_t at = text.find(begin), end = text.find("</section>", at);
+        REQUIRE(at != std::string::npos);
+        CHECK(text.find(begin, at + 1) == std::string::npos);
+        e.section = text.substr(at, end - at);
+        CHECK_THAT(e.section, Contains("<h2>" + e.figures + ": " + e.title + "</h2>"));
+        CHECK_THAT(e.section, Contains(">" + e.status + "</span>, " +
+                                       (e.time == "-" ? "no time" : "time " + e.time) + "."));
+        return e;
+    }
+};
+
+/// Number of criteria in a section with this status
+long criteria(const std::string& section, const std::string& status)
+{
+    const std::regex row(R"re(<tr><td>[^<]+</td>(<td class="number">[^<]*</td>){3}<td><span class=")re" +
+                         status + "\">" + status + "</span></td></tr>");
+    return std::distance(std::sregex_iterator(section.begin(), section.end(), row), std::sregex_iterator());
 }
 
 }  // namespace
@@ -128,14 +181,8 @@ TEST_CASE("texts on the page of hilda reproduce are escaped", "[studies][reprodu
 TEST_CASE("wrong options of hilda reproduce are refused before the first study", "[studies][reproduce]")
 {
     const tests::Scratch in;
-    const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
-        std::vector<std::string> all = {"reproduce", "--output", "a"};
-        all.insert(all.end(), more.begin(), more.end());
-        const tests::Ended ended = tests::call(in, all);
-        CAPTURE(more, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(why));
-        CHECK_FALSE(tests::fs::exists(in / "a"));
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+        tests::check_refused(in, tests::with({"reproduce", "--output", "a"}, more), 2, message);
     };
     refused({"--chapter", "6"}, "--chapter must be one of 3, 4, 5, 7, 8, got 6");
     refused({"--chapter", "three"}, "--chapter");
@@ -143,7 +190,89 @@ TEST_CASE("wrong options of hilda reproduce are refused before the first study",
     refused({"--resume"}, "has no interrupted reproduction");
     refused({"--resume", "--force"}, "exclude each other");
     tests::write(in / "file", "x");
-    CHECK(tests::call(in, {"reproduce", "--output", "file"}).code == 5);
+    tests::check_refused(in, {"reproduce", "--output", "file"}, 5, "file: exists and is not a directory");
+}
+
+TEST_CASE(
+    "the page of hilda reproduce has each study of the chapter once, with its criteria, status and time",
+    "[studies][reproduce]")
+{
+    const tests::Scratch in;
+    const std::vector<std::string> command = {"reproduce", "--chapter", "5", "--output", "a"};
+    const tests::Ended ended = tests::call(in, command);
+    CAPTURE(ended.out, ended.err);
+    REQUIRE(ended.code == 0);
+    const Page page(in / "a");
+    size_t studies_of_chapter = 0;
+    for (const Reproduction& e : studies::reproductions()) {
+        CAPTURE(e.name);
+        if (e.chapter != 5) {
+            CHECK(page.text.find("id=\"" + e.name + '"') == std::string::npos);
+            continue;
+        }
+        ++studies_of_chapter;
+        const Page::Entry entry = page.study(e.name);
+        CHECK(entry.chapter == "5");
+        CHECK(entry.figures == studies::names_of_figures(e));
+        CHECK(entry.title == e.title);
+        CHECK(entry.status == "passed");
+        CHECK(std::stod(entry.time) > 0);
+        const auto checks = nlohmann::json::parse(tests::read(in / "a" / e.name / "study.json"))["checks"];
+        const auto count = static_cast<long>(checks.size());
+        CHECK(count > 10);
+        CHECK(entry.criteria == std::to_string(count) + " of " + std::to_string(count));
+        CHECK(criteria(entry.section, "passed") == count);
+        CHECK(criteria(entry.section, "failed") == 0);
+        for (const auto& check : checks)
+            CHECK_THAT(entry.section, Contains("<tr><td>" + studies::html(check["what"]) + "</td>"));
+        CHECK_THAT(entry.section, Contains("<p>" + studies::html(e.shows) + "</p>"));
+        CHECK_THAT(entry.section, Contains("<code>hilda study " + e.study + " --check</code>"));
+        // each figure of the study is on the page, and each figure of the page exists
+        const std::regex image("<img src=\"([^\"]*)\"");
+        std::set<std::string> shown, drawn;
+        for (std::sregex_iterator at(entry.section.begin(), entry.section.end(), image), end; at != end;
+             ++at) {
+            shown.insert((*at)[1]);
+            CHECK(tests::fs::file_size(in / "a" / (*at)[1].str()) > 1000);
+        }
+        for (const auto& file : tests::fs::directory_iterator(in / "a" / e.name))
+            if (file.path().extension() == ".png")
+                drawn.insert(e.name + '/' + file.path().filename().string());
+        CHECK(shown == drawn);
+        if (shown.empty()) CHECK_THAT(entry.section, Contains("No figure. "));
+    }
+    CHECK(studies_of_chapter == 2);
+    CHECK_THAT(page.text, Contains("<tr><th>result</th><td>2 passed</td></tr>"));
+}
+
+TEST_CASE("a criterion that is not satisfied is shown as failed, and hilda reproduce exits with 6",
+          "[studies][reproduce]")
+{
+    const tests::Scratch in;
+    const std::vector<std::string> command = {"reproduce", "--chapter", "5", "--no-plot", "--output", "a"};
+    REQUIRE(tests::call(in, command).code == 0);
+    // The results of the study with one wrong number: --resume reads the results and runs nothing.
+    auto study = nlohmann::ordered_json::parse(tests::read(in / "a/evolving-friction/study.json"));
+    auto& check = study["checks"][3];
+    check["measured"] = check["measured"].get<double>() + 1000;
+    check["passed"] = false;
+    tests::write(in / "a/evolving-friction/study.json", study.dump(1));
+    const tests::Ended ended = tests::call(in, tests::with(command, {"--resume"}));
+    CAPTURE(ended.out, ended.err);
+    CHECK(ended.code == 6);
+    CHECK_THAT(ended.out, Contains("1 passed, 1 failed, 0 without criterion, 0 with an error"));
+    const Page page(in / "a");
+    CHECK(page.study("evolving-contact").status == "passed");
+    const Page::Entry failed = page.study("evolving-friction");
+    const long count = static_cast<long>(study["checks"].size());
+    CHECK(failed.status == "failed");
+    CHECK(failed.criteria == std::to_string(count - 1) + " of " + std::to_string(count));
+    CHECK(criteria(failed.section, "failed") == 1);
+    CHECK(criteria(failed.section, "passed") == count - 1);
+    const size_t row = failed.section.find("<tr><td>" + studies::html(check["what"]) + "</td>");
+    REQUIRE(row != std::string::npos);
+    CHECK_THAT(failed.section.substr(row, failed.section.find("</tr>", row) - row),
+               Contains("class=\"failed\""));
 }
 
 TEST_CASE("an interrupted reproduction continues, and finished studies are kept",
@@ -152,28 +281,50 @@ TEST_CASE("an interrupted reproduction continues, and finished studies are kept"
     const tests::Scratch in;
     const std::vector<std::string> command = {"reproduce", "--chapter", "5",        "--no-plot",
                                               "--jobs",    "1",         "--output", "a"};
-    const tests::Program program(in, command);
-    REQUIRE(tests::appears(in / "a/evolving-friction/study.part"));
-    program.send(SIGTERM);
-    const tests::Ended ended = program.wait();
+    // At the third record of the second study the program gets the signal, which it passes on to the study.
+    const tests::Ended ended =
+        tests::call(in, command, {.end_at = {-SIGTERM, 4, "a/evolving-friction/study.part"}});
     CAPTURE(ended.out, ended.err);
-    if (ended.code != 0) CHECK(ended.code == 143);
-    CHECK_THAT(tests::read(in / "a/index.html"),
-               Contains("not run") || Contains("interrupted") || Contains("passed"));
+    REQUIRE(ended.code == 143);
+    CHECK_THAT(ended.out, Contains("interrupted; the same command with --resume continues"));
+    Page page(in / "a");
+    CHECK(page.study("evolving-contact").status == "passed");
+    CHECK(page.study("evolving-friction").status == "interrupted");
+    const auto kept = tests::fs::last_write_time(in / "a/evolving-contact/study.csv");
+    const auto records = tests::fs::file_size(in / "a/evolving-friction/study.part");
+    CHECK(records > 100);
 
-    std::vector<std::string> again = command;
-    again.emplace_back("--resume");
+    const std::vector<std::string> again = tests::with(command, {"--resume"});
     const tests::Ended resumed = tests::call(in, again);
     CAPTURE(resumed.out, resumed.err);
     REQUIRE(resumed.code == 0);
-    const std::string page = tests::read(in / "a/index.html");
-    CHECK_THAT(page, Contains("2 passed") && !Contains("not run"));
-    const auto time = tests::fs::last_write_time(in / "a/evolving-contact/study.csv");
+    CHECK_THAT(resumed.out, Contains("[ 1/1] evolving-friction") && Contains("2 passed"));
+    page = Page(in / "a");
+    for (const char* study : {"evolving-contact", "evolving-friction"})
+        CHECK(page.study(study).status == "passed");
     REQUIRE(tests::call(in, again).code == 0);  // nothing is run again
-    CHECK(tests::fs::last_write_time(in / "a/evolving-contact/study.csv") == time);
-    std::vector<std::string> full = again;
-    full.emplace_back("--full");
-    CHECK(tests::call(in, full).code == 2);
+    CHECK(tests::fs::last_write_time(in / "a/evolving-contact/study.csv") == kept);
+    CHECK(Page(in / "a").text.find("not run") == std::string::npos);
+    tests::check_refused(in, tests::with(again, {"--full"}), 2, "--resume needs the same mode: ");
+}
+
+TEST_CASE("a reproduction that is interrupted between two studies continues with the next one",
+          "[studies][reproduce][resume]")
+{
+    const tests::Scratch in;
+    const std::vector<std::string> command = {"reproduce", "--chapter", "5",        "--no-plot",
+                                              "--jobs",    "1",         "--output", "a"};
+    // The page is written at the start and after each study.
+    const tests::Ended ended = tests::call(in, command, {.end_at = {SIGINT, 2, "a/index.html.tmp"}});
+    CAPTURE(ended.out, ended.err);
+    REQUIRE(ended.code == 130);
+    const Page page(in / "a");
+    CHECK(page.study("evolving-contact").status == "passed");
+    CHECK(page.study("evolving-friction").status == "not run");
+    CHECK_FALSE(tests::fs::exists(in / "a/evolving-friction"));
+    const tests::Ended resumed = tests::call(in, tests::with(command, {"--resume"}));
+    CHECK(resumed.code == 0);
+    CHECK_THAT(resumed.out, Contains("[ 1/1] evolving-friction") && Contains("2 passed"));
 }
 
 TEST_CASE("a study that ends with an error does not end the others, and runs again with --resume",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -8,21 +8,26 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Calls of studies of a second or so, with the columns of study.csv that are not times
+/// A call of a study of a second or so
 struct Call {
     std::vector<std::string> arguments;
-    std::vector<std::string> without;
+    std::vector<std::string> without;  ///< columns of study.csv that are times
+    std::vector<long> writes;          ///< to study.part in each part; the first part begins with its options
 };
 
 const std::vector<Call> calls = {
     {{"study", "convergence", "--problem", "double_pendulum_moving,slider_crank", "--integrator",
       "rA-half-1,rA-half-2,rA-full-1", "--steps", "4e-3,2e-3,1e-3,5e-4", "--no-plot"},
-     {"cpu_seconds"}},
+     {"cpu_seconds"},
+     {3, 4, 5}},
     {{"study", "iterations", "--problem", "four_link", "--steps", "1e-2,1e-3,2e-4", "--no-plot"},
-     {"cpu_seconds"}},
-    {{"study", "energy", "--steps", "1e-3,5e-4", "--no-plot"}, {"cpu_seconds"}},
-    {{"study", "compare", "--problem", "slider_crank", "--steps", "1e-4", "--no-plot"}, {"cpu_seconds"}},
-    {{"study", "friction", "--no-plot"}, {}}};
+     {"cpu_seconds"},
+     {3, 4, 5}},
+    {{"study", "energy", "--steps", "1e-3,5e-4", "--end", "1", "--no-plot"}, {"cpu_seconds"}, {3, 4, 5}},
+    {{"study", "compare", "--problem", "slider_crank", "--steps", "1e-4", "--no-plot"},
+     {"cpu_seconds"},
+     {2, 2}},
+    {{"study", "friction", "--no-plot"}, {}, {3, 4, 5}}};
 
 /// A CSV file without these columns
 std::string table(const fs::path& file, const std::vector<std::string>& without)
@@ -42,12 +47,6 @@ std::string table(const fs::path& file, const std::vector<std::string>& without)
     return all;
 }
 
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
-{
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-}
-
 }  // namespace
 
 TEST_CASE("an interrupted study, resumed, gives the table of an uninterrupted study (long)",
@@ -58,31 +57,25 @@ TEST_CASE("an interrupted study, resumed, gives the table of an uninterrupted st
     const Scratch in;
     REQUIRE(call(in, with(c.arguments, {"--quiet", "--output", "whole"})).code == 0);
 
-    const std::vector<std::string> parts = with(c.arguments, {"--jobs", "2", "--output", "parts"});
-    // A signal after the last line of the study finds complete results.
-    const auto is_complete = [&] {
-        return fs::exists(in / "parts/study.csv") && !fs::exists(in / "parts/study.part");
-    };
-    int code = 137, interruptions = 0, messages = 0;
-    for (int k = 0; k < 30 && code >= 128 && !is_complete(); ++k) {
-        const Program part(in, fs::exists(in / "parts/study.part") ? with(parts, {"--resume"}) : parts);
-        std::this_thread::sleep_for(std::chrono::milliseconds(20 + 37 * k));
-        const int signal = k % 3 == 0 ? SIGINT : k % 3 == 1 ? SIGKILL : SIGTERM;
-        part.send(signal);
-        const Ended ended = part.wait();
-        code = ended.code;
-        if (code < 128) break;
-        CHECK(code == 128 + signal);
-        // A signal before the first line of the program ends it without a message.
-        if (signal != SIGKILL && !ended.err.empty())
+    // Each signal comes in the middle of a record. The last one comes after the last record.
+    const int signals[] = {SIGINT, SIGKILL, SIGTERM};
+    std::vector<EndAt> ends;
+    for (const long write : c.writes) ends.push_back({signals[ends.size() % 3], write, "parts/study.part"});
+    ends.push_back({SIGKILL, 1, "parts/study.csv.tmp"});
+    std::vector<std::string> parts = with(c.arguments, {"--jobs", "2", "--output", "parts"});
+    for (const EndAt& end : ends) {
+        const Ended ended = call(in, parts, {.end_at = end});
+        CAPTURE(end.signal, end.write, ended.err);
+        REQUIRE(ended.code == 128 + end.signal);
+        if (end.signal != SIGKILL)
             CHECK_THAT(ended.err, Contains("the same command with --resume continues"));
-        messages += !ended.err.empty();
-        ++interruptions;
+        CHECK(fs::exists(in / "parts/study.part"));
+        CHECK_FALSE(fs::exists(in / "parts/study.csv"));
+        if (&end == &ends.front()) parts.emplace_back("--resume");
     }
-    if (code >= 128 && !is_complete()) code = call(in, with(parts, {"--resume"})).code;
-    CHECK((code == 0 || is_complete()));
-    CHECK(interruptions > 0);
-    CHECK((messages > 0 || interruptions < 6));
+    const Ended last = call(in, parts);
+    CAPTURE(last.err);
+    CHECK(last.code == 0);
     CHECK(!fs::exists(in / "parts/study.part"));
     CHECK(table(in / "parts/study.csv", c.without) == table(in / "whole/study.csv", c.without));
 }
@@ -92,12 +85,10 @@ TEST_CASE("the option --resume of a study needs an interrupted study and the sam
 {
     const Scratch in;
     const std::vector<std::string> study = {"study", "energy", "--steps", "1e-2", "--no-plot", "--quiet"};
-    const Ended nothing = call(in, with(study, {"--resume", "--output", "a"}));
-    CHECK(nothing.code == 2);
-    CHECK_THAT(nothing.err, Contains("a: has no interrupted study"));
-    CHECK(!fs::exists(in / "a"));
-    CHECK(call(in, with(study, {"--resume", "--json"})).code == 2);
-    CHECK(call(in, with(study, {"--resume", "--force"})).code == 2);
+    check_refused(in, with(study, {"--resume", "--output", "a"}), 2, "a: has no interrupted study");
+    check_refused(in, with(study, {"--resume", "--json"}), 2, "--resume");
+    check_refused(in, with(study, {"--resume", "--force"}), 2, "--resume");
     REQUIRE(call(in, with(study, {"--output", "a"})).code == 0);
-    CHECK(call(in, with(study, {"--resume", "--output", "a"})).code == 2);  // it has ended
+    check_refused(in, with(study, {"--resume", "--output", "a"}), 2,
+                  "has no interrupted study");  // it has ended
 }

@@ -2,6 +2,7 @@
 #include "studies/running/single_run.hpp"
 #include "tests/studies/adaptive_scheme.hpp"
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -41,15 +42,9 @@ TEST_CASE("an adaptive integrator rejects --step, --checkpoint and --resume", "[
 {
     const Scratch in;
     for (const std::string& name : adaptive_schemes()) {
-        const auto refused = [&](const std::vector<std::string>& more, const std::string& expected) {
-            std::vector<std::string> arguments = {"run", "double_pendulum", "--end",
-                                                  "0.1", "--integrator",    name};
-            arguments.insert(arguments.end(), more.begin(), more.end());
-            const Ended ended = call(in, arguments);
-            CAPTURE(more, ended.err);
-            CHECK(ended.code == 2);
-            CHECK_THAT(ended.err, Contains("run: " + name + ' ' + expected));
-            CHECK(ended.err.find('\n') == ended.err.size() - 1);
+        const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+            check_refused(in, with({"run", "double_pendulum", "--end", "0.1", "--integrator", name}, more), 2,
+                          "run: " + name + ' ' + message);
         };
         refused({"--step", "1e-3"},
                 "chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");

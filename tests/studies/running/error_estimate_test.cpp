@@ -7,6 +7,7 @@
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -113,9 +114,8 @@ TEST_CASE("an unreliable estimate of the error says so", "[studies][run][error]"
 {
     const tests::Scratch in;
     const auto doubts = [&](const std::vector<std::string>& arguments) {
-        std::vector<std::string> all = {"run", "--error", "--json", "--output", "a", "--force"};
-        all.insert(all.end(), arguments.begin(), arguments.end());
-        const tests::Ended ended = tests::call(in, all);
+        const tests::Ended ended =
+            tests::call(in, tests::with({"run", "--error", "--json", "--output", "a", "--force"}, arguments));
         CAPTURE(arguments, ended.err);
         REQUIRE(ended.code == 0);
         const auto estimate = nlohmann::json::parse(ended.out)["error_estimate"];
@@ -139,13 +139,8 @@ TEST_CASE("the option --error does not change the files of a run, and needs a wh
 {
     const tests::Scratch in;
     const std::vector<std::string> run = {"run", "slider_crank", "--reactions", "--end", "0.5", "--output"};
-    const auto with = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> all = run;
-        all.insert(all.end(), more.begin(), more.end());
-        return tests::call(in, all);
-    };
-    REQUIRE(with({"a"}).code == 0);
-    const tests::Ended ended = with({"b", "--error"});
+    REQUIRE(tests::call(in, tests::with(run, {"a"})).code == 0);
+    const tests::Ended ended = tests::call(in, tests::with(run, {"b", "--error"}));
     REQUIRE(ended.code == 0);
     CHECK_THAT(ended.out, Contains("errors        r ") && Contains(" m, A ") && Contains(" rad/s, F "));
     CHECK(tests::read(in / "a/trajectory.csv") == tests::read(in / "b/trajectory.csv"));
@@ -157,9 +152,8 @@ TEST_CASE("the option --error does not change the files of a run, and needs a wh
     CHECK(b["error_estimate"]["r"]["order"] == 1);
     CHECK(b["error_estimate"]["omega"]["observed_order"].get<double>() == Approx(1).margin(0.1));
 
-    CHECK(with({"b", "--error", "--resume"}).code == 2);
-    const tests::Ended adaptive = with({"c", "--error", "--integrator", "ida-rp"});
-    CHECK(adaptive.code == 2);
-    CHECK_THAT(adaptive.err, Contains("--error is for fixed-step schemes"));
+    tests::check_refused(in, tests::with(run, {"b", "--error", "--resume"}), 2, "--error");
+    tests::check_refused(in, tests::with(run, {"c", "--error", "--integrator", "ida-rp"}), 2,
+                         "--error is for fixed-step schemes");
     CHECK(tests::call(in, {"run", "slider_crank", "--error", "--end", "0", "--output", "d"}).code == 0);
 }

@@ -1,57 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// --resume with a later --end.
 
-#include "tests/studies/program.hpp"
-
-#include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
+#include "tests/studies/refused.hpp"
+#include "tests/studies/resumed_run.hpp"
 
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
-using nlohmann::ordered_json;
 
 namespace {
 
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
-{
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-}
-
-/// steps.csv without its last column, the wall time of a step
-std::string without_times(const fs::path& file)
-{
-    std::istringstream in(read(file));
-    std::string all;
-    for (std::string line; std::getline(in, line);) all += line.substr(0, line.rfind(',')) + '\n';
-    return all;
-}
-
-ordered_json summary(const fs::path& directory)
-{
-    return ordered_json::parse(read(directory / "summary.json"));
-}
-
-/// Compares all outputs of two runs but their times and command lines.
-void check_same(const fs::path& a, const fs::path& b)
-{
-    CHECK(read(a / "trajectory.csv") == read(b / "trajectory.csv"));
-    CHECK(without_times(a / "steps.csv") == without_times(b / "steps.csv"));
-    for (const char* key : {"status", "model", "integrator", "counters", "invariants", "files"}) {
-        CAPTURE(key);
-        CHECK(summary(a)[key] == summary(b)[key]);
-    }
-    CHECK(fs::exists(a / "vtk") == fs::exists(b / "vtk"));
-    if (!fs::exists(a / "vtk")) return;
-    CHECK(read(a / "run.pvd") == read(b / "run.pvd"));
-    size_t frames = 0;
-    for (const auto& entry : fs::directory_iterator(b / "vtk")) {
-        CHECK(read(a / "vtk" / entry.path().filename()) == read(entry.path()));
-        ++frames;
-    }
-    CHECK(std::distance(fs::directory_iterator(a / "vtk"), fs::directory_iterator{}) ==
-          static_cast<std::ptrdiff_t>(frames));
-}
+/// The directory follows.
+const std::vector<std::string> slider_crank = {"run",     "slider_crank", "--interval", "1e-3",
+                                               "--quiet", "--log-steps",  "--output"};
 
 }  // namespace
 
@@ -79,51 +39,42 @@ TEST_CASE("a run extended by a later end gives the files of a run with this end"
     run("parts", {"--end", "0.123"});
     run("parts", {"--end", "0.3", "--resume"});
     run("parts", {"--end", "0.6", "--resume"});
-    check_same(in / "parts", in / "whole");
+    check_same_results(in / "parts", in / "whole");
     CHECK(summary(in / "parts")["provenance"]["resumed_at_step"] == 300);
 }
 
 TEST_CASE("an interrupted run can be continued to a later or an earlier end", "[studies][resume]")
 {
-    const std::string end = GENERATE("1.5", "0.9");
+    const std::string end = GENERATE("0.7", "0.3");
     const Scratch in;
-#ifdef NDEBUG
-    const std::string step = "1e-5";
-#else
-    const std::string step = "1e-3";
-#endif
-    const std::vector<std::string> run = {"run",  "slider_crank", "--step",      step,      "--interval",
-                                          "1e-3", "--quiet",      "--log-steps", "--output"};
-    REQUIRE(call(in, with(run, {"whole", "--end", end})).code == 0);
-    const Program first(in, with(run, {"parts", "--end", "1", "--checkpoint", "0.01"}));
-    REQUIRE(appears(in / "parts/checkpoint.1"));
-    first.send(SIGINT);
-    REQUIRE(first.wait().code == 130);
-    const double reached = summary(in / "parts")["counters"]["t"];
-    REQUIRE(reached < 0.9);
+    REQUIRE(call(in, with(slider_crank, {"whole", "--end", end})).code == 0);
+    // The checkpoint of the start, and then one of each step: the signal comes in step 200.
+    const Ended first = call(in, with(slider_crank, {"parts", "--end", "0.5", "--checkpoint", "1e-9"}),
+                             {.end_at = {SIGINT, 201, "parts/checkpoint.new.tmp"}});
+    REQUIRE(first.code == 130);
+    REQUIRE(summary(in / "parts")["counters"]["t"] == 0.2);
 
-    const Ended early = call(in, with(run, {"parts", "--resume", "--end", "1e-4"}));
-    CHECK(early.code == 2);
-    CHECK_THAT(early.err, Contains("--end must be after t = ") && Contains("got 0.0001"));
-    REQUIRE(call(in, with(run, {"parts", "--resume", "--end", end})).code == 0);
-    check_same(in / "parts", in / "whole");
+    check_refused(in, with(slider_crank, {"parts", "--resume", "--end", "1e-4"}), 2,
+                  "--end must be after t = 0.2 s, which the run in parts has reached, got 0.0001");
+    REQUIRE(call(in, with(slider_crank, {"parts", "--resume", "--end", end})).code == 0);
+    check_same_results(in / "parts", in / "whole");
 }
 
 TEST_CASE("an extended run that is killed continues to the later end", "[studies][resume]")
 {
     const Scratch in;
-    const std::vector<std::string> run = {"run",  "slider_crank", "--step",      "1e-5",    "--interval",
-                                          "1e-3", "--quiet",      "--log-steps", "--output"};
-    REQUIRE(call(in, with(run, {"parts", "--end", "0.01"})).code == 0);
+    REQUIRE(call(in, with(slider_crank, {"parts", "--end", "0.05"})).code == 0);
     REQUIRE(fs::exists(in / "parts/checkpoint.end"));
-    const Program killed(in, with(run, {"parts", "--end", "0.5", "--resume"}));
-    REQUIRE(appears(in / "parts/checkpoint"));
-    killed.send(SIGKILL);
-    REQUIRE(killed.wait().code == 137);
+    const auto complete = fs::file_size(in / "parts/trajectory.csv");
+    const Ended killed =
+        call(in, with(slider_crank, {"parts", "--end", "0.5", "--resume", "--checkpoint", "1e-9"}),
+             {.end_at = {SIGKILL, 150, "parts/checkpoint.new.tmp"}});
+    REQUIRE(killed.code == 137);
     CHECK_FALSE(fs::exists(in / "parts/summary.json"));
-    REQUIRE(call(in, with(run, {"parts", "--resume"})).code == 0);  // the end of the checkpoint
-    REQUIRE(call(in, with(run, {"whole", "--end", "0.5"})).code == 0);
-    check_same(in / "parts", in / "whole");
+    CHECK(fs::file_size(in / "parts/trajectory.csv") > 2 * complete);
+    REQUIRE(call(in, with(slider_crank, {"parts", "--resume"})).code == 0);  // the end of the checkpoint
+    REQUIRE(call(in, with(slider_crank, {"whole", "--end", "0.5"})).code == 0);
+    check_same_results(in / "parts", in / "whole");
 }
 
 TEST_CASE("without --end and --interval a resumed run keeps those of the run", "[studies][resume]")
@@ -133,22 +84,16 @@ TEST_CASE("without --end and --interval a resumed run keeps those of the run", "
     REQUIRE(call(in, with(run, {"a", "--end", "0.5"})).code == 0);  // rows each 5e-4 s, rounded up to 1e-3 s
     REQUIRE(call(in, with(run, {"a", "--end", "2.5", "--resume"})).code == 0);
     REQUIRE(call(in, with(run, {"b", "--end", "2.5", "--interval", "1e-3"})).code == 0);
-    check_same(in / "a", in / "b");
+    check_same_results(in / "a", in / "b");
 
-    const Ended again = call(in, with(run, {"a", "--resume"}));
-    CHECK(again.code == 2);
-    CHECK_THAT(again.err,
-               Contains("a: its run is complete, with the end 2.5 s; --end with a later time extends"));
+    check_refused(in, with(run, {"a", "--resume"}), 2,
+                  "a: its run is complete, with the end 2.5 s; --end with a later time extends");
     const std::string before = read(in / "a/trajectory.csv");
-    for (const std::string end : {"2.5", "2", "0"}) {
-        const Ended refused = call(in, with(run, {"a", "--resume", "--end", end}));
-        CAPTURE(end, refused.err);
-        CHECK(refused.code == 2);
-        CHECK_THAT(refused.err, Contains(end == "2.5" ? "is complete" : "--end must be after t = 2.5 s"));
-    }
-    const Ended other = call(in, with(run, {"a", "--resume", "--end", "3", "--interval", "0.1"}));
-    CHECK(other.code == 2);
-    CHECK_THAT(other.err, Contains("belongs to another run") && Contains("interval 0.1"));
+    for (const std::string end : {"2.5", "2", "0"})
+        check_refused(in, with(run, {"a", "--resume", "--end", end}), 2,
+                      end == "2.5" ? "is complete" : "--end must be after t = 2.5 s");
+    for (const char* message : {"belongs to another run", "interval 0.1"})
+        check_refused(in, with(run, {"a", "--resume", "--end", "3", "--interval", "0.1"}), 2, message);
     CHECK(read(in / "a/trajectory.csv") == before);
 }
 

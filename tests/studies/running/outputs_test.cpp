@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// outputs.csv of a run: expressions in the columns of the run, resumption, errors.
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
+#include "tests/studies/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -86,11 +88,9 @@ TEST_CASE("an output that names an unknown column is rejected with its place bef
     const auto rejected = [&](const std::string& output, const std::string& message) {
         write(in / "p.json", model_with("\n" + output));
         for (const std::string command : {"run", "check"}) {
-            const Ended ended = call(in, {command, "p.json"});
-            CAPTURE(command, ended.err);
-            CHECK(ended.code == 3);
-            CHECK_THAT(ended.err, Contains("p.json:12:") && Contains(message));
-            CHECK_FALSE(fs::exists(in / "out/p/trajectory.csv"));
+            CAPTURE(command, message);
+            check_refused(in, {command, "p.json"}, 3, "p.json:12:");
+            check_refused(in, {command, "p.json"}, 3, message);
         }
     };
     const auto expression = [](const std::string& value) {
@@ -112,20 +112,10 @@ TEST_CASE("a killed and resumed run writes the outputs of an uninterrupted run",
     write(in / "p.json",
           model_with(R"({"name": "turns", "type": "angle", "body_i": "ground", "body_j": "ball",
         "axis_bar_i": [0, 1, 0], "axis_bar_j": [0, 1, 0]})"));
-    const std::vector<std::string> run = {"run",        "p.json", "--step",  "1e-5",
-                                          "--end",      "3",      "--set",   "/bodies/1/r_dot=[4, 0, 0]",
-                                          "--interval", "0.01",   "--quiet", "--output"};
-    const auto with = [&](std::initializer_list<std::string> more) {
-        std::vector<std::string> all = run;
-        all.insert(all.end(), more);
-        return all;
-    };
-    REQUIRE(call(in, with({"whole"})).code == 0);
-    const Program killed(in, with({"parts", "--checkpoint", "0.01"}));
-    REQUIRE(appears(in / "parts/checkpoint.1"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    killed.send(SIGKILL);
-    if (killed.wait().code == 137) REQUIRE(call(in, with({"parts", "--resume"})).code == 0);
-    CHECK(read(in / "parts/outputs.csv") == read(in / "whole/outputs.csv"));
-    CHECK(number(csv(in / "whole/outputs.csv").back(), "turns.angle") > 20);  // several turns
+    check_resumed(in,
+                  {"run", "p.json", "--end", "2", "--set", "/bodies/1/r_dot=[4, 0, 0]", "--interval", "0.01"},
+                  {{SIGKILL, 400}, {SIGKILL, 300}});
+    const auto rows = csv(in / "whole/outputs.csv");
+    CHECK(number(rows[70], "turns.angle") > 6.3);  // more than a turn before the second kill
+    CHECK(number(rows.back(), "turns.angle") > 20);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Tables of contacts and of forces: the equations of motion and closed forms hold for their numbers.
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
+#include "tests/studies/resumed_run.hpp"
 
 #include "lie/so3.hpp"
 
@@ -138,31 +140,13 @@ TEST_CASE("the force of a spring in forces.csv is its law, and the rate is the d
 TEST_CASE("a run rejects tables of contacts and forces that the model does not have", "[studies][contacts]")
 {
     const Scratch in;
-    const auto refused = [&](const std::string& option, const std::string& expected) {
-        const Ended ended = call(in, {"run", "double_pendulum", option});
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(expected));
-        CHECK_FALSE(fs::exists(in / "out"));
-    };
-    refused("--contacts", "double_pendulum has no contacts");
-    refused("--forces", "double_pendulum has none");
+    check_refused(in, {"run", "double_pendulum", "--contacts"}, 2, "double_pendulum has no contacts");
+    check_refused(in, {"run", "double_pendulum", "--forces"}, 2, "double_pendulum has none");
 }
 
 TEST_CASE("a killed and resumed run writes the tables of an uninterrupted run", "[studies][contacts][resume]")
 {
     const Scratch in;
-    const std::vector<std::string> run = {"run",        "rolling_ball", "--step", "1e-5",    "--end",   "0.5",
-                                          "--contacts", "--interval",   "0.001",  "--quiet", "--output"};
-    const auto with = [&](std::initializer_list<std::string> more) {
-        std::vector<std::string> all = run;
-        all.insert(all.end(), more);
-        return all;
-    };
-    REQUIRE(call(in, with({"whole"})).code == 0);
-    const Program killed(in, with({"parts", "--checkpoint", "0.01"}));
-    REQUIRE(appears(in / "parts/checkpoint.1"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    killed.send(SIGKILL);
-    if (killed.wait().code == 137) REQUIRE(call(in, with({"parts", "--resume"})).code == 0);
-    CHECK(read(in / "parts/contacts.csv") == read(in / "whole/contacts.csv"));
+    check_resumed(in, {"run", "rolling_ball", "--end", "0.5", "--contacts", "--interval", "0.001"});
+    CHECK(csv(in / "parts/contacts.csv").size() == 501);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter4/incline.hpp"
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -117,16 +118,11 @@ TEST_CASE("the incline sweep rejects invalid options before the first run", "[st
 {
     const Scratch in;
     write(in / "elsewhere.csv", "x,50,60\n0.2,0,0\n");
-    const auto refused = [&](std::vector<std::string> words, int code, const std::string& says) {
-        words.insert(words.begin(), {"study", "incline-sweep"});
-        const Ended ended = call(in, words);
-        CAPTURE(says);
-        CHECK(ended.code == code);
-        CHECK_THAT(ended.err, Contains(says));
+    const auto refused = [&](const std::vector<std::string>& more, int code, const std::string& message) {
+        check_refused(in, with({"study", "incline-sweep"}, more), code, message);
     };
     refused({"--against", "elsewhere.csv"}, 3, "elsewhere.csv: has no cell of this grid");
     refused({"--grid", "fine"}, 2, "--grid: must be published, dissertation or coarse, got 'fine'");
     refused({"--steps", "1e-2"}, 3, "must not exceed its stability bound");
     refused({"--expect", "agrement=1"}, 2, "'agrement'; did you mean 'agreement'?");
-    CHECK_FALSE(fs::exists(in / "out/incline-sweep"));
 }

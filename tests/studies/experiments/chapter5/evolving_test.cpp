@@ -10,6 +10,7 @@
 #include "studies/running/invariants.hpp"
 #include "tests/studies/csv.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -390,12 +391,8 @@ TEST_CASE("the evolving-friction study passes its criteria and rejects the step 
     CHECK(csv(in / "a/curves.csv").size() == 4001 + 1001);
     CHECK(fs::exists(in / "a/vtk/eta-0.3-rA-half-1-momentum-2.5e-3-000002.vtp"));
 
-    const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
-        std::vector<std::string> words = {"study", "evolving-friction"};
-        words.insert(words.end(), more.begin(), more.end());
-        const Ended e = call(in, words);
-        CHECK(e.code == 2);
-        CHECK_THAT(e.err, Contains(why));
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+        check_refused(in, with({"study", "evolving-friction"}, more), 2, message);
     };
     refused({"--steps", "5e-3"}, "eta-0: the step 0.005 s is above 0.00464 s");
     refused({"--problem", "eta-0.1", "--steps", "4e-3"}, "eta-0.1: the step 0.004 s is above 0.00326 s");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -10,12 +11,6 @@ using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
 namespace {
-
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more)
-{
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-}
 
 /// A ball thrown upwards with 10 m/s from the origin
 const char* const thrown = R"({"hilda_model": 1, "name": "thrown", "gravity": [0, 0, -10], "end": 1,
@@ -114,12 +109,8 @@ TEST_CASE("a wrong value of a sweep is refused before the first run", "[studies]
 {
     const Scratch in;
     write(in / "thrown.json", thrown);
-    const auto refused = [&](int code, const std::vector<std::string>& more, const std::string& why) {
-        const Ended ended = call(in, with({"study", "sweep", "thrown.json", "--output", "a"}, more));
-        CAPTURE(more, ended.err);
-        CHECK(ended.code == code);
-        CHECK_THAT(ended.err, Contains(why));
-        CHECK_FALSE(fs::exists(in / "a"));
+    const auto refused = [&](int code, const std::vector<std::string>& more, const std::string& message) {
+        check_refused(in, with({"study", "sweep", "thrown.json", "--output", "a"}, more), code, message);
     };
     refused(3, {"--sweep", "/bodies/0/mas=1,2"}, "did you mean 'mass'");
     refused(3, {"--sweep", "/bodies/1/mass=1,2"}, "there is no \"1\"");
@@ -133,11 +124,9 @@ TEST_CASE("a wrong value of a sweep is refused before the first run", "[studies]
     refused(2, {"--sweep", "/bodies/0/mass=1", "--observable", "ball"}, "the model has no column 'ball'");
     refused(2, {"--sweep", "/bodies/0/mass=1", "--steps", "0.3"}, "must divide the end");
     refused(2, {}, "needs --sweep");
-    const Ended other = call(in, {"study", "energy", "--sweep", "/a=1"});
-    CHECK(other.code == 2);
-    CHECK_THAT(other.err, Contains("--sweep is for sweep"));
-    const Ended keep = call(in, {"study", "sweep", "thrown.json", "--sweep", "/end=1,2", "--keep", "--json"});
-    CHECK(keep.code == 2);
+    check_refused(in, {"study", "energy", "--sweep", "/a=1"}, 2, "--sweep is for sweep");
+    check_refused(in, {"study", "sweep", "thrown.json", "--sweep", "/end=1,2", "--keep", "--json"}, 2,
+                  "--keep");
 }
 
 // Newton's method diverges in the first step of the second run: it has no node.
@@ -166,17 +155,19 @@ TEST_CASE("an interrupted sweep, resumed, gives the table of an uninterrupted sw
         "--end",     "0.5",     "--steps",      "1e-4",    "--keep",
         "--no-plot", "--quiet", "--jobs",       "2",       "--output"};
     REQUIRE(call(in, with(study, {"whole"})).code == 0);
-    const Program part(in, with(study, {"parts"}));
-    REQUIRE(appears(in / "parts/runs/0002/trajectory.csv"));
-    part.send(SIGINT);
-    CHECK(part.wait().code == 130);
-    const std::vector<std::string> other = {"parts", "--resume", "--sweep", "/gravity/1=0,1"};
-    CHECK(call(in, with(study, other)).code == 2);
+    // The first write to study.part is the record of the options.
+    const Ended part = call(in, with(study, {"parts"}), {.end_at = {SIGINT, 5, "parts/study.part"}});
+    CHECK(part.code == 130);
+    CHECK_THAT(part.err, Contains("--resume continues"));
+    CHECK_FALSE(fs::exists(in / "parts/study.csv"));
+    check_refused(in, with(study, {"parts", "--resume", "--sweep", "/gravity/1=0,1"}), 2,
+                  "--resume needs the same");
     REQUIRE(call(in, with(study, {"parts", "--resume"})).code == 0);
     std::vector<CsvRow> a = csv(in / "parts/study.csv"), b = csv(in / "whole/study.csv");
     for (auto* rows : {&a, &b})
         for (CsvRow& row : *rows) row.erase("cpu_seconds");
     CHECK(a == b);
+    CHECK(a.size() == 12);
     for (const char* run : {"0001", "0002", "0012"})
         CHECK(read(in / "parts/runs" / run / "trajectory.csv") ==
               read(in / "whole/runs" / run / "trajectory.csv"));

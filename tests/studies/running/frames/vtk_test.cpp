@@ -14,6 +14,8 @@
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "tests/studies/csv.hpp"
+#include "tests/studies/refused.hpp"
+#include "tests/studies/resumed_run.hpp"
 #include "tests/support/icosphere.hpp"
 
 #include <catch2/catch.hpp>
@@ -372,23 +374,18 @@ TEST_CASE("the friction study writes frames with the contact forces", "[studies]
 TEST_CASE("a study rejects --vtk if it would write no frames", "[studies][vtk]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
-        const Ended ended = call(in, arguments);
-        CAPTURE(arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(expected));
-        CHECK_FALSE(tests::fs::exists(in / "out"));
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+        tests::check_refused(in, tests::with({"study"}, more), 2, message);
     };
     for (const std::string text : {"0", "-1", "1.5", "1000001", "many"})
-        refused({"study", "friction", "--vtk", text},
+        refused({"friction", "--vtk", text},
                 "--vtk: must be a whole number from 1 to 1000000, got '" + text + "'");
-    refused({"study", "energy", "--vtk", "3"},
+    refused({"energy", "--vtk", "3"},
             "study energy: --vtk is for evolving-contact, evolving-friction, friction");
     refused(
-        {"study", "friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
+        {"friction", "--problem", "brick", "--output", "new", "--vtk", "3"},
         "study friction: --vtk is available for disk, ellipsoid, incline, spin, spin-ellipsoid, turntable");
-    CHECK_FALSE(tests::fs::exists(in / "new"));
-    refused({"study", "friction", "--json", "--vtk", "3"}, "--vtk writes files");
+    refused({"friction", "--json", "--vtk", "3"}, "--vtk writes files");
 }
 
 TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
@@ -505,37 +502,17 @@ TEST_CASE("a run writes frames of a contact constraint", "[studies][vtk][evolvin
 TEST_CASE("a run rejects --vtk if it would write no frames", "[studies][vtk][run]")
 {
     const Scratch in;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& expected) {
-        const Ended ended = call(in, arguments);
-        CAPTURE(arguments, ended.err);
-        CHECK(ended.code == 2);
-        CHECK_THAT(ended.err, Contains(expected));
-        CHECK_FALSE(tests::fs::exists(in / "out"));
-    };
     for (const std::string text : {"0", "-1", "nan", "often"})
-        refused({"run", "rolling_ball", "--vtk", text}, "--vtk: must be a positive, finite number");
-    refused({"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, "more than 1000000");
+        tests::check_refused(in, {"run", "rolling_ball", "--vtk", text}, 2,
+                             "--vtk: must be a positive, finite number");
+    tests::check_refused(in, {"run", "rolling_ball", "--step", "1e-7", "--vtk", "1e-7"}, 2,
+                         "more than 1000000");
 }
 
 TEST_CASE("a killed and resumed run writes the frames of an uninterrupted run", "[studies][vtk][resume]")
 {
     const Scratch in;
-    const std::vector<std::string> run = {"run", "rolling_ball", "--step", "1e-5",    "--end",
-                                          "0.5", "--vtk",        "0.05",   "--quiet", "--output"};
-    const auto with = [&](std::initializer_list<std::string> more) {
-        std::vector<std::string> all = run;
-        all.insert(all.end(), more);
-        return all;
-    };
-    REQUIRE(call(in, with({"whole"})).code == 0);
-    const tests::Program killed(in, with({"parts", "--checkpoint", "0.01"}));
-    REQUIRE(tests::appears(in / "parts/checkpoint.1"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    killed.send(SIGKILL);
-    if (killed.wait().code == 137) REQUIRE(call(in, with({"parts", "--resume"})).code == 0);
-    REQUIRE(files(in / "whole/vtk") == 11);
-    CHECK(files(in / "parts/vtk") == 11);
-    CHECK(tests::read(in / "parts/run.pvd") == tests::read(in / "whole/run.pvd"));
-    for (const auto& entry : tests::fs::directory_iterator(in / "whole/vtk"))
-        CHECK(tests::read(in / "parts/vtk" / entry.path().filename()) == tests::read(entry.path()));
+    tests::check_resumed(in, {"run", "rolling_ball", "--end", "0.5", "--vtk", "0.02"});
+    CHECK(files(in / "parts/vtk") == 26);
+    CHECK(collection(in / "parts/run.pvd").size() == 26);
 }

@@ -6,6 +6,9 @@
 #include "lie/euler_sequence.hpp"
 #include "studies/running/sink.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,28 +18,73 @@ namespace {
 
 constexpr const char* option = "--euler";
 
-/// The first and the third angle are continuous: they are followed from step to step and pass ±π without a
-/// jump. Where the second angle passes the end of its range, both jump by π, as the angles are singular
-/// there.
+/// Orientation and rotation of a body at a node
+struct Rotation {
+    lie::Mat3 A = lie::Mat3::Identity();
+    lie::Vec3 omega_bar = lie::Vec3::Zero(), omegadot_bar = lie::Vec3::Zero();  ///< [rad/s, rad/s²]
+
+    explicit Rotation(const lie::Motion& body)
+        : A(body.A), omega_bar(body.omega_bar), omegadot_bar(body.omegadot_bar)
+    {}
+};
+
+/// Angle through which a body turns between two nodes, by the larger of its rates [rad]
+double turned(const Rotation& from, const Rotation& to, double time)
+{
+    return time * std::max(from.omega_bar.norm(), to.omega_bar.norm());
+}
+
+/// ω̄ at the fraction s of the time between two nodes: cubic polynomial with the values and derivatives of both
+lie::Vec3 omega_bar(const Rotation& from, const Rotation& to, double time, double s)
+{
+    const double r = 1 - s;
+    return r * r * (1 + 2 * s) * from.omega_bar + s * s * (3 - 2 * s) * to.omega_bar +
+           time * s * r * (r * from.omegadot_bar - s * to.omegadot_bar);
+}
+
+/// The first and the third angle are continuous: they are followed from node to node and pass ±π without a
+/// jump. Between two nodes of a variable-step integrator a body may turn several times: the angles are followed
+/// along the rotation with the interpolated ω̄, and the remaining difference to the orientation of the second node
+/// is distributed over it. Where the second angle passes the end of its range, both jump by π, as the angles are
+/// singular there.
 class EulerAngles final : public RowsSink {
 public:
     EulerAngles(const RunSetup& run, const std::string& name)
         : RowsSink(run.directory, "euler.csv"), model(run.model),
-          sequence(lie::EulerSequence::named(name).value()), is_zxz(name == "zxz")
+          sequence(lie::EulerSequence::named(name).value()), is_zxz(name == "zxz"), warn(run.warn)
     {}
 
     void transfer(io::Archive& a) override
     {
         RowsSink::transfer(a);
+        a.value(t);
         std::vector<double> numbers;
-        for (const lie::Vec3& v : last) numbers.insert(numbers.end(), v.begin(), v.end());
+        for (const Body& b : last) {
+            numbers.insert(numbers.end(), b.angles.begin(), b.angles.end());
+            numbers.insert(numbers.end(), b.rotation.A.data(), b.rotation.A.data() + 9);
+            for (const lie::Vec3& v : {b.rotation.omega_bar, b.rotation.omegadot_bar})
+                numbers.insert(numbers.end(), v.begin(), v.end());
+        }
         a.list(numbers);
+        constexpr size_t of_body = 18;
         last.clear();
-        for (size_t k = 0; k + 2 < numbers.size(); k += 3)
-            last.emplace_back(numbers[k], numbers[k + 1], numbers[k + 2]);
+        for (size_t k = 0; k + of_body <= numbers.size(); k += of_body) {
+            const double* at = numbers.data() + k;
+            Body& b = last.emplace_back();
+            b.angles = Eigen::Map<const lie::Vec3>(at);
+            b.rotation.A = Eigen::Map<const lie::Mat3>(at + 3);
+            b.rotation.omega_bar = Eigen::Map<const lie::Vec3>(at + 12);
+            b.rotation.omegadot_bar = Eigen::Map<const lie::Vec3>(at + 15);
+        }
     }
 
 private:
+    /// A body at the last node
+    struct Body {
+        lie::Vec3 angles = lie::Vec3::Zero();
+        Rotation rotation{lie::Motion()};
+    };
+
     std::string header() const override
     {
         const std::array<const char*, 3> names =
@@ -53,20 +101,61 @@ private:
         last.resize(node.x.body.size());
         if (node.is_row) io::append_number(row, node.x.t);
         for (size_t b = 0; b < last.size(); ++b) {
-            lie::Vec3 angles = sequence.angles(node.x.body[b].A);
-            for (const int k : {0, 2})
-                if (!is_first)
-                    angles[k] = last[b][k] + std::remainder(angles[k] - last[b][k], 2 * std::numbers::pi);
-            last[b] = angles;
-            if (node.is_row) io::append_vector(row, angles);
+            const Rotation now(node.x.body[b]);
+            if (is_first)
+                last[b].angles = sequence.angles(now.A);
+            else
+                follow(b, now, node.x.t - t);
+            last[b].rotation = now;
+            if (node.is_row) io::append_vector(row, last[b].angles);
         }
+        t = node.x.t;
         if (node.is_row) row += '\n';
+    }
+
+    /// Follows the angles of a body to the next node.
+    void follow(size_t b, const Rotation& to, double time)
+    {
+        constexpr double largest = 0.5;  // [rad]; a body that turns less is not followed between the nodes
+        constexpr double most = 1e6;     // parts of the interval
+        const Rotation& from = last[b].rotation;
+        const double angle = turned(from, to, time);
+        if (!(angle > largest)) return pass(b, to.A);
+        const int parts = static_cast<int>(std::min(most, std::ceil(2 * angle / largest)));
+        std::vector<lie::Mat3> A = {from.A};
+        for (int k = 0; k < parts; ++k)
+            A.emplace_back(A.back() * lie::exp(time / parts * omega_bar(from, to, time, (k + 0.5) / parts)));
+        const Eigen::AngleAxisd rest(lie::Mat3(A.back().transpose() * to.A));
+        if (rest.angle() > 0.25 * std::numbers::pi && !has_warned) {
+            has_warned = true;
+            warn(fmt::format(
+                "euler.csv: the turns of {} are not certain: it turns by {:.3g} rad between two rows, at "
+                "t = {:.6g} s; a smaller --interval gives certain angles",
+                model.all_bodies()[b].name, angle, t + time));
+        }
+        for (int k = 1; k < parts; ++k)
+            pass(b, A[static_cast<size_t>(k)] *
+                        Eigen::AngleAxisd(rest.angle() * k / parts, rest.axis()).toRotationMatrix());
+        pass(b, to.A);
+    }
+
+    /// The angles of the orientation A, of those that differ by whole turns the nearest to the last ones
+    void pass(size_t b, const lie::Mat3& A)
+    {
+        lie::Vec3 angles = sequence.angles(A);
+        for (const int k : {0, 2})
+            angles[k] =
+                last[b].angles[k] + std::remainder(angles[k] - last[b].angles[k], 2 * std::numbers::pi);
+        last[b].angles = angles;
     }
 
     const dae::Model& model;
     const lie::EulerSequence sequence;
     const bool is_zxz;
-    std::vector<lie::Vec3> last;  ///< angles of the bodies at the last node
+    const std::function<void(const std::string&)> warn;
+    std::vector<Body> last;  ///< at the last node
+    double t = 0;            ///< of the last node [s]
+    bool has_warned = false;
 };
 
 void check_sequence(const std::string& name, const std::string& text)

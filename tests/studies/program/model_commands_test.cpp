@@ -228,3 +228,83 @@ TEST_CASE(
     REQUIRE(call(in, {"run", "d.json", "--output", "z", "--force"}).code == 0);
     CHECK_FALSE(fs::exists(in / "z" / "euler.csv"));
 }
+
+// Rows 0.11 s apart, with 3.3 turns between two rows. The first body spins about a fixed axis, the second one nods at the
+// same time, the third one speeds up.
+TEST_CASE("Euler angles count the turns between two rows of each integrator", "[studies][run][euler]")
+{
+    const std::string integrator =
+        GENERATE("rA-half-2", "rA-rkmk-4", "ida-rp", "ida-rp-baumgarte", "ida-rp-index1");
+    CAPTURE(integrator);
+    const Scratch in;
+    write(in / "spin.json", R"({"hilda_model": 1, "name": "spin", "end": 1.1, "gravity": [0, 0, 0],
+      "parameters": {"rate": "2*pi*3.3/0.11"}, "bodies": [
+      {"name": "x", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0], "omega": ["rate", 0, 0]},
+      {"name": "back", "mass": 1, "inertia": [1, 1, 1], "r": [1, 0, 0], "omega": ["-rate", 0, 0]},
+      {"name": "tilted", "mass": 1, "inertia": [1, 1, 1], "r": [2, 0, 0],
+       "euler_angles": {"sequence": "xyz", "angles": [0.2, 0.4, 0.3]}, "omega": [0, 0, "rate"]}]})");
+    const std::vector<std::string> step = integrator.starts_with("ida")
+                                              ? std::vector<std::string>{"--rtol", "1e-9"}
+                                              : std::vector<std::string>{"--step", "1e-3"};
+    const Ended ended = call(in, with({"run", "spin.json", "--integrator", integrator, "--interval", "0.11",
+                                       "--euler", "xyz", "--output", "a"},
+                                      step));
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    CHECK(ended.err.find("euler.csv") == std::string::npos);
+    const Csv angles = read_csv(in / "a/euler.csv");
+    REQUIRE(angles.column("t").size() == 11);
+    for (size_t k = 0; k < 11; ++k) {
+        const double turned = 2 * std::numbers::pi * 3.3 * static_cast<double>(k);
+        CHECK(angles.column("x.angle1")[k] == Approx(turned).margin(1e-4));
+        CHECK(angles.column("back.angle1")[k] == Approx(-turned).margin(1e-4));
+        CHECK(angles.column("tilted.angle1")[k] == Approx(0.2).margin(1e-4));
+        CHECK(angles.column("tilted.angle2")[k] == Approx(0.4).margin(1e-4));
+        CHECK(angles.column("tilted.angle3")[k] == Approx(0.3 + turned).margin(1e-4));
+    }
+}
+
+// The angle 10 t² of a driver: up to 290 turns, with up to 55 turns between two rows
+TEST_CASE("Euler angles count the turns of a rotation whose rate changes", "[studies][run][euler]")
+{
+    const Scratch in;
+    write(in / "bar.json", R"({"hilda_model": 1, "name": "bar", "end": 13.5,
+      "bodies": [{"name": "bar", "mass": 1, "inertia": [0.25, 0.001, 0.25], "r": [0, 0.5, 0]}],
+      "constraints": [{"name": "pivot", "type": "revolute", "body_i": "ground", "body_j": "bar",
+        "s_bar_q_j": [0, -0.5, 0], "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]},
+       {"name": "motor", "type": "hinge-driver", "body_i": "ground", "body_j": "bar", "axis_bar_i": [1, 0, 0],
+        "axis_bar_j": [1, 0, 0], "angle": "10*t^2"}]})");
+    REQUIRE(call(in, {"run", "bar.json", "--integrator", "ida-rp", "--interval", "1.35", "--euler", "xyz",
+                      "--output", "a"})
+                .code == 0);
+    const Csv angles = read_csv(in / "a/euler.csv");
+    REQUIRE(angles.column("t").size() == 11);
+    for (size_t k = 0; k < 11; ++k)
+        CHECK(angles.column("bar.angle1")[k] ==
+              Approx(10 * std::pow(1.35 * static_cast<double>(k), 2)).margin(1e-4));
+}
+
+// A symmetric top: ω̄ turns about its axis z with the rate (1 - J_z/J_x) ω_z, which the rows do not resolve.
+TEST_CASE("Euler angles whose turns are not certain are written with one warning", "[studies][run][euler]")
+{
+    const Scratch in;
+    write(in / "top.json", R"({"hilda_model": 1, "name": "top", "end": 5, "gravity": [0, 0, 0], "bodies": [
+      {"name": "top", "mass": 1, "inertia": [1, 1, 1.9], "r": [0, 0, 0], "omega": [20, 0, 30]}]})");
+    const auto run = [&](const std::string& interval, const std::string& integrator) {
+        const Ended ended = call(in, {"run", "top.json", "--integrator", integrator, "--interval", interval,
+                                      "--euler", "zxz", "--output", "a", "--force"});
+        REQUIRE(ended.code == 0);
+        return ended.err;
+    };
+    const std::string warning = run("0.5", "ida-rp");
+    CHECK_THAT(warning,
+               Contains("warning: euler.csv: the turns of top are not certain") && Contains("--interval"));
+    CHECK(warning.find("not certain") == warning.rfind("not certain"));
+    CHECK(run("0.01", "ida-rp").empty());
+    const Csv fine = read_csv(in / "a/euler.csv");
+    CHECK(run("0.5", "rA-rkmk-4").empty());  // it follows the angles from step to step
+    const Csv steps = read_csv(in / "a/euler.csv");
+    for (size_t k = 0; k < 11; ++k)
+        for (const char* column : {"top.theta", "top.psi"})
+            CHECK(steps.column(column)[k] == Approx(fine.column(column)[50 * k]).margin(1e-3));
+}

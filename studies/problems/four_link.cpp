@@ -24,11 +24,11 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "rotor", )json" +
-                     inertia.rotor + R"json(,
+                     inertia.rotor + R"json(, "shape": {"cylinder": [2, 0.1], "axis": "z"},
       "r": [0, 0, 0], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
       "omega": [0, 0, 3.1415926535897931]},
     {"name": "link_2", )json" +
-                     inertia.link_2 + R"json(,
+                     inertia.link_2 + R"json(, "shape": {"cylinder": [0.1, 12.2], "axis": "y"},
       "r": [-3.745557718914304, -4.25, 4.262365437828616],
       "A": [[ 0.7501572123794653,     0.6140258555597219, 0.24543106042068244],
             [-0.6612594705590589,     0.6967213114754098, 0.27805633733461],
@@ -36,7 +36,7 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
       "r_dot": [-5.266847522470136, -3.14159265358981, -2.8180737328162566],
       "omega": [0.4977376324560374, 1.9303386981341297, -0.9881360059689986]},
     {"name": "link_3", )json" +
-                     inertia.link_3 + R"json(,
+                     inertia.link_3 + R"json(, "shape": {"cylinder": [0.1, 7.4], "axis": "y"},
       "r": [-5.745557718914304, -8.5, 3.2623654378286155],
       "A": [[0, 0.4717723564633253, 0.8817203886023283], [-1, 0, 0], [0, -0.8817203886023285, 0.4717723564633257]],
       "r_dot": [-5.266847522470134, 0, -2.818073732816258],

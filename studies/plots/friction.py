@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Friction experiments, one figure per experiment.                          Fang (2022), Figs. 4.6-4.12, 4.15-4.18
+"""Friction experiments, one figure per experiment, and snapshots of some.         Fang (2022), Figs. 4.6-4.12, 4.14-4.18
 
-    friction.py DIR       reads DIR/study.csv and DIR/EXPERIMENT.csv, writes DIR/friction-EXPERIMENT.png
+    friction.py DIR       reads DIR/study.csv and DIR/EXPERIMENT.csv, writes DIR/friction-EXPERIMENT.png; from
+                          DIR/EXPERIMENT-poses.csv and the files beside it DIR/friction-EXPERIMENT-snapshots.png
 """
+import math
 import os
 
+import bodies
 from drawing import COLOURS, DASHES, Line2D, axis, directory, lines_below, number, numbers, plt, read, save
 
 # EXPERIMENT: rows of panels; a panel is (column, label, limits of t or None)
@@ -130,11 +133,65 @@ def draw(folder, name, figure):
         panels(folder, name, title, by_run)
 
 
+ALONG_Y, OBLIQUE = (22, 12), (24, -50)  # elevation and azimuth of the viewer [deg]
+SNAPSHOTS = {  # figure, columns, viewer, slope [deg], texts of the panels
+    "incline": ("4.12 b-e", 2, ALONG_Y, 35,
+                ["I: up the slope, slipping", "II: up, rolling", "III: down, rolling", "IV: down, slipping"]),
+    "spin": ("4.14", 4, OBLIQUE, 0, ["start", "spinning", "spinning", "at rest"]),
+    "ellipsoid": ("4.17", 3, ALONG_Y, 0, [""] * 6),
+}
+
+
+def rotation_about_x(angle_deg):
+    c, s = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+    return [[1, 0, 0], [0, c, -s], [0, s, c]]
+
+
+def snapshots(folder, name):
+    """The body of the run at the times of the dissertation, with its frame, the contact frame, its velocity, the friction
+    force and the path of the contact point"""
+    number_of_figure, columns, look, slope, texts = SNAPSHOTS[name]
+    for run in bodies.runs(folder, name + "-", rotation_about_x(slope)).values():
+        times, body = run.times(), run.bodies[0]
+        size = bodies.size_of(run, body)
+        low, high = bodies.common_box([(run, t) for t in times], 0.25)
+        motion, contact = run.poses[body], run.contacts[body]
+        fastest = max(math.hypot(*motion.v[motion.at(t)]) for t in times)
+        strongest = max(math.hypot(*contact.F[k]) for k in (contact.at(t) for t in times) if k is not None)
+        moves, has_friction = fastest > 1e-6, strongest > 1e-6
+        figure, axes = bodies.panels(len(times), columns, 3.1, 3.5 if slope else 2.9)
+        for ax, t, text in zip(axes, times, texts):
+            scene = bodies.Scene(ax, run, t, low, high, look, 1.05 if slope else 1.2)
+            scene.surroundings()
+            scene.paths(of_bodies=False)
+            scene.bodies()
+            scene.body_frames(1.25 * size, [body])
+            scene.contacts(0.6 * size, 1.2 * size / strongest if has_friction else 0)
+            if moves:
+                scene.velocity(body, 1.5 * size / fastest)
+            text = text or ("" if contact.at(t) is not None else "no contact")
+            scene.finish(f"$t$ = {t:.4g} s" + (f"\n{text}" if text else ""), SLOPED if slope else AXES)
+        entries = [("body frame", bodies.BODY_FRAME, "-"), ("contact frame $u$, $w$, $n$", bodies.CONTACT_FRAME, "-")]
+        if moves:
+            entries.append((f"velocity, longest {fastest:.3g} m/s", bodies.VELOCITY, "-"))
+        if has_friction:
+            entries.append((f"friction force, longest {strongest:.3g} N", bodies.FRICTION, "-"))
+        if moves:
+            entries.append(("path of the contact point", bodies.PATH, "-"))
+        figure.suptitle(f"{name} (Fig. {number_of_figure}), run {run.name}", fontsize=11)
+        save(figure, folder, f"friction-{name}-snapshots.png", bodies.legend(figure, entries), 0.96)
+
+
+AXES = ("$x$ [m]", "$y$ [m]", "$z$ [m]")
+SLOPED = ("$x$ [m]", "horizontal [m]", "vertical [m]")
+
 FIGURES = {"brick": "4.6", "brick-angles": "4.7", "disk": "4.9", "disk-damping": "4.10", "rolling-models": "4.11",
            "incline": "4.12", "spin": "4.15", "spin-hertz": "4.16", "ellipsoid": "4.17", "spin-ellipsoid": "4.18",
            "turntable": "beyond"}
 
 folder = directory()
 for experiment in sorted(file[:-4] for file in os.listdir(folder) if file.endswith(".csv")):
-    if experiment not in ("study", "against"):
+    if experiment not in ("study", "against") and not experiment.endswith(("-poses", "-contacts")):
         draw(folder, experiment, FIGURES.get(experiment, "4"))
+        if experiment in SNAPSHOTS and os.path.exists(os.path.join(folder, experiment + "-shapes.json")):
+            snapshots(folder, experiment)

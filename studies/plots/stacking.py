@@ -2,8 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Critical mass of a stack of three spheres over the rolling resistance.                      Fang (2022), Fig. 4.19
 
-    stacking.py DIR     reads DIR/study.csv and DIR/study.json, writes DIR/stacking.png
+    stacking.py DIR     reads DIR/study.csv and DIR/study.json, writes DIR/stacking.png; from DIR/poses.csv and the files
+                        beside it DIR/stacking-snapshots.png
 """
+import os
+
+import bodies
 
 from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, record, save, where
 
@@ -42,4 +46,30 @@ def draw(folder):
     save(figure, folder, "stacking.png", top=1)
 
 
+def snapshots(folder):
+    """Stacks that stand (left) and collapse under 0.01 kg more (right), with their outlines at the start"""
+    runs, study = bodies.runs(folder), record(folder)
+    low, high = bodies.common_box([(run, t) for run in runs.values() for t in run.times()], 0.05)
+    figure, axes = bodies.panels(len(runs), 2, 4.2, 2.7)
+    for ax, of in zip(axes, study["snapshots"]):
+        run = runs[of["run"]]
+        scene = bodies.Scene(ax, run, of["t"], low, high, (8, -90))
+        scene.surroundings()
+        scene.outline(0, colors="0.45", linewidths=0.8, linestyles="dashed")
+        scene.bodies()
+        scene.body_frames(0.8 * bodies.size_of(run, "top"), ("left", "right", "top"))
+        scene.contacts(0)
+        saturated = [what for what in ("roll", "slide") if of[what + "_saturates"]]
+        state = (" and ".join(saturated) + " friction at the bound") if of["collapses"] else "stands"
+        scene.finish(f"({of['run']}) $\\eta_r$ = {of['eta_r']:g}, top {of['top_mass']:.3f} kg, $t$ = {of['t']:.3g} s\n{state}")
+        ax.set_yticks([])
+        ax.set_ylabel("")
+    gap = study["snapshots"][0]["gap"]
+    figure.suptitle(f"Three stacked spheres (Fig. 4.19 b-g), gap {gap:.2f} R, {study['preset']} friction", fontsize=11)
+    entries = [("body frames", bodies.BODY_FRAME, "-"), ("outlines at the start", "0.45", "--")]
+    save(figure, folder, "stacking-snapshots.png", bodies.legend(figure, entries), 0.96)
+
+
 draw(directory())
+if os.path.exists(os.path.join(directory(), "shapes.json")):
+    snapshots(directory())

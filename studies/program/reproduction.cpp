@@ -40,7 +40,30 @@ Reproduction grains(const std::string& validation, Words figures, const std::str
 std::vector<Reproduction> chapter_3()
 {
     const std::string finest = "5e-4";
+    const auto total = [](const std::string& what, const std::string& column, const std::string& problem,
+                          double value) {
+        return ReproductionCheck{.what = what + ", " + problem,
+                                 .column = column,
+                                 .where = {{"problem", problem}},
+                                 .least = value,
+                                 .most = value};
+    };
     return {
+        {.name = "mechanisms",
+         .chapter = 3,
+         .figures = {"3.3", "Table 3.1"},
+         .title = "Mechanisms",
+         .shows = "Double pendulum, slider-crank and four-link at four times; their constraints and degrees "
+                  "of freedom.",
+         .study = "snapshots",
+         .arguments = {},
+         .page = "snapshots.md",
+         .checks = {total("constraint rows", "rows", "double_pendulum", 10),
+                    total("constraint rows", "rows", "slider_crank", 18),
+                    total("constraint rows", "rows", "four_link", 18),
+                    total("degrees of freedom", "degrees_of_freedom", "double_pendulum", 2),
+                    total("degrees of freedom", "degrees_of_freedom", "slider_crank", 0),
+                    total("degrees of freedom", "degrees_of_freedom", "four_link", 0)}},
         {.name = "order-1",
          .chapter = 3,
          .figures = {"3.4"},
@@ -185,7 +208,7 @@ std::vector<Reproduction> chapter_4()
         friction("rolling-models", {"4.11"}, "Rolling resistance at rest",
                  "Constant torque and history model of rolling resistance at rest."),
         friction("incline", {"4.12"}, "Sphere up an incline of 35 degrees",
-                 "Sliding, rolling and return of a sphere."),
+                 "Sliding, rolling and return of a sphere; snapshots."),
         {.name = "incline-sweep",
          .chapter = 4,
          .figures = {"4.13"},
@@ -197,12 +220,12 @@ std::vector<Reproduction> chapter_4()
          .full = {"--grid", "published"},
          .reduced = "a coarse grid of slopes and coefficients instead of the 23571 published states",
          .page = "incline-sweep.md"},
-        friction("spin", {"4.15"}, "Spinning sphere",
-                 "Spin of a sphere that comes to rest, heuristic model."),
+        friction("spin", {"4.14", "4.15"}, "Spinning sphere",
+                 "Spin of a sphere that comes to rest, heuristic model; snapshots."),
         friction("spin-hertz", {"4.16"}, "Spinning spheres of steel and glass",
                  "Spin that comes to rest, Hertz model."),
         friction("ellipsoid", {"4.17"}, "Ellipsoid that falls over",
-                 "Motion of an ellipsoid that stands upright at the start."),
+                 "Motion of an ellipsoid that stands upright at the start; snapshots."),
         friction("spin-ellipsoid", {"4.18", "Table 4.7"}, "Spinning ellipsoid",
                  "Spin on the pole and on the side; spinning torque over the curvature."),
         {.name = "stacking",
@@ -210,7 +233,8 @@ std::vector<Reproduction> chapter_4()
          .figures = {"4.19"},
          .title = "Critical mass of three stacked spheres",
          .shows =
-             "Largest mass of the upper sphere that the lower spheres carry, over the rolling resistance.",
+             "Largest mass of the upper sphere that the lower spheres carry, over the rolling resistance; "
+             "snapshots.",
          .study = "stacking",
          .arguments = {"--check"},
          .quick = {"--grid", "coarse"},

@@ -248,5 +248,87 @@ class Figures(unittest.TestCase):
                 plt.close(figure)
 
 
+def pose(run, body, t, r, shown=1, turn=0.0):
+    """A row of poses.csv: a body at r, turned by an angle about z"""
+    c, s = math.cos(turn), math.sin(turn)
+    A = {"A11": c, "A12": -s, "A13": 0, "A21": s, "A22": c, "A23": 0, "A31": 0, "A32": 0, "A33": 1}
+    return {"run": run, "body": body, "t": t, "shown": shown, "rx": r[0], "ry": r[1], "rz": r[2], **A, "vx": 1, "vy": 0,
+            "vz": 0}
+
+
+def cube(body, half):
+    points = [[x, y, z] for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+    polygons = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return {"body": body, "kind": "solid", "unbounded": False, "points": points, "polygons": polygons}
+
+
+class SnapshotFigures(unittest.TestCase):
+    """Two cubes on a floor; the first moves along x, the second stands behind it (y = 3)"""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.addCleanup(plt.close, "all")
+        self.folder = scratch.name
+        times = [0, 0.5, 1]
+        write(self.folder, "poses.csv", [row for t in times for row in (
+            pose("two", "near", t, (4 * t, 0, 0.5), int(t != 0.5), turn=t), pose("two", "far", t, (0, 3, 0.5), int(t != 0.5)))])
+        floor = {"body": -1, "kind": "surface", "unbounded": True, "polygons": [[0, 1, 2, 3]],
+                 "points": [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]]}
+        shapes = {"run": "two", "bodies": ["near", "far"], "meshes": [cube(0, 0.5), cube(1, 0.5), floor],
+                  "joints": [{"body": 0, "point": [0, 0, 0.5]}, {"body": 1, "point": [0, 0, 70]}],
+                  "lines": [{"kind": "link", "body_i": 0, "point_i": [0, 0, 0], "body_j": -1, "point_j": [0, 0, 70]}]}
+        with open(os.path.join(self.folder, "shapes.json"), "w", encoding="utf-8") as file:
+            json.dump([shapes], file)
+
+    def test_panels_show_the_marked_times_with_equal_scales_around_all_bodies(self):
+        figures, files = draw("snapshots.py", self.folder)
+        self.assertEqual(files, ["snapshots-two.png"])
+        figure = figures["snapshots-two.png"]
+        self.assertEqual([axes.get_title() for axes in figure.axes], ["$t$ = 0 s", "$t$ = 1 s"])
+        for axes in figure.axes:
+            limits = [axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()]
+            self.assertLess(limits[0][0], -0.5)
+            self.assertGreater(limits[0][1], 4 + 0.5)
+            self.assertGreater(limits[1][1], 3.5)
+            self.assertAlmostEqual(limits[2][0], 0)  # the floor
+            self.assertLess(limits[2][1], 3)         # not the end of the link, which has no mass
+            aspect, sizes = axes._box_aspect, [high - low for low, high in limits]
+            for k in (1, 2):
+                self.assertAlmostEqual(aspect[k] / aspect[0], sizes[k] / sizes[0])
+            self.assertEqual([axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()],
+                             ["$x$ [m]", "$y$ [m]", "$z$ [m]"])
+        self.assertEqual(legend_texts(figure), ["near", "far"])
+
+    def test_only_polygons_that_face_the_viewer_are_drawn_and_the_floor_is_below_them(self):
+        import bodies
+        run = bodies.runs(self.folder)["two"]
+        _, (axes,) = bodies.panels(1, 1)
+        low, high = bodies.common_box([(run, t) for t in run.times()])
+        scene = bodies.Scene(axes, run, 1.0, low, high, (30, -60))
+        polygons, faces, _ = scene.polygons()
+        self.assertEqual(len(polygons), 6)  # three of each cube
+        self.assertEqual(len(faces), 6)
+        for polygon in polygons:
+            centre = [4, 0, 0.5] if polygon[:, 1].mean() < 1.5 else [0, 3, 0.5]
+            self.assertGreater((polygon.mean(axis=0) - centre) @ scene.to_viewer, 0)
+        near = bodies.np.vstack(polygons[:3])
+        self.assertAlmostEqual(bodies.np.abs(near[:, 0] - 4).max(), 0.5 * (math.cos(1) + math.sin(1)))  # turned by 1 rad
+        scene.surroundings()
+        scene.bodies()
+        floor, solids = axes.collections
+        self.assertLess(floor.get_zorder(), solids.get_zorder())
+
+    def test_the_outline_of_a_cube_has_its_six_silhouette_edges(self):
+        import bodies
+        run = bodies.runs(self.folder)["two"]
+        _, (axes,) = bodies.panels(1, 1)
+        low, high = bodies.common_box([(run, t) for t in run.times()])
+        scene = bodies.Scene(axes, run, 1.0, low, high, (30, -60))
+        scene.outline(0.0)
+        self.assertEqual(len(axes.collections[0]._segments3d), 12)  # six of each cube
+        self.assertEqual(scene.t, 1.0)
+
+
 if __name__ == "__main__":
     unittest.main()

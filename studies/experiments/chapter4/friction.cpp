@@ -3,7 +3,8 @@
 ///
 /// An experiment consists of a few runs of one body in contact. The table lists each measured value, the
 /// required value and the tolerance. NAME.csv contains the curves of experiment NAME, reduced to at most 2000
-/// rows per run.
+/// rows per run. Some experiments have snapshots at the times of the dissertation: NAME-poses.csv, NAME-contacts.csv and
+/// NAME-shapes.json (SnapshotTables).
 ///
 /// --against FILE compares every step of the runs with the columns of a table. --check adds the runs that only the
 /// criteria need, and returns exit code 6 if a criterion fails.
@@ -11,6 +12,7 @@
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
+#include "studies/running/frames/tables.hpp"
 
 #include "io/error.hpp"
 
@@ -25,6 +27,7 @@ namespace {
 using namespace friction;
 
 constexpr size_t max_rows = 2000;  // limit on the rows per run in NAME.csv
+constexpr int path_points = 301;   // frames of a run with snapshots, for the path of its contact point
 
 /// A selected experiment with its runs and their results
 struct SelectedExperiment {
@@ -32,6 +35,13 @@ struct SelectedExperiment {
     std::vector<ExperimentRun> runs = {};
     std::vector<Curve> curves = {};
     std::vector<std::string> failures = {};
+    std::vector<SnapshotTables> snapshots = {};
+
+    bool has_snapshots() const
+    {
+        return std::any_of(runs.begin(), runs.end(),
+                           [](const ExperimentRun& run) { return !run.snapshots.empty(); });
+    }
 };
 
 std::vector<SelectedExperiment> selected(const StudyContext& s)
@@ -42,6 +52,7 @@ std::vector<SelectedExperiment> selected(const StudyContext& s)
         std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.check_only && !s.options.check; });
         c.curves.resize(c.runs.size());
         c.failures.resize(c.runs.size());
+        c.snapshots.resize(c.runs.size());
     }
     if (s.options.vtk > 0 && std::none_of(all.begin(), all.end(), [](const SelectedExperiment& c) {
             return c.experiment->has_frames;
@@ -105,14 +116,21 @@ void compute(SelectedExperiment& c, size_t r, const StudyOptions& options)
 {
     const std::string name = c.experiment->name + '-' + c.runs[r].name;
     if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
-    Frames frames{.count = options.vtk};
+    const BodyOnPlane setup = c.runs[r].setup();
+    const std::vector<double>& times = c.runs[r].snapshots;
+    std::vector<Frames> frames;
+    if (!times.empty()) frames.push_back({.count = path_points, .times = times});
     const bool with_frames = options.vtk > 0 && c.experiment->has_frames;
+    if (with_frames) frames.push_back({.count = options.vtk});
     try {
-        c.curves[r] = simulate(c.runs[r].setup(), with_frames ? &frames : nullptr);
+        c.curves[r] = simulate(setup, frames);
     } catch (const io::NumericalFailure& e) {
         c.failures[r] = e.what();
     }
-    if (with_frames) frames.snapshots.write(options.output, name);
+    if (with_frames) frames.back().snapshots.write(options.output, name);
+    if (!times.empty())
+        c.snapshots[r] = snapshot_tables(frames.front().snapshots, c.runs[r].name, {setup.name, "plane"},
+                                         {setup.name}, times);
 }
 
 void friction_experiments(StudyContext& s)
@@ -131,7 +149,7 @@ void friction_experiments(StudyContext& s)
         .run([&](long k) { compute(*jobs[k].first, jobs[k].second, options); },
              [&](io::Archive& a, long k) {
                  const auto& [c, r] = jobs[k];
-                 c->curves[r].transfer(a), a.list(c->failures[r]);
+                 c->curves[r].transfer(a), a.list(c->failures[r]), c->snapshots[r].transfer(a);
              });
 
     std::vector<Checked> checks;
@@ -153,6 +171,10 @@ void friction_experiments(StudyContext& s)
         }
         s.files.emplace_back(e.name + ".csv", curves(c));
         s.figures.push_back(fmt::format("{}-{}.png", s.name, e.name));
+        if (c.has_snapshots()) {
+            for (auto& file : snapshot_files(e.name + '-', c.snapshots)) s.files.push_back(std::move(file));
+            s.figures.push_back(fmt::format("{}-{}-snapshots.png", s.name, e.name));
+        }
         for (size_t r = 0; r < c.runs.size(); ++r) named.push_back({e.name, c.runs[r].name, &c.curves[r]});
         if (options.vtk > 0 && e.has_frames)
             frames += fmt::format("\nframes for ParaView: {}/{}-*.pvd", options.output, e.name);
@@ -172,11 +194,12 @@ const bool registered = io::Registry<Study>::add(
     {.name = "friction",
      .answers =
          "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
-         "4.15-4.18, Table 4.7)",
+         "4.14-4.18, Table 4.7)",
      .accepted = takes::against | takes::check | takes::vtk,
      .lacking = lacks::models | lacks::steps | lacks::end,
      .keys = {"difference"},
-     .files = {"EXPERIMENT.csv", "friction-EXPERIMENT.png"},
+     .files = {"EXPERIMENT.csv", "EXPERIMENT-poses.csv", "EXPERIMENT-contacts.csv", "EXPERIMENT-shapes.json",
+               "friction-EXPERIMENT.png", "friction-EXPERIMENT-snapshots.png"},
      .run = friction_experiments});
 
 }  // namespace

@@ -4,11 +4,12 @@
 /// For each gap between the lower spheres and each η_r, the critical mass is the smallest mass of the upper
 /// sphere for which the stack collapses. It is found by bisection between 0.25 kg and 4 kg to one gram. The
 /// collapse mode is the motion of the lower spheres on the ground at the critical mass: rolling, sliding or
-/// both (Figs. 4.19c, e, g). The default preset is `dissertation`. --check compares the results with
+/// both (Figs. 4.19c, e, g). Snapshots show stacks one gram lighter, which stand, and 0.01 kg heavier than these, which
+/// collapse. The default preset is `dissertation`. --check compares the results with
 /// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
 /// fails.
 
-#include "studies/experiments/chapter4/stack.hpp"
+#include "studies/experiments/chapter4/stack_snapshots.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
 
@@ -216,6 +217,40 @@ void compare(StudyContext& s, const std::vector<StackCell>& cells, std::vector<C
     checks.push_back(between("largest difference to the file [kg]", largest, 0, 0.02));
 }
 
+/// A pair of figures: the heaviest stack that stands, and the same with 0.01 kg more on top      Fig. 4.19 b-g
+struct Pictured {
+    double eta_r;
+    std::string stable, collapsing;  ///< letters of the figures
+};
+const std::vector<Pictured> pictured = {{0.16, "b", "c"}, {0.23, "d", "e"}, {0.35, "f", "g"}};
+constexpr double pictured_gap = 0.3, added_mass = 0.01;  // over R; [kg]
+
+void add_snapshots(StudyContext& s, const std::vector<StackCell>& cells, double h, double end)
+{
+    std::vector<SnapshotTables> tables;
+    for (size_t k = 0; k < pictured.size(); ++k) {
+        if (!cells[k].found) continue;
+        Stack stack = cells[k].stack;
+        stack.top -= 1 / kilogram;
+        for (const bool heavier : {false, true}) {
+            const std::string& letter = heavier ? pictured[k].collapsing : pictured[k].stable;
+            if (heavier) stack.top += added_mass;
+            const StackSnapshots of = stack_snapshots(stack, letter, h, heavier ? end : cells[k].below.t);
+            s.json["snapshots"].push_back({{"run", letter},
+                                           {"gap", stack.gap},
+                                           {"eta_r", stack.eta_r},
+                                           {"top_mass", stack.top},
+                                           {"t", of.t},
+                                           {"collapses", of.collapses},
+                                           {"roll_saturates", of.roll_saturates},
+                                           {"slide_saturates", of.slide_saturates}});
+            tables.push_back(of.tables);
+        }
+    }
+    s.files = snapshot_files("", tables);
+    if (!tables.empty()) s.figures.emplace_back("stacking-snapshots.png");
+}
+
 void stacking(StudyContext& s)
 {
     const GridOptions o = grid_options(s, 1e-4, 10, grids);
@@ -235,10 +270,17 @@ void stacking(StudyContext& s)
     }
     const StackCell& coarse = refined_cell_of(cells, o.grid);
     StackCell refined{.stack = coarse.stack};
+    std::vector<StackCell> of_figures;
+    for (const Pictured& p : pictured)
+        of_figures.push_back(
+            {.stack = {.gap = pictured_gap, .eta_r = p.eta_r, .dissertation = o.dissertation()}});
+    const long grid_cells = static_cast<long>(cells.size()),
+               figure_cells = static_cast<long>(of_figures.size());
     const auto cell = [&](long k) -> StackCell& {
-        return k < static_cast<long>(cells.size()) ? cells[k] : refined;
+        if (k < grid_cells) return cells[k];
+        return k < grid_cells + figure_cells ? of_figures[k - grid_cells] : refined;
     };
-    s.pool(cells.size() + s.options.check)
+    s.pool(cells.size() + of_figures.size() + s.options.check)
         .run([&](long k) { bisect(cell(k), &cell(k) == &refined ? o.h / refinement : o.h, o.end); },
              [&](io::Archive& a, long k) { cell(k).transfer(a); });
 
@@ -274,6 +316,7 @@ void stacking(StudyContext& s)
     if (s.options.check) s.evaluate(checks);
     s.table = columns_of_cells.csv(cells);
     s.figures = {"stacking.png"};
+    add_snapshots(s, of_figures, o.h, o.end);
 }
 
 const bool registered = io::Registry<Study>::add(
@@ -284,7 +327,7 @@ const bool registered = io::Registry<Study>::add(
      .accepted = takes::preset | takes::against | takes::grid | takes::check,
      .lacking = lacks::problem | lacks::models,
      .keys = keys(),
-     .files = {"stacking.png"},
+     .files = {"poses.csv", "contacts.csv", "shapes.json", "stacking.png", "stacking-snapshots.png"},
      .run = stacking});
 
 }  // namespace

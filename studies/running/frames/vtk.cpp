@@ -93,7 +93,8 @@ Snapshots::ContactData Snapshots::contact_data(int contact, int i, const contact
             .N = now.N * now.contact_point.n,
             .F = friction.F,
             .slipping = history.slide.slipping,
-            .rolling = history.roll_i.slipping || history.roll_j.slipping};
+            .rolling = history.roll_i.slipping || history.roll_j.slipping,
+            .u = now.slip.u};
 }
 
 void Snapshots::add(double t, std::vector<Motion> bodies, std::vector<ContactData> contacts)
@@ -130,7 +131,7 @@ DrawingExtent Snapshots::extent_of(const BodySurface& of, const std::vector<doub
 std::vector<Snapshots::BodyMesh> Snapshots::body_meshes() const
 {
     const auto piece = [](const BodySurface& s, const DrawingExtent& extent) {
-        BodyMesh p{s.body, tessellate(*s.shape.surface, extent), surface};
+        BodyMesh p{s.body, tessellate(*s.shape.surface, extent), surface, s.shape.surface->is_unbounded()};
         for (Vec3& a : p.mesh.point) a = s.shape.to_body(a);
         return p;
     };
@@ -235,6 +236,38 @@ std::string Snapshots::poly_data(const Frame& now, const std::vector<BodyMesh>& 
         }
     }
     return data.text();
+}
+
+namespace {
+
+io::Json point_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+}  // namespace
+
+io::Json Snapshots::geometry() const
+{
+    static const std::vector<std::string> kinds = {"contact", "joint",   "spring", "link",
+                                                   "solid",   "surface", "bar"};
+    io::Json all = {
+        {"meshes", io::Json::array()}, {"joints", io::Json::array()}, {"lines", io::Json::array()}};
+    for (const BodyMesh& of : body_meshes()) {
+        io::Json points = io::Json::array();
+        for (const Vec3& p : of.mesh.point) points.push_back(point_of(p));
+        all["meshes"].push_back({{"body", of.body},
+                                 {"kind", kinds[of.kind]},
+                                 {"unbounded", of.is_unbounded},
+                                 {"points", std::move(points)},
+                                 {"polygons", of.mesh.polygon}});
+    }
+    for (const Joint& at : joints)
+        all["joints"].push_back({{"body", at.body}, {"point", point_of(at.s_bar)}});
+    for (const Line& line : lines)
+        all["lines"].push_back({{"kind", kinds[line.kind]},
+                                {"body_i", line.ends.i},
+                                {"point_i", point_of(line.ends.s_bar_i)},
+                                {"body_j", line.ends.j},
+                                {"point_j", point_of(line.ends.s_bar_j)}});
+    return all;
 }
 
 void Snapshots::write(const std::string& directory, const std::string& name) const

@@ -7,6 +7,7 @@
 #include "contact/tessellation.hpp"
 #include "dae/body.hpp"
 #include "io/archive.hpp"
+#include "io/json.hpp"
 
 #include <string>
 #include <vector>
@@ -56,12 +57,19 @@ public:
     /// Adds a line between two points: a spring or a link.
     void add_line(const dae::PointPair& ends, Kind kind) { lines.push_back({ends, kind}); }
 
-    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], all
-    /// global
+    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], and the first
+    /// tangent u of the contact frame, all global. u is zero where the contact frame is not known, and is not part of a
+    /// checkpoint.
     struct ContactData {
         int contact, i;  ///< number of the contact, and of its first body
         lie::Vec3 C, N, F;
         bool slipping, rolling;
+        lie::Vec3 u = lie::Vec3::Zero();
+    };
+    struct Frame {
+        double t;  ///< [s]
+        std::vector<lie::Motion> body;
+        std::vector<ContactData> contacts;
     };
     static ContactData contact_data(int contact, int i, const contact::ContactState& now,
                                     const contact::Wrench& friction, const contact::Deflections& history);
@@ -72,6 +80,15 @@ public:
     /// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., then DIR/NAME.pvd with the list of files and times.
     /// io::IoError.
     void write(const std::string& directory, const std::string& name) const;
+    /// What is drawn, in the frames of the bodies (-1: ground):
+    ///     meshes   [{body, kind: surface or solid, unbounded, points: [[x, y, z], ...], polygons: [[point, ...], ...]}]
+    ///     joints   [{body, point}]
+    ///     lines    [{kind: spring, link or bar, body_i, point_i, body_j, point_j}]
+    /// `unbounded`: the mesh is the part of an unbounded surface that the frames need.
+    io::Json geometry() const;
+    /// The frames in the order of add()
+    const std::vector<Frame>& all_frames() const { return frames; }
+
     /// Writes the frames to a checkpoint, or reads them.
     void transfer(io::Archive& a);
     /// Removes the files of an earlier write() with this name.
@@ -84,16 +101,12 @@ private:
         int body;
         contact::Shape shape;
     };
-    struct Frame {
-        double t;
-        std::vector<lie::Motion> body;
-        std::vector<ContactData> contacts;
-    };
     /// A mesh, in the frame of its body
     struct BodyMesh {
         int body;
         PolygonMesh mesh;
         Kind kind;
+        bool is_unbounded = false;  ///< the drawn part of an unbounded surface
 
         bool operator==(const BodyMesh&) const = default;
     };

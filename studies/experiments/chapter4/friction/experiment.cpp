@@ -3,6 +3,7 @@
 
 #include "contact/surfaces/plane.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hilda::studies::friction {
@@ -21,9 +22,14 @@ void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<con
     to.add(scene.t, bodies, std::move(contacts));
 }
 
+bool is_at_a_time(const std::vector<double>& times, long n, double h)
+{
+    return std::any_of(times.begin(), times.end(), [&](double t) { return std::lround(t / h) == n; });
+}
+
 }  // namespace
 
-Curve simulate(const BodyOnPlane& setup, Frames* frames)
+Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames)
 {
     contact::Scene scene;
     scene.gravity = setup.gravity;
@@ -34,10 +40,11 @@ Curve simulate(const BodyOnPlane& setup, Frames* frames)
     if (!setup.above_stability_limit) scene.check(setup.h);
     Curve curve(setup.columns);
     const long steps = std::lround(setup.end / setup.h);
-    EvenSelection choice(frames != nullptr ? frames->count : 0, steps);
-    if (frames != nullptr) {
-        frames->snapshots.add_surface(body, scene.pair[0].contact.i);
-        frames->snapshots.add_surface(plane, scene.pair[0].contact.j);
+    std::vector<EvenSelection> selections;
+    for (Frames& of : frames) {
+        selections.emplace_back(of.count, steps);
+        of.snapshots.add_surface(body, scene.pair[0].contact.i);
+        of.snapshots.add_surface(plane, scene.pair[0].contact.j);
     }
     std::vector<contact::Motion> before;
     for (long n = 0; n <= steps; ++n) {
@@ -46,7 +53,11 @@ Curve simulate(const BodyOnPlane& setup, Frames* frames)
         scene.step(setup.h);
         scene.t = t;
         setup.record(curve, Node{.scene = scene, .body = before[body], .pair = scene.pair[0]});
-        if (choice.is_selected(n)) add_frame(frames->snapshots, scene, before);
+        for (size_t k = 0; k < frames.size(); ++k) {
+            const bool is_even = selections[k].is_selected(n);
+            if (is_even || is_at_a_time(frames[k].times, n, setup.h))
+                add_frame(frames[k].snapshots, scene, before);
+        }
     }
     return curve;
 }

@@ -9,6 +9,7 @@
 #include "studies/running/frames/vtk.hpp"
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,21 +42,25 @@ struct BodyOnPlane {
     std::function<void(Curve&, Node)> record = {};
 };
 
-/// Snapshots of a run at `count` nodes: the first, the last and evenly distributed nodes between
+/// Snapshots of a run: at `count` nodes, the first, the last and evenly distributed nodes between, and at the nodes nearest
+/// to `times` [s]
 struct Frames {
     int count = 0;
+    std::vector<double> times = {};
     Snapshots snapshots = {};
 };
 
 /// Integrates with the step h to the end. The record of a node is made after the step from this node, which computes
-/// the contact loads at it. Snapshots are stored in `frames` unless it is nullptr.
-Curve simulate(const BodyOnPlane& setup, Frames* frames);
+/// the contact loads at it. Snapshots are stored in each of `frames`.
+Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames = {});
 
 /// One run of an experiment
 struct ExperimentRun {
     std::string name;
     std::function<BodyOnPlane()> setup;
     bool check_only = false;  ///< run only with --check
+    /// Times [s] of the snapshots of the dissertation; empty: the run has none
+    std::vector<double> snapshots = {};
 };
 
 using Measure = std::function<double(const Curve&)>;

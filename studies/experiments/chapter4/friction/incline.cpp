@@ -63,6 +63,7 @@ std::vector<ExperimentRun> runs()
     std::vector<ExperimentRun> all;
     for (const std::string& name : presets)
         all.push_back({name, [=] { return roll(name, 35 * degree, 0.5, 0.3); }});
+    all.front().snapshots = {0.004, 0.05, 0.09, 0.2};  // Fig. 4.12 b-e, preset dissertation
     for (const std::string& name : presets)
         all.push_back({name + "-2deg", [=] { return roll(name, 2 * degree, 0, 1); }, true});
     all.push_back({"slow-tilt", [] { return tilt(degree, 10); }, true});

@@ -88,6 +88,7 @@ std::vector<ExperimentRun> empirical()
                                    homogeneous_sphere(5, 0.2),
                                    preset(name, {.mu_s = mu_s, .mu_k = mu_k, .K_E = 1e5, .eta_psi = eta}), 8);
                            }});
+    all[etas.size() - 1].snapshots = {0, 2, 4, 8};  // Fig. 4.14: eta_psi = 0.006, preset dissertation
     return all;
 }
 

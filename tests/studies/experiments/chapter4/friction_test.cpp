@@ -20,7 +20,7 @@ TEST_CASE("every friction experiment passes its criteria", "[studies][friction]"
         std::map<std::string, studies::Curve> curves;
         curves[""] = {};  // of the criteria without a run
         for (const friction::ExperimentRun& run : experiment.runs)
-            if (!run.check_only) curves[run.name] = friction::simulate(run.setup(), nullptr);
+            if (!run.check_only) curves[run.name] = friction::simulate(run.setup());
         size_t checks = 0;
         for (const friction::Expected& expected : experiment.expected) {
             if (!curves.contains(expected.run)) continue;
@@ -97,4 +97,51 @@ TEST_CASE("the friction study suggests the nearest name for an unknown experimen
     CHECK(unused.code == 2);
     CHECK_THAT(unused.err,
                Contains("--check is for ") && Contains(" friction, ") && Contains("incline-sweep, stacking"));
+}
+
+TEST_CASE("the snapshots of the friction study are those of the dissertation", "[studies][friction]")
+{
+    const Scratch in;
+    const Ended ended = call(in, {"study", "friction", "--problem", "incline,spin,ellipsoid", "--no-plot"});
+    CAPTURE(ended.err);
+    REQUIRE(ended.code == 0);
+    const auto shown = [&](const std::string& table) {
+        std::vector<CsvRow> rows;
+        for (const CsvRow& row : csv(in / ("out/friction/" + table)))
+            if (row.at("shown") == "1" && (!row.contains("body") || row.at("body") != "plane"))
+                rows.push_back(row);
+        return rows;
+    };
+    const auto times = [](const std::vector<CsvRow>& rows) {
+        std::vector<double> all;
+        for (const CsvRow& row : rows) all.push_back(std::round(1e6 * number(row, "t")) / 1e6);
+        return all;
+    };
+    const auto incline = shown("incline-poses.csv"), force = shown("incline-contacts.csv");
+    CHECK(times(incline) == std::vector<double>{0.004, 0.05, 0.09, 0.2});
+    REQUIRE(force.size() == 4);
+    for (size_t k = 0; k < 4; ++k) {
+        CHECK(number(force[k], "Cy") == Approx(number(incline[k], "ry")));  // below the centre
+        CHECK(number(force[k], "Cz") == Approx(0).margin(1e-12));
+    }
+    // up the slope in phases I and II, down in III and IV; friction on the sphere down the slope in I, up in IV
+    CHECK(number(incline[0], "vy") > 0);
+    CHECK(number(incline[1], "vy") > 0);
+    CHECK(number(incline[2], "vy") < 0);
+    CHECK(number(incline[3], "vy") < 0);
+    CHECK(number(force[0], "Fy") < 0);
+    CHECK(number(force[3], "Fy") > 0);
+
+    const auto spin = shown("spin-poses.csv"), frame = shown("spin-contacts.csv");
+    CHECK(times(spin) == std::vector<double>{0, 2, 4, 8});
+    for (size_t k = 0; k < frame.size(); ++k) {
+        // The contact frame is carried by the sphere (preset dissertation): the angle between them is constant.
+        const double cosine =
+            number(frame[k], "ux") * number(spin[k], "A11") + number(frame[k], "uy") * number(spin[k], "A21");
+        const double at_start =
+            number(frame[0], "ux") * number(spin[0], "A11") + number(frame[0], "uy") * number(spin[0], "A21");
+        CHECK(cosine == Approx(at_start).margin(1e-3));
+    }
+    CHECK(times(shown("ellipsoid-poses.csv")) == std::vector<double>{0, 0.75, 0.9, 1.8, 2.1, 3});
+    CHECK(fs::exists(in / "out/friction/ellipsoid-shapes.json"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/experiments/chapter4/stack.hpp"
+#include "studies/experiments/chapter4/stack_snapshots.hpp"
 #include "tests/studies/csv.hpp"
 #include "tests/studies/refused.hpp"
 
@@ -48,6 +48,35 @@ TEST_CASE("the ground forces of the stack with 1.7 kg and eta_r = 0.22 agree wit
     CHECK(at(0.020).first == Approx(4.706).margin(0.005));
     CHECK(at(0.050).first == Approx(3.523).margin(0.005));
     CHECK(at(0.100).second == Approx(22.453).margin(0.02));
+}
+
+TEST_CASE("the stacks of the snapshots stand, or collapse by the friction that the dissertation names",
+          "[studies][stacking]")
+{
+    // gap 0.3 R; the heaviest upper spheres that stand, and 0.01 kg more
+    const auto [eta_r, top, rolls, slides] = GENERATE(table<double, double, bool, bool>(
+        {{0.16, 0.957, true, false}, {0.23, 1.758, true, true}, {0.35, 1.575, false, true}}));
+    CAPTURE(eta_r);
+    const auto stands = studies::stack_snapshots({.gap = 0.3, .top = top, .eta_r = eta_r}, "x", 1e-4, 1);
+    CHECK_FALSE(stands.collapses);
+    CHECK(stands.t == Approx(1).margin(2e-4));
+    const auto falls =
+        studies::stack_snapshots({.gap = 0.3, .top = top + 0.01, .eta_r = eta_r}, "x", 1e-4, 10);
+    CHECK(falls.collapses);
+    CHECK(falls.roll_saturates == rolls);
+    CHECK(falls.slide_saturates == slides);
+    // the lower spheres turn only if they roll
+    const auto rows = [&](const std::string& body) {
+        std::vector<std::vector<std::string>> all;
+        std::istringstream in(falls.tables.poses);
+        for (std::string line; std::getline(in, line);)
+            if (line.starts_with("x," + body + ',')) all.push_back(fields(line));
+        return all;
+    };
+    const auto right = rows("right"), upper = rows("top");
+    const double turned = std::abs(std::stod(right.back()[9]));  // A13
+    CHECK((turned > 0.2) == !slides);
+    CHECK(std::stod(upper.front()[6]) - std::stod(upper.back()[6]) == Approx(0.5 * Stack::R).epsilon(0.01));
 }
 
 #ifdef NDEBUG

@@ -26,7 +26,7 @@ Problem four_link(const std::string& name, const std::string& what, const std::s
     {"name": "rotor", )json" +
                      inertia.rotor + R"json(, "shape": {"cylinder": [2, 0.1], "axis": "z"},
       "r": [0, 0, 0], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
-      "omega": [0, 0, 3.1415926535897931]},
+      "omega": [0, 0, 3.141592653589793]},
     {"name": "link_2", )json" +
                      inertia.link_2 + R"json(, "shape": {"cylinder": [0.1, 12.2], "axis": "y"},
       "r": [-3.745557718914304, -4.25, 4.262365437828616],

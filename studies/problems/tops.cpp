@@ -61,7 +61,7 @@ const bool thrown = io::Registry<Problem>::add(
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "top", "mass": 2, "inertia": [0.02, 0.02, 0.01],
-      "r": [0, 0, 0], "axis_angle": [0, -1, 0, 0.32175055439664219],
+      "r": [0, 0, 0], "axis_angle": [0, -1, 0, 0.3217505543966422],
       "r_dot": [0.5, 0, 14.715], "omega": [2, 0, 12]}
   ]
 }

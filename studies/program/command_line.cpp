@@ -314,10 +314,14 @@ private:
 
     void add_models()
     {
-        CLI::App* c = add("models", "list the built-in models, or print one as a model file",
-                          [this] { return name.empty() ? list_models(json) : write_model(name, write_to); });
+        CLI::App* c = add("models", "list the built-in models, or write them as model files", [this] {
+            if (!name.empty()) return write_model(name, write_to);
+            return write_to.empty() ? list_models(json) : write_models(write_to);
+        });
         c->add_option("NAME", name, "name of a built-in model; default: print the list")->type_name("");
-        value(c, "--write", "FILE", "write the model to this file; default: stdout",
+        value(c, "--write", "PATH",
+              "write the model to this file or folder, or without NAME all models to this folder; default: "
+              "stdout",
               assign(write_to, io::path));
         c->add_flag("--json", json, "print the list as JSON");
     }

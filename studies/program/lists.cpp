@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 
 namespace hilda::studies {
@@ -61,14 +62,36 @@ int list_models(bool json)
     return io::exit_code::done;
 }
 
-int write_model(const std::string& name, const std::string& file)
+namespace {
+
+std::string text_of(const Problem& p) { return p.model.ends_with('\n') ? p.model : p.model + '\n'; }
+
+std::string file_in(const std::string& folder, const std::string& name)
 {
-    std::string text = problem(name).model;
-    if (!text.ends_with('\n')) text += '\n';
-    if (file.empty())
+    return (std::filesystem::path(folder) / (name + ".json")).string();
+}
+
+}  // namespace
+
+int write_model(const std::string& name, const std::string& to)
+{
+    const std::string text = text_of(problem(name));
+    std::error_code error;
+    if (to.empty())
         std::cout << text;
     else
-        io::write_file(file, text);
+        io::write_file(std::filesystem::is_directory(to, error) ? file_in(to, name) : to, text);
+    return io::exit_code::done;
+}
+
+int write_models(const std::string& folder)
+{
+    if (folder.ends_with(".json"))
+        throw io::UsageError("models: --write without NAME writes all models to a folder; '" + folder +
+                             "' is the name of a file");
+    io::make_directory(folder);
+    for (const Problem& p : problems()) io::write_file(file_in(folder, p.name), text_of(p));
+    std::cout << fmt::format("written {} models to {}\n", problems().size(), folder);
     return io::exit_code::done;
 }
 

@@ -99,19 +99,6 @@ TEST_CASE("the program lists models, integrators, studies and versions", "[studi
     lists({"info", "--json"}, "\"version\"");
 }
 
-TEST_CASE("a built-in model written to a file gives the same run", "[studies][command line]")
-{
-    const Scratch in;
-    const Ended shown = call(in, {"models", "double_pendulum"});
-    CHECK(shown.code == 0);
-    CHECK(call(in, {"models", "double_pendulum", "--write", "mine.json"}).code == 0);
-    CHECK(read(in / "mine.json") == shown.out);
-
-    CHECK(call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "a", "--quiet"}).code == 0);
-    CHECK(call(in, {"run", "mine.json", "--end", "0.1", "--output", "b", "--quiet"}).code == 0);
-    CHECK(read(in / "a/trajectory.csv") == read(in / "b/trajectory.csv"));
-}
-
 TEST_CASE("missing models, files and devices exit with 3, 5 or 7", "[studies][command line]")
 {
     const Scratch in;

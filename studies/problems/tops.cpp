@@ -60,7 +60,7 @@ const bool thrown = io::Registry<Problem>::add(
   "note": "cylinder of radius 0.1 m and height 0.3 m; vertical angular momentum, axis inclined by 18.4 degrees; returns to its initial height after 3 s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
-    {"name": "top", "mass": 2, "inertia": [0.02, 0.02, 0.01],
+    {"name": "top", "mass": 2, "inertia": [0.02, 0.02, 0.01], "shape": {"cylinder": [0.1, 0.3], "axis": "z"},
       "r": [0, 0, 0], "axis_angle": [0, -1, 0, 0.3217505543966422],
       "r_dot": [0.5, 0, 14.715], "omega": [2, 0, 12]}
   ]
@@ -77,7 +77,7 @@ const bool on_its_tip = io::Registry<Problem>::add(
   "note": "disc of radius 0.2 m and thickness 0.06 m, 0.1 m from its tip; cos(nutation) = 0.8; spin for a precession of 2 rad/s",
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
-    {"name": "top", "mass": 2, "inertia": [0.0206, 0.0206, 0.04],
+    {"name": "top", "mass": 2, "inertia": [0.0206, 0.0206, 0.04], "shape": {"cylinder": [0.2, 0.06], "axis": "z"},
       "r": [0, -0.06, 0.08], "A": [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]],
       "r_dot": [0.12, 0, 0], "omega": [0, 1.2, 26.149]}
   ],

@@ -34,9 +34,9 @@ std::vector<Connection> connections(const dae::Model& model)
     return all;
 }
 
-/// The points of each body at which its joints and forces act
+/// The points of each body at which its joints and forces act, with or without the ends of links
 std::vector<std::vector<Vec3>> attachments(const dae::Model& model,
-                                           const std::vector<Connection>& connections)
+                                           const std::vector<Connection>& connections, bool with_links)
 {
     std::vector<std::vector<Vec3>> points(model.all_bodies().size());
     const auto add = [&](int body, const Vec3& s_bar) {
@@ -46,7 +46,7 @@ std::vector<std::vector<Vec3>> attachments(const dae::Model& model,
         if (std::none_of(of_body.begin(), of_body.end(), same)) of_body.push_back(s_bar);
     };
     for (const Connection& c : connections)
-        add(c.points.i, c.points.s_bar_i), add(c.points.j, c.points.s_bar_j);
+        if (with_links || !c.is_link) add(c.points.i, c.points.s_bar_i), add(c.points.j, c.points.s_bar_j);
     return points;
 }
 
@@ -62,6 +62,17 @@ void add_bars(int body, const std::vector<Vec3>& points, Snapshots& to)
     for (const Vec3& p : points) add(p, mean);
 }
 
+/// Draws a bar from each point outside the box of the mesh to the centre of mass.
+void connect_outer_points(int body, const std::vector<Vec3>& points, const contact::PolygonMesh& mesh,
+                          Snapshots& to)
+{
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : mesh.point) box.extend(p);
+    const double tolerance = 0.02 * box.diagonal().norm();
+    for (const Vec3& p : points)
+        if (box.exteriorDistance(p) > tolerance) to.add_line({body, body, p, Vec3::Zero()}, Snapshots::bar);
+}
+
 /// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing about its
 /// form, as in planar mechanisms that state one moment only.
 void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
@@ -73,14 +84,19 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
         if (body >= 0 && !shape.surface->is_unbounded()) has_surface[body] = true;
     };
     for (const ContactOutputs::Contact& c : contacts.contacts) add(c.i, c.shape_i), add(c.j, c.shape_j);
-    const std::vector<std::vector<Vec3>> points = attachments(model, connections);
+    const std::vector<std::vector<Vec3>> points = attachments(model, connections, true),
+                                         without_links = attachments(model, connections, false);
     for (size_t b = 0; b < has_surface.size(); ++b) {
         const dae::Body& body = model.all_bodies()[b];
         if (has_surface[b]) continue;
-        if (!body.shape && points[b].size() >= 2 && has_equal_moments(body))
-            add_bars(static_cast<int>(b), points[b], to);
-        else
-            to.add_solid(static_cast<int>(b), body_drawing(body));
+        const int number = static_cast<int>(b);
+        if (!body.shape && points[b].size() >= 2 && has_equal_moments(body)) {
+            add_bars(number, points[b], to);
+        } else {
+            const contact::PolygonMesh mesh = body_drawing(body);
+            connect_outer_points(number, without_links[b], mesh, to);
+            to.add_solid(number, mesh);
+        }
     }
 }
 

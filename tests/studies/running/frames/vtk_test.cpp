@@ -467,6 +467,28 @@ TEST_CASE("a body with equal moments and several joints is drawn as bars between
     CHECK(bars >= 7);
 }
 
+TEST_CASE("a joint outside the solid of its body is connected with the centre of mass by a bar",
+          "[studies][vtk]")
+{
+    const Scratch in;
+    const auto bars = [&](const std::string& model) {
+        REQUIRE(call(in, {"run", model, "--end", "0.02", "--vtk", "0.02", "--output", model}).code == 0);
+        const Frame frame(in / (model + "/vtk/run-000001.vtp"));
+        std::vector<std::pair<Vec3, Vec3>> all;
+        for (size_t k = 0; k < frame.line.size(); ++k)
+            if (frame.kind[frame.vertex.size() + k] == double(Snapshots::bar))
+                all.emplace_back(frame.point[frame.line[k][0]], frame.point[frame.line[k][1]]);
+        return all;
+    };
+    // the tip of the top is at the origin, 0.1 m below its disc
+    const auto top = bars("heavy_top");
+    REQUIRE(top.size() == 1);
+    CHECK(top[0].first.norm() < 1e-6);
+    CHECK(top[0].second.norm() == Approx(0.1).epsilon(1e-5));
+    // joints at the ends of boxes need none, nor do the ends of links (row trans_D of the slider-crank)
+    for (const char* model : {"double_pendulum", "slider_crank", "four_link"}) CHECK(bars(model).empty());
+}
+
 TEST_CASE("the drawn patch of an unbounded surface covers the region of the other bodies", "[studies][vtk]")
 {
     // A cone of 45 degrees: the point above (x, y) is at the height sqrt(x² + y²), its projection is elsewhere.

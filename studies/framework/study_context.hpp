@@ -156,9 +156,9 @@ template <class Grid>
 GridOptions<Grid> grid_options(StudyContext& s, double h, double end, const std::vector<Grid>& grids)
 {
     s.refuse_models();
-    const GridOptions<Grid> o{s.one_step(h), s.options.end.value_or(end),
-                              s.options.preset.empty() ? "dissertation" : s.options.preset,
-                              one_of_list("--grid", s.options.grid, grids)};
+    GridOptions<Grid> o{s.one_step(h), s.options.end.value_or(end),
+                        s.options.preset.empty() ? "dissertation" : s.options.preset,
+                        one_of_list("--grid", s.options.grid, grids)};
     s.json = {{"preset", o.preset}, {"h", o.h}, {"end", o.end}, {"grid", o.grid.name}};
     return o;
 }

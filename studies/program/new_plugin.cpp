@@ -41,9 +41,9 @@ void check(const std::string& kind, const std::string& name)
 
 std::string with_name(std::string text, const std::string& name)
 {
-    const std::string placeholder = "my-scheme";
-    for (size_t at = 0; (at = text.find(placeholder, at)) != std::string::npos; at += name.size())
-        text.replace(at, placeholder.size(), name);
+    const std::string name_in_template = "my-scheme";
+    for (size_t at = 0; (at = text.find(name_in_template, at)) != std::string::npos; at += name.size())
+        text.replace(at, name_in_template.size(), name);
     return text;
 }
 

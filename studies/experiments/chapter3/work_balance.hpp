@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Work of the loads and drivers that are not part of the energy E = T + V of a model, along a run.
 ///
-/// The balance of energy is E - E(0) = W. With the power P_f = F · ṙ + n̄ · ω̄ of force f, summed over the bodies, and its
-/// potential V_f:
+/// The balance of energy is E - E(0) = W. With the power P_f = F · ṙ + n̄ · ω̄ of force f, summed over the
+/// bodies, and its potential V_f:
 ///
 ///     W_loads   = Σ ∫ P_f dt + V_f - V_f(0)     over the forces that are not conservative
 ///     W_drivers = ∫ -λ · ν dt                   with Φ_r ṙ + Π̄ ω̄ = ν (Eq. 2.8) of the driven constraints
 ///
-/// For pairs of regularised rows (implicit friction) ν is the velocity Φ_r ṙ + Π̄ ω̄ itself. A force is conservative if its
-/// loads depend neither on velocities nor explicitly on time, and P_f = -dV_f/dt. The integrals use the powers at the nodes,
-/// by the Adams-Moulton formula of fourth order:
+/// For pairs of regularised rows (implicit friction) ν is the velocity Φ_r ṙ + Π̄ ω̄ itself. A force is
+/// conservative if its loads depend neither on velocities nor explicitly on time, and P_f = -dV_f/dt. The
+/// integrals use the powers at the nodes, by the Adams-Moulton formula of fourth order:
 ///
 ///     ∫ P dt = h/24 (9 P_n+1 + 19 P_n - 5 P_n-1 + P_n-2)       over [t_n, t_n+1]
 ///
-/// The first three steps together have Simpson's 3/8 rule. After one step and after two steps the value is that of the
-/// trapezoidal rule and of Simpson's rule.
+/// The first three steps together have Simpson's 3/8 rule. After one step and after two steps the value is that
+/// of the trapezoidal rule and of Simpson's rule.
 ///
-/// Where a load jumps, as at the beginning of a contact, the error is of the order of the jump of the power times h. The
-/// energy lost in impacts of unilateral contacts is not a part of W.
+/// Where a load jumps, as at the beginning of a contact, the error is of the order of the jump of the power
+/// times h. The energy lost in impacts of unilateral contacts is not a part of W.
 
 #pragma once
 
@@ -32,7 +32,8 @@ namespace hilda::studies {
 /// Integral over time of a quantity that is known at equidistant nodes
 class NodeIntegral {
 public:
-    /// Adds a node. h [s]: the step that ends there, ignored for the first node. A change of h restarts the formula.
+    /// Adds a node. h [s]: the step that ends there, ignored for the first node. A change of h restarts the
+    /// formula.
     void add(double value, double h);
     double value() const { return sum; }
 
@@ -55,8 +56,8 @@ public:
     double loads() const;                                   ///< W_loads [J]
     double drivers() const { return driver_work.value(); }  ///< W_drivers [J]
     double work() const { return loads() + drivers(); }     ///< W [J]
-    /// Labels of the forces that are not conservative, such as "force 'damper'", and "driver 'NAME'" for each driven
-    /// constraint that has moved. Empty for a conservative model
+    /// Labels of the forces that are not conservative, such as "force 'damper'", and "driver 'NAME'" for each
+    /// driven constraint that has moved. Empty for a conservative model
     std::vector<std::string> sources() const;
 
 private:

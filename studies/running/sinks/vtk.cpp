@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView. The files are written at the end of the run (see
-/// Snapshots); a checkpoint contains the frames.
+/// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView. The files are written at
+/// the end of the run (see Snapshots); a checkpoint contains the frames.
 
 #include "studies/program/arguments.hpp"
 #include "studies/running/frames/model_frames.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace hilda::studies {
 
@@ -20,7 +19,7 @@ Criterion criterion(const std::string& what, double measured, double value, doub
     return between(what, measured, value - tolerance, value + tolerance);
 }
 
-bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Json& json)
+bool evaluate(const std::vector<Criterion>& criteria, StudyText& out, io::Json& json)
 {
     Table table({{"measured", "{:.6g}"}, {"least", "{:.6g}"}, {"most", "{:.6g}"}, {"passed"}, {"what"}});
     json["checks"] = io::Json::array();

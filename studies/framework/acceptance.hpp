@@ -5,11 +5,12 @@
 
 #include "io/json.hpp"
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 namespace hilda::studies {
+
+class StudyText;
 
 /// A measured value and its bounds. The criterion passes if least <= measured <= most; NaN fails.
 struct Criterion {
@@ -41,6 +42,6 @@ struct CriteriaOf {
 
 /// Evaluates the criteria. Prints a table and the line "N of M passed", and adds the same as "checks" to the
 /// contents of study.json. Returns true if all criteria pass.
-bool evaluate(const std::vector<Criterion>& criteria, std::ostream& out, io::Json& json);
+bool evaluate(const std::vector<Criterion>& criteria, StudyText& out, io::Json& json);
 
 }  // namespace hilda::studies

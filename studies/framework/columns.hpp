@@ -75,11 +75,11 @@ public:
     }
     /// Prints the columns with these names, or with these headings if they have no name; without names all that
     /// have a heading.
-    void print(std::ostream& out, const Rows& rows, const Names& names = {}) const
+    void print(StudyText& out, const Rows& rows, const Names& names = {}) const
     {
         table(rows, selected(names, &Column<Row>::heading), &Column<Row>::heading).print(out);
     }
-    void print(std::ostream& out, const std::vector<Row>& rows, const Names& names = {}) const
+    void print(StudyText& out, const std::vector<Row>& rows, const Names& names = {}) const
     {
         print(out, pointers<const Row*>(rows), names);
     }

@@ -84,7 +84,6 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
 StudyContext::StudyContext(const Study& study, const StudyOptions& options)
     : name(study.name), keys(study.keys), options(options), answers(study.answers)
 {
-    if (options.latex) kept = std::make_unique<KeptTables>(text);
     for (const Expectation& e : options.expect) {
         if (std::find(keys.begin(), keys.end(), e.key) != keys.end()) continue;
         if (keys.empty()) refuse("--expect is not an option of this study");
@@ -233,8 +232,8 @@ std::string StudyContext::latex_tables() const
     std::replace_if(
         command.begin(), command.end(), [](unsigned char c) { return c < ' '; }, ' ');
     std::string out = "% " + command + "\n% needs \\usepackage{booktabs}\n";
-    for (size_t k = 0; k < kept->tables.size(); ++k) {
-        const KeptTables::Kept& table = kept->tables[k];
+    for (size_t k = 0; k < text.tables.size(); ++k) {
+        const StudyText::PrintedTable& table = text.tables[k];
         std::string caption = answers + (table.title.empty() ? "" : ". ");
         caption.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(caption.front())));
         for (const char c : table.title) caption += c == '\n' ? std::string("; ") : std::string(1, c);
@@ -249,7 +248,7 @@ void StudyContext::write(const io::Json& whole_json) const
     std::vector<std::string> written = {"study.csv", "study.json"};
     io::write_file(in + "study.csv", table);
     io::write_file(in + "study.json", whole_json.text());
-    if (kept) {
+    if (options.latex) {
         io::write_file(in + "study.tex", latex_tables());
         written.emplace_back("study.tex");
     } else {

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 namespace hilda::studies {
@@ -64,7 +63,7 @@ public:
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
 
     // Results
-    std::ostringstream text;                                 ///< for stdout
+    StudyText text;                                          ///< for stdout
     std::string table;                                       ///< contents of study.csv
     io::Json json = io::Json::object();                      ///< of study.json, after the common keys
     std::vector<std::pair<std::string, std::string>> files;  ///< further files: name and contents
@@ -101,8 +100,7 @@ private:
 
     std::string latex_tables() const;
 
-    const std::string& answers;        ///< of the study
-    std::unique_ptr<KeptTables> kept;  ///< of the text, for study.tex; nullptr without --latex
+    const std::string& answers;  ///< of the study
     std::string failed_runs,
         numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
     std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory

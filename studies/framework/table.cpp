@@ -19,13 +19,6 @@ std::string for_people(const Table::Cell& cell, const std::string& format)
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
 }
 
-/// Place of the pointer to KeptTables in a stream
-int slot()
-{
-    static const int index = std::ios_base::xalloc();
-    return index;
-}
-
 /// The lines after the last empty line
 std::string last_paragraph(std::string_view text)
 {
@@ -54,11 +47,10 @@ std::vector<std::vector<std::string>> Table::shown() const
     return rows;
 }
 
-void Table::print(std::ostream& out) const
+void Table::print(StudyText& out) const
 {
     const std::vector<std::vector<std::string>> rows = shown();
-    if (auto* kept = static_cast<KeptTables*>(out.pword(slot())))
-        kept->tables.push_back({last_paragraph(kept->stream.view()), rows});
+    out.tables.push_back({last_paragraph(out.view()), rows});
     std::vector<size_t> width(columns.size());
     for (const auto& row : rows)
         for (size_t c = 0; c < columns.size(); ++c) width[c] = std::max(width[c], row[c].size());
@@ -68,9 +60,6 @@ void Table::print(std::ostream& out) const
         out << '\n';
     }
 }
-
-KeptTables::KeptTables(std::ostringstream& stream) : stream(stream) { stream.pword(slot()) = this; }
-KeptTables::~KeptTables() { stream.pword(slot()) = nullptr; }
 
 std::string Table::csv() const
 {

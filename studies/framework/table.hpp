@@ -11,6 +11,8 @@
 
 namespace hilda::studies {
 
+class StudyText;
+
 /// A table with named columns and cells of texts or numbers. As text, columns are aligned and numbers
 /// rounded. As CSV, numbers are written with the least digits that read back exactly, and NaN is an empty
 /// field. columns.hpp makes tables from rows of any type.
@@ -28,8 +30,8 @@ public:
     void add(std::vector<Cell> row);
     size_t rows() const { return cells.size(); }
 
-    /// Prints the table; the stream of a KeptTables also keeps it.
-    void print(std::ostream& out) const;
+    /// Prints the table and adds it to the tables of the text.
+    void print(StudyText& out) const;
     std::string csv() const;
     /// The headings and the cells as print() shows them
     std::vector<std::vector<std::string>> shown() const;
@@ -39,23 +41,14 @@ private:
     std::vector<std::vector<Cell>> cells;
 };
 
-/// Keeps the tables that are printed to a stream during its lifetime, each with the paragraph before it.
-class KeptTables {
+/// The text of a study for stdout, with a list of the tables that were printed to it
+class StudyText : public std::ostringstream {
 public:
-    explicit KeptTables(std::ostringstream& stream);
-    ~KeptTables();
-    KeptTables(const KeptTables&) = delete;
-    KeptTables& operator=(const KeptTables&) = delete;
-
-    struct Kept {
-        std::string title;  ///< the line or lines directly above the table
-        std::vector<std::vector<std::string>> rows;
+    struct PrintedTable {
+        std::string title;                           ///< the line or lines directly above the table
+        std::vector<std::vector<std::string>> rows;  ///< as of Table::shown()
     };
-    std::vector<Kept> tables;
-
-private:
-    friend class Table;
-    std::ostringstream& stream;
+    std::vector<PrintedTable> tables;
 };
 
 /// The number in a cell; NaN for a text

@@ -62,7 +62,7 @@ std::string error_text(const ErrorRun& run, int n, int decimals)
 }
 
 /// All steps of one scheme on one problem
-void print(const Series& series, std::ostream& out)
+void print(const Series& series, StudyText& out)
 {
     const ErrorRun& first = *series.front();
     out << fmt::format("\n{}, {} (declared order {}, of lambda {}); reference solution: {}\n",
@@ -98,7 +98,7 @@ void print(const Series& series, std::ostream& out)
 }
 
 /// Fitted orders of all schemes on one problem
-void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream& out)
+void print_fits(const std::vector<Series>& all, const Benchmark& c, StudyText& out)
 {
     Table table({{c.problem.name},
                  {"declared"},
@@ -127,7 +127,7 @@ void print_fits(const std::vector<Series>& all, const Benchmark& c, std::ostream
 }
 
 /// The table of the default selection: orders, and errors at two steps, of position and constraint loads
-void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>& problems, std::ostream& out)
+void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>& problems, StudyText& out)
 {
     const auto at = [](const Series& series, double h) {
         return *std::find_if(series.begin(), series.end(),

@@ -68,7 +68,7 @@ void compute(IterationsRun& run, const lie::Settings& settings)
 
 /// One row for each scheme; mean and maximum for each step size
 void print(const Sweep<IterationsRun>& runs, const Benchmark& c, const Schemes& schemes,
-           const std::vector<double>& steps, std::ostream& out)
+           const std::vector<double>& steps, StudyText& out)
 {
     std::vector<Table::Column> columns = {{"integrator"}};
     for (const double h : steps)

@@ -69,7 +69,7 @@ Exponent exponent_of(const std::vector<ScalingRun>& runs, const lie::Scheme* sch
 }
 
 /// The exponents, and the mean over N of the time ratio (52 % in the dissertation)
-void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, std::ostream& out)
+void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, StudyText& out)
 {
     Table table({{"integrator"},
                  {fmt::format("exponent, N >= {}", fit_from), "{:.3f}"},

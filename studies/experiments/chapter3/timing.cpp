@@ -17,7 +17,7 @@ namespace {
 const std::string baseline = "rA-full-1";
 
 /// CPU time ratio reported in the dissertation: half-implicit over fully implicit scheme
-void print_half_over_full(const Sweep<TimedRun>& runs, std::ostream& out)
+void print_half_over_full(const Sweep<TimedRun>& runs, StudyText& out)
 {
     Table table({{"problem"}, {"h [s]", "{:.1e}"}, {"rA-half-1 / rA-full-1", "{:.3f}"}});
     double sum = 0;

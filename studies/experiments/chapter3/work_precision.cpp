@@ -58,7 +58,7 @@ WorkNeeded work_to_target(const WorkSeries& series)
     return work_needed(e, seconds, target_error);
 }
 
-void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, std::ostream& out)
+void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, StudyText& out)
 {
     const WorkSeries* fastest = nullptr;
     for (const WorkSeries& series : all)

@@ -209,7 +209,7 @@ Criterion compare(StudyContext& s, const StateMap& map)
     return between("agreement with the file [%]", percent, 99.7, 100);
 }
 
-void print(const StateMap& map, const std::vector<Boundaries>& rows, std::ostream& out)
+void print(const StateMap& map, const std::vector<Boundaries>& rows, StudyText& out)
 {
     std::vector<Boundaries> some;
     for (size_t e = 0; e < rows.size(); e += std::max<size_t>(1, (rows.size() - 1) / 8))

@@ -130,7 +130,7 @@ const Columns<StackCell> columns_of_cells = {
     {"runs", &StackCell::runs},
     {"undecided", &StackCell::undecided}};
 
-void print(const std::vector<MassCurve>& curves, std::ostream& out)
+void print(const std::vector<MassCurve>& curves, StudyText& out)
 {
     std::vector<Table::Column> columns = {{"eta_r", "{:.2f}"}};
     for (const MassCurve& c : curves)

@@ -45,7 +45,7 @@ void compute(ErrorRun& run, lie::Settings settings)
     }
 }
 
-void print(const Series& series, std::ostream& out)
+void print(const Series& series, StudyText& out)
 {
     const ErrorRun& first = *series.front();
     out << fmt::format("\n{}, {}; reference solution: {}\n", first.c->problem.name, first.scheme->name,
@@ -66,7 +66,7 @@ void print(const Series& series, std::ostream& out)
     table.print(out);
 }
 
-void print_fits(const std::vector<Series>& all, std::ostream& out)
+void print_fits(const std::vector<Series>& all, StudyText& out)
 {
     Table table({{"problem"},
                  {"integrator"},

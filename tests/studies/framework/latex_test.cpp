@@ -115,23 +115,20 @@ TEST_CASE("a table has a row for each row, and its columns of numbers are right-
     CHECK(studies::latex_table({{"a", "b"}}, "", "t").find("{ll}") != std::string::npos);  // no rows
 }
 
-TEST_CASE("a stream keeps the tables that are printed to it, with their titles", "[studies][latex]")
+TEST_CASE("the text of a study keeps the tables that are printed to it, with their titles",
+          "[studies][latex]")
 {
-    std::ostringstream out;
+    studies::StudyText out;
     studies::Table table({{"a"}, {"b", "{:.1f}"}});
     table.add({std::string("x"), 1.25});
     table.print(out);
-    {
-        studies::KeptTables kept(out);
-        out << "\nfirst paragraph\n\ntitle of\ntwo lines\n";
-        table.print(out);
-        REQUIRE(kept.tables.size() == 1);
-        CHECK(kept.tables[0].title == "title of\ntwo lines");
-        CHECK(kept.tables[0].rows == std::vector<std::vector<std::string>>{{"a", "b"}, {"x", "1.2"}});
-    }
+    out << "\nfirst paragraph\n\ntitle of\ntwo lines\n";
     table.print(out);
-    const std::string printed = out.str();
-    CHECK(std::count(printed.begin(), printed.end(), 'x') == 3);
+    REQUIRE(out.tables.size() == 2);
+    CHECK(out.tables[0].title.empty());
+    CHECK(out.tables[1].title == "title of\ntwo lines");
+    CHECK(out.tables[1].rows == std::vector<std::vector<std::string>>{{"a", "b"}, {"x", "1.2"}});
+    CHECK(out.str() == "a    b\nx  1.2\n\nfirst paragraph\n\ntitle of\ntwo lines\na    b\nx  1.2\n");
 }
 
 TEST_CASE("study.tex of a study is valid LaTeX with the rows of its tables", "[studies][latex]")

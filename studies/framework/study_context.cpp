@@ -105,17 +105,6 @@ void StudyContext::refuse(const std::string& what) const
     throw io::UsageError("study " + name + ": " + what);
 }
 
-void StudyContext::refuse_models(bool has_parts) const
-{
-    const auto refuse_if = [&](bool given, const std::string& option) {
-        if (given) refuse(option + " is for studies of models; this study defines its own bodies");
-    };
-    refuse_if(!has_parts && !options.problems.empty(), "--problem");
-    refuse_if(!options.integrators.empty(), "--integrator");
-    refuse_if(!options.set.empty(), "--set");
-    refuse_if(options.fix_initial, "--fix-initial");
-}
-
 Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
 {
     Schemes selected;

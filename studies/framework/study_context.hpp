@@ -40,9 +40,6 @@ public:
 
     /// io::UsageError "study NAME: what"
     [[noreturn]] void refuse(const std::string& what) const;
-    /// Refuses options of studies of models: those of --problem (unless it selects parts of the study),
-    /// --integrator and --set.
-    void refuse_models(bool has_parts = false) const;
 
     /// The integrators of --integrator; without it those of `defaults` that are registered, in this order, or
     /// all if `defaults` is empty
@@ -153,7 +150,6 @@ struct GridOptions {
 template <class Grid>
 GridOptions<Grid> grid_options(StudyContext& s, double h, double end, const std::vector<Grid>& grids)
 {
-    s.refuse_models();
     GridOptions<Grid> o{s.one_step(h), s.options.end.value_or(end),
                         s.options.preset.empty() ? "dissertation" : s.options.preset,
                         one_of_list("--grid", s.options.grid, grids)};

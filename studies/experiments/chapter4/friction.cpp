@@ -138,9 +138,6 @@ void friction_experiments(StudyContext& s)
     const StudyOptions& options = s.options;
     if (!options.expect.empty() && options.against.empty())
         s.refuse("--expect difference needs --against FILE");
-    s.refuse_models(true);
-    if (!options.steps.empty() || options.end)
-        s.refuse("--steps and --end are not accepted, each experiment sets its own");
     std::vector<SelectedExperiment> all = selected(s);
     std::vector<std::pair<SelectedExperiment*, size_t>> jobs;
     for (SelectedExperiment& c : all)

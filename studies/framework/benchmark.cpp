@@ -10,20 +10,28 @@
 
 namespace hilda::studies {
 
+namespace {
+
+dae::Description read(const Problem& problem, const StudyOptions& options)
+{
+    return dae::read_model(problem.model, problem.file.empty() ? problem.name : problem.file, options.set,
+                           options.normal_rows, problem.folder);
+}
+
+}  // namespace
+
 double end_of_model(const dae::Description& d) { return d.end; }
 
 dae::Description read_and_start(const Problem& problem, const StudyOptions& options)
 {
-    dae::Description d =
-        dae::read_model(problem.model, problem.name, options.set, options.normal_rows, problem.folder);
+    dae::Description d = read(problem, options);
     dae::start(d, {.fix_initial = options.fix_initial});
     return d;
 }
 
 Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end)
 {
-    dae::Description d =
-        dae::read_model(problem.model, problem.name, options.set, options.normal_rows, problem.folder);
+    dae::Description d = read(problem, options);
     const dae::StartReport report = dae::start(d, {.fix_initial = options.fix_initial});
     if (!options.quiet) {
         for (const std::string& w : d.warnings) io::warning(w);

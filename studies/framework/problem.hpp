@@ -38,6 +38,7 @@ struct Problem {
     /// To be called after dae::start(). Empty: that of a model file, see problem_or_file().
     ReferenceSolution reference_solution = {};
     Observable observable = {};      ///< scalar shown in figures
+    std::string file = {};           ///< path of the model file, for messages; "": a built-in model
     std::string folder = {};         ///< of the files that the model names
     bool general_reference = false;  ///< reference_solution is that of a model file
 };
@@ -58,7 +59,8 @@ Problem problem(const std::string& name);
 
 /// The problem with this name, or the model file at this path. The reference solution of a model file is
 /// kinematic analysis if it has no degree of freedom, and the index-1 equations of motion, integrated with
-/// tolerance 1e-13, otherwise. It does not cover models with internal states: Reference selects an integrator for these.
+/// tolerance 1e-13, otherwise. It does not cover models with internal states: Reference selects an integrator
+/// for these.
 Problem problem_or_file(const std::string& name_or_path);
 
 }  // namespace hilda::studies

@@ -20,6 +20,7 @@ Problem problem_or_file(const std::string& name_or_path)
             throw lie::InvalidInput(name_or_path + ": there is no such file");
         p.name = std::filesystem::path(name_or_path).stem().string();
         p.what = "model file " + name_or_path;
+        p.file = name_or_path;
         p.folder = std::filesystem::path(name_or_path).parent_path().string();
         p.model = io::read_file(name_or_path, most);
     }

@@ -48,3 +48,24 @@ TEST_CASE("a study that cannot start leaves no directory", "[studies][study]")
     CHECK(call(in, {"study", "convergence", "--problem", "none", "--output", "a"}).code == 3);
     CHECK_FALSE(fs::exists(in / "a"));
 }
+
+TEST_CASE("an error in a model file is placed with the path of the file", "[studies][study]")
+{
+    const Scratch in;
+    fs::create_directory(in / "models");
+    write(in / "models/swing.json", pendulum(R"(, {"name": "rod", "type": "distanse"})"));
+    for (const char* kind : {"convergence", "energy", "compare", "iterations", "timing", "work-precision",
+                             "evolving-order", "sweep"}) {
+        std::vector<std::string> words = {"study", kind, "--problem", "models/swing.json", "--output", "a"};
+        if (words[1] == "sweep") words.insert(words.end(), {"--sweep", "/bodies/0/mass=1,2"});
+        const Ended ended = call(in, words);
+        CAPTURE(kind, ended.err);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, StartsWith("hilda: error: models/swing.json:4:"));
+        CHECK_FALSE(fs::exists(in / "a"));
+    }
+    // a built-in model has no file
+    CHECK_THAT(
+        call(in, {"study", "energy", "--problem", "double_pendulum", "--set", "/bodies/0/mass=-1"}).err,
+        StartsWith("hilda: error: double_pendulum:"));
+}

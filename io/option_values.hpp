@@ -53,8 +53,9 @@ std::string path(const std::string& option, const std::string& text);
 /// The text of a --set. It must have the form /json/pointer=VALUE.
 std::string setting(const std::string& option, const std::string& text);
 
-/// The help text of a command, or a list of two columns, with its lines broken at blanks, so that no line has more than `width` characters where
-/// possible. A continued line begins below the description of its option, or with the indentation of its line.
+/// The help text of a command, or a list of two columns, with its lines broken at blanks, so that no line has
+/// more than `width` characters where possible. A continued line begins below the description of its option,
+/// or with the indentation of its line.
 std::string wrapped_help(const std::string& text, std::size_t width = 100);
 
 }  // namespace hilda::io

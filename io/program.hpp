@@ -8,12 +8,12 @@
 
 namespace hilda::io {
 
-/// Runs the program and returns its exit code. Reports an exception on stderr. IoError if standard output cannot be
-/// written. A file above the size limit of the process is an IoError as well, not a signal.
+/// Runs the program and returns its exit code. Reports an exception on stderr. IoError if standard output
+/// cannot be written. A file above the size limit of the process is an IoError as well, not a signal.
 int run_program(const std::function<int()>& program);
 
-/// Rejects an output directory that is not empty: UsageError unless `accepted`; IoError if it is not a directory.
-/// `remedies` is the end of the message.
+/// Rejects an output directory that is not empty: UsageError unless `accepted`; IoError if it is not a
+/// directory. `remedies` is the end of the message.
 void check_output_directory(const std::string& directory, bool accepted, const std::string& remedies);
 inline constexpr const char* force_overwrites = "--force overwrites it";
 inline constexpr const char* force_or_resume = "--force overwrites it, --resume continues its run";
@@ -27,8 +27,8 @@ struct Verbosity {
     void log(const std::string& what) const;
 };
 
-/// Handling of SIGINT (Ctrl-C), SIGTERM and SIGHUP (end of the terminal): the first signal requests the end of the run, the second
-/// terminates the process.
+/// Handling of SIGINT (Ctrl-C), SIGTERM and SIGHUP (end of the terminal): the first signal requests the end
+/// of the run, the second terminates the process.
 ///
 /// During the lifetime of an object of this class, the first of these signals is recorded and does not end
 /// the program.
@@ -43,8 +43,9 @@ public:
     static int caught();
 };
 
-/// During the lifetime of an object of this class, SIGINT, SIGTERM and SIGHUP end the process at once, with the line
-/// "hilda: MESSAGE" on stderr and the exit code 128 + signal. For programs whose files are complete at any time.
+/// During the lifetime of an object of this class, SIGINT, SIGTERM and SIGHUP end the process at once, with
+/// the line "hilda: MESSAGE" on stderr and the exit code 128 + signal. For programs whose files are complete
+/// at any time.
 class EndOnSignal {
 public:
     /// "": no message

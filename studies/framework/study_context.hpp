@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a study receives when it runs: its options, its selection of benchmarks, integrators and steps, and the
-/// place for its results.
+/// What a study receives when it runs: its options, its selection of benchmarks, integrators and steps, and
+/// the place for its results.
 
 #pragma once
 
@@ -30,8 +30,9 @@ struct Measured {
 
 class StudyContext {
 public:
-    /// Opens the file of the finished jobs in the output directory. io::UsageError for a key of --expect that the study
-    /// does not have, for --vtk without a directory, and for --resume with other options than the interrupted study.
+    /// Opens the file of the finished jobs in the output directory. io::UsageError for a key of --expect that
+    /// the study does not have, for --vtk without a directory, and for --resume with other options than the
+    /// interrupted study.
     StudyContext(const Study& study, const StudyOptions& options);
 
     const std::string& name;
@@ -44,7 +45,8 @@ public:
     /// The integrators of --integrator; without it those of `defaults` that are registered, in this order, or
     /// all if `defaults` is empty
     Schemes schemes(const std::vector<std::string>& defaults = {}) const;
-    /// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive scheme.
+    /// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive
+    /// scheme.
     Schemes fixed_step_schemes(const std::vector<std::string>& defaults = {}) const;
     /// The steps of --steps, or `defaults`, in descending order [s]
     std::vector<double> steps(const std::vector<double>& defaults) const;
@@ -54,9 +56,8 @@ public:
     std::vector<Benchmark> benchmarks(const std::vector<std::string>& defaults,
                                       const std::vector<double>& steps,
                                       const DefaultEnd& end = end_of_model) const;
-    /// A pool with this number of threads, or that of --jobs, whose progress line shows the name of the study and
-    /// the label
-    /// Results of its jobs are kept in the file of the finished jobs.
+    /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
+    /// and the label. The results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
 
     // Results
@@ -84,10 +85,10 @@ public:
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
     void evaluate(const std::vector<Criterion>& criteria);
 
-    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed (or one, see
-    /// every_run_must_succeed), 6
-    /// if an expectation or, with --check, a criterion failed. The common keys of study.json are study,
-    /// tolerance, settings, seed, set, provenance and, if options.repeats > 0, repeats.
+    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed
+    /// (or one, see every_run_must_succeed), 6 if an expectation or, with --check, a criterion failed. The
+    /// common keys of study.json are study, tolerance, settings, seed, set, provenance and, if
+    /// options.repeats > 0, repeats.
     int finish();
 
 private:
@@ -106,8 +107,8 @@ private:
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known
 void check_parts(const StudyContext& study, const std::string& what, const std::vector<std::string>& known);
 
-/// The entries of a list that --problem selects, by their member `name`; all without --problem. io::UsageError for an
-/// unknown name.
+/// The entries of a list that --problem selects, by their member `name`; all without --problem.
+/// io::UsageError for an unknown name.
 template <class Part>
 std::vector<const Part*> selected_parts(const StudyContext& study, const std::string& what,
                                         const std::vector<Part>& parts)
@@ -123,8 +124,8 @@ std::vector<const Part*> selected_parts(const StudyContext& study, const std::st
     return selected;
 }
 
-/// The entry of a list with this name, an argument of an option such as --grid; the first entry for "". io::UsageError
-/// for another name.
+/// The entry of a list with this name, an argument of an option such as --grid; the first entry for "".
+/// io::UsageError for another name.
 template <class Named>
 const Named& one_of_list(const std::string& option, const std::string& name, const std::vector<Named>& list)
 {
@@ -135,8 +136,8 @@ const Named& one_of_list(const std::string& option, const std::string& name, con
     return name.empty() ? list.front() : list[static_cast<size_t>(at - known.begin())];
 }
 
-/// Options of a study of scenes over a grid of parameters: the step h and the end of a run [s], the preset of the
-/// friction laws, and the grid
+/// Options of a study of scenes over a grid of parameters: the step h and the end of a run [s], the preset of
+/// the friction laws, and the grid
 template <class Grid>
 struct GridOptions {
     double h, end;
@@ -145,8 +146,8 @@ struct GridOptions {
 
     bool dissertation() const { return preset == "dissertation"; }
 };
-/// These options, with defaults; the defaults of --preset and --grid are `dissertation` and the first grid. They become
-/// the first keys of study.json.
+/// These options, with defaults; the defaults of --preset and --grid are `dissertation` and the first grid.
+/// They become the first keys of study.json.
 template <class Grid>
 GridOptions<Grid> grid_options(StudyContext& s, double h, double end, const std::vector<Grid>& grids)
 {

@@ -7,7 +7,7 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 8};
+constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 9};
 
 void transfer(io::Archive& a, lie::State& x)
 {
@@ -31,7 +31,7 @@ void transfer(io::Archive& a, contact::ContactEvent& e)
 /// Writes or reads the content of a checkpoint
 void transfer(io::Archive& a, Checkpoint& c)
 {
-    a.list(c.settings);
+    a.map(c.settings);
     a.value(c.end), a.value(c.interval);
     a.check(c.end >= 0 && c.interval > 0, "invalid end or interval of the rows");
     transfer(a, c.node);

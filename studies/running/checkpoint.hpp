@@ -7,6 +7,7 @@
 #include "contact/evolving/unilateral.hpp"
 #include "lie/statistics.hpp"
 #include "studies/running/invariants.hpp"
+#include "studies/running/run_settings.hpp"
 #include "studies/running/sink.hpp"
 
 #include <map>
@@ -15,7 +16,7 @@
 namespace hilda::studies {
 
 struct Checkpoint {
-    std::string settings;  ///< list of the settings of the run, as text; a resumed run must have the same
+    RunSettings settings;  ///< a resumed run must have the same
     double end = 0;        ///< of the run [s]; a resumed run may have a later one
     long interval = 1;     ///< nodes from one output row to the next
     lie::State node;       ///< last accepted node
@@ -33,7 +34,8 @@ struct Checkpoint {
 
 /// Serialises a checkpoint.
 std::string to_bytes(Checkpoint checkpoint);
-/// Inverse of to_bytes(). `file` is for the message. io::IoError if the bytes are damaged or of another version.
+/// Inverse of to_bytes(). `file` is for the message. io::IoError if the bytes are damaged or of another
+/// version.
 Checkpoint from_bytes(const std::string& bytes, const std::string& file);
 
 /// io::IoError if the checkpoint does not fit the model and its initial state x.

@@ -4,6 +4,7 @@
 #include "contact/evolving/unilateral.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
+#include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/integrator.hpp"
@@ -141,15 +142,28 @@ void SingleRun::read()
     result.command_line = options.command_line;
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
-    settings = fmt::format(
-        "model {:016x}, integrator {}, step {}, interval {}, tolerance {}, linear solver {}, rho {}{}{}",
-        io::checksum(description.text.data(), description.text.size()), scheme.name, grid.h, result.interval,
-        options.settings.tolerance, static_cast<int>(options.settings.linear_solver),
-        options.settings.rho_infinity, options.settings.reparametrise ? ", --reparametrise" : "",
-        options.fix_initial ? ", --fix-initial" : "");
-    for (const auto& [option, text] : options.outputs)
-        settings += ", " + option + (text.empty() ? "" : ' ' + text);
+    settings = settings_of_run();
     if (from) check_continues();
+}
+
+RunSettings SingleRun::settings_of_run()
+{
+    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
+    const lie::Settings& s = options.settings;
+    RunSettings all = options.outputs;
+    all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
+    all["--integrator"] = scheme.name;
+    all["--step"] = io::shortest(grid.h);
+    all["--interval"] = io::shortest(result.interval);
+    // Rows are counted in steps: with another step the rows of the interrupted run would have another
+    // interval.
+    if (from && !options.interval) all["--interval"] = from->settings["--interval"];
+    all["--tolerance"] = io::shortest(s.tolerance);
+    all["--linear-solver"] = solvers[static_cast<int>(s.linear_solver)];
+    all["--rho-infinity"] = io::shortest(s.rho_infinity);
+    if (s.reparametrise) all["--reparametrise"] = "";
+    if (options.fix_initial) all["--fix-initial"] = "";
+    return all;
 }
 
 // A resumed run was checked when it started: it only gives a warning.
@@ -191,10 +205,16 @@ void SingleRun::load_checkpoint()
 
 void SingleRun::check_continues() const
 {
-    if (from->settings != settings)
-        throw io::UsageError(
-            fmt::format("{}: the checkpoint belongs to another run: settings ({}), this run ({})", directory,
-                        from->settings, settings));
+    if (from->settings != settings) {
+        std::error_code error;
+        const std::string file = path("model.json");
+        throw io::UsageError(fmt::format(
+            "{}: the checkpoint belongs to another run: {}; --force starts it again", directory,
+            difference(
+                from->settings, settings,
+                std::filesystem::exists(file, error) ? io::read_file(file, io::JsonSource::max_bytes) : "",
+                text_of_model())));
+    }
     check_fits(*from, *description.model, description.x, from_file);
     const bool same_end = lie::TimeGrid::over(from->end, grid.h).steps == grid.steps;
     if (extends && same_end)
@@ -217,8 +237,12 @@ void SingleRun::clear_directory() const
     io::Sinks<RunSetup>::remove(directory);
     std::remove(path("summary.json").c_str());
     remove_figure(directory, "trajectory.png");
-    io::write_file(path("model.json"),
-                   result.start.projected ? dae::text_at(description, description.x) : description.text);
+    io::write_file(path("model.json"), text_of_model());
+}
+
+std::string SingleRun::text_of_model() const
+{
+    return result.start.projected ? dae::text_at(description, description.x) : description.text;
 }
 
 void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)

@@ -34,8 +34,8 @@ public:
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
 
     /// Reads the model, integrates, writes the files and returns the result. A numerical failure or an
-    /// interruption is reported in the result. All other errors are thrown: lie::InvalidInput and io::UsageError
-    /// before any file is written, io::IoError.
+    /// interruption is reported in the result. All other errors are thrown: lie::InvalidInput and
+    /// io::UsageError before any file is written, io::IoError.
     RunResult execute();
 
 private:
@@ -49,6 +49,9 @@ private:
     /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
     void check_continues() const;
     void clear_directory() const;
+    RunSettings settings_of_run();
+    /// The text of model.json
+    std::string text_of_model() const;
     void march(lie::Integrator& integrator, Recorder& recorder);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
     std::string checkpoint(const lie::March& march, Recorder& recorder) const;
@@ -65,7 +68,7 @@ private:
     const std::string directory;
     dae::Description description;
     lie::TimeGrid grid;
-    std::string settings;
+    RunSettings settings;
     std::optional<Checkpoint> from;  ///< of a resumed run
     std::string from_file;
     bool extends = false;  ///< continues a run that has ended

@@ -18,7 +18,7 @@ namespace {
 Checkpoint some_checkpoint()
 {
     Checkpoint c;
-    c.settings = "model 0123, integrator rA-half-1";
+    c.settings = {{"model", "0123"}, {"--integrator", "rA-half-1"}};
     c.node.t = 0.1;
     c.node.body.resize(2);
     c.node.body[1].r = {1, 2, 3};

@@ -92,8 +92,9 @@ TEST_CASE("without --end and --interval a resumed run keeps those of the run", "
     for (const std::string end : {"2.5", "2", "0"})
         check_refused(in, with(run, {"a", "--resume", "--end", end}), 2,
                       end == "2.5" ? "is complete" : "--end must be after t = 2.5 s");
-    for (const char* message : {"belongs to another run", "interval 0.1"})
-        check_refused(in, with(run, {"a", "--resume", "--end", "3", "--interval", "0.1"}), 2, message);
+    check_refused(in, with(run, {"a", "--resume", "--end", "3", "--interval", "0.1"}), 2,
+                  "belongs to another run: it has --interval 0.001; this run has --interval 0.1; --force "
+                  "starts it again");
     CHECK(read(in / "a/trajectory.csv") == before);
 }
 

@@ -43,7 +43,14 @@ TEST_CASE("an interruption writes a checkpoint without --checkpoint as well", "[
     REQUIRE(fs::exists(in / "a/checkpoint"));
 
     // a checkpoint of another run
-    check_refused(in, with(run, {"--resume", "--tolerance", "1e-9"}), 2, "belongs to another run");
+    check_refused(
+        in, with(run, {"--resume", "--tolerance", "1e-9"}), 2,
+        "a: the checkpoint belongs to another run: it has --tolerance 1e-10; this run has --tolerance 1e-09; "
+        "--force starts it again");
+    check_refused(
+        in, with(run, {"--resume", "--fix-initial", "--set", "/gravity/2=-1.62"}), 2,
+        "another run: it has no --fix-initial, /gravity/2 -9.81; this run has --fix-initial, /gravity/2 "
+        "-1.62; --force starts it again");
 
     // a damaged checkpoint without a previous one
     std::string bytes = read(in / "a/checkpoint");

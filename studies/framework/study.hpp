@@ -62,7 +62,8 @@ struct StudyOptions {
     std::vector<std::string> figure_formats;  ///< empty: png
     bool latex = false;                       ///< write study.tex
     std::vector<Expectation> expect;
-    std::string command_line;  ///< recorded in study.json
+    std::string command_line;          ///< recorded in study.json
+    std::vector<std::string> plugins;  ///< that are loaded: path and checksum of each
 };
 
 /// Flags of the options that only some studies accept (Study::accepted)
@@ -105,7 +106,8 @@ struct Study {
     unsigned accepted = 0;               ///< flags of `takes`
     unsigned lacking = 0;                ///< flags of `lacks`
     std::vector<std::string> keys = {};  ///< keys of --expect
-    /// For the help: files beside study.csv and study.json. Words in capitals stand for names, as in energy-PROBLEM.png.
+    /// For the help: files beside study.csv and study.json. Words in capitals stand for names, as in
+    /// energy-PROBLEM.png.
     std::vector<std::string> files = {};
     std::function<void(StudyContext&)> run = {};  ///< the experiment: fills the results of the context
 };

@@ -61,6 +61,7 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
         {"--seed", std::to_string(o.seed.value_or(0))},
         {"--check", o.check ? "yes" : "no"},
         {"--all", o.all ? "yes" : "no"},
+        {"plug-ins (--load)", o.plugins.empty() ? "none" : joined(o.plugins)},
         {"numerical settings",
          fmt::format("tolerance {}, linear solver {}, rho-infinity {}, reparametrise {}, rtol {}, atol {}",
                      o.settings.tolerance, static_cast<int>(o.settings.linear_solver),

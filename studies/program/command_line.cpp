@@ -39,8 +39,11 @@ namespace {
 /// The commands of the program, with their options and actions
 class Commands {
 public:
-    explicit Commands(std::string command_line_text) : command_line_text(std::move(command_line_text))
+    /// `plugins`: those that are loaded
+    explicit Commands(std::string command_line_text, const std::vector<std::string>& plugins = {})
+        : command_line_text(std::move(command_line_text))
     {
+        run.plugins = study.plugins = plugins;
         app.set_version_flag("--version", version_line());
         app.set_help_flag("-h,--help", "print this text; hilda COMMAND --help: the options of a command");
         app.add_option(
@@ -152,7 +155,8 @@ private:
         return {setting(option, text)};
     }
 
-    /// The options of lie::Settings, common to run and study; `given` receives the names of those that were given.
+    /// The options of lie::Settings, common to run and study; `given` receives the names of those that were
+    /// given.
     static void add_settings(CLI::App* c, lie::Settings& s, std::vector<std::string>& given)
     {
         const auto note = [&given](const Setter& set) {
@@ -622,19 +626,22 @@ private:
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
-/// Loads the plug-ins of the options --load FILE before the command, and returns the other words. The options
-/// of a command name registered integrators, so that these must exist before the command line is read.
-void load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
+/// Loads the plug-ins of the options --load FILE before the command, and returns them (see load_plugin()) and
+/// the other words. The options of a command name registered integrators, so that these must exist before the
+/// command line is read.
+std::vector<std::string> load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
 {
+    std::vector<std::string> plugins;
     size_t k = 0;
     if (k < given.size()) words.push_back(given[k++]);
     for (; k < given.size() && std::string_view(given[k]).starts_with("--load"); ++k) {
         const std::string_view word = given[k];
         if (word != "--load" && !word.starts_with("--load=")) break;
         if (word == "--load" && ++k == given.size()) throw io::UsageError("--load: needs a FILE");
-        load_plugin(word == "--load" ? given[k] : std::string(word.substr(7)));
+        plugins.push_back(load_plugin(word == "--load" ? given[k] : std::string(word.substr(7))));
     }
     words.insert(words.end(), given.begin() + static_cast<std::ptrdiff_t>(k), given.end());
+    return plugins;
 }
 
 }  // namespace
@@ -642,8 +649,9 @@ void load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
 int command_line(int argc, char** argv)
 {
     std::vector<char*> words;
-    load_plugins({argv, argv + argc}, words);
-    return Commands(io::shell_quoted(argc, argv)).parse_and_run(static_cast<int>(words.size()), words.data());
+    const std::vector<std::string> plugins = load_plugins({argv, argv + argc}, words);
+    return Commands(io::shell_quoted(argc, argv), plugins)
+        .parse_and_run(static_cast<int>(words.size()), words.data());
 }
 
 }  // namespace hilda::studies

@@ -6,6 +6,7 @@
 #include "contact/surface_types.hpp"
 #include "dae/model_types.hpp"
 #include "dae/outputs/output.hpp"
+#include "io/archive.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
@@ -16,6 +17,8 @@
 #include "studies/running/plot.hpp"
 #include "studies/running/plugin_interface.hpp"
 #include "studies/running/sink.hpp"
+
+#include <fmt/format.h>
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -45,15 +48,18 @@ size_t registered_entries()
            studies().size();
 }
 
-/// The interface in the bytes of a plug-in, read before its code runs; "" without one
-std::string interface_of(const std::string& file)
+std::string bytes_of(const std::string& file)
 {
-    std::string bytes;
     try {
-        bytes = io::read_file(file, most);
+        return io::read_file(file, most);
     } catch (const io::IoError& error) {
         throw io::NotAvailable(std::string("--load: ") + error.what());
     }
+}
+
+/// The interface in the bytes of a plug-in, read before its code runs; "" without one
+std::string interface_of(const std::string& bytes)
+{
     const std::string marker = HILDA_PLUGIN_MARKER;
     const size_t at = bytes.find(marker);
     return at == std::string::npos ? "" : std::string(bytes.c_str() + at + marker.size());
@@ -72,9 +78,9 @@ std::string interface_of(const std::string& file)
     _exit(io::exit_code::not_available);
 }
 
-/// dlopen() in a thread of its own, with the reason of a failure. An exception of a static initialiser finds no handler
-/// there and calls the terminate handler. In the thread of main() it would be caught, but the frames of dlopen() cannot
-/// be unwound.
+/// dlopen() in a thread of its own, with the reason of a failure. An exception of a static initialiser finds
+/// no handler there and calls the terminate handler. In the thread of main() it would be caught, but the
+/// frames of dlopen() cannot be unwound.
 void open(const std::string& file, std::string& failure)
 {
     std::thread([&] {
@@ -84,9 +90,10 @@ void open(const std::string& file, std::string& failure)
 
 }  // namespace
 
-void load_plugin(const std::string& file)
+std::string load_plugin(const std::string& file)
 {
-    const std::string interface = interface_of(file);
+    const std::string bytes = bytes_of(file);
+    const std::string interface = interface_of(bytes);
     const std::string where = "--load " + file + ": ";
     if (interface.empty())
         throw io::NotAvailable(
@@ -107,6 +114,9 @@ void load_plugin(const std::string& file)
     if (registered_entries() == before)
         throw io::NotAvailable(where + "registers nothing; see docs/extending/plugin.md");
     add_script_directory(std::filesystem::path(loading).parent_path().string());
+    std::error_code error;
+    return fmt::format("{} ({:016x})", std::filesystem::weakly_canonical(loading, error).string(),
+                       io::checksum(bytes.data(), bytes.size()));
 }
 
 }  // namespace hilda::studies

@@ -23,11 +23,13 @@ struct Header {
 
 std::string path_in(const std::string& directory) { return directory + "/study.part"; }
 
-/// The values of a list are separated by line breaks.
-std::string quoted(std::string value)
+/// A value in one line; the parts of a list are separated by line breaks.
+std::string quoted(const std::string& value)
 {
-    for (size_t at = 0; (at = value.find('\n', at)) != std::string::npos; at += 2) value.replace(at, 1, ", ");
-    return value.empty() ? "the default" : "'" + value + "'";
+    if (value.empty()) return "the default";
+    std::string line;
+    for (const char c : value) line += c == '\n' ? std::string(", ") : std::string(1, c);
+    return "'" + line + "'";
 }
 
 }  // namespace

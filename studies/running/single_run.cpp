@@ -163,6 +163,7 @@ RunSettings SingleRun::settings_of_run()
     all["--rho-infinity"] = io::shortest(s.rho_infinity);
     if (s.reparametrise) all["--reparametrise"] = "";
     if (options.fix_initial) all["--fix-initial"] = "";
+    if (!options.plugins.empty()) all["--load"] = fmt::format("{}", fmt::join(options.plugins, " --load "));
     return all;
 }
 

@@ -7,9 +7,12 @@
 
 import csv
 import pathlib
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 program, plugins, tests = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(__file__).resolve().parent.parent
 faults = []
@@ -69,6 +72,36 @@ with tempfile.TemporaryDirectory() as folder:
     ended = call(*mine, "study", "invariants", "--steps", "1e-2", "--end", "0.1", "--check", "--no-plot", "--output",
                  folder / "invariants")
     check(ended.returncode == 0 and "passed" in ended.stdout, f"study invariants:\n{ended.stderr}")
+
+    # a study or a run that was interrupted continues with the same plug-in only
+    changed = folder / "changed.so"
+    shutil.copy(plugins / "every_kind.so", changed)
+    energy = ["study", "energy", "--problem", "plugin_pendulum", "--integrator",
+              "demo-kick,rA-half-1,rA-half-2,rA-half-1-kick,rA-rattle,rA-rkmk-4", "--steps", "1e-5", "--end", "3",
+              "--jobs", "1", "--no-plot", "--quiet", "--output", folder / "part"]
+    run = ["run", "plugin_pendulum", "--integrator", "demo-kick", "--step", "1e-5", "--end", "20", "--quiet",
+           "--output", folder / "cut"]
+    begun = {"part": folder / "part/study.part", "cut": folder / "cut/model.json"}
+    for name, command in (("part", energy), ("cut", run)):
+        process = subprocess.Popen([program, "--load", str(changed), *map(str, command)],
+                                   stderr=subprocess.DEVNULL)
+        while process.poll() is None and (not begun[name].exists() or begun[name].stat().st_size == 0):
+            time.sleep(0.001)
+        first = begun[name].stat().st_size  # of a study: what its rows depend on
+        time.sleep(0.05)
+        while name == "part" and process.poll() is None and begun[name].stat().st_size == first:
+            time.sleep(0.001)
+        process.send_signal(signal.SIGINT)
+        check(process.wait() == 130, f"{name} is not interrupted: {process.returncode}")
+    with open(changed, "ab") as file:
+        file.write(b"\0")
+    for name, command in (("part", energy), ("cut", run)):
+        refused(2, "changed.so (", "--load", changed, *command, "--resume")
+    refused(2, "the same plug-ins (--load)", "--load", changed, *energy, "--resume")
+    shutil.copy(plugins / "every_kind.so", changed)
+    for name, command in (("part", energy), ("cut", run)):
+        ended = call("--load", changed, *command, "--resume")
+        check(ended.returncode == 0, f"{name} does not continue: {ended.returncode}\n{ended.stderr}")
 
     # wrong plug-ins
     other = folder / "other.so"

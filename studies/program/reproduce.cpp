@@ -22,6 +22,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <deque>
 #include <filesystem>
@@ -41,14 +42,27 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 constexpr const char* record_name = "reproduce.json";
 constexpr int most_processes = 4;
 
+/// A new file for the output of a process; closed at the end of its life
+class NewFile {
+public:
+    explicit NewFile(const std::string& file)
+        : descriptor(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
+    {
+        if (descriptor < 0) throw io::IoError(file + ": cannot be written: " + std::strerror(errno));
+    }
+    ~NewFile() { close(descriptor); }
+    NewFile(const NewFile&) = delete;
+    NewFile& operator=(const NewFile&) = delete;
+
+    const int descriptor;
+};
+
 /// Starts this program with these words and this number of OpenMP threads, and its output in two files.
 /// Returns the process.
 pid_t start(std::vector<std::string> words, int threads, const std::string& output,
             const std::string& messages)
 {
-    const int out = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666),
-              err = open(messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (out < 0 || err < 0) throw io::IoError(output + ": cannot be written");
+    const NewFile out(output), err(messages);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -61,12 +75,11 @@ pid_t start(std::vector<std::string> words, int threads, const std::string& outp
         setenv("OMP_NUM_THREADS", omp_threads.c_str(), 0);
         setenv("OMP_WAIT_POLICY", "passive", 0);
         dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-        dup2(out, STDOUT_FILENO);
-        dup2(err, STDERR_FILENO);
+        dup2(out.descriptor, STDOUT_FILENO);
+        dup2(err.descriptor, STDERR_FILENO);
         execv("/proc/self/exe", argv.data());
         _exit(io::exit_code::not_available);
     }
-    close(out), close(err);
     if (child < 0) throw io::IoError("a process cannot be started");
     return child;
 }

@@ -4,6 +4,7 @@
 #include "io/error.hpp"
 
 #include <algorithm>
+#include <deque>
 
 namespace hilda::io {
 
@@ -15,13 +16,38 @@ std::string_view trimmed(std::string_view s)
     return first == std::string_view::npos ? std::string_view{} : s.substr(first, last - first + 1);
 }
 
-std::vector<std::string_view> cells_of(std::string_view line)
+/// The content of a cell in quotes, as csv_field() writes it. `store` keeps the text of a content with
+/// quotes.
+std::string_view unquoted(std::string_view cell, std::deque<std::string>& store)
+{
+    if (cell.size() < 2 || !cell.starts_with('"') || !cell.ends_with('"')) return cell;
+    cell = cell.substr(1, cell.size() - 2);
+    if (cell.find('"') == std::string_view::npos) return cell;
+    std::string& text = store.emplace_back();
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+        text += cell[k];
+        if (cell[k] == '"' && k + 1 < cell.size() && cell[k + 1] == '"') ++k;
+    }
+    return text;
+}
+
+/// The cells between the commas that are outside of quotes. A quote within a cell that begins otherwise is a
+/// character.
+std::vector<std::string_view> cells_of(std::string_view line, std::deque<std::string>& store)
 {
     std::vector<std::string_view> all;
-    for (std::size_t from = 0; from <= line.size();) {
-        const std::size_t to = std::min(line.find(',', from), line.size());
-        all.push_back(trimmed(line.substr(from, to - from)));
-        from = to + 1;
+    bool quoted = false;
+    std::size_t from = 0;
+    for (std::size_t k = 0; k <= line.size(); ++k) {
+        if (k < line.size() && line[k] == '"') {
+            if (quoted && k + 1 < line.size() && line[k + 1] == '"')
+                ++k;  // a quote of the content
+            else if (quoted || trimmed(line.substr(from, k - from)).empty())
+                quoted = !quoted;
+        }
+        if (k < line.size() && (line[k] != ',' || quoted)) continue;
+        all.push_back(unquoted(trimmed(line.substr(from, k - from)), store));
+        from = k + 1;
     }
     return all;
 }
@@ -31,13 +57,16 @@ std::vector<std::string_view> cells_of(std::string_view line)
 void read_csv(std::string_view text, const std::string& file, const std::function<void(const CsvRow&)>& use)
 {
     std::vector<std::string_view> names;
+    std::deque<std::string> of_names, of_row;  // the references to their texts stay valid
     long line = 0;
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find('\n', from), text.size());
         const std::string_view here = trimmed(text.substr(from, to - from));
         from = to + 1, ++line;
         if (here.empty() || here.starts_with('#')) continue;
-        CsvRow row{names, cells_of(here), file + ':' + std::to_string(line)};
+        of_row.clear();
+        CsvRow row{names, cells_of(here, names.empty() ? of_names : of_row),
+                   file + ':' + std::to_string(line)};
         if (names.empty()) {
             names = row.cells;
             for (auto name = names.begin(); name != names.end(); ++name)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Reading of the results of studies for the page of `hilda reproduce`.
+#include "io/csv.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <sstream>
 
 namespace hilda::studies {
 
@@ -23,36 +23,17 @@ constexpr size_t most = size_t{256} << 20;  // largest file that is read [byte]
 
 using Row = std::map<std::string, std::string>;
 
-/// The fields of a line of a CSV file
-std::vector<std::string> fields(const std::string& line)
-{
-    std::vector<std::string> all(1);
-    bool quoted = false;
-    for (const char c : line) {
-        if (c == '"')
-            quoted = !quoted;
-        else if (c == ',' && !quoted)
-            all.emplace_back();
-        else if (c != '\r')
-            all.back() += c;
-    }
-    return all;
-}
-
-/// The rows of a table of a study, whose fields contain no quotes and no line breaks
+/// The rows of a table of a study. io::IoError for a row of another length than the header
 std::vector<Row> rows_of(const std::string& csv, const std::string& file)
 {
-    std::istringstream in(csv);
-    std::string line;
-    std::getline(in, line);
-    const std::vector<std::string> names = fields(line);
     std::vector<Row> rows;
-    while (std::getline(in, line)) {
-        const std::vector<std::string> cells = fields(line);
-        if (cells.size() != names.size())
-            throw io::IoError(file + ": a row has another length than the header");
-        Row& to = rows.emplace_back();
-        for (size_t k = 0; k < names.size(); ++k) to[names[k]] = cells[k];
+    try {
+        io::read_csv(csv, file, [&](const io::CsvRow& row) {
+            Row& to = rows.emplace_back();
+            for (size_t k = 0; k < row.names.size(); ++k) to[std::string(row.names[k])] = row.cells[k];
+        });
+    } catch (const io::InvalidInput& error) {
+        throw io::IoError(error.what());
     }
     return rows;
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/sweep/swept_values.hpp"
 
-#include "io/json.hpp"
+#include "io/error.hpp"
+#include "io/json_source.hpp"
 #include "io/option_values.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 namespace hilda::studies {
 
@@ -19,7 +20,7 @@ constexpr size_t most = 100000;
     io::refuse_option("--sweep", what, text);
 }
 
-/// The parts between the separators that are outside of brackets and quotes
+/// The parts between the separators that are outside of parentheses, brackets and quotes
 std::vector<std::string> parts(const std::string& text, char separator)
 {
     std::vector<std::string> all(1);
@@ -32,9 +33,9 @@ std::vector<std::string> parts(const std::string& text, char separator)
             continue;
         }
         if (c == '"') quoted = !quoted;
-        if (!quoted && (c == '[' || c == '{')) ++depth;
-        if (!quoted && (c == ']' || c == '}')) --depth;
-        if (c == separator && !quoted && depth <= 0)
+        if (!quoted && (c == '(' || c == '[' || c == '{')) ++depth;
+        if (!quoted && (c == ')' || c == ']' || c == '}') && depth > 0) --depth;
+        if (c == separator && !quoted && depth == 0)
             all.emplace_back();
         else
             all.back() += c;
@@ -75,6 +76,30 @@ std::string trimmed(const std::string& text)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+/// The same text for the same value: of a number, a JSON value, or a text with or without quotes
+std::string canonical(const std::string& value)
+{
+    const double number = io::finite_number_in(value);
+    if (!std::isnan(number)) return io::shortest(number + 0.);  // -0 becomes 0
+    try {
+        return io::written(io::JsonSource(value, "").root);
+    } catch (const io::InvalidInput&) {  // a text without quotes
+        return io::written(io::Json(value));
+    }
+}
+
+void refuse_equal(const std::vector<std::string>& values, const std::string& text)
+{
+    std::map<std::string, std::string> known;
+    for (const std::string& value : values) {
+        const auto [at, is_new] = known.try_emplace(canonical(value), value);
+        if (is_new) continue;
+        refuse("must contain each value once" +
+                   (value == at->second ? "" : ", and " + at->second + " and " + value + " are equal"),
+               text);
+    }
+}
+
 }  // namespace
 
 SweptEntry swept_entry(const std::string& text)
@@ -92,8 +117,7 @@ SweptEntry swept_entry(const std::string& text)
         else
             entry.values.insert(entry.values.end(), values.begin(), values.end());
     }
-    const std::set<std::string> distinct(entry.values.begin(), entry.values.end());
-    if (distinct.size() < entry.values.size()) refuse("must contain each value once", text);
+    refuse_equal(entry.values, text);
     return entry;
 }
 

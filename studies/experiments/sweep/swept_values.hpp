@@ -14,13 +14,14 @@ struct SweptEntry {
     std::vector<std::string> values;  ///< each as in --set /json/pointer=VALUE
 };
 
-/// Reads one --sweep. VALUES is a list of parts that are separated by commas outside of brackets and quotes:
+/// Reads one --sweep. VALUES is a list of parts that are separated by commas outside of parentheses,
+/// brackets and quotes:
 ///
 ///     VALUE           a JSON value, or a text without quotes, as in --set
 ///     A:B:N           N numbers from A to B with equal differences, N from 2 to 100000
 ///     A:B:N:log       N numbers from A to B with equal ratios; A and B have the same sign
 ///
-/// io::UsageError for another form, for an empty part and for a value that occurs twice.
+/// io::UsageError for another form, for an empty part and for a value that occurs twice, as 10 and 1e1.
 SweptEntry swept_entry(const std::string& text);
 
 /// Reads all --sweep of a command. io::UsageError as above, for an entry that is given twice, and for more

@@ -39,6 +39,9 @@ TEST_CASE("a sweep takes values, ranges and lists of JSON values", "[studies][sw
     CHECK(values("0.001:1:4:log").back() == "1");
     CHECK(std::stod(values("-1:-100:3:log")[1]) == Approx(-10));
     CHECK(values("a:b:3") == Texts{"a:b:3"});  // a text, not a range
+    CHECK(values("max(1,2),2*min(l, (3)),pi") == Texts{"max(1,2)", "2*min(l, (3))", "pi"});
+    CHECK(values("a),b(1,2),c") == Texts{"a)", "b(1,2)", "c"});
+    CHECK(values("1,\"1\",[1]") == Texts{"1", "\"1\"", "[1]"});  // a number, a text and a list
 }
 
 TEST_CASE("a sweep of another form is refused", "[studies][sweep]")
@@ -52,6 +55,9 @@ TEST_CASE("a sweep of another form is refused", "[studies][sweep]")
     for (const char* text : {"/a=", "/a=1,,2", "/a=1,", "/a=,1", "/a= "})
         refused(text, "without empty values");
     for (const char* text : {"/a=1,1", "/a=0:1:2,1", "/a=x,x"}) refused(text, "must contain each value once");
+    refused("/a=10,10.0", "must contain each value once, and 10 and 10.0 are equal, got '/a=10,10.0'");
+    for (const char* text : {"/a=10,1e1", "/a=0,-0", "/a=0:1:11,0.50", "/a=[1,0],[1.0, 0]", "/a=x,\"x\""})
+        refused(text, "are equal, got");
     for (const char* text :
          {"/a=0:1:1", "/a=0:1:0", "/a=0:1:-2", "/a=0:1:2.5", "/a=0:1:100001", "/a=0:1:1e9"})
         refused(text, "a whole number from 2 to 100000");

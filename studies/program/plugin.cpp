@@ -119,4 +119,19 @@ std::string load_plugin(const std::string& file)
                        io::checksum(bytes.data(), bytes.size()));
 }
 
+std::vector<std::string> load_plugins(const std::vector<char*>& given, std::vector<char*>& words)
+{
+    std::vector<std::string> plugins;
+    size_t k = 0;
+    if (k < given.size()) words.push_back(given[k++]);
+    for (; k < given.size() && std::string_view(given[k]).starts_with("--load"); ++k) {
+        const std::string_view word = given[k];
+        if (word != "--load" && !word.starts_with("--load=")) break;
+        if (word == "--load" && ++k == given.size()) throw io::UsageError("--load: needs a FILE");
+        plugins.push_back(load_plugin(word == "--load" ? given[k] : std::string(word.substr(7))));
+    }
+    words.insert(words.end(), given.begin() + static_cast<std::ptrdiff_t>(k), given.end());
+    return plugins;
+}
+
 }  // namespace hilda::studies

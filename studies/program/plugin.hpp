@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace hilda::studies {
 
@@ -16,5 +17,10 @@ namespace hilda::studies {
 /// that throws while it is loaded ends the program with the exit code 7. Figures are drawn by scripts in the
 /// folder of the plug-in as well.
 std::string load_plugin(const std::string& file);
+
+/// Loads the plug-ins of the options --load FILE before the command. Returns them as load_plugin(), and the
+/// other words in `words`. The options of a command name registered integrators, so that these must exist
+/// before the command line is read. io::UsageError for --load without a file.
+std::vector<std::string> load_plugins(const std::vector<char*>& given, std::vector<char*>& words);
 
 }  // namespace hilda::studies

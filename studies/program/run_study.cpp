@@ -5,6 +5,7 @@
 #include "io/program.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
+#include "studies/program/command_options.hpp"
 
 #include <unistd.h>
 
@@ -29,44 +30,49 @@ bool has(const Study& study, const OptionOfSome& option)
            (study.lacking & option.lacking) == 0;
 }
 
+/// The flags of `takes` with which a study has this option of lie::Settings; 0: all studies of models
+unsigned studies_with(const std::string& setting)
+{
+    return setting == "--rtol" ? takes::rtol : setting == "--atol" ? takes::rtol | takes::rtols : 0;
+}
+
 const std::vector<OptionOfSome>& options_of_some()
 {
-    const auto setting = [](const std::string& name, unsigned taken = 0) {
-        return OptionOfSome{name, taken, lacks::models, [name](const StudyOptions& o) {
+    static const std::vector<OptionOfSome> all = [] {
+        std::vector<OptionOfSome> some = {
+            {"--problem", 0, lacks::problem, [](const auto& o) { return !o.problems.empty(); }},
+            {"--integrator", 0, lacks::models, [](const auto& o) { return !o.integrators.empty(); }},
+            {"--steps", 0, lacks::steps, [](const auto& o) { return !o.steps.empty(); }},
+            {"--end", 0, lacks::end, [](const auto& o) { return o.end.has_value(); }},
+            {"--set", 0, lacks::models, [](const auto& o) { return !o.set.empty(); }},
+            {"--reference", takes::reference, 0, [](const auto& o) { return !o.reference.empty(); }},
+            {"--reference-step", takes::reference, 0,
+             [](const auto& o) { return o.reference_step.has_value(); }},
+            {"--reference-rtol", takes::reference, 0,
+             [](const auto& o) { return o.reference_rtol.has_value(); }},
+            {"--rtols", takes::rtols, 0, [](const auto& o) { return !o.rtols.empty(); }},
+            {"--repeats", takes::repeats, 0, [](const auto& o) { return o.repeats > 0; }},
+            {"--bars", takes::bars, 0, [](const auto& o) { return !o.bars.empty(); }},
+            {"--preset", takes::preset, 0, [](const auto& o) { return !o.preset.empty(); }},
+            {"--normal-rows", takes::normal_rows, 0, [](const auto& o) { return !o.normal_rows.empty(); }},
+            {"--against", takes::against, 0, [](const auto& o) { return !o.against.empty(); }},
+            {"--check", takes::check, 0, [](const auto& o) { return o.check; }},
+            {"--all", takes::all, 0, [](const auto& o) { return o.all; }},
+            {"--grid", takes::grid, 0, [](const auto& o) { return !o.grid.empty(); }},
+            {"--vtk", takes::vtk, 0, [](const auto& o) { return o.vtk > 0; }},
+            {"--fix-initial", 0, lacks::models, [](const auto& o) { return o.fix_initial; }},
+            {"--sweep", takes::sweep, 0, [](const auto& o) { return !o.sweep.empty(); }},
+            {"--observable", takes::sweep, 0, [](const auto& o) { return !o.observable.empty(); }},
+            {"--keep", takes::sweep, 0, [](const auto& o) { return o.keep; }},
+            {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }}};
+        for (const SettingOption& setting : setting_options())
+            some.push_back({setting.name, studies_with(setting.name), lacks::models,
+                            [name = setting.name](const StudyOptions& o) {
                                 const auto& given = o.given_settings;
                                 return std::find(given.begin(), given.end(), name) != given.end();
-                            }};
-    };
-    static const std::vector<OptionOfSome> all = {
-        {"--problem", 0, lacks::problem, [](const auto& o) { return !o.problems.empty(); }},
-        {"--integrator", 0, lacks::models, [](const auto& o) { return !o.integrators.empty(); }},
-        {"--steps", 0, lacks::steps, [](const auto& o) { return !o.steps.empty(); }},
-        {"--end", 0, lacks::end, [](const auto& o) { return o.end.has_value(); }},
-        {"--set", 0, lacks::models, [](const auto& o) { return !o.set.empty(); }},
-        setting("--tolerance"),
-        setting("--linear-solver"),
-        setting("--rho-infinity"),
-        setting("--reparametrise"),
-        setting("--rtol", takes::rtol),
-        setting("--atol", takes::rtol | takes::rtols),
-        {"--reference", takes::reference, 0, [](const auto& o) { return !o.reference.empty(); }},
-        {"--reference-step", takes::reference, 0, [](const auto& o) { return o.reference_step.has_value(); }},
-        {"--reference-rtol", takes::reference, 0, [](const auto& o) { return o.reference_rtol.has_value(); }},
-        {"--rtols", takes::rtols, 0, [](const auto& o) { return !o.rtols.empty(); }},
-        {"--repeats", takes::repeats, 0, [](const auto& o) { return o.repeats > 0; }},
-        {"--bars", takes::bars, 0, [](const auto& o) { return !o.bars.empty(); }},
-        {"--preset", takes::preset, 0, [](const auto& o) { return !o.preset.empty(); }},
-        {"--normal-rows", takes::normal_rows, 0, [](const auto& o) { return !o.normal_rows.empty(); }},
-        {"--against", takes::against, 0, [](const auto& o) { return !o.against.empty(); }},
-        {"--check", takes::check, 0, [](const auto& o) { return o.check; }},
-        {"--all", takes::all, 0, [](const auto& o) { return o.all; }},
-        {"--grid", takes::grid, 0, [](const auto& o) { return !o.grid.empty(); }},
-        {"--vtk", takes::vtk, 0, [](const auto& o) { return o.vtk > 0; }},
-        {"--fix-initial", 0, lacks::models, [](const auto& o) { return o.fix_initial; }},
-        {"--sweep", takes::sweep, 0, [](const auto& o) { return !o.sweep.empty(); }},
-        {"--observable", takes::sweep, 0, [](const auto& o) { return !o.observable.empty(); }},
-        {"--keep", takes::sweep, 0, [](const auto& o) { return o.keep; }},
-        {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }}};
+                            }});
+        return some;
+    }();
     return all;
 }
 

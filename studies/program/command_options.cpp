@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/command_options.hpp"
+
+#include "studies/program/arguments.hpp"
+
+namespace hilda::studies {
+
+std::string unchanged(const std::string& /*option*/, const std::string& text) { return text; }
+
+CLI::Option* value(CLI::App& command, const std::string& name, const std::string& kind,
+                   const std::string& what, const Setter& set)
+{
+    return command
+        .add_option_function<std::string>(
+            name, [name, set](const std::string& text) { set(name, text); }, what)
+        ->type_name(kind);
+}
+
+void values(CLI::App& command, const std::string& name, const std::string& kind, const std::string& what,
+            const Setter& set)
+{
+    command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [name, set](const std::vector<std::string>& all) {
+                for (const std::string& text : all) set(name, text);
+            },
+            what)
+        ->type_name(kind)
+        ->allow_extra_args(false);
+}
+
+const std::vector<SettingOption>& setting_options()
+{
+    using Text = const std::string&;
+    static const std::vector<SettingOption> all = {
+        {"--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
+         [](auto& s, Text option, Text text) { s.tolerance = positive_number(option, text); }},
+        {"--linear-solver", "auto|klu|condensed",
+         "solver of the saddle-point system; default: auto, the one with fewer operations",
+         [](auto& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); }},
+        {"--rho-infinity", "RHO",
+         "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest damping) to 1 (no "
+         "damping); "
+         "default: 0.8",
+         [](auto& s, Text option, Text text) { s.rho_infinity = fraction(option, text); }},
+        {"--reparametrise", "",
+         "change the body frame when Euler angles approach a singular orientation, instead of stopping",
+         [](auto& s, Text, Text) { s.reparametrise = true; }},
+        {"--rtol", "RTOL",
+         "relative local error tolerance of integrators with adaptive steps, such as ida-rp; default: 1e-10",
+         [](auto& s, Text option, Text text) { s.rtol = relative_tolerance(option, text); }},
+        {"--atol", "ATOL",
+         "absolute local error tolerance of integrators with adaptive steps; default: that of --rtol",
+         [](auto& s, Text option, Text text) { s.atol = absolute_tolerance(option, text); }}};
+    return all;
+}
+
+void add_settings(CLI::App& command, lie::Settings& settings, std::vector<std::string>& given)
+{
+    for (const SettingOption& option : setting_options()) {
+        const auto note = [&settings, &given, read = option.set](const std::string& name,
+                                                                 const std::string& text) {
+            given.push_back(name);
+            read(settings, name, text);
+        };
+        if (option.kind.empty())
+            command.add_flag_callback(
+                option.name, [note, name = option.name] { note(name, ""); }, option.what);
+        else
+            value(command, option.name, option.kind, option.what, note);
+    }
+}
+
+void add_model(CLI::App& command, std::string& to)
+{
+    command.add_option("MODEL", to, "path of a model file, or name of a built-in model")
+        ->required()
+        ->type_name("");
+}
+
+void add_set(CLI::App& command, const std::string& what, std::vector<std::string>& to)
+{
+    values(command, "--set", "/json/pointer=VALUE", "change one entry of " + what + "; repeatable",
+           append_one(to, setting));
+}
+
+void add_normal_rows(CLI::App& command, const std::string& default_rows, std::string& to)
+{
+    value(command, "--normal-rows", "tangent|fixed-xy",
+          "tangent vectors in the normal equations of contact constraints; fixed-xy is singular for a normal "
+          "in "
+          "the x-y plane; default: " +
+              default_rows,
+          assign(to, normal_rows));
+}
+
+void add_fix_initial(CLI::App& command, const std::string& and_more, bool& to)
+{
+    command.add_flag("--fix-initial", to,
+                     "project inconsistent initial data onto the constraints" + and_more);
+}
+
+void add_output(CLI::App& command, const std::string& accepted_by, const std::string& default_directory,
+                std::string& to)
+{
+    value(command, "--output", "DIR",
+          "output directory, new or empty unless " + accepted_by + " is given; default: " + default_directory,
+          assign(to, io::path));
+}
+
+void add_figure_format(CLI::App& command, std::vector<std::string>& to)
+{
+    value(command, "--figure-format", "F[,F...]", "formats of the figures, such as png,pdf,svg; default: png",
+          assign(to, formats_of_figures));
+}
+
+void add_no_plot(CLI::App& command, const std::string& what, bool& plot)
+{
+    command.add_flag_callback(
+        "--no-plot", [&plot] { plot = false; }, what);
+}
+
+}  // namespace hilda::studies

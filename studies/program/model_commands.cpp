@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/program/model_commands.hpp"
+
+#include "io/error.hpp"
+#include "io/message.hpp"
+#include "studies/program/arguments.hpp"
+#include "studies/program/command_options.hpp"
+#include "studies/running/sink.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+constexpr const char* of_the_model = "that of the model";
+
+void add_json(CLI::App& c, bool& to)
+{
+    c.add_flag("--json", to, "print the summary as JSON on stdout, and nothing else");
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& c, RunArguments& to)
+{
+    RunOptions& o = to.options;
+    add_model(c, o.model);
+    values(c, "--integrator", "NAME[,NAME...]",
+           "integrators, one run each; recommended for contact constraints: rA-half-1-momentum; default: "
+           "rA-half-1",
+           append(to.integrators, integrators));
+    value(c, "--step", "H", "step size [s]; not for ida-rp, which chooses its own; default: 1e-3",
+          assign(o.step, positive_number));
+    value(c, "--end", "T", "end time [s]; default: that of the model, with --resume that of the run",
+          assign(o.end, nonnegative_number));
+    value(
+        c, "--interval", "DT",
+        "time between output rows [s], 0: a row for each step; default: end/1000, with --resume that of the "
+        "run",
+        assign(o.interval, nonnegative_number));
+    value(c, "--every", "DT", "old name of --interval", assign(to.every, nonnegative_number))
+        ->group("");  // not in the help
+    add_settings(c, o.settings, o.given_settings);
+    add_set(c, "the model", o.set);
+    add_normal_rows(c, of_the_model, o.normal_rows);
+    add_fix_initial(c, "", o.fix_initial);
+    add_output(c, "--force or --resume", "out/NAME", o.output);
+    c.add_flag("--force", o.force,
+               "overwrite an output directory that is not empty; accept a step above the stability limit");
+    c.add_flag(
+        "--resume", o.resume,
+        "continue the run in the output directory from its last checkpoint; a complete run continues to a "
+        "later --end");
+    value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
+          assign(o.checkpoint, nonnegative_number));
+    io::add_sink_options<RunSetup>(c, o.outputs);
+    c.add_flag("--plot", o.plot, "draw trajectory.png as well");
+    c.add_flag(
+        "--error", o.error,
+        "estimate the error of the run from runs with half and a quarter of the step (about seven times "
+        "the time)");
+    add_figure_format(c, o.figure_formats);
+    value(c, "--threads", "N", "accepted for compatibility; a run uses one thread",
+          assign(o.threads, positive_count));
+    add_no_plot(c, "draw no figure (the default)", o.plot);
+    add_json(c, o.json);
+    c.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
+    c.add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
+}
+
+RunOptions run_options(const RunArguments& arguments)
+{
+    RunOptions o = arguments.options;
+    if (o.force && o.resume) throw io::UsageError("run: --force and --resume exclude each other");
+    if (o.error && o.resume) throw io::UsageError("run: --error compares whole runs; --resume excludes it");
+    if (arguments.every && o.interval)
+        throw io::UsageError("run: --every is the old name of --interval; give only one of them");
+    if (arguments.every) o.interval = arguments.every;
+    if (arguments.every && !o.quiet)
+        io::warning("--every was renamed to --interval; the old name is still read");
+    if (!o.figure_formats.empty() && !o.plot)
+        throw io::UsageError("run: --figure-format is for figures; it needs --plot");
+    if (!arguments.integrators.empty()) o.integrators = arguments.integrators;
+    return o;
+}
+
+void add_kinematics_options(CLI::App& c, KinematicsOptions& o)
+{
+    add_model(c, o.model);
+    value(c, "--end", "T", "end time [s]; default: that of the model", assign(o.end, positive_number));
+    value(c, "--interval", "DT", "time between output rows [s]; default: end/1000",
+          assign(o.interval, positive_number));
+    add_set(c, "the model", o.set);
+    add_fix_initial(c, "", o.fix_initial);
+    add_output(c, "--force", "out/NAME", o.output);
+    c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
+    io::add_sink_options<RunSetup>(c, o.outputs);
+    add_json(c, o.json);
+    c.add_flag("--quiet", o.quiet, "print no result and no warnings");
+}
+
+void add_check_options(CLI::App& c, CheckOptions& o)
+{
+    add_model(c, o.model);
+    add_set(c, "the model", o.set);
+    add_normal_rows(c, of_the_model, o.normal_rows);
+    add_fix_initial(c, " and report the change", o.fix_initial);
+    value(c, "--fix", "FILE",
+          "as --fix-initial, and write the model with the projected initial data to this file",
+          assign(o.write, io::path));
+    c.add_flag("--json", o.json, "print the result as JSON");
+    c.add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
+    c.add_flag_callback(
+        "-v,--verbose", [] {}, "no effect");
+}
+
+}  // namespace hilda::studies

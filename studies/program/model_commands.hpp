@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The options of the commands for one model: run, kinematics and check.
+
+#pragma once
+
+#include "studies/program/check_model.hpp"
+#include "studies/program/kinematics.hpp"
+#include "studies/program/run_model.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hilda::studies {
+
+/// The arguments of hilda run
+struct RunArguments {
+    RunOptions options;
+    std::vector<std::string> integrators;  ///< empty: that of RunOptions
+    std::optional<double> every;           ///< value of --every, the old name of --interval
+};
+
+void add_run_options(CLI::App& command, RunArguments& to);
+/// io::UsageError for options that exclude each other
+RunOptions run_options(const RunArguments& arguments);
+
+void add_kinematics_options(CLI::App& command, KinematicsOptions& to);
+void add_check_options(CLI::App& command, CheckOptions& to);
+
+}  // namespace hilda::studies

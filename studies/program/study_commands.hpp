@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The options of the commands study, reproduce and plot.
+
+#pragma once
+
+#include "studies/framework/study.hpp"
+#include "studies/program/reproduce.hpp"
+#include "studies/running/plot.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace hilda::studies {
+
+/// `kind` receives the name of the study, "" without one.
+void add_study_options(CLI::App& command, std::string& kind, StudyOptions& to);
+/// Removes the options that a study does not take, for its help, and adds its keys and files.
+void restrict_help(CLI::App& command, const Study& to);
+
+void add_reproduce_options(CLI::App& command, ReproduceOptions& to);
+void add_plot_options(CLI::App& command, std::string& directory, FigureOptions& figures);
+
+}  // namespace hilda::studies

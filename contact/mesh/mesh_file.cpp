@@ -17,6 +17,13 @@ namespace hilda::contact {
 
 namespace {
 
+/// The text without a byte order mark, with which some editors begin UTF-8
+std::string_view without_mark(std::string_view text)
+{
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return text.substr(text.starts_with(mark) ? mark.size() : 0);
+}
+
 /// The lines of a text and their words
 class Lines {
 public:
@@ -131,9 +138,8 @@ MeshFile parse_stl_text(std::string_view text, const std::string& name)
             count = -1;
         } else if (word != "solid" && word != "endsolid" && word != "outer" && word != "endloop") {
             lines.refuse(
-                "a line of an STL text must begin with solid, facet, outer loop, vertex, endloop, endfacet "
-                "or "
-                "endsolid, got " +
+                "a line of an STL text must begin with solid, facet, outer loop, vertex, endloop, "
+                "endfacet or endsolid, got " +
                 io::in_quotes(lines.line));
         }
     }
@@ -154,7 +160,7 @@ std::string MeshFile::message(const TriangleMesh::Fault& fault) const
 MeshFile parse_obj(std::string_view text, const std::string& name)
 {
     MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
-    Lines lines(text, name);
+    Lines lines(without_mark(text), name);
     while (lines.next()) {
         if (lines.first == "v") {
             mesh.vertices.push_back(lines.point());
@@ -194,9 +200,10 @@ MeshFile parse_stl(std::string_view bytes, const std::string& name)
     if (bytes.size() >= header + sizeof count) std::memcpy(&count, bytes.data() + header, sizeof count);
     const bool binary = bytes.size() >= header + sizeof count &&
                         bytes.size() == header + sizeof count + each * std::size_t{count};
-    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
-    const bool is_text = begin != std::string_view::npos && bytes.substr(begin).starts_with("solid");
-    if (!binary && is_text) return parse_stl_text(bytes, name);
+    const std::string_view text = without_mark(bytes);
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    const bool is_text = begin != std::string_view::npos && text.substr(begin).starts_with("solid");
+    if (!binary && is_text) return parse_stl_text(text, name);
     if (!binary)
         throw lie::InvalidInput(name + ": is no STL file: a text begins with solid, and a binary file of " +
                                 std::to_string(count) + " triangles has " +

@@ -28,6 +28,8 @@ TEST_CASE("a table is read with its comments, blanks and line ends", "[io][csv]"
 {
     CHECK(table("# note\n a , b\r\n\r\n1, x y \n,\n") ==
           std::vector<Cells>{{"a", "b"}, {"1", "x y"}, {"", ""}});
+    CHECK(table("\xEF\xBB\xBF"
+                "a,b\n1,2\n") == std::vector<Cells>{{"a", "b"}, {"1", "2"}});  // byte order mark
     CHECK(table("a,b\n").empty());
     CHECK_THROWS_WITH(table("a,b\n1\n"), "a.csv:2: a row must have a field for each of the 2 columns, got 1");
     CHECK_THROWS_WITH(table("a,a\n"), "a.csv:1: two columns have the same name, got 'a'");

@@ -127,6 +127,19 @@ TEST_CASE("OBJ and STL files of a sphere are read as the same mesh", "[contact][
     }
 }
 
+TEST_CASE("a text of a mesh may begin with a byte order mark", "[contact][mesh]")
+{
+    const std::string mark = "\xEF\xBB\xBF";
+    const tests::Triangles sphere = tests::icosphere(0);
+    for (const std::string end : {"\n", "\r\n"}) {
+        CHECK(parse_stl(mark + stl_text(sphere, end), "s.stl").triangles.size() == sphere.triangles.size());
+        CHECK(parse_obj(mark + "v 0 0 0" + end + "v 1 0 0" + end + "v 0 1 0" + end + "f 1 2 3" + end, "s.obj")
+                  .triangles.size() == 1);
+    }
+    CHECK_THROWS_WITH(parse_obj(mark + "v 0 x 0\n", "s.obj"),
+                      "s.obj:1: a vertex must have three finite numbers, got \"v 0 x 0\"");
+}
+
 TEST_CASE("an OBJ text is read and its errors are reported with the line", "[contact][mesh]")
 {
     const auto read = [](const std::string& text) { return parse_obj(text, "box.obj"); };

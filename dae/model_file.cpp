@@ -277,6 +277,7 @@ private:
             o.located([&, type = type] { return type->read(o, *this, out.x, columns); });
         output->name = name;
         if (output->place.empty()) output->place = o.place();
+        output->name_place = o.place("name");
         Json recorded = o.finish();
         out.outputs.push_back(std::move(output));
         return recorded;

@@ -35,7 +35,8 @@ public:
     virtual std::string expression() const { return {}; }
 
     std::string name;
-    std::string place;  ///< location in the model file, for messages
+    std::string place,
+        name_place;  ///< locations of its content and of its name in the model file, for messages
 };
 
 /// A type of output

@@ -41,6 +41,25 @@ std::unique_ptr<ColumnGroup> energy_column(const dae::Model& model)
     return std::make_unique<EnergyColumn>(model);
 }
 
+/// Largest scaled residual of the position constraints, as in trajectory.csv
+class ConstraintNormColumn final : public ColumnGroup {
+public:
+    explicit ConstraintNormColumn(const dae::Model& model)
+        : ColumnGroup(
+              {{"constraint_norm", "m or rad", "largest scaled residual of the position constraints"}}),
+          model(model)
+    {}
+    void values(const lie::State& x, double* out) override { *out = model.largest_residual(x).value; }
+
+private:
+    const dae::Model& model;
+};
+
+std::unique_ptr<ColumnGroup> constraint_norm_column(const dae::Model& model)
+{
+    return std::make_unique<ConstraintNormColumn>(model);
+}
+
 std::vector<dae::Quantity> columns_of(const std::vector<std::unique_ptr<dae::Output>>& outputs)
 {
     std::vector<dae::Quantity> all;
@@ -89,7 +108,7 @@ OutputColumns::OutputColumns(const dae::Model& model,
         for (size_t k = 0; k < part.count; ++k) {
             const std::string& name = columns[names.size() - first_output].name;
             if (std::find(names.begin(), names.end(), name) != names.end())
-                throw lie::InvalidInput(output->place + ": the column '" + name +
+                throw lie::InvalidInput(output->name_place + ": the column '" + name +
                                         "' exists already; give the output another name");
             names.push_back(name);
         }
@@ -132,7 +151,7 @@ ObservedColumn::ObservedColumn(const dae::Model& model,
                                const std::string& option, const std::string& name)
 {
     std::vector<std::unique_ptr<ColumnGroup>> groups;
-    for (auto make : {body_columns, energy_column, force_columns, contact_columns})
+    for (auto make : {body_columns, energy_column, constraint_norm_column, force_columns, contact_columns})
         groups.push_back(make(model));
     groups.push_back(std::make_unique<OutputColumns>(model, outputs));
     std::vector<std::string> names;

@@ -103,7 +103,10 @@ TEST_CASE("an output that names an unknown column is rejected with its place bef
     rejected(expression("{bar.rx"), "'{' is never closed");
     rejected(expression("2*"), "ends where a value is expected");
     rejected(expression("x"), "unknown name 'x'");  // an output does not see itself
-    rejected(R"({"name": "bar", "type": "point", "body": "bar"})", "the column 'bar.vx' exists already");
+    rejected(R"({"name": "bar", "type": "point", "body": "bar"})",
+             "/outputs/0/name): the column 'bar.vx' exists already");
+    rejected(R"({"name": "energy", "type": "expression", "value": "bar.rx"})",
+             "/outputs/0/name): the column 'energy' exists already");
 }
 
 TEST_CASE("a killed and resumed run writes the outputs of an uninterrupted run", "[studies][outputs][resume]")

@@ -195,4 +195,6 @@ TEST_CASE("the observable of a sweep may be any column of the run", "[studies][s
     for (const CsvRow& row : swept("first.rx")) CHECK(number(row, "rx") == 7);  // not of the last body
     for (const CsvRow& row : swept("energy"))
         CHECK(number(row, "observable_end") == number(row, "energy_end"));
+    for (const CsvRow& row : swept("constraint_norm"))
+        CHECK(number(row, "observable_max") == number(row, "constraint_norm"));
 }

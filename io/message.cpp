@@ -20,6 +20,11 @@ std::string formatted(const char* format, ...)
     return text;
 }
 
+std::string counted(long n, const std::string& one, const std::string& many)
+{
+    return std::to_string(n) + ' ' + (n == 1 ? one : many.empty() ? one + 's' : many);
+}
+
 int report(const std::exception& error)
 {
     const auto say = [&](const std::string& head, int code) {

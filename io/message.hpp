@@ -22,6 +22,9 @@ inline void warning(const std::string& what) { message("hilda: warning: " + what
 /// The text that printf() would print
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
+/// "1 row", "2 rows"; `many` is the plural if it is not `one` with an s.
+std::string counted(long n, const std::string& one, const std::string& many = "");
+
 /// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their errors here.
 int report(const std::exception& error);
 

@@ -97,8 +97,10 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options)
     if (!options.output.empty())
         finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume);
     if (options.resume && !options.quiet)
-        io::message(
-            fmt::format("hilda: {} finished jobs are read from {}\n", finished->count(), options.output));
+        io::message(fmt::format(
+            "hilda: {} read from {}\n",
+            io::counted(static_cast<long>(finished->count()), "finished job is", "finished jobs are"),
+            options.output));
 }
 
 void StudyContext::refuse(const std::string& what) const
@@ -131,9 +133,8 @@ Schemes StudyContext::fixed_step_schemes(const std::vector<std::string>& default
             fixed.push_back(s);
         else if (!options.integrators.empty())
             refuse(s->name +
-                   " chooses its own steps by --rtol and --atol; hilda study work-precision compares it with "
-                   "the "
-                   "others");
+                   " chooses its own steps by --rtol and --atol; hilda study "
+                   "work-precision compares it with the others");
     }
     return fixed;
 }
@@ -187,10 +188,12 @@ void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
     const auto failed = static_cast<size_t>(std::count_if(runs.begin(), runs.end(), has_failed));
     if (failed == 0 || (failed < runs.size() && !every_run_must_succeed)) return;
     const Run& first = **std::find_if(runs.begin(), runs.end(), has_failed);
-    numerical_failure = fmt::format(
-        "hilda: error[{}]: study {}: {} runs failed; {}: {}\n", first.status, name,
-        failed < runs.size() ? fmt::format("{} of {}", failed, runs.size()) : fmt::format("all {}", failed),
-        first.name(), first.message);
+    const std::string all = io::counted(static_cast<long>(runs.size()), "run");
+    numerical_failure = fmt::format("hilda: error[{}]: study {}: {} failed; {}: {}\n", first.status, name,
+                                    runs.size() == 1       ? "its run"
+                                    : failed < runs.size() ? fmt::format("{} of {}", failed, all)
+                                                           : "all " + all,
+                                    first.name(), first.message);
 }
 
 io::Json StudyContext::whole() const

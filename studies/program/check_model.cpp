@@ -212,10 +212,10 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
         return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z());
     };
     std::vector<std::string> all = {
-        fmt::format("{} rows, {} unknowns{}{}", c.rows, c.unknowns,
+        fmt::format("{}, {}{}{}", io::counted(c.rows, "row"), io::counted(c.unknowns, "unknown"),
                     c.velocity_rows == 0
                         ? ""
-                        : fmt::format(", {} rows of {}", c.velocity_rows,
+                        : fmt::format(", {} of {}", io::counted(c.velocity_rows, "row"),
                                       c.friction == "rolling" ? "rolling" : "implicit friction"),
                     c.normal_rows == "tangent" ? "" : ", normals projected on " + c.normal_rows),
         fmt::format("at {} m, normal {} into body i, gap {:.1e} m", vector(c.C), vector(c.n), c.gap),
@@ -326,10 +326,11 @@ int check_model(const CheckOptions& options)
     };
     line("model", d.name);
     line("bodies", std::to_string(model.bodies()));
-    line("constraints",
-         fmt::format("{} with {} rows of rank {}", constraints, rows, start.rank - general.of_contacts));
+    line("constraints", fmt::format("{} with {} of rank {}", constraints, io::counted(rows, "row"),
+                                    start.rank - general.of_contacts));
     line("forces", std::to_string(other_forces));
-    if (output_columns > 0) line("outputs", fmt::format("{} columns in outputs.csv", output_columns));
+    if (output_columns > 0)
+        line("outputs", io::counted(static_cast<long>(output_columns), "column") + " in outputs.csv");
     std::string parameters;
     const char* label = "parameters";
     for (const auto& [name, value] : d.parameters) {

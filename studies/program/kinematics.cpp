@@ -88,9 +88,11 @@ int run_kinematics(const KinematicsOptions& options)
                                        .end = end,
                                        .directory = directory,
                                        .options = options.outputs,
-                                       .warn = [&](const std::string& what) {
-                                           if (!options.quiet) io::warning(what);
-                                       }});
+                                       .warn =
+                                           [&](const std::string& what) {
+                                               if (!options.quiet) io::warning(what);
+                                           },
+                                       .command = "kinematics"});
     if (!options.quiet)
         for (const std::string& w : d.warnings) io::warning(w);
 
@@ -141,9 +143,10 @@ int run_kinematics(const KinematicsOptions& options)
     const auto line = [](const char* what, const std::string& text) {
         std::cout << fmt::format("{:<14}{}\n", what, text);
     };
-    line("model", fmt::format("{}: {} bodies, {} constraint rows, 0 degrees of freedom", d.name,
-                              d.model->bodies(), start.rows));
-    line("reached", fmt::format("t = {:.6g} s, {} rows", reached.t, reached.rows));
+    line("model", fmt::format("{}: {}, {}, 0 degrees of freedom", d.name,
+                              io::counted(d.model->bodies(), "body", "bodies"),
+                              io::counted(start.rows, "constraint row")));
+    line("reached", fmt::format("t = {:.6g} s, {}", reached.t, io::counted(reached.rows, "row")));
     line("residual", fmt::format("{:.1e} m or rad", reached.constraint_norm));
     line("largest load",
          fmt::format("{:.4g} N, {:.4g} N m on a body", reached.largest.F.norm(), reached.largest.T.norm()));

@@ -3,6 +3,7 @@
 
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/message.hpp"
 #include "io/program.hpp"
 #include "io/progress.hpp"
 #include "io/provenance.hpp"
@@ -101,7 +102,7 @@ public:
         const int jobs = o.jobs > 0 ? o.jobs : static_cast<int>(cores);
         processes = std::min(jobs, most_processes);
         jobs_each = std::max(1, jobs / processes);
-        machine = fmt::format("{}, {} cores", io::processor(), cores);
+        machine = fmt::format("{}, {}", io::processor(), io::counted(cores, "core"));
     }
 
     int execute()

@@ -43,6 +43,7 @@ struct RunSetup {
     std::string directory;
     const io::SinkOptions& options;
     std::function<void(const std::string&)> warn;
+    const char* command = "run";  ///< of hilda, for messages
 };
 
 using RowsSink = io::RowsSink<RunNode>;

@@ -2,6 +2,7 @@
 #include "studies/running/summary.hpp"
 
 #include "io/files.hpp"
+#include "io/message.hpp"
 #include "lie/integrator.hpp"
 #include "studies/running/diagnosis.hpp"
 #include "studies/running/provenance.hpp"
@@ -19,8 +20,6 @@ double per_step(const lie::Statistics& s)
 {
     return static_cast<double>(s.iterations) / static_cast<double>(std::max(1L, s.steps));
 }
-
-std::string count(long n, const char* thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
 
 }  // namespace
 
@@ -96,19 +95,20 @@ void print(const RunResult& r, std::ostream& out)
         out << fmt::format("{:<14}{}\n", what, text);
     };
     line("model",
-         fmt::format("{}: {}, {}, {}{} of freedom", r.model,
-                     r.bodies == 1 ? "1 body" : fmt::format("{} bodies", r.bodies),
-                     count(r.start.rows, "constraint row"),
-                     r.contacts.empty() ? "" : count(static_cast<long>(r.contacts.size()), "contact") + ", ",
-                     count(r.start.degrees_of_freedom, "degree")));
+         fmt::format(
+             "{}: {}, {}, {}{} of freedom", r.model, io::counted(r.bodies, "body", "bodies"),
+             io::counted(r.start.rows, "constraint row"),
+             r.contacts.empty() ? "" : io::counted(static_cast<long>(r.contacts.size()), "contact") + ", ",
+             io::counted(r.start.degrees_of_freedom, "degree")));
     const std::string resolution = r.rtol > 0
                                        ? fmt::format("rtol {}, atol {}", step_text(r.rtol), step_text(r.atol))
                                        : fmt::format("step {} s", step_text(r.step));
     line("integrator", fmt::format("{}, {}, end {:g} s", r.integrator, resolution, r.end));
     if (r.status != "ok") line("status", fmt::format("{} at t = {:g} s", r.status, r.t));
-    line("steps", fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps,
-                              per_step(r.statistics), count(r.statistics.factorizations, "factorization"),
-                              count(r.statistics.refactorizations, "refactorization")));
+    line("steps",
+         fmt::format("{}, {:.2f} iterations per step, {}, {}", r.statistics.steps, per_step(r.statistics),
+                     io::counted(r.statistics.factorizations, "factorization"),
+                     io::counted(r.statistics.refactorizations, "refactorization")));
     line("energy",
          fmt::format("{:.6e} J at the start, {:.6e} J at the end, largest change {:.1e} J",
                      r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
@@ -127,7 +127,7 @@ void print(const RunResult& r, std::ostream& out)
                      r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0));
     std::string files;
     for (const std::string& file : r.files) files += (files.empty() ? "" : ", ") + file;
-    line("written", fmt::format("{} in {}: {}", count(r.invariants.rows, "row"), r.directory, files));
+    line("written", fmt::format("{} in {}: {}", io::counted(r.invariants.rows, "row"), r.directory, files));
 }
 
 }  // namespace hilda::studies

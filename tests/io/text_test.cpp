@@ -80,3 +80,12 @@ TEST_CASE("each kind of error has its exit code", "[io][error]")
     CHECK_THROWS_WITH(io::reject("body 'a'", "mass must be positive", 0.1),
                       "body 'a': mass must be positive, got 0.10000000000000001");
 }
+
+TEST_CASE("a number of things is written with the singular for one", "[io][text]")
+{
+    CHECK(io::counted(0, "row") == "0 rows");
+    CHECK(io::counted(1, "row") == "1 row");
+    CHECK(io::counted(2, "body", "bodies") == "2 bodies");
+    CHECK(io::counted(1, "body", "bodies") == "1 body");
+    CHECK(io::counted(-1, "row") == "-1 rows");
+}

@@ -7,6 +7,7 @@
 /// The default preset is `dissertation`, which reproduces the published figure. --check evaluates the
 /// differences and returns exit code 6 if a criterion fails.
 
+#include "io/message.hpp"
 #include "studies/experiments/chapter4/incline.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
@@ -215,7 +216,7 @@ void print(const StateMap& map, const std::vector<Boundaries>& rows, StudyText& 
     for (size_t e = 0; e < rows.size(); e += std::max<size_t>(1, (rows.size() - 1) / 8))
         some.push_back(rows[e]);
     columns_of_boundaries.print(out, some);
-    out << fmt::format("\n{} runs:", map.cells.size());
+    out << "\n" + io::counted(static_cast<long>(map.cells.size()), "run") + ":";
     for (size_t state = 0; state < state_names.size(); ++state)
         out << fmt::format(
             "{} {} {}", state == 0 ? "" : ",",
@@ -257,9 +258,8 @@ void incline_sweep(StudyContext& s)
         o.end, o.preset, o.h);
     print(map, rows, s.text);
     s.text << fmt::format(
-        "boundary minus limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} deg; slip without "
-        "rolling "
-        "{}\n",
+        "boundary minus limit: rest {:+.2f} to {:+.2f} deg, rolling {:+.2f} to {:+.2f} "
+        "deg; slip without rolling {}\n",
         d.rest.least, d.rest.most, d.rolling.least, d.rolling.most,
         std::isfinite(d.slip_from) ? fmt::format("from eta_r = {:.3f}", d.slip_from) : "does not occur");
     s.json.update({{"states", state_names},

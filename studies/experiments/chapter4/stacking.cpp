@@ -9,6 +9,7 @@
 /// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
 /// fails.
 
+#include "io/message.hpp"
 #include "studies/experiments/chapter4/stack_snapshots.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
@@ -307,8 +308,9 @@ void stacking(StudyContext& s)
                                     {"plateau", c.plateau}});
     }
     if (undecided > 0)
-        s.text << fmt::format("{} runs were undecided after {:g} s; they count as stable\n", undecided,
-                              o.end);
+        s.text << fmt::format("{} undecided after {:g} s; {} as stable\n",
+                              io::counted(undecided, "run was", "runs were"), o.end,
+                              undecided == 1 ? "it counts" : "they count");
     s.measure(s.name, {{"undecided", undecided}});
     std::vector<Criterion> checks;
     if (s.options.check) checks = criteria(curves, coarse, refined, o.h);

@@ -12,6 +12,7 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
+#include "io/message.hpp"
 #include "studies/experiments/sweep/swept_model.hpp"
 #include "studies/running/invariants.hpp"
 #include "studies/running/named_model.hpp"
@@ -269,8 +270,8 @@ void sweep(StudyContext& s)
 
     if (!observable) observable.emplace();  // no model has a consistent start
     const Columns<SweptRun> columns = columns_of(entries, *observable);
-    s.text << fmt::format("\n{}, {} runs; {} at the end, its least and largest value\n", short_name(name),
-                          runs.size(), observable->name);
+    s.text << fmt::format("\n{}, {}; {} at the end, its least and largest value\n", short_name(name),
+                          io::counted(static_cast<long>(runs.size()), "run"), observable->name);
     std::vector<std::string> shown = {"run"};
     for (const SweptEntry& entry : entries) shown.push_back(entry.pointer);
     if (schemes.size() > 1) shown.emplace_back("integrator");

@@ -15,8 +15,8 @@ const bool registered = io::Registry<SinkType>::add(
          if (!run.options.contains("--contacts")) return nullptr;
          auto columns = contact_columns(run.model);
          if (columns->columns.empty())
-             throw io::UsageError("run: --contacts writes the contacts of a model; " + run.model_name +
-                                  " has no contacts");
+             throw io::UsageError(std::string(run.command) + ": --contacts writes the contacts of a model; " +
+                                  run.model_name + " has no contacts");
          return std::make_unique<ColumnsSink>(run, "contacts.csv", std::move(columns));
      },
      .files = {"contacts.csv"}});

@@ -15,7 +15,8 @@ const bool registered = io::Registry<SinkType>::add(
          if (!run.options.contains("--forces")) return nullptr;
          auto columns = force_columns(run.model);
          if (columns->columns.empty())
-             throw io::UsageError("run: --forces writes springs, limits and bushings; " + run.model_name +
+             throw io::UsageError(std::string(run.command) +
+                                  ": --forces writes springs, limits and bushings; " + run.model_name +
                                   " has none");
          return std::make_unique<ColumnsSink>(run, "forces.csv", std::move(columns));
      },

@@ -33,7 +33,7 @@ std::unique_ptr<io::Sink<RunNode>> make(const RunSetup& run)
     const double between = positive_number("--vtk", option->second);
     const lie::TimeGrid at = lie::TimeGrid::over(run.end, run.grid.h, between);
     if (at.steps / at.interval + 2 > Snapshots::max_frames)
-        throw io::UsageError(fmt::format("run: --vtk {} gives {} frames, more than {}", between,
+        throw io::UsageError(fmt::format("{}: --vtk {} gives {} frames, more than {}", run.command, between,
                                          at.steps / at.interval + 1, Snapshots::max_frames));
     const double spacing = static_cast<double>(at.interval) * at.h;
     if (spacing > between * (1 + 1e-9))

@@ -7,6 +7,7 @@
 
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -101,6 +102,22 @@ TEST_CASE("kinematics rejects a model with degrees of freedom before it writes a
 {
     const Scratch in;
     check_refused(in, {"kinematics", "double_pendulum"}, 3, "without degrees of freedom, got 2");
+}
+
+TEST_CASE("kinematics has its name in the errors of the options that it shares with run",
+          "[studies][kinematics]")
+{
+    const Scratch in;
+    for (const std::string option : {"--contacts", "--forces"}) {
+        CHECK_THAT(call(in, {"kinematics", "four_link", option}).err,
+                   StartsWith("hilda: error: kinematics: " + option + " writes "));
+        CHECK_THAT(call(in, {"run", "four_link", option}).err, StartsWith("hilda: error: run: " + option));
+    }
+    const Ended frames =
+        call(in, {"kinematics", "four_link", "--end", "1e5", "--interval", "1", "--vtk", "1"});
+    CHECK(frames.code == 2);
+    CHECK_THAT(frames.err, StartsWith("hilda: error: kinematics: --vtk 1 gives "));
+    CHECK_FALSE(fs::exists(in / "out"));
 }
 
 TEST_CASE("help outputs lists the columns of the tables", "[studies][help]")

@@ -158,9 +158,8 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
     ConstraintFriction settings{.ideal_rolling = law == rolling, .law = nullptr, .within_step = {}};
     if ((settings.ideal_rolling || law == implicit) && normal.fallback != nullptr)
         o.fail("law",
-               "a contact with a fallback needs a friction law that the fallback supports, such as "
-               "slide-roll-spin; "
-               "got \"" +
+               "a contact with a fallback needs a friction law that the fallback "
+               "supports, such as slide-roll-spin; got \"" +
                    law + "\", which is defined for the constraint only");
     if (law == implicit)
         settings.within_step = read_implicit(o);

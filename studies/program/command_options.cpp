@@ -40,9 +40,8 @@ const std::vector<SettingOption>& setting_options()
          "solver of the saddle-point system; default: auto, the one with fewer operations",
          [](auto& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); }},
         {"--rho-infinity", "RHO",
-         "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest damping) to 1 (no "
-         "damping); "
-         "default: 0.8",
+         "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest "
+         "damping) to 1 (no damping); default: 0.8",
          [](auto& s, Text option, Text text) { s.rho_infinity = fraction(option, text); }},
         {"--reparametrise", "",
          "change the body frame when Euler angles approach a singular orientation, instead of stopping",
@@ -88,9 +87,8 @@ void add_set(CLI::App& command, const std::string& what, std::vector<std::string
 void add_normal_rows(CLI::App& command, const std::string& default_rows, std::string& to)
 {
     value(command, "--normal-rows", "tangent|fixed-xy",
-          "tangent vectors in the normal equations of contact constraints; fixed-xy is singular for a normal "
-          "in "
-          "the x-y plane; default: " +
+          "tangent vectors in the normal equations of contact constraints; fixed-xy is "
+          "singular for a normal in the x-y plane; default: " +
               default_rows,
           assign(to, normal_rows));
 }

@@ -68,9 +68,8 @@ std::vector<Reproduction> chapter_3()
          .chapter = 3,
          .figures = {"3.4"},
          .title = "Error over step, schemes of first order",
-         .shows = "Error of the half-implicit and the fully implicit scheme over the step: z of bar 2 of the "
-                  "double "
-                  "pendulum, velocities of slider-crank and four-link. Slope 1.",
+         .shows = "Error of the half-implicit and the fully implicit scheme over the step: z of "
+                  "bar 2 of the double pendulum, velocities of slider-crank and four-link. Slope 1.",
          .study = "convergence",
          .arguments = {"--integrator", "rA-full-1,rA-half-1", "--problem",
                        "double_pendulum,slider_crank,four_link"},

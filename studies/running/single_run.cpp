@@ -174,10 +174,10 @@ void SingleRun::check_step(bool resumed) const
     if (scheme.adaptive) {
         for (const auto& force : model.forces())
             if (force->internal_states() > 0)
-                throw io::UsageError(fmt::format(
-                    "run: {} chooses its own steps; {} has internal state variables and needs a fixed-step "
-                    "scheme",
-                    scheme.name, force->label()));
+                throw io::UsageError(
+                    fmt::format("run: {} chooses its own steps; {} has internal state variables and "
+                                "needs a fixed-step scheme",
+                                scheme.name, force->label()));
         return;
     }
     const dae::Model::StableStep stable = model.stable_step(description.x);
@@ -287,9 +287,8 @@ void SingleRun::check_contacts()
             c.F_N_least < -ContactExtremes::rounding(*description.model) &&
             c.F_N_least < -1e-9 * std::abs(c.F_N_most))
             add_warning(
-                fmt::format("contact '{}': the normal force is tensile, up to {:.3g} N; with \"unilateral\": "
-                            "true the bodies "
-                            "would separate",
+                fmt::format("contact '{}': the normal force is tensile, up to {:.3g} N; "
+                            "with \"unilateral\": true the bodies would separate",
                             result.contacts[k], -c.F_N_least));
     }
 }

@@ -221,10 +221,8 @@ void evolving_friction(StudyContext& s)
             }
     runs.compute(s, [&](BrakedRun& run) { compute(run, options); });
 
-    s.text
-        << "\nBall in a bowl with friction and rolling resistance. max F_f: largest friction force after 0.1 "
-           "s; "
-           "error r: largest position error over the first 3 s (eta_r = 0)\n";
+    s.text << "\nBall in a bowl with friction and rolling resistance. max F_f: largest friction "
+              "force after 0.1 s; error r: largest position error over the first 3 s (eta_r = 0)\n";
     columns.print(s.text, runs);
     const double end = benchmarks.front().end;
     const bool published_setup = options.set.empty() && end == default_end;

@@ -113,10 +113,6 @@ TEST_CASE("kinematics has its name in the errors of the options that it shares w
                    StartsWith("hilda: error: kinematics: " + option + " writes "));
         CHECK_THAT(call(in, {"run", "four_link", option}).err, StartsWith("hilda: error: run: " + option));
     }
-    const Ended frames =
-        call(in, {"kinematics", "four_link", "--end", "1e5", "--interval", "1", "--vtk", "1"});
-    CHECK(frames.code == 2);
-    CHECK_THAT(frames.err, StartsWith("hilda: error: kinematics: --vtk 1 gives "));
     CHECK_FALSE(fs::exists(in / "out"));
 }
 

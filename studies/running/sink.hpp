@@ -7,6 +7,7 @@
 #include "lie/trajectory.hpp"
 
 #include <functional>
+#include <memory>
 
 namespace hilda::dae {
 class Model;
@@ -14,6 +15,8 @@ class Output;
 }  // namespace hilda::dae
 
 namespace hilda::studies {
+
+class RunTables;
 
 /// Cost of a step
 struct StepCost {
@@ -44,6 +47,7 @@ struct RunSetup {
     const io::SinkOptions& options;
     std::function<void(const std::string&)> warn;
     const char* command = "run";  ///< of hilda, for messages
+    std::shared_ptr<RunTables> tables = nullptr;  ///< format of the tables; nullptr: CSV
 };
 
 using RowsSink = io::RowsSink<RunNode>;

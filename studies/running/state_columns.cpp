@@ -2,7 +2,6 @@
 #include "studies/running/state_columns.hpp"
 
 #include "dae/model.hpp"
-#include "io/csv.hpp"
 
 #include <fmt/format.h>
 
@@ -90,40 +89,38 @@ std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model)
     return std::make_unique<ForceColumns>(model);
 }
 
-ColumnsSink::ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group)
-    : RowsSink(run.directory, file), file(file), warn(run.warn), group(std::move(group)),
-      value(this->group->columns.size())
+ColumnsSink::ColumnsSink(const RunSetup& run, const std::string& name, std::unique_ptr<ColumnGroup> group)
+    : TableSink(run, name), warn(run.warn), group(std::move(group))
 {}
 
 void ColumnsSink::transfer(io::Archive& a)
 {
-    RowsSink::transfer(a);
+    TableSink::transfer(a);
     group->transfer(a);
 }
 
-std::string ColumnsSink::header() const
+std::vector<TableColumn> ColumnsSink::columns() const
 {
-    std::string row = "t";
-    for (const dae::Quantity& column : group->columns) row += ',' + io::csv_field(column.name);
-    return row + '\n';
+    std::vector<TableColumn> all = {time_column};
+    studies::append(all, group->columns);
+    return all;
 }
 
-void ColumnsSink::append(std::string& row, const RunNode& node)
+void ColumnsSink::append(std::vector<double>& row, const RunNode& node)
 {
     group->node(node.x);
     if (!node.is_row) return;
-    group->values(node.x, value.data());
-    io::append_number(row, node.x.t);
-    for (size_t k = 0; k < value.size(); ++k) {
-        row += ',';
-        io::append_number(row,
-                          std::abs(value[k]) >= 0 ? value[k] : std::abs(value[k]));  // nan without a sign
-        if (std::isfinite(value[k]) || has_warned) continue;
+    row.resize(1 + group->columns.size());
+    row[0] = node.x.t;
+    group->values(node.x, row.data() + 1);
+    for (size_t k = 1; k < row.size(); ++k) {
+        if (std::isnan(row[k])) row[k] = std::abs(row[k]);  // nan without a sign
+        if (std::isfinite(row[k]) || has_warned) continue;
         has_warned = true;
         if (warn)
-            warn(fmt::format("{}: {} is not finite at t = {:.6g} s", file, group->columns[k].name, node.x.t));
+            warn(fmt::format("{}: {} is not finite at t = {:.6g} s", label(), group->columns[k - 1].name,
+                             node.x.t));
     }
-    row += '\n';
 }
 
 }  // namespace hilda::studies

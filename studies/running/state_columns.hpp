@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/force.hpp"
-#include "studies/running/sink.hpp"
+#include "studies/running/tables/table_sink.hpp"
 
 #include <memory>
 #include <string>
@@ -36,21 +36,20 @@ std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model);
 /// Normal force, gap, contact point, normal, friction and slip of all contacts, see ContactOutput
 std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model);
 
-/// A CSV file with a row of these columns at each output row of the run. Warns once of a value that is not finite.
-class ColumnsSink final : public RowsSink {
+/// A table with a row of these columns at each output row of the run. Warns once of a value that is not finite.
+class ColumnsSink final : public TableSink {
 public:
-    ColumnsSink(const RunSetup& run, const std::string& file, std::unique_ptr<ColumnGroup> group);
+    /// name: of the table, such as "outputs"
+    ColumnsSink(const RunSetup& run, const std::string& name, std::unique_ptr<ColumnGroup> group);
 
     void transfer(io::Archive& a) override;
 
 private:
-    std::string header() const override;
-    void append(std::string& row, const RunNode& node) override;
+    std::vector<TableColumn> columns() const override;
+    void append(std::vector<double>& row, const RunNode& node) override;
 
-    const std::string file;
     const std::function<void(const std::string&)> warn;
     const std::unique_ptr<ColumnGroup> group;
-    std::vector<double> value;
     bool has_warned = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// contacts.csv: forces and motion of all contacts at the output rows.
+/// Table contacts: forces and motion of all contacts at the output rows.
 
 #include "studies/running/state_columns.hpp"
 
@@ -17,7 +17,7 @@ const bool registered = io::Registry<SinkType>::add(
          if (columns->columns.empty())
              throw io::UsageError(std::string(run.command) + ": --contacts writes the contacts of a model; " +
                                   run.model_name + " has no contacts");
-         return std::make_unique<ColumnsSink>(run, "contacts.csv", std::move(columns));
+         return std::make_unique<ColumnsSink>(run, "contacts", std::move(columns));
      },
      .files = {"contacts.csv"}});
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// euler.csv: Euler angles of all bodies at the output rows, with --euler.
+/// Table euler: Euler angles of all bodies at the output rows, with --euler.
 
 #include "dae/model.hpp"
-#include "io/csv.hpp"
 #include "lie/euler_sequence.hpp"
-#include "studies/running/sink.hpp"
+#include "studies/running/tables/table_sink.hpp"
 
 #include <fmt/format.h>
 
@@ -47,16 +46,16 @@ lie::Vec3 omega_bar(const Rotation& from, const Rotation& to, double time, doubl
 /// along the rotation with the interpolated ω̄, and the remaining difference to the orientation of the second node
 /// is distributed over it. Where the second angle passes the end of its range, both jump by π, as the angles are
 /// singular there.
-class EulerAngles final : public RowsSink {
+class EulerAngles final : public TableSink {
 public:
     EulerAngles(const RunSetup& run, const std::string& name)
-        : RowsSink(run.directory, "euler.csv"), model(run.model),
+        : TableSink(run, "euler"), model(run.model), axes(name),
           sequence(lie::EulerSequence::named(name).value()), is_zxz(name == "zxz"), warn(run.warn)
     {}
 
     void transfer(io::Archive& a) override
     {
-        RowsSink::transfer(a);
+        TableSink::transfer(a);
         a.value(t);
         std::vector<double> numbers;
         for (const Body& b : last) {
@@ -85,21 +84,24 @@ private:
         Rotation rotation{lie::Motion()};
     };
 
-    std::string header() const override
+    std::vector<TableColumn> columns() const override
     {
         const std::array<const char*, 3> names =
             is_zxz ? std::array{"theta", "phi", "psi"} : std::array{"angle1", "angle2", "angle3"};
-        std::string row = "t";
+        std::vector<TableColumn> all = {time_column};
         for (const dae::Body& body : model.all_bodies())
-            for (const char* angle : names) row += ',' + io::csv_field(body.name + '.' + angle);
-        return row + '\n';
+            for (size_t k = 0; k < names.size(); ++k)
+                all.push_back(
+                    {body.name + '.' + names[k], "rad",
+                     std::array{"first", "second", "third"}[k] + (" Euler angle of the sequence " + axes)});
+        return all;
     }
 
-    void append(std::string& row, const RunNode& node) override
+    void append(std::vector<double>& row, const RunNode& node) override
     {
         const bool is_first = last.empty();
         last.resize(node.x.body.size());
-        if (node.is_row) io::append_number(row, node.x.t);
+        if (node.is_row) row.push_back(node.x.t);
         for (size_t b = 0; b < last.size(); ++b) {
             const Rotation now(node.x.body[b]);
             if (is_first)
@@ -107,10 +109,9 @@ private:
             else
                 follow(b, now, node.x.t - t);
             last[b].rotation = now;
-            if (node.is_row) io::append_vector(row, last[b].angles);
+            if (node.is_row) studies::append(row, last[b].angles);
         }
         t = node.x.t;
-        if (node.is_row) row += '\n';
     }
 
     /// Follows the angles of a body to the next node.
@@ -129,7 +130,7 @@ private:
         if (rest.angle() > 0.25 * std::numbers::pi && !has_warned) {
             has_warned = true;
             warn(fmt::format(
-                "euler.csv: the turns of {} are not certain: it turns by {:.3g} rad between two rows, at "
+                "--euler: the turns of {} are not certain: it turns by {:.3g} rad between two rows, at "
                 "t = {:.6g} s; a smaller --interval gives certain angles",
                 model.all_bodies()[b].name, angle, t + time));
         }
@@ -150,6 +151,7 @@ private:
     }
 
     const dae::Model& model;
+    const std::string axes;
     const lie::EulerSequence sequence;
     const bool is_zxz;
     const std::function<void(const std::string&)> warn;

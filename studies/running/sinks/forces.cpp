@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// forces.csv: lengths, angles and forces of springs, dampers, limits and bushings at the output rows.
+/// Table forces: lengths, angles and forces of springs, dampers, limits and bushings at the output rows.
 
 #include "studies/running/state_columns.hpp"
 
@@ -18,7 +18,7 @@ const bool registered = io::Registry<SinkType>::add(
              throw io::UsageError(std::string(run.command) +
                                   ": --forces writes springs, limits and bushings; " + run.model_name +
                                   " has none");
-         return std::make_unique<ColumnsSink>(run, "forces.csv", std::move(columns));
+         return std::make_unique<ColumnsSink>(run, "forces", std::move(columns));
      },
      .files = {"forces.csv"}});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// outputs.csv: the outputs that the model file lists, at the output rows.
+/// Table outputs: the outputs that the model file lists, at the output rows.
 
 #include "studies/running/output_columns.hpp"
 
@@ -11,7 +11,7 @@ const bool registered = io::Registry<SinkType>::add(
     {.name = "outputs",
      .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {
          if (run.outputs.empty()) return nullptr;
-         return std::make_unique<ColumnsSink>(run, "outputs.csv",
+         return std::make_unique<ColumnsSink>(run, "outputs",
                                               std::make_unique<OutputColumns>(run.model, run.outputs));
      },
      .files = {"outputs.csv"}});

@@ -1,39 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// steps.csv: Newton iterations, residuals, energy and cost of each step.
+/// Table steps: Newton iterations, residuals, energy and cost of each step.
 
-#include "io/csv.hpp"
-#include "studies/running/sink.hpp"
+#include "studies/running/tables/table_sink.hpp"
 
 namespace hilda::studies {
 
 namespace {
 
-class Steps final : public RowsSink {
+class Steps final : public TableSink {
 public:
-    explicit Steps(const RunSetup& run) : RowsSink(run.directory, "steps.csv"), h(run.grid.h) {}
+    explicit Steps(const RunSetup& run) : TableSink(run, "steps"), h(run.grid.h) {}
 
 private:
-    std::string header() const override
+    std::vector<TableColumn> columns() const override
     {
-        return "t,h,newton_iterations,correction,constraint_norm,energy,factorizations,wall_ns\n";
+        return {
+            {"t", "s", "end of the step"},
+            {"h", "s", "step size"},
+            {"newton_iterations", "1", "Newton iterations", true},
+            {"correction", "m, rad or kg m", "norm of the last Newton correction"},
+            {"constraint_norm", "m or rad", "largest scaled residual of the position constraints"},
+            {"energy", "J", "kinetic energy plus potential energy of gravity, springs and contact springs"},
+            {"factorizations", "1", "LU factorisations with a new pivot selection", true},
+            {"wall_ns", "ns", "wall time of the step", true}};
     }
 
-    void append(std::string& row, const RunNode& node) override
+    void append(std::vector<double>& row, const RunNode& node) override
     {
         if (node.n == 0) return;
-        const auto field = [&](auto value) {
-            io::append_number(row, value);
-            row += ',';
-        };
-        field(node.x.t);
-        field(h);
-        field(static_cast<long>(node.iterations));
-        field(node.cost.correction);
-        field(node.constraint_norm);
-        field(node.energy);
-        field(node.cost.factorizations);
-        io::append_number(row, node.cost.wall_ns);
-        row += '\n';
+        row = {node.x.t,
+               h,
+               static_cast<double>(node.iterations),
+               node.cost.correction,
+               node.constraint_norm,
+               node.energy,
+               static_cast<double>(node.cost.factorizations),
+               static_cast<double>(node.cost.wall_ns)};
     }
 
     const double h;

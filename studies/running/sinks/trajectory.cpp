@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// trajectory.csv: the motion of all bodies at the output rows; with --reactions also forces and multipliers.
+/// Table trajectory: the motion of all bodies at the output rows; with --reactions also forces and multipliers.
 
 #include "dae/model.hpp"
 #include "dae/start.hpp"
-#include "io/csv.hpp"
 #include "studies/running/contact_outputs.hpp"
 #include "studies/running/state_columns.hpp"
 
@@ -11,68 +10,79 @@ namespace hilda::studies {
 
 namespace {
 
-class Trajectory final : public RowsSink {
+class Trajectory final : public TableSink {
 public:
     explicit Trajectory(const RunSetup& run)
-        : RowsSink(run.directory, "trajectory.csv"), model(run.model),
-          with_reactions(run.options.contains("--reactions")), bodies(body_columns(model)),
-          of_bodies(bodies->columns.size()), contacts(model), C(model.pattern())
+        : TableSink(run, "trajectory"), model(run.model), bodies(body_columns(model)),
+          with_reactions(run.options.contains("--reactions")), contacts(model), C(model.pattern())
     {}
 
 private:
-    std::string header() const override
+    std::vector<TableColumn> columns() const override
     {
-        std::string row = "t";
-        const auto columns = [&](const std::string& name, std::initializer_list<const char*> of) {
-            for (const char* column : of) row += ',' + io::csv_field(name + '.' + column);
-        };
-        for (const dae::Quantity& column : bodies->columns) row += ',' + io::csv_field(column.name);
-        row += ",energy,constraint_norm";
-        if (with_reactions) {
-            for (const dae::Body& body : model.all_bodies())
-                columns(body.name, {"Fx", "Fy", "Fz", "Tx", "Ty", "Tz"});
-            // A dropped row has no multiplier. The rows of a constraint with several rows are numbered.
-            std::vector<int> rows(model.constraints());
-            for (const dae::Model::Row& r : model.all_rows()) ++rows[r.constraint];
-            for (const int k : model.active_rows()) {
-                const dae::Model::Row& r = model.all_rows()[k];
-                const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
-                row += ',' + io::csv_field(model.constraint_name(r.constraint) + ".lambda" + number);
-            }
-            for (const ContactOutputs::Contact& c : contacts.contacts) {
-                if (c.constraint == nullptr) continue;
-                columns(c.name, {"F_N", "Cx", "Cy", "Cz", "ai_x", "ai_y", "ai_z", "aj_x", "aj_y", "aj_z",
-                                 "lambda_N"});
-                if (has_friction(c)) columns(c.name, {"Ff_x", "Ff_y", "Ff_z"});
-                if (c.constraint->may_be_inactive()) columns(c.name, {"gap"});
-            }
-        }
-        return row + '\n';
+        std::vector<TableColumn> all = {time_column};
+        studies::append(all, bodies->columns);
+        all.push_back(
+            {"energy", "J", "kinetic energy plus potential energy of gravity, springs and contact springs"});
+        all.push_back({"constraint_norm", "m or rad", "largest scaled residual of the position constraints"});
+        if (with_reactions) add_columns_of_reactions(all);
+        return all;
     }
 
-    void append(std::string& row, const RunNode& node) override
+    void add_columns_of_reactions(std::vector<TableColumn>& all) const
+    {
+        const auto vector = [&](const std::string& name, const char* unit, const char* meaning) {
+            for (const char* axis : {"x", "y", "z"}) all.push_back({name + axis, unit, meaning});
+        };
+        for (const dae::Body& body : model.all_bodies()) {
+            vector(body.name + ".F", "N", "resultant of all constraint forces on the body, global frame");
+            vector(body.name + ".T", "N m",
+                   "resultant constraint torque about the centre of mass, body frame");
+        }
+        // A dropped row has no multiplier. The rows of a constraint with several rows are numbered.
+        std::vector<int> rows(model.constraints());
+        for (const dae::Model::Row& r : model.all_rows()) ++rows[r.constraint];
+        for (const int k : model.active_rows()) {
+            const dae::Model::Row& r = model.all_rows()[k];
+            const std::string number = rows[r.constraint] > 1 ? std::to_string(r.number) : "";
+            all.push_back({model.constraint_name(r.constraint) + ".lambda" + number, "N or N m",
+                           "Lagrange multiplier of the equation; the constraint force is -Phi_r' lambda"});
+        }
+        for (const ContactOutputs::Contact& c : contacts.contacts) {
+            if (c.constraint == nullptr) continue;
+            all.push_back({c.name + ".F_N", "N", "normal force, positive in compression"});
+            vector(c.name + ".C", "m", "contact point, global frame");
+            vector(c.name + ".ai_", "m", "contact point on body i, frame of body i");
+            vector(c.name + ".aj_", "m", "contact point on body j, frame of body j");
+            all.push_back({c.name + ".lambda_N", "N",
+                           "magnitude of the multiplier of the normal equations, zero in theory"});
+            if (has_friction(c)) vector(c.name + ".Ff_", "N", "friction force on body i, global frame");
+            if (c.constraint->may_be_inactive())
+                all.push_back({c.name + ".gap", "m", "distance of the surfaces, negative for an overlap"});
+        }
+    }
+
+    void append(std::vector<double>& row, const RunNode& node) override
     {
         if (!node.is_row) return;
         const lie::State& x = node.x;
-        io::append_number(row, x.t);
-        bodies->values(x, of_bodies.data());
-        io::append_vector(row, of_bodies);
-        row += ',';
-        io::append_number(row, node.energy);
-        row += ',';
-        io::append_number(row, node.constraint_norm);
+        row.resize(1 + bodies->columns.size());
+        row[0] = x.t;
+        bodies->values(x, row.data() + 1);
+        row.push_back(node.energy);
+        row.push_back(node.constraint_norm);
         if (with_reactions) append_reactions(row, x);
-        row += '\n';
     }
 
-    void append_reactions(std::string& row, const lie::State& x)
+    void append_reactions(std::vector<double>& row, const lie::State& x)
     {
         dae::reactions(model, x, C, reactions);
         for (const dae::Reaction& on : reactions) {
-            io::append_vector(row, on.F);
-            io::append_vector(row, on.T);
+            studies::append(row, on.F);
+            studies::append(row, on.T);
         }
-        io::append_vector(row, x.lambda.head(static_cast<Eigen::Index>(model.active_rows().size())));
+        row.insert(row.end(), x.lambda.begin(),
+                   x.lambda.begin() + static_cast<std::ptrdiff_t>(model.active_rows().size()));
         append_contacts(row, x);
     }
 
@@ -84,31 +94,26 @@ private:
 
     /// Writes F_N, the contact point of the constraint (global and in both body frames), |λ_N|, the friction
     /// force on body i and the gap of the contact constraints
-    void append_contacts(std::string& row, const lie::State& x)
+    void append_contacts(std::vector<double>& row, const lie::State& x)
     {
         for (size_t k = 0; k < contacts.contacts.size(); ++k) {
             const contact::EvolvingContact* c = contacts.contacts[k].constraint;
             if (c == nullptr) continue;
             const dae::Constraint::Arguments at = model.arguments(*c, x);
             const ContactOutput loads = contacts.at(k, x);
-            row += ',';
-            io::append_number(row, loads.F_N);
-            io::append_vector(row, c->contact_point(at).C());
-            io::append_vector(row, lie::Vec3::Map(at.alpha));
-            io::append_vector(row, lie::Vec3::Map(at.alpha + 3));
-            row += ',';
-            io::append_number(row, forces(model, *c, x).N.norm());
-            if (has_friction(contacts.contacts[k])) io::append_vector(row, loads.F);
-            if (!c->may_be_inactive()) continue;
-            row += ',';
-            io::append_number(row, c->contact_point(at).gap);
+            row.push_back(loads.F_N);
+            studies::append(row, c->contact_point(at).C());
+            studies::append(row, lie::Vec3::Map(at.alpha));
+            studies::append(row, lie::Vec3::Map(at.alpha + 3));
+            row.push_back(forces(model, *c, x).N.norm());
+            if (has_friction(contacts.contacts[k])) studies::append(row, loads.F);
+            if (c->may_be_inactive()) row.push_back(c->contact_point(at).gap);
         }
     }
 
     const dae::Model& model;
-    const bool with_reactions;
     const std::unique_ptr<ColumnGroup> bodies;
-    Eigen::VectorXd of_bodies;
+    const bool with_reactions;
     const ContactOutputs contacts;
     lie::Rows C;
     std::vector<dae::Reaction> reactions;

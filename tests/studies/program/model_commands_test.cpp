@@ -298,7 +298,7 @@ TEST_CASE("Euler angles whose turns are not certain are written with one warning
     };
     const std::string warning = run("0.5", "ida-rp");
     CHECK_THAT(warning,
-               Contains("warning: euler.csv: the turns of top are not certain") && Contains("--interval"));
+               Contains("warning: --euler: the turns of top are not certain") && Contains("--interval"));
     CHECK(warning.find("not certain") == warning.rfind("not certain"));
     CHECK(run("0.01", "ida-rp").empty());
     const Csv fine = read_csv(in / "a/euler.csv");

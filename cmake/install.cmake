@@ -34,10 +34,13 @@ install(TARGETS hilda_library EXPORT hilda_targets)
 if(TARGET hilda_program)
     install(TARGETS hilda_program hilda_granular_program)
 endif()
+if(TARGET hilda_hdf5)
+    install(TARGETS hilda_hdf5 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
+endif()
 # What a plug-in needs (hildaPlugin.cmake): the headers of studies, and the interface of this build.
 foreach(room io lie dae contact studies)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
-        FILES_MATCHING PATTERN "*.hpp")
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_storage.hpp" EXCLUDE)
 endforeach()
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"

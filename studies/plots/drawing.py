@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import sys
 import textwrap
 
 import matplotlib
@@ -53,9 +54,24 @@ def style(scheme, others=()):
 
 
 def read(*path):
-    """The rows of a CSV file as dictionaries of strings"""
-    with open(os.path.join(*path), newline="", encoding="utf-8") as file:
+    """The rows of a CSV file as dictionaries of strings; those of the group of run.h5 if the run has written this instead"""
+    name = os.path.join(*path)
+    tables = os.path.join(os.path.dirname(name), "run.h5")
+    if not os.path.exists(name) and os.path.exists(tables):
+        return read_hdf5(tables, os.path.splitext(os.path.basename(name))[0])
+    with open(name, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def read_hdf5(path, table):
+    """The rows of a group of an HDF5 file as dictionaries of numbers"""
+    try:
+        import h5py  # not needed for CSV files
+    except ImportError:
+        sys.exit(f"{path}: {sys.executable} has no h5py, which reads HDF5 files (Debian: apt-get install python3-h5py)")
+    with h5py.File(path, "r") as file:
+        columns = {dataset.attrs["name"]: dataset[:].tolist() for dataset in file[table].values()}
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
 def record(folder):
@@ -79,7 +95,7 @@ def where(rows, **values):
 
 def number(text):
     """The number in a field; NaN for an empty field"""
-    return float(text) if text else float("nan")
+    return float("nan") if text == "" else float(text)
 
 
 def numbers(rows, column):

@@ -49,7 +49,8 @@ std::string columns_help()
     const dae::Description d = dae::read_model(example, "example");
     std::string text =
         "Columns of the tables of a run. Names in capitals stand for those of the model. SI units, radians.\n"
-        "Every table begins with the column t, the time [s].\n";
+        "Every table begins with the column t, the time [s]. With --format hdf5 the tables are groups of "
+        "run.h5.\n";
     text += "\ntrajectory.csv\n";
     append(text, *body_columns(*d.model));
     text +=

@@ -12,6 +12,7 @@
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 #include "studies/running/sink.hpp"
+#include "studies/running/tables/run_table.hpp"
 
 #include <fmt/format.h>
 
@@ -81,6 +82,7 @@ int run_kinematics(const KinematicsOptions& options)
         options.output.empty() ? "out/" + short_name(options.model) : options.output;
     io::check_output_directory(directory, options.force, io::force_overwrites);
     const dae::Kinematics check_degrees_of_freedom(*d.model);
+    const std::string model_text = start.projected ? dae::text_at(d, d.x) : d.text;
     io::Sinks<RunSetup> sinks(RunSetup{.model = *d.model,
                                        .outputs = d.outputs,
                                        .model_name = d.name,
@@ -92,7 +94,13 @@ int run_kinematics(const KinematicsOptions& options)
                                            [&](const std::string& what) {
                                                if (!options.quiet) io::warning(what);
                                            },
-                                       .command = "kinematics"});
+                                       .command = "kinematics",
+                                       .tables = run_tables(options.outputs, directory,
+                                                            {{"program", version_line()},
+                                                             {"command_line", options.command_line},
+                                                             {"integrator", "kinematics"},
+                                                             {"model", d.name},
+                                                             {"model_text", model_text}})});
     if (!options.quiet)
         for (const std::string& w : d.warnings) io::warning(w);
 
@@ -101,7 +109,7 @@ int run_kinematics(const KinematicsOptions& options)
     io::CheckpointFiles(directory).remove();
     std::remove((directory + "/summary.json").c_str());
     remove_figure(directory, "trajectory.png");
-    io::write_file(directory + "/model.json", start.projected ? dae::text_at(d, d.x) : d.text);
+    io::write_file(directory + "/model.json", model_text);
     const io::Interrupt interrupt;
     Reached reached;
     sinks.open();

@@ -186,10 +186,12 @@ std::string script_for(const std::string& directory)
                                     ": the key 'study' is missing or invalid; expected the name of a study");
         return *kind->value.string() + ".py";
     }
-    if (fs::is_regular_file(fs::path(directory) / "trajectory.csv", error)) return "trajectory.py";
+    for (const char* table : {"trajectory.csv", "run.h5"})
+        if (fs::is_regular_file(fs::path(directory) / table, error)) return "trajectory.py";
     if (fs::is_regular_file(fs::path(directory) / "run.csv", error)) return "granular-run.py";
     throw lie::InvalidInput(
-        directory + ": contains no study.csv, trajectory.csv or run.csv; hilda plot needs one of them");
+        directory +
+        ": contains no study.csv, trajectory.csv, run.h5 or run.csv; hilda plot needs one of them");
 }
 
 std::string python_and_matplotlib()

@@ -14,6 +14,8 @@
 #include "studies/running/diagnosis.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
+#include "studies/running/provenance.hpp"
+#include "studies/running/tables/run_table.hpp"
 
 #include <fmt/format.h>
 
@@ -80,7 +82,13 @@ RunResult SingleRun::execute()
                        .end = result.end,
                        .directory = directory,
                        .options = options.outputs,
-                       .warn = [this](const std::string& what) { warn(what); }},
+                       .warn = [this](const std::string& what) { warn(what); },
+                       .tables = run_tables(options.outputs, directory,
+                                            {{"program", version_line()},
+                                             {"command_line", options.command_line},
+                                             {"integrator", scheme.name},
+                                             {"model", description.name},
+                                             {"model_text", text_of_model()}})},
                       *integrator);
     check_step(from.has_value());
     if (options.error)
@@ -151,6 +159,8 @@ RunSettings SingleRun::settings_of_run()
     constexpr const char* solvers[] = {"auto", "klu", "condensed"};
     const lie::Settings& s = options.settings;
     RunSettings all = options.outputs;
+    if (const auto format = all.find(format_option); format != all.end() && format->second == default_format)
+        all.erase(format);
     all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
     all["--integrator"] = scheme.name;
     all["--step"] = io::shortest(grid.h);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The tables of a run: rows of numbers, written by a format that the sinks do not know.
+/// The tables of a run: rows of numbers, written by a format (CSV or HDF5) that the sinks do not know.
 
 #pragma once
 
-#include "io/archive.hpp"
+#include "io/sink.hpp"
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hilda::studies {
@@ -47,7 +48,20 @@ public:
     virtual std::unique_ptr<RunTable> table(const std::string& name, std::vector<TableColumn> columns) = 0;
 };
 
+/// Name and text of what a format with metadata stores about the run
+using RunRecord = std::vector<std::pair<std::string, std::string>>;
+
 /// One CSV file for each table
 std::shared_ptr<RunTables> csv_tables(const std::string& directory);
+/// One HDF5 file run.h5 with a group for each table, see docs/guide/outputs.md. io::NotAvailable if the
+/// program was built without HDF5.
+std::shared_ptr<RunTables> hdf5_tables(const std::string& directory, const RunRecord& record);
+
+/// The option that chooses the format
+inline constexpr const char* format_option = "--format";
+inline constexpr const char* default_format = "csv";
+/// The tables in the format of the options: csv_tables() or hdf5_tables().
+std::shared_ptr<RunTables> run_tables(const io::SinkOptions& options, const std::string& directory,
+                                      const RunRecord& record);
 
 }  // namespace hilda::studies

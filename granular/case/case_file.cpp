@@ -2,6 +2,7 @@
 #include "granular/case/case_file.hpp"
 
 #include "granular/case/boundary_keys.hpp"
+#include "granular/case/continued_case.hpp"
 #include "granular/case/fill.hpp"
 #include "granular/case/pair_keys.hpp"
 #include "io/error.hpp"
@@ -129,12 +130,10 @@ private:
         out.end = o.positive("end");
         if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)
             o.fail("end", "end must be at most 9e15 steps, got " + io::shortest(out.end));
-        out.interval = o.positive("interval", out.end / 1000);
-        // a whole number of rows, which are a whole number of steps apart
-        const double row = out.h * std::max(1., std::round(out.interval / out.h)),
-                     long_interval = row * std::max(1., std::round(out.end / 100 / row));
-        out.frame_interval = o.positive("frame_interval", long_interval);
-        out.checkpoint_interval = o.positive("checkpoint_interval", long_interval);
+        const Intervals intervals = read_intervals(o, out.h, out.end);
+        out.interval = intervals.rows;
+        out.frame_interval = intervals.frames;
+        out.checkpoint_interval = intervals.checkpoints;
         world.skin = o.number("skin", world.skin);
         if (!(world.skin > 0 && world.skin <= 1))
             o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
@@ -274,6 +273,7 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     for (const Setting& setting : environment.settings) out.source.set(setting.change, setting.origin);
     out.notices = out.source.notices;
     if (environment.seed) seed_fills(out, *environment.seed);
+    if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
     CaseReader(out, environment).read();
     return out;
 }

@@ -39,6 +39,8 @@ struct Environment {
     Device device = {};
     std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
     std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...
+    /// Case of the run that is continued, or nullptr. Its intervals replace those that the case does not state.
+    const io::JsonSource* continues = nullptr;
 };
 
 /// Reads a case and constructs its world. `file` is the name used in messages. The required memory is

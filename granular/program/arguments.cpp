@@ -83,7 +83,9 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         assign(o.output, io::path));
     app.add_flag("--force", o.force,
                  "overwrite an output directory that is not empty; accept a step above the stability limit");
-    app.add_flag("--resume", o.resume, "continue the run in the output directory from its last checkpoint");
+    app.add_flag("--resume", o.resume,
+                 "continue the run in the output directory from its last checkpoint; a complete run "
+                 "continues to a later --end");
     value("--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
           assign(o.checkpoint, io::nonnegative_number));
     value("--threads", "N", "number of CPU threads, without influence on the results; default: 1",

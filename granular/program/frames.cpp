@@ -18,6 +18,13 @@ namespace {
 std::string frame(long k) { return io::formatted("vtk/particles-%06ld.vtp", k); }
 std::string boundary_frame(long k) { return io::formatted("vtk/boundaries-%06ld.vtp", k); }
 
+/// Removes the frames from number k on.
+void remove_frames(const std::string& folder, long k)
+{
+    for (; std::remove((folder + frame(k)).c_str()) == 0; ++k)
+        std::remove((folder + boundary_frame(k)).c_str());
+}
+
 class Frames final : public Sink {
 public:
     explicit Frames(const CaseSetup& run)
@@ -34,9 +41,10 @@ public:
         io::write_file(directory + frame(w.steps() / steps), particles_vtp(w));
     }
 
-    /// Frames are missing if an earlier part of the run used --no-vtk.
+    /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run to a later end.
     void close() override
     {
+        remove_frames(directory, c.world->steps() / steps + 1);
         std::vector<std::pair<double, std::string>> frames;
         for (long k = 0; k * steps <= c.world->steps(); ++k)
             for (const std::string& file : {frame(k), boundary_frame(k)})
@@ -64,8 +72,7 @@ const bool registered =
                                      [](const std::string& directory) {
                                          const std::string folder = directory + '/';
                                          std::remove((folder + "run.pvd").c_str());
-                                         for (long k = 0; std::remove((folder + frame(k)).c_str()) == 0; ++k)
-                                             std::remove((folder + boundary_frame(k)).c_str());
+                                         remove_frames(folder, 0);
                                      }});
 
 }  // namespace

@@ -3,6 +3,7 @@
 /// from hilda because it may link the CUDA runtime, which must not be linked with GSL.
 
 #include "granular/case/case_schema.hpp"
+#include "granular/program/earlier_run.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
@@ -32,6 +33,9 @@ int run_case(const Options& o)
     } catch (const io::IoError& e) {
         throw io::InvalidInput(e.what() + (std::filesystem::exists(o.file) ? "" : known_validations()));
     }
+    const std::optional<io::JsonSource> earlier =
+        o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
+    if (earlier) here.continues = &*earlier;
     return run(o, read_case(text, o.file, here));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/run.hpp"
 
+#include "granular/case/continued_case.hpp"
+#include "granular/program/earlier_run.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/program/sink.hpp"
 #include "io/archive.hpp"
@@ -29,7 +31,7 @@ class CaseRun : private io::Verbosity {
 public:
     CaseRun(const Options& o, Case from)
         : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)), setup{c, o.output, o.outputs},
-          text(c.source.current_text()), interval(setup.steps_in(c.interval)),
+          id(identity(c.source) + c.files_read), interval(setup.steps_in(c.interval)),
           checkpoint_interval(setup.steps_in(c.checkpoint_interval)), steps(std::lround(c.end / c.h)),
           files(o.output), sinks(setup)
     {}
@@ -43,17 +45,14 @@ public:
         log(io::formatted("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(),
                           c.boundaries.size(), steps, c.h));
         io::make_directory(o.output);
-        if (o.resume && done()) {
-            if (!o.quiet) io::message("hilda: " + o.output + ": the run is complete already\n");
-            if (o.json) std::fputs(io::read_file(file("summary.json"), most_of_summary).c_str(), stdout);
-            return io::exit_code::done;
-        }
+        if (o.resume) earlier = earlier_run(o, c);
+        if (earlier.is_complete && earlier.end == steps) return report_complete(o, c);
         const bool resumed = o.resume && load();
         if (!resumed) {
             files.remove();
             io::Sinks<CaseSetup>::remove(o.output);
             std::remove(file("summary.json").c_str());
-            io::write_file(file("case.json"), text);
+            io::write_file(file("case.json"), c.source.current_text());
             sinks.open();
         }
         resumed_at = c.world->steps();
@@ -64,8 +63,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_of_summary = std::size_t{1} << 24;
-
     std::string file(const std::string& name) const { return o.output + '/' + name; }
 
     /// Compares the step with World::step_limits. Warns above 1/5 of the Rayleigh time or 1/15 of the
@@ -88,34 +85,17 @@ private:
         if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
     }
 
-    /// Whether the output directory contains a completed run of this case. Throws io::IoError if it contains
-    /// another case.
-    bool done() const
-    {
-        if (!fs::exists(file("case.json"))) return false;
-        if (io::read_file(file("case.json"), std::size_t{1} << 28) != text)
-            throw io::IoError(file("case.json") +
-                              ": is another case, or this case with other options; --force overwrites it");
-        if (files.exist() || !fs::exists(file("summary.json"))) return false;
-        try {
-            const io::JsonSource summary(io::read_file(file("summary.json"), most_of_summary),
-                                         file("summary.json"), most_of_summary);
-            const io::Json::Member* found = summary.root.member("status");
-            return found != nullptr && found->value.string() != nullptr && *found->value.string() == "ok";
-        } catch (const io::InvalidInput&) {
-            return false;
-        }
-    }
-
-    /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.
+    /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none. Throws
+    /// io::UsageError if it is not before the end.
     bool load()
     {
         return files.load([&](const std::string& bytes, const std::string& from) {
-            c.world->from_bytes(bytes, text + c.files_read, from, [&](io::Archive& a) {
+            c.world->from_bytes(bytes, id, from, [&](io::Archive& a) {
                 io::Sinks<CaseSetup>::Saved saved_sinks;
                 a.map(saved_sinks);
                 sinks.open(saved_sinks, from);
             });
+            if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
             rows = c.world->steps() / interval + 1;  // including t = 0
             log(io::formatted("continues from %s at t = %g s", from.c_str(), c.world->t()));
         });
@@ -132,6 +112,7 @@ private:
         try {
             if (!resumed) record();
             take_snapshot();
+            if (resumed && earlier.end != steps) begin_other_end();
             while (w.steps() < steps && io::Interrupt::caught() == 0) {
                 const long instant = (w.steps() / checkpoint_interval + 1) * checkpoint_interval,
                            next = std::min({steps, instant, sinks.next(w.steps())});
@@ -175,27 +156,34 @@ private:
         if (c.world->steps() % interval == 0) ++rows;
     }
 
+    /// The run in the directory has another end from here on. It is incomplete, and it can be resumed at any time.
+    void begin_other_end()
+    {
+        save();
+        io::write_file(file("case.json"), c.source.current_text());
+        std::remove(file("summary.json").c_str());
+    }
+
     void checkpoint_instant()
     {
         // If the instants follow each other quickly, snapshots take at most about a twentieth of the wall
         // time.
         const double min_spacing = std::max(0.2, 20 * snapshot_seconds);
         c.world->invalidate_neighbours();
-        const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint;
-        if (due || io::Interrupt::caught() != 0 || seconds_since(snapshot_taken) > min_spacing)
+        const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint,
+                   last = steps - c.world->steps() < checkpoint_interval;
+        if (due || last || io::Interrupt::caught() != 0 || seconds_since(snapshot_taken) > min_spacing)
             take_snapshot();
         if (due) save();
     }
 
-    void take_snapshot()
+    void take_snapshot() { take_snapshot(sinks.save()); }
+    void take_snapshot(io::Sinks<CaseSetup>::Saved saved_sinks)
     {
         snapshot.clear();
         snapshot.shrink_to_fit();  // so that at most one snapshot is in memory
         const Clock::time_point from = Clock::now();
-        snapshot = c.world->to_bytes(text + c.files_read, [&](io::Archive& a) {
-            auto saved_sinks = sinks.save();
-            a.map(saved_sinks);
-        });
+        snapshot = c.world->to_bytes(id, [&](io::Archive& a) { a.map(saved_sinks); });
         snapshot_time = c.world->t();
         snapshot_taken = Clock::now();
         snapshot_seconds = seconds_since(from);
@@ -227,16 +215,30 @@ private:
                seconds_since(begin);
     }
 
+    /// Writes the remaining outputs, and of a complete run checkpoint.end: the state from which a run to a later end
+    /// continues. This is the last multiple of checkpoint_interval, because the longer run rebuilds its neighbour list there
+    /// and not at this end.
     void finish(int code)
     {
         const World& w = *c.world;
         const double speed = rate(), seconds = seconds_since(begin);
+        const bool is_done = code == io::exit_code::done,
+                   ends_at_instant = w.steps() % checkpoint_interval == 0;
+        if (is_done && !ends_at_instant) {
+            sinks.sync();
+            files.save_final(snapshot);
+        }
         snapshot.clear();
         snapshot.shrink_to_fit();
+        auto saved_sinks = sinks.save();
         sinks.close();
         const std::string text_of_summary = summary(code, speed, seconds);
         io::write_file(file("summary.json"), text_of_summary);
-        if (code == io::exit_code::done) files.remove();
+        if (is_done && ends_at_instant) {
+            take_snapshot(std::move(saved_sinks));
+            files.save_final(snapshot);
+        }
+        if (is_done) files.remove_unfinished();
         if (o.json)
             std::fputs(text_of_summary.c_str(), stdout);
         else if (code == io::exit_code::done && !o.quiet)
@@ -276,12 +278,13 @@ private:
     const Options& o;
     const Case c;
     const CaseSetup setup;
-    const std::string text;
+    const std::string id;  ///< of the case and its files; see identity()
     const long interval, checkpoint_interval, steps;
     const io::CheckpointFiles files;
     io::Sinks<CaseSetup> sinks;
     long rows = 0;  ///< of run.csv
     long resumed_at = 0;
+    EarlierRun earlier;
     std::string snapshot;                            ///< state at the last instant of a possible checkpoint
     double snapshot_time = 0, snapshot_seconds = 0;  ///< its time, and the wall time to take it [s]
     std::string message, status = "ok";

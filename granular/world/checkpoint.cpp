@@ -13,7 +13,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 6};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 7};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
 template <class Array>

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs, any threads and any back end.
 
-    persistence_test.py WHAT PROGRAM [PROGRAM]      WHAT is kills, ends or threads; a second PROGRAM has another back end
+    persistence_test.py WHAT PROGRAM [PROGRAM]      WHAT is kills, ends, longer or threads; a second PROGRAM has another back end
 """
 import hashlib
 import json
@@ -62,7 +62,8 @@ class Runs:
         """SHA-256 of all output that does not depend on wall time"""
         out = self.folder / output
         files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
-        files += [out / "run.pvd"] + sorted((out / "vtk").iterdir())
+        if (out / "vtk").exists():
+            files += [out / "run.pvd"] + sorted((out / "vtk").iterdir())
         whole = hashlib.sha256()
         for file in files:
             whole.update(file.name.encode() + b"\0" + file.read_bytes())
@@ -112,7 +113,8 @@ def kills(runs, wanted=20, legs=20):
     runs.finish(case, *resume)
     expect(runs.sha("cut") == whole, "the killed run and the uninterrupted run give the same files")
     left = [file.name for file in (runs.folder / "cut").iterdir()]
-    expect(not any(name.startswith("checkpoint") for name in left), f"a complete run deletes its checkpoints: {left}")
+    left = [name for name in left if name.startswith("checkpoint")]
+    expect(left == ["checkpoint.end"], f"a complete run leaves the checkpoint of its end: {left}")
     expect("the run is complete already" in runs.finish(case, *resume), "a complete run is not resumed")
     print(f"{done} kills, {with_checkpoint} with a checkpoint, {1 + runs_to_the_end} runs to the end; {seconds:.2f} s uncut; {whole}")
 
@@ -145,12 +147,14 @@ def ends(runs):
     interrupt(signal.SIGINT)
     newest = (out / "checkpoint").read_bytes()
     other = runs.case("other", end=0.06)
-    for options in ((other,), (case, "--end", "0.06"), (case, "--set", "/laws/0/mu=0.2"), (case, "--seed", "3"), (case, "--step", "4e-6")):
+    for options in ((other,), (case, "--set", "/laws/0/mu=0.2"), (case, "--seed", "3"), (case, "--step", "4e-6")):
         err = runs.finish(*options, "--output", "cut", "--resume", code=5)
         expect("cut/case.json: is another case, or this case with other options" in err, f"the checkpoint of another case is rejected: {err}")
     mine = (out / "case.json").read_text()
     (out / "case.json").write_text((runs.folder / "other.json").read_text())
-    err = runs.finish(other, "--output", "cut", "--resume", code=5)
+    edited = runs.case("edited", end=0.05, skin=0.3)
+    (out / "case.json").write_text((runs.folder / "edited.json").read_text())
+    err = runs.finish(edited, "--output", "cut", "--resume", code=5)
     expect("cut/checkpoint: the checkpoint belongs to another run" in err, f"also if case.json is replaced: {err}")
     (out / "case.json").write_text(mine)
     (out / "checkpoint").write_bytes(newest[:len(newest) // 2] + bytes([newest[len(newest) // 2] ^ 1]) + newest[len(newest) // 2 + 1:])
@@ -218,6 +222,107 @@ def ends(runs):
     print(f"both signals, fallback, rejections and a lost particle; at most {1e3 * slowest:.0f} ms to stop between; {whole}")
 
 
+def longer(runs):
+    """A complete or interrupted run continued to a later end gives the files of a run to that end"""
+    def whole(case, end, *options):
+        runs.finish(case, "--end", end, "--output", "whole", "--force", *options)
+        files = {name: (runs.folder / "whole" / name).read_bytes() for name in ("case.json", "checkpoint.end")}
+        sha = runs.sha("whole")
+        runs.remove("whole")
+        return sha, files
+
+    def longer_run(case, end, *options, code=0):
+        return runs.finish(case, "--end", end, "--output", "out", "--resume", *options, code=code)
+
+    def same(files):
+        return all((runs.folder / "out" / name).read_bytes() == files[name] for name in files)
+
+    # 0.015 s is a multiple of checkpoint_interval, 0.0153 s is not; the second step goes from one extension to the next
+    case = runs.case("cup", checkpoint_interval=3e-3, frame_interval=2e-3, interval=1e-3)
+    for first, options in (("0.015", ()), ("0.0153", ()), ("0.0153", ("--no-vtk",)), ("0.002", ("--threads", "2"))):
+        runs.finish(case, "--end", first, "--output", "out", *options)
+        for end in ("0.02", "0.0261"):
+            sha, files = whole(case, end, *options)
+            longer_run(case, end, *options)
+            expect(runs.sha("out") == sha, f"a run to {first} s continued to {end} s {options} gives the same files")
+            expect(same(files), f"{first} s to {end} s {options}: case.json and checkpoint.end are the same")
+        runs.remove("out")
+
+    # without intervals in the case, those of the first run remain
+    bare = dict(CASE)
+    for key in ("interval", "frame_interval", "checkpoint_interval"):
+        del bare[key]
+    (runs.folder / "bare.json").write_text(json.dumps(dict(bare, end=0.01)))
+    runs.finish("bare", "--output", "out")
+    longer_run("bare", "0.013")
+    stated = runs.case("stated", end=0.01, interval=1e-5, frame_interval=1e-4, checkpoint_interval=1e-4)
+    expect(runs.sha("out").split() and (runs.folder / "out" / "run.csv").read_text().count("\n") == 1302,
+           "the interval of the rows is a thousandth of the first end")
+    runs.finish(stated, "--end", "0.013", "--output", "whole")
+    expect(runs.sha("out") == runs.sha("whole"), "the intervals of a continued run are those of its start")
+    longer_run("bare", "0.014")
+    runs.finish(stated, "--end", "0.014", "--output", "whole", "--resume")
+    expect(runs.sha("out") == runs.sha("whole"), "also if it is continued again")
+    for output in ("out", "whole"):
+        runs.remove(output)
+
+    # an extension that is killed or stopped, and an interrupted run with another end
+    sha, _ = whole(case, "0.08")
+    runs.finish(case, "--end", "0.01", "--output", "out")
+    draw = random.Random(3)
+    kills = 0
+    while True:
+        process = runs.start(case, "--end", "0.08", "--output", "out", "--resume", "--checkpoint", "0.01")
+        try:
+            process.communicate(timeout=draw.uniform(0, 0.3) * (1 + kills / 10))  # longer on a busy machine
+            expect(process.returncode == 0, "the extension ends with 0")
+            break
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+            kills += 1
+            expect(kills < 200, "the extension comes to its end")
+    expect(runs.sha("out") == sha, f"an extension that was killed {kills} times gives the same files")
+    runs.remove("out")
+    process = runs.start(case, "--end", "0.1", "--output", "out", "--checkpoint", "1e-4")
+    while not (runs.folder / "out" / "vtk" / "particles-000010.vtp").exists():
+        expect(process.poll() is None, "the run is in progress when the signal is sent")
+        time.sleep(0.001)
+    process.send_signal(signal.SIGINT)
+    process.communicate()
+    checkpoint = runs.summary("out")["counters"]["t_checkpoint"]
+    early = f"{checkpoint + 1e-4:.6g}"
+    expect("--end must be after t = " in longer_run(case, "0.001", code=2), "an end before the checkpoint is refused")
+    longer_run(case, early)
+    sha, _ = whole(case, early)
+    expect(runs.sha("out") == sha, f"an interrupted run ends at {early} s as well, without later frames")
+    runs.remove("out")
+
+    # what is refused
+    runs.finish(case, "--end", "0.01", "--output", "out")
+    before = runs.sha("out")
+    expect("the run is complete already, with the end 0.01 s; --end with a later time extends it" in longer_run(case, "0.01"),
+           "the end of the run")
+    expect("--end must be after t = 0.01 s, which the run in out has reached, got 0.005" in longer_run(case, "0.005", code=2),
+           "an earlier end")
+    err = runs.finish(case, "--output", "out", "--resume", code=5)
+    expect("its end is 0.01 s, --end continues it to another" in err, f"the end of the case: {err}")
+    err = longer_run(case, "0.02", "--set", "/laws/0/mu=0.2", code=5)
+    expect("is another case, or this case with other options; --force overwrites it" in err, f"another case: {err}")
+    err = longer_run(case, "0.02", "--interval", "2e-3", code=5)
+    expect("is another case, or this case with other options" in err, f"another interval: {err}")
+    end = runs.folder / "out" / "checkpoint.end"
+    content = end.read_bytes()
+    end.write_bytes(content[:1000])
+    expect("out/checkpoint.end: the checkpoint is damaged" in longer_run(case, "0.02", code=5), "a damaged checkpoint.end")
+    end.unlink()
+    expect("has ended without checkpoint.end; --force starts it again" in longer_run(case, "0.02", code=2), "no checkpoint.end")
+    (runs.folder / "out" / "case.json").write_text("{")
+    expect("out/case.json:1:2" in longer_run(case, "0.02", code=3), "a damaged case.json")
+    expect(runs.sha("out") == before, "a refused extension changes no file")
+    print(f"ends at and between checkpoints, with and without frames; {kills} kills; {before}")
+
+
 def threads(runs, others):
     """Different numbers of threads and back ends, with enough particles to distribute the loops"""
     cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
@@ -247,6 +352,8 @@ def main():
             kills(runs)
         elif what == "ends":
             ends(runs)
+        elif what == "longer":
+            longer(runs)
         else:
             threads(runs, others)
 

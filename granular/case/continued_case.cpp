@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/continued_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace hilda::granular {
+
+namespace {
+
+struct Entry {
+    std::string key, value;
+    bool is_stated;
+};
+
+/// The three intervals of a case, the stated ones first, which is their order in the text
+std::vector<Entry> entries(const io::JsonSource& source)
+{
+    ObjectReader o(source, source.root, "");
+    const Intervals all = read_intervals(o, o.positive("step"), o.positive("end"));
+    std::vector<Entry> list;
+    for (const auto& [key, value] : {std::pair{"interval", all.rows},
+                                     {"frame_interval", all.frames},
+                                     {"checkpoint_interval", all.checkpoints}})
+        list.push_back({key, io::shortest(value), o.has(key)});
+    std::stable_partition(list.begin(), list.end(), [](const Entry& e) { return e.is_stated; });
+    return list;
+}
+
+void set(io::JsonSource& source, const Entry& e) { source.set('/' + e.key + '=' + e.value); }
+
+}  // namespace
+
+Intervals read_intervals(ObjectReader& o, double h, double end)
+{
+    const double interval = o.positive("interval", end / 1000);
+    // a whole number of rows, which are a whole number of steps apart
+    const double row = h * std::max(1., std::round(interval / h)),
+                 long_interval = row * std::max(1., std::round(end / 100 / row));
+    const double frames = o.positive("frame_interval", long_interval);
+    return {interval, frames, o.positive("checkpoint_interval", long_interval)};
+}
+
+double end_of(const io::JsonSource& source) { return ObjectReader(source, source.root, "").positive("end"); }
+
+void keep_intervals(io::JsonSource& source, const io::JsonSource& run)
+{
+    const bool same_end = end_of(source) == end_of(run);
+    const std::size_t changes = source.changes.size();
+    for (const Entry& of_run : entries(run))
+        if (source.root.member(of_run.key) == nullptr && (of_run.is_stated || !same_end)) set(source, of_run);
+    source.changes.resize(changes);  // they are not changes by the user
+}
+
+std::string identity(io::JsonSource source)
+{
+    for (const Entry& e : entries(source))
+        if (!e.is_stated) set(source, e);
+    source.set("/end=1");
+    return source.current_text();
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/program/earlier_run.hpp"
+
+#include "granular/case/continued_case.hpp"
+#include "io/archive.hpp"
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::granular {
+
+namespace {
+
+constexpr std::size_t most_of_summary = std::size_t{1} << 24, most_of_case = std::size_t{1} << 28;
+
+/// Text of summary.json of a directory
+std::string summary_of(const std::string& directory)
+{
+    return io::read_file(directory + "/summary.json", most_of_summary);
+}
+
+bool exists(const std::string& file)
+{
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
+/// Whether the run in a directory has reached its end, according to its summary.json
+bool is_complete(const std::string& directory)
+{
+    const std::string file = directory + "/summary.json";
+    if (io::CheckpointFiles(directory).exist() || !exists(file)) return false;
+    try {
+        const io::JsonSource summary(summary_of(directory), file, most_of_summary);
+        const io::Json::Member* found = summary.root.member("status");
+        return found != nullptr && found->value.string() != nullptr && *found->value.string() == "ok";
+    } catch (const io::InvalidInput&) {
+        return false;
+    }
+}
+
+bool end_is_given(const Options& o)
+{
+    return std::any_of(o.settings.begin(), o.settings.end(),
+                       [](const Setting& s) { return s.change.starts_with("/end="); });
+}
+
+}  // namespace
+
+std::optional<io::JsonSource> earlier_case(const std::string& directory)
+{
+    const std::string file = directory + "/case.json";
+    if (!exists(file)) return {};
+    return io::JsonSource(io::read_file(file, most_of_case), file);
+}
+
+EarlierRun earlier_run(const Options& o, const Case& c)
+{
+    const std::optional<io::JsonSource> earlier = earlier_case(o.output);
+    if (!earlier) return {};
+    const double end = end_of(*earlier);
+    const EarlierRun run = {.is_complete = is_complete(o.output), .end = std::lround(end / c.h)};
+    const long new_end = std::lround(c.end / c.h);
+    const bool is_other = identity(*earlier) != identity(c.source);
+    if (is_other || (run.end != new_end && !end_is_given(o)))
+        throw io::IoError(
+            o.output + "/case.json: is another case, or this case with other options; --force overwrites it" +
+            (is_other ? "" : "; its end is " + io::shortest(end) + " s, --end continues it to another"));
+    if (!run.is_complete || run.end == new_end) return run;
+    if (new_end < run.end) refuse_end(o, c, end);
+    if (!exists(o.output + "/checkpoint.end"))
+        throw io::UsageError("granular: " + o.output +
+                             ": its run has ended without checkpoint.end; --force starts it again");
+    return run;
+}
+
+void refuse_end(const Options& o, const Case& c, double reached)
+{
+    throw io::UsageError(io::formatted(
+        "granular: --end must be after t = %.12g s, which the run in %s has reached, got %.12g; "
+        "--force starts it again",
+        reached, o.output.c_str(), c.end));
+}
+
+int report_complete(const Options& o, const Case& c)
+{
+    if (!o.quiet)
+        io::message(
+            io::formatted("hilda: %s: the run is complete already, with the end %g s; --end with a "
+                          "later time extends it\n",
+                          o.output.c_str(), c.end));
+    if (o.json) std::fputs(summary_of(o.output).c_str(), stdout);
+    return io::exit_code::done;
+}
+
+}  // namespace hilda::granular

@@ -39,7 +39,8 @@ with tempfile.TemporaryDirectory() as folder:
 
     # every kind of entry
     for command, word in (("integrators", "demo-kick"), ("models", "plugin_pendulum"), ("study", "invariants"),
-                          ("schema", '"rope"'), ("schema", '"demo-egg"'), ("schema", '"demo-oil"')):
+                          ("schema", '"rope"'), ("schema", '"demo-egg"'), ("schema", '"demo-oil"'),
+                          ("schema", '"angular-speed"')):
         listed = call(*mine, command)
         check(listed.returncode == 0 and word in listed.stdout, f"hilda {command}: no {word}\n{listed.stderr}")
         check(word not in call(command).stdout, f"hilda {command} without --load has {word}")
@@ -51,6 +52,20 @@ with tempfile.TemporaryDirectory() as folder:
         ended = call(*mine, *run, "--quiet", "--no-plot", "--output", folder / name)
         check(ended.returncode == 0, f"{name}: exit {ended.returncode}\n{ended.stderr}")
     check((folder / "scheme/momentum.csv").exists(), "the output format of the plug-in wrote no file")
+
+    # an output type: (J + m l²) ω²/2 + m g z = 0 for the pendulum, which starts at rest with z = 0
+    ended = call(*mine, "run", "plugin_pendulum", "--integrator", "rA-half-2", "--step", "1e-3", "--quiet", "--no-plot", "--set",
+                 '/outputs=[{"name": "turn", "type": "angular-speed", "body": "bar"}]', "--output", folder / "output")
+    check(ended.returncode == 0, f"output type: exit {ended.returncode}\n{ended.stderr}")
+    if ended.returncode == 0:
+        with open(folder / "output/outputs.csv", encoding="utf-8") as speeds, \
+                open(folder / "output/trajectory.csv", encoding="utf-8") as motion:
+            rows = [(float(a["turn.omega"]), float(b["bar.rz"])) for a, b in zip(csv.DictReader(speeds), csv.DictReader(motion))]
+        check(len(rows) > 900 and max(omega for omega, _ in rows) > 2.5 and
+              max(abs(2.7 / 2 * omega ** 2 + 2 * 9.81 * z) for omega, z in rows) < 1e-3,
+              f"output type: the energy is not that of the pendulum, {len(rows)} rows")
+    refused(3, "unknown type \"angular-sped\"; did you mean 'angular-speed'?", *mine, "run", "plugin_pendulum", "--set",
+            '/outputs=[{"name": "turn", "type": "angular-sped", "body": "bar"}]', "--output", folder / "refused")
 
     # its scheme has a row in the studies; it is of first order
     for study in ("convergence", "energy", "iterations", "timing", "work-precision"):

@@ -21,7 +21,8 @@ public:
     template <class Law>
     requires(std::is_same_v<Law, Laws> || ...) AnyOf(const Law& law)
     {
-        static_assert(std::is_trivially_copyable_v<Law> && sizeof(Law) <= sizeof bytes);
+        static_assert(std::is_trivially_copyable_v<Law>, "a force law has plain numbers as members only");
+        static_assert(sizeof(Law) <= sizeof bytes, "the parameters of a force law take at most 32 bytes");
         int k = 0;
         ((std::is_same_v<Law, Laws> ? void(index = k++) : void(k++)), ...);
         std::memcpy(bytes, &law, sizeof law);

@@ -51,8 +51,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     const auto assign = [](auto& to, auto read) {
         return [&to, read](const std::string& option, const std::string& text) { to = read(option, text); };
     };
-    app.add_option("CASE", o.file,
-                   "case file (JSON), name of a validation, or schema to print the JSON schema of cases")
+    app.add_option(
+           "CASE", o.file,
+           "case file (JSON), name of a validation, laws to list the force laws, or schema to print the "
+           "JSON schema of cases")
         ->required()
         ->type_name("");
     value("--step", "H", "time step [s]; default: that of the case", positive(step));

@@ -4,6 +4,7 @@
 
 #include "granular/case/case_schema.hpp"
 #include "granular/program/earlier_run.hpp"
+#include "granular/program/laws.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
@@ -45,14 +46,14 @@ int run_program(int argc, char** argv)
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
     const Validation* const validation = find_validation(o.file);
-    const bool schema = o.file == "schema" && !std::filesystem::exists(o.file);
-    if ((validation != nullptr || schema) && !o.case_only_option.empty())
+    const bool command = (o.file == "schema" || o.file == "laws") && !std::filesystem::exists(o.file);
+    if ((validation != nullptr || command) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
-                             (schema ? " is a command" : " is a validation"));
+                             (command ? " is a command" : " is a validation"));
     if (o.full && validation == nullptr && std::filesystem::exists(o.file))
         throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
-    if (schema) {
-        std::puts(io::written(case_schema()).c_str());
+    if (command) {
+        std::puts((o.file == "laws" ? list_of_laws() : io::written(case_schema())).c_str());
         return io::exit_code::done;
     }
     try {

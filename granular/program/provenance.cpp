@@ -25,7 +25,8 @@ constexpr const char* git = "unknown";
 
 std::string version_line()
 {
-    return std::string("hilda-granular ") + build::number + " (git " + git + ", " + build::build_type + ")";
+    return std::string("hilda-granular ") + build::number + " (git " + git + ", " + build::build_type + ")" +
+           (*build::added_laws != '\0' ? std::string(", added laws: ") + build::added_laws : "");
 }
 
 io::Json provenance(const std::string& command_line, int threads, const std::string& device)
@@ -36,6 +37,7 @@ io::Json provenance(const std::string& command_line, int threads, const std::str
     io::Json all = io::provenance({build::number, git, build::build_type, build::flags, build::compiler},
                                   libraries, command_line, threads);
     all["device"] = device;
+    if (*build::added_laws != '\0') all["added_laws"] = build::added_laws;
     return all;
 }
 

@@ -69,12 +69,15 @@ World::StepLimits World::step_limits() const
             law.normal.visit([&](const auto& l) {
                 // collision of two equal particles
                 const double mass = p.mass / 2, R = p.radius / 2;
-                if constexpr (requires { l.k_n; }) {
+                if constexpr (requires { l.collision_time(mass, R, max_speed); }) {
+                    limits.collision =
+                        std::min(limits.collision, l.collision_time(mass, R, std::max(max_speed, 0.1)));
+                } else if constexpr (requires { l.k_n, l.gamma_n; }) {
                     limits.collision =
                         std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
                     if (l.gamma_n > 0)  // a damper alone is stable up to h = 2/γ
                         limits.collision = std::min(limits.collision, M_PI / static_cast<double>(l.gamma_n));
-                } else {
+                } else if constexpr (requires { l.E_eff; }) {
                     const double E_eff = l.E_eff, v = std::max(max_speed, 0.1);
                     limits.collision = std::min(limits.collision,
                                                 2.87 * std::pow(mass * mass / (R * E_eff * E_eff * v), 0.2));

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Finds nvcc and enables CUDA, unless HILDA_CUDA is off or a sanitizer is used. Sets granular_cuda: the version of the toolkit, or
+# empty. Included at file scope, as enable_language requires.
+set(granular_cuda "")
+if(HILDA_CUDA AND NOT HILDA_SANITIZE)
+    include(CheckLanguage)
+    if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX})
+        find_program(granular_nvcc nvcc HINTS ENV CUDA_PATH ENV CUDA_HOME /usr/local/cuda PATH_SUFFIXES bin)
+        if(granular_nvcc)
+            set(CMAKE_CUDA_COMPILER "${granular_nvcc}")
+        endif()
+    endif()
+    check_language(CUDA)
+    if(NOT CMAKE_CUDA_COMPILER)
+        message(STATUS "nvcc was not found: hilda-granular is built without GPU support")
+    endif()
+endif()
+if(HILDA_CUDA AND NOT HILDA_SANITIZE AND CMAKE_CUDA_COMPILER)
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+        set(CMAKE_CUDA_ARCHITECTURES 80-virtual 90-real CACHE STRING "GPU architectures; other GPUs compile the virtual one at their first run")
+    endif()
+    enable_language(CUDA)
+    # CMake 3.25 does not define the C++20 flag of this compiler.
+    if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
+        set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+        set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+    endif()
+    find_package(CUDAToolkit REQUIRED)
+    set(granular_cuda "${CUDAToolkit_VERSION}")
+    # Without contraction to fused multiply-add the results of GPU and CPU are bitwise equal.
+    set(granular_cuda_flags -fmad=false --expt-relaxed-constexpr -Xcompiler=-ffp-contract=off,${OpenMP_CXX_FLAGS})
+endif()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs libhilda.so (the rooms io, lie, dae and contact), its headers, the programs, and a package for
-# find_package(hilda CONFIG). The library does not use GSL.
+# Installs libhilda.so (the rooms io, lie, dae and contact), one library for each of granular, reference and studies, the
+# headers, the programs, and a package for find_package(hilda CONFIG). libhilda.so and libhilda_granular.so do not use GSL.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -31,20 +31,95 @@ if(HILDA_NATIVE)
 endif()
 
 install(TARGETS hilda_library EXPORT hilda_targets)
+
+# hilda_component(<room> OBJECTS <objects>... [PUBLIC <target>...] [PRIVATE <target>...]): libhilda_<room>.so, the component
+# <room> of the package. It may be left out of a build: the package then gives the reason.
+function(hilda_component room)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "OBJECTS;PUBLIC;PRIVATE")
+    add_library(hilda_${room}_library SHARED ${arg_OBJECTS})
+    set_target_properties(hilda_${room}_library PROPERTIES
+        OUTPUT_NAME hilda_${room}
+        EXPORT_NAME ${room}
+        VERSION ${PROJECT_VERSION}
+        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+        INSTALL_RPATH "$ORIGIN")
+    target_compile_features(hilda_${room}_library PUBLIC cxx_std_20)
+    # The libraries in PRIVATE are not needed to compile against this one: the package does not search them.
+    target_link_libraries(hilda_${room}_library PUBLIC hilda_library ${arg_PUBLIC} PRIVATE "$<BUILD_INTERFACE:${arg_PRIVATE}>")
+    # Also a library whose functions are not called has entries that register themselves.
+    target_link_options(hilda_${room}_library PUBLIC LINKER:--no-as-needed)
+    if(NOT HILDA_SANITIZE)
+        target_link_options(hilda_${room}_library PRIVATE LINKER:--no-undefined)
+    endif()
+    install(TARGETS hilda_${room}_library EXPORT hilda_${room}_targets OPTIONAL)
+    install(EXPORT hilda_${room}_targets FILE hilda-${room}.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
+endfunction()
+hilda_component(granular
+    OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
+    PRIVATE OpenMP::OpenMP_CXX)
+hilda_component(reference
+    OBJECTS $<TARGET_OBJECTS:reference_objects>
+    PRIVATE GSL::gsl SUNDIALS::ida SUNDIALS::nvecserial SUNDIALS::sunmatrixsparse SUNDIALS::sunlinsolklu)
+hilda_component(studies
+    OBJECTS $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
+    PUBLIC hilda_reference_library hilda_granular_library
+    PRIVATE spdlog::spdlog Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
+
 if(TARGET hilda_program)
     install(TARGETS hilda_program hilda_granular_program)
 endif()
 if(TARGET hilda_hdf5)
     install(TARGETS hilda_hdf5 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
 endif()
-# What a plug-in needs (hildaPlugin.cmake): the headers of studies, and the interface of this build.
-foreach(room io lie dae contact studies)
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda"
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_storage.hpp" EXCLUDE)
-endforeach()
+
+# The public headers. Those of studies are what a plug-in needs (hildaPlugin.cmake), and a program with studies of its own.
+function(hilda_install_headers)
+    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "FOLDERS;FILES;EXCEPT")
+    foreach(folder IN LISTS arg_FOLDERS)
+        file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${folder}/*.hpp")
+        list(APPEND arg_FILES ${found})
+    endforeach()
+    list(REMOVE_ITEM arg_FILES ${arg_EXCEPT})
+    foreach(file IN LISTS arg_FILES)
+        get_filename_component(folder "${file}" DIRECTORY)
+        install(FILES "${PROJECT_SOURCE_DIR}/${file}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/${folder}")
+    endforeach()
+endfunction()
+hilda_install_headers(
+    FOLDERS io lie dae contact reference studies/framework studies/running studies/problems granular/force_models
+    FILES studies/program/run_model.hpp
+        granular/backend/any_of.hpp granular/backend/engine.hpp granular/backend/par.hpp granular/backend/real.hpp
+        granular/core/boundary.hpp granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
+        granular/core/material.hpp granular/core/neighbours.hpp granular/core/orientation.hpp granular/core/pair_law.hpp
+        granular/core/particles.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
+        granular/world/output.hpp granular/world/world.hpp
+    # parts of the solvers, and what includes headers of GSL
+    EXCEPT studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
+install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"
+    DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/granular")
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
     DESTINATION "${hilda_package_dir}")
+# For programs with granular laws of their own (granular/program.cmake): the objects of hilda-granular that do not depend on the
+# laws, and the source of the others.
+include("${PROJECT_SOURCE_DIR}/granular/laws.cmake")
+list(TRANSFORM granular_law_files REPLACE "^.*/([^/]*)[.]cpp$" "\\1" OUTPUT_VARIABLE law_objects)
+list(JOIN law_objects "|" law_objects)
+set(law_objects "/(${law_objects})[.]cpp[.]o$")
+add_library(hilda_granular_parts STATIC $<TARGET_OBJECTS:io_objects>
+    "$<FILTER:$<TARGET_OBJECTS:granular_objects>,EXCLUDE,${law_objects}>"
+    "$<FILTER:$<TARGET_OBJECTS:hilda_granular_program>,EXCLUDE,${law_objects}>")
+set_target_properties(hilda_granular_parts PROPERTIES LINKER_LANGUAGE CXX)
+install(TARGETS hilda_granular_parts OPTIONAL)
+foreach(room io granular)
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source"
+        FILES_MATCHING REGEX "[.](hpp|cuh?|cmake|cpp[.]in)$" PATTERN benchmarks EXCLUDE PATTERN cases EXCLUDE)
+endforeach()
+foreach(file IN LISTS granular_law_files ITEMS backend/engine_no_gpu.cpp)
+    get_filename_component(folder "${file}" DIRECTORY)
+    install(FILES "${PROJECT_SOURCE_DIR}/granular/${file}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/granular/${folder}")
+endforeach()
+install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL
@@ -52,7 +127,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INS
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"
-    INSTALL_DESTINATION "${hilda_package_dir}")
+    INSTALL_DESTINATION "${hilda_package_dir}" PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_DATADIR)
 # Before 1.0 a minor version may be incompatible.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(EXPORT hilda_targets FILE hildaTargets.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")

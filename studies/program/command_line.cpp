@@ -192,10 +192,10 @@ private:
 
     void add_new()
     {
-        CLI::App* c = add("new", "write the starting point of a plug-in, see --load",
+        CLI::App* c = add("new", "write the starting point of a plug-in (see --load) or of a granular law",
                           [this] { return new_plugin(kind, name, write_to); });
-        c->add_option("KIND", kind, "what the plug-in registers: integrator")->required()->type_name("");
-        c->add_option("NAME", name, "name of the integrator")->required()->type_name("");
+        c->add_option("KIND", kind, "what is added: integrator, or granular-law")->required()->type_name("");
+        c->add_option("NAME", name, "name of the integrator or law")->required()->type_name("");
         value(*c, "--output", "DIR", "directory, new or empty; default: NAME", assign(write_to, io::path));
     }
 

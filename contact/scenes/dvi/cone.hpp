@@ -20,7 +20,7 @@ using lie::Vec3;
 inline Vec3 project_on_cone(const Vec3& gamma, double mu)
 {
     const double n = gamma[0], t = std::hypot(gamma[1], gamma[2]);
-    if (t <= mu * n) return gamma;
+    if (n >= 0 && t <= mu * n) return gamma;  // n >= 0: for μ = 0 and γ_t = 0 the second condition is 0 ≤ -0
     if (mu * t <= -n) return Vec3::Zero();
     const double side = (n + mu * t) / (1 + mu * mu), scale = mu * side / t;
     return t > 0 ? Vec3(side, scale * gamma[1], scale * gamma[2]) : Vec3(side, 0, 0);

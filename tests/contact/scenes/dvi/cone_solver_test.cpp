@@ -80,6 +80,15 @@ TEST_CASE("the projection on a cone is idempotent and nonexpansive with a remain
     CHECK(project_on_cone(Vec3(0.5, 3, 4), 0) == Vec3(0.5, 0, 0));
     CHECK(project_on_cone(Vec3(-0.5, 3, 4), 0) == Vec3::Zero());
     CHECK(project_on_cone(Vec3(2, 3, 4), 2.5) == Vec3(2, 3, 4));
+    for (const double mu :
+         {0., 1e-300, 1e-8, 0.3, 1e8}) {  // on the axis of the cone, with both signs of zero
+        INFO("mu " << mu);
+        for (const double zero : {0., -0.}) {
+            CHECK(project_on_cone(Vec3(-0.5, zero, -zero), mu) == Vec3::Zero());
+            CHECK(project_on_cone(Vec3(0.5, zero, -zero), mu) == Vec3(0.5, 0, 0));
+            CHECK(project_on_cone(Vec3(zero, 0, zero), mu) == Vec3::Zero());
+        }
+    }
 }
 
 namespace {

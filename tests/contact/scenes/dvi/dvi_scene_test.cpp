@@ -159,6 +159,41 @@ TEST_CASE("a falling ball rebounds with the coefficient of restitution", "[conta
         CHECK(scene.body[0].r.z() == Approx(0.3).epsilon(1e-12));
 }
 
+TEST_CASE("a contact that is not closed has no effect, also without friction", "[contact][dvi][scene]")
+{
+    const double mu = GENERATE(0., 1e-300, 1e-8, 0.3, 1e8), h = 1e-3;
+    DviScene scene = on_floor(Vec3::Zero(), mu, 0.5);
+    for (int n = 0; n < 300; ++n) {  // it reaches the floor after 319 steps
+        scene.step(h);
+        REQUIRE(scene.pair[0].state.F == Vec3::Zero());
+    }
+    CHECK(scene.body[0].rdot.z() == Approx(-g * 299.5 * h).epsilon(1e-12));
+}
+
+TEST_CASE("a row of balls without friction keeps its momentum and never gains energy",
+          "[contact][dvi][scene]")
+{
+    const double e = GENERATE(0., 0.5, 1.), h = 1e-3, R = 0.1;
+    DviScene scene;
+    scene.gravity.setZero();
+    scene.solver.tolerance = 1e-12;
+    for (int b = 0; b < 5; ++b)
+        scene.add(ball(1, R), at({2 * R * b + (b == 0 ? -0.0205 : 0), 0, 0}, {b == 0 ? 1. : 0., 0, 0}));
+    for (int b = 0; b + 1 < 5; ++b)
+        scene.add("balls", b, sphere(R), b + 1, sphere(R), {.mu = 0, .restitution = e});
+    double energy = scene.kinetic_energy();
+    for (int n = 0; n < 100; ++n) {
+        scene.step(h);
+        for (const DviScene::Pair& p : scene.pair) REQUIRE(p.state.N() >= 0);
+        REQUIRE(scene.kinetic_energy() <= energy * (1 + 1e-10));
+        energy = scene.kinetic_energy();
+    }
+    Vec3 momentum = Vec3::Zero();
+    for (const Motion& b : scene.body) momentum += b.rdot;
+    CHECK((momentum - Vec3(1, 0, 0)).norm() < 1e-12);
+    CHECK((e < 1 ? energy < 0.5 : energy == Approx(0.5).epsilon(1e-9)));
+}
+
 TEST_CASE("a ball does not stop above the floor and does not pass through it", "[contact][dvi][scene]")
 {
     DviScene scene = on_floor(Vec3(0, 0, -1), 0, 0.0137);

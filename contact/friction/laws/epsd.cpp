@@ -3,6 +3,7 @@
 /// rotation.
 ///
 ///     M^k += k_r ω_t h, |M^k| ≤ μ_r R N;   M^d = C_r ω_t, zero at the bound        Fang (2022), Sec. 2.2.1.4
+///     |M^k + M^d| ≤ μ_r R N, except in the dissertation preset
 ///     k_r = K_E R²,   C_r = ζ 2 √(I_r k_r),   I_r = I + m R²                   Ai et al. (2011), model C
 ///
 /// ω_t is the tangential part of ω_i - ω_j, and 1/R = κ_i + κ_j the sum of the mean curvatures. The spring is
@@ -35,9 +36,10 @@ public:
         const SlidingDisplacement& s = now.slip;
         const RollingSpring spring = rolling(now);
         const Vec3 elastic = spring.K * tangent(h.Theta_i, s.n, s.u);
-        Vec3 tau = elastic;
+        Vec3 damping = Vec3::Zero();
         if (h.roll_i.damped)
-            tau += spring.D * (now.contact_point.K_i * rates.p_i + now.contact_point.K_j * rates.p_j);
+            damping = spring.D * (now.contact_point.K_i * rates.p_i + now.contact_point.K_j * rates.p_j);
+        const Vec3 tau = sum_within_bound(elastic, damping, spring.K * spring.cap, p.capped);
         out.T_roll_E = elastic.cross(s.n);
         out.T_roll_E_j = -out.T_roll_E;
         out.T_i = tau.cross(s.n);
@@ -84,7 +86,7 @@ const bool registered = io::Registry<FrictionLaw>::add(
               "damper on the relative rolling rotation (Fang 2022, Sec. 2.2.1.4; Ai et al. 2011, model C).",
           .parts = {"friction_parameters"},
           .keys = {{"mu_r",
-                    "Coefficient of rolling resistance mu_r [-]. The elastic torque is at most mu_r R N, "
+                    "Coefficient of rolling resistance mu_r [-]. The torque is at most mu_r R N, "
                     "with the effective radius R.",
                     R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
           .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},

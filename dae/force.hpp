@@ -53,6 +53,9 @@ public:
     /// step: x is then the state after the step, with the discrete and internal states of the state before
     /// it. The function must not allocate memory.
     virtual void update_internal_state(State& /*x*/) const {}
+    /// Throws NumericalFailure "step_too_large" if the states cannot be updated over a step of this size. `after` has the
+    /// discrete and internal states of `before`. Called before update_internal_state().
+    virtual void check_step(const State& /*before*/, const State& /*after*/) const {}
     /// Whether update_internal_state() reads x.lambda. A start then iterates until the loads and the
     /// multipliers are consistent.
     virtual bool internal_state_uses_multipliers() const { return false; }

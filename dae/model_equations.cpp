@@ -237,8 +237,9 @@ double Model::potential_energy(const State& x) const
     return e;
 }
 
-void Model::accepted(const State&, State& after) const
+void Model::accepted(const State& before, State& after) const
 {
+    for (const auto& f : force) f->check_step(before, after);
     swap_drivers(after);
     update_constraint_states(after, false);
     for (const auto& f : force) f->update_internal_state(after);

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <sstream>
 #include <utility>
 
 namespace hilda::lie {
@@ -43,6 +45,22 @@ double March::time(long node) const
     return per_second >= 1 && std::abs(per_second * h - 1) < 1e-14 ? count / per_second : count * h;
 }
 
+/// Throws if a body rotates by π or more in the step, at the angular velocity of its beginning or its end. The
+/// turns of an angle that is followed from step to step would then be counted wrongly.
+void March::refuse_half_turns(const State& before, const State& to) const
+{
+    for (size_t b = 0; b < to.body.size(); ++b) {
+        const double angle = h * std::sqrt(std::max(before.body[b].omega_bar.squaredNorm(),
+                                                    to.body[b].omega_bar.squaredNorm()));
+        if (angle < std::numbers::pi) continue;
+        std::ostringstream what;
+        what.precision(3);
+        what << integrator.system().body_name(static_cast<int>(b)) << " rotates by " << angle
+             << " rad in one step, and the limit is pi; reduce the step";
+        throw NumericalFailure("step_too_large", what.str());
+    }
+}
+
 int March::try_step(State& to)
 {
     to = x;
@@ -51,6 +69,7 @@ int March::try_step(State& to)
     for (const Motion& body : to.body)
         if (!std::isfinite(body.r.sum() + body.rdot.sum() + body.omega_bar.sum() + body.A.sum()))
             throw NonFinite("the state after the step is not finite");
+    if (!integrator.chooses_internal_steps()) refuse_half_turns(x, to);
     return k;
 }
 

@@ -50,7 +50,8 @@ public:
     March(State x, Integrator& integrator, double h, long n = 0, int iterations = 0);
 
     /// Computes one step, and passes the node at its beginning to the observers. On a NumericalFailure the
-    /// march remains at its node.
+    /// march remains at its node. Throws NumericalFailure "step_too_large" if a body rotates by π or more in the step,
+    /// except with a scheme that chooses internal steps.
     void advance(std::span<Observer* const> observers);
 
     /// Passes the current node to the observers: the end of a run. The march remains at this node.
@@ -62,6 +63,7 @@ public:
 
 private:
     int try_step(State& after);
+    void refuse_half_turns(const State& before, const State& to) const;
     double time(long node) const;  ///< node · h [s]
 
     State x, after;

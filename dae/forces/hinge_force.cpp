@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace hilda::dae {
 
@@ -60,6 +61,17 @@ void HingeForce::values(const State& x, double* out) const
 void HingeForce::update_internal_state(State& x) const
 {
     x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
+}
+
+void HingeForce::check_step(const State& before, const State& after) const
+{
+    const double expected = (after.t - before.t) / 2 * (rate(before) + rate(after));
+    if (std::abs(angle(after) - angle(before) - expected) <= pi) return;
+    std::ostringstream what;
+    what.precision(3);
+    what << label() << ": its bodies rotate by " << std::abs(expected)
+         << " rad relative to each other in one step, and the limit is " << 0.75 * pi << "; reduce the step";
+    throw lie::NumericalFailure("step_too_large", what.str());
 }
 
 void HingeForce::add(const State& x, lie::Loads& out) const

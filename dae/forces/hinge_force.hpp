@@ -15,7 +15,8 @@ namespace hilda::dae {
 /// and -n on body j.
 ///
 /// After each accepted step theta is stored as the nearest number of quarter revolutions. The angle within a
-/// revolution is resolved with this number. One step may therefore rotate by less than 3/8 of a revolution.
+/// revolution is resolved with this number. One step may therefore rotate by less than 3/8 of a revolution;
+/// check_step() compares the change with the rates at both ends of the step.
 class HingeForce : public Force {
 public:
     int i, j;
@@ -39,6 +40,7 @@ public:
 
     int discrete_states() const override { return 1; }
     void update_internal_state(State& x) const override;
+    void check_step(const State& before, const State& after) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 

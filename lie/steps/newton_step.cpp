@@ -115,7 +115,7 @@ void NewtonStep::refuse_whole_turns(const State& x, double h, const std::string&
             what.precision(3);
             what << scheme << ": " << model.body_name(i) << " rotates by " << angle
                  << " rad in one step, and the limit is pi; reduce the step";
-            throw NumericalFailure("newton_diverged", what.str());
+            throw NumericalFailure("step_too_large", what.str());
         }
 }
 

@@ -17,6 +17,7 @@ public:
     Ida(const lie::System& system, const lie::Settings& settings) : solver(system, settings, form) {}
 
     int step(lie::State& x, double h) override { return solver.step(x, h); }
+    bool chooses_internal_steps() const override { return true; }
     const lie::System& system() const override { return solver.system(); }
     lie::Statistics statistics() const override { return solver.statistics(); }
 

@@ -41,6 +41,7 @@ public:
     /// Integrates x to t_end > x.t [s]. Returns the number of Newton iterations.
     int advance(lie::State& x, double t_end);
 
+    bool chooses_internal_steps() const override { return true; }
     const lie::System& system() const override { return mechanism; }
     /// Counts of IDA: internal steps, Newton iterations, factorisations of the Jacobian
     lie::Statistics statistics() const override;

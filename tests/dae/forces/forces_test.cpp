@@ -273,6 +273,43 @@ TEST_CASE("a torsion spring counts three revolutions forwards and backwards", "[
     CHECK(x.discrete_state[0] == 0);
 }
 
+TEST_CASE("a step in which a rotation cannot be counted is refused by every scheme", "[dae][forces]")
+{
+    // ω h = 2.3 rad is counted, 2.8 rad is not, and from π on no body may rotate further in a step
+    const double h = 1e-2, turn = GENERATE(1.0, 2.3, 2.8, 3.1, 3.2, 7.0);
+    const bool has_spring = GENERATE(true, false);
+    for (const lie::Scheme& scheme : lie::schemes()) {
+        Model model;
+        State x;
+        x.body.resize(1);
+        x.body[0].omega_bar = {0, 0, turn / h};
+        model.add({.name = "disk", .m = 1, .J_bar = Vec3(1, 1, 2).asDiagonal()});
+        if (has_spring) {
+            TorsionSpring spring(ground, Vec3::UnitZ(), 0, Vec3::UnitZ(), 1e-9, 0, 0, x);
+            spring.name = "soft";
+            model.load(std::move(spring));
+        }
+        start(model, x);
+        const auto integrator = scheme.make(model, {});
+        lie::March march(x, *integrator, h);
+        std::string message;
+        try {
+            for (int n = 0; n < 20; ++n) march.advance({});
+        } catch (const lie::NumericalFailure& e) {
+            CHECK(e.status == "step_too_large");
+            message = e.what();
+        }
+        INFO(scheme.name << ", " << turn << " rad: " << message);
+        CHECK(message.empty() == (turn < (has_spring ? 0.75 * pi : pi)));
+        if (turn > pi) CHECK_THAT(message, Catch::Contains("disk") && Catch::Contains("rotates by"));
+        if (message.empty() && has_spring) {
+            double value[3];
+            model.forces()[0]->values(march.node(), value);
+            CHECK(value[0] == Approx(20 * turn).epsilon(1e-6));
+        }
+    }
+}
+
 TEST_CASE("a torsion spring rejects axes that are zero or not parallel", "[dae][forces]")
 {
     State x;

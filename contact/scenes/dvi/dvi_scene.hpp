@@ -30,8 +30,8 @@ struct DviOptions {
     enum Sliding {
         convex,  ///< the relaxed problem: a sliding contact separates with μ |u_t| and has a gap of h μ |u_t|
         lagged,  ///< corrected by μ times the slip speed of the last step
-        coulomb  ///< Coulomb's law by ConeSolver::solve_coulomb(), which may fail to converge
-    } sliding = convex;
+        coulomb  ///< Coulomb's law by ConeSolver::solve_coulomb(), which may fail to converge, as in piles
+    } sliding = coulomb;
     /// Contacts with a larger gap are ignored [m]. It must exceed the largest approach in one step.
     double margin = std::numeric_limits<double>::infinity();
 };

@@ -152,6 +152,8 @@ std::vector<contact::Candidate> contact_pairs(const ContactScene& setup, double 
 contact::DviScene rigid(const ContactScene& setup)
 {
     contact::DviScene scene;
+    // as published; in piles Coulomb's law need not converge
+    scene.options.sliding = contact::DviOptions::convex;
     scene.gravity = setup.gravity;
     scene.neighbors.margin = 0.2 * setup.R;
     for (const BodyType& k : setup.body_types) scene.add(k);

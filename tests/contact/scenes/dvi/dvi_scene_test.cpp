@@ -83,6 +83,18 @@ TEST_CASE("a ball that starts to slide ends rolling at five sevenths of its spee
     CHECK(std::abs(scene.pair[0].state.F.x()) < 1e-6);
 }
 
+TEST_CASE("by default a sliding ball stays on the floor", "[contact][dvi][scene]")
+{
+    const double mu = 0.3, v0 = 3, h = GENERATE(1e-2, 1e-3);
+    DviScene scene;
+    scene.add(ball(2, 0.3), at({0, 0, 0.3}, {v0, 0, 0}));
+    scene.add(Inertia{}, Motion{});
+    scene.add("floor", 0, sphere(0.3), 1, plane, {.mu = mu});
+    run(scene, h, 0.2);  // sliding ends at 2 v0/(7 μ g) = 0.291 s
+    CHECK(std::abs(scene.body[0].r.z() - 0.3) < 1e-7);
+    CHECK(scene.body[0].rdot.x() == Approx(v0 - mu * g * (0.2 - 0.5 * h)).margin(1e-5));
+}
+
 TEST_CASE("the relaxed law lifts a sliding ball, which ends in the same rolling", "[contact][dvi][scene]")
 {
     const double mu = 0.25, v0 = 2, h = 2e-3;
@@ -130,6 +142,7 @@ TEST_CASE("a ball in a groove has the wall forces of a wedge", "[contact][dvi][s
         wall.orientation = lie::exp(Vec3(side * beta, 0, 0));
         scene.add(side < 0 ? "left" : "right", 0, sphere(R), 1, wall, {.mu = mu});
     }
+    scene.options.sliding = DviOptions::convex;  // nothing slides
     scene.solver.tolerance = 1e-14;
     run(scene, 5e-3, 0.5);
     if (mu > 0) {  // the wall forces are indeterminate; only their sum is known

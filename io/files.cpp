@@ -40,7 +40,8 @@ class Temporary {
 public:
     explicit Temporary(const std::string& target) : target(target), path(target + ".tmp")
     {
-        descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        unlink(path.c_str());  // of a process that was killed; a link is removed, not followed
+        descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (descriptor < 0) fail(target);
     }
     Temporary(const Temporary&) = delete;

@@ -57,6 +57,22 @@ TEST_CASE("a file is written as a whole and replaces the old one", "[io][files]"
     }
 }
 
+TEST_CASE("a link with the name of the temporary file is not followed", "[io][files]")
+{
+    const Directory in;
+    io::write_file(in.file("other"), "of another program");
+    fs::create_symlink("other", in.path / "a.tmp");
+    io::write_file(in.file("a"), "new");
+    CHECK(io::read_file(in.file("other"), 100) == "of another program");
+    CHECK(io::read_file(in.file("a"), 10) == "new");
+    CHECK(names(in.path) == std::vector<std::string>{"a", "other"});
+
+    std::ofstream(in.file("a.tmp")) << "left by a process that was killed";
+    io::write_file(in.file("a"), "newer");
+    CHECK(io::read_file(in.file("a"), 10) == "newer");
+    CHECK(names(in.path) == std::vector<std::string>{"a", "other"});
+}
+
 TEST_CASE("an error of a file names its path and the reason", "[io][files]")
 {
     const Directory in;

@@ -34,10 +34,13 @@ void append_vector(std::string& row, const Vector& v)
     }
 }
 
-/// A name as a field of the header row, quoted if it contains a comma, a quote or a line break
+/// A name as a field of the header row, quoted if it contains a comma, a quote or a line break, or if it begins with a
+/// character that a spreadsheet takes for that of a formula
 inline std::string csv_field(const std::string& name)
 {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    const bool is_formula =
+        !name.empty() && std::string_view("=+-@\t").find(name[0]) != std::string_view::npos;
+    if (!is_formula && name.find_first_of(",\"\r\n") == std::string::npos) return name;
     std::string quoted = "\"";
     for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + '"';

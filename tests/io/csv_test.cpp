@@ -37,13 +37,14 @@ TEST_CASE("a table is read with its comments, blanks and line ends", "[io][csv]"
 
 TEST_CASE("a field that csv_field has quoted is read as the same text", "[io][csv]")
 {
-    for (const std::string text :
-         {"max(1,2)", "\"", "\"\"", ",", "a\"b,c\"", "5\" pipe", "\",\"", "[1, 2]"}) {
+    for (const std::string text : {"max(1,2)", "\"", "\"\"", ",", "a\"b,c\"", "5\" pipe", "\",\"", "[1, 2]",
+                                   "=1+1", "@sum", "-ball"}) {
         CAPTURE(text);
         const std::string field = io::csv_field(text);
         CHECK(table(field + ",b\n" + field + ", " + field + " \n") ==
               std::vector<Cells>{{text, "b"}, {text, text}});
     }
+    CHECK(io::csv_field("=1+1") == "\"=1+1\"");  // a spreadsheet takes it for a text
     // a quote within a cell without quotes is a character
     CHECK(table("a,b\n5\" pipe,2\n") == std::vector<Cells>{{"a", "b"}, {"5\" pipe", "2"}});
     CHECK_THROWS_AS(table("a,b\n\"1,2\n"), io::InvalidInput);  // the quote does not end

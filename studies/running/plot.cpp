@@ -198,7 +198,8 @@ std::string python_and_matplotlib()
 {
     const ProcessResult result =
         run({python(), "-c",
-             "import sys, matplotlib; "
+             // Without the current folder, in which there may be another matplotlib.py
+             "import sys; sys.path = [p for p in sys.path if p]; import matplotlib; "
              "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
     const std::string why = failure_reason(result);
     return why.empty() ? python() + " " + last_line(result.output) : why;

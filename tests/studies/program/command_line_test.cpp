@@ -99,6 +99,14 @@ TEST_CASE("the program lists models, integrators, studies and versions", "[studi
     lists({"info", "--json"}, "\"version\"");
 }
 
+TEST_CASE("a Python module in the current folder is not executed", "[studies][command line]")
+{
+    const Scratch in;
+    write(in / "matplotlib.py", "open('executed', 'w')\n__version__ = '3.0'\n");
+    CHECK(call(in, {"info"}).code == 0);
+    CHECK_FALSE(fs::exists(in / "executed"));
+}
+
 TEST_CASE("missing models, files and devices exit with 3, 5 or 7", "[studies][command line]")
 {
     const Scratch in;

@@ -5,12 +5,16 @@
 #include "io/files.hpp"
 #include "io/message.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <initializer_list>
 #include <iostream>
+#include <utility>
 
 namespace hilda::io {
 
@@ -69,6 +73,29 @@ void check_output_directory(const std::string& directory, bool accepted, const s
 {
     if (!is_missing_or_empty(directory) && !accepted)
         throw UsageError(directory + ": is not empty; " + remedies);
+}
+
+OutputLock::OutputLock(std::string directory) : directory(std::move(directory)) { acquire(); }
+
+OutputLock::~OutputLock()
+{
+    if (descriptor >= 0) close(descriptor);
+}
+
+void OutputLock::create()
+{
+    if (descriptor >= 0) return;
+    make_directory(directory);
+    acquire();
+}
+
+void OutputLock::acquire()
+{
+    descriptor = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    close(descriptor);
+    descriptor = -1;
+    throw IoError(directory + ": another process writes to it; wait for its end, or give another --output");
 }
 
 void Verbosity::warn(const std::string& what) const

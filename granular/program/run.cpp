@@ -39,15 +39,17 @@ public:
     int execute()
     {
         io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
+        io::OutputLock lock(o.output);
         for (const std::string& n : c.notices) warn(n);
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written
         log(io::formatted("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(),
                           c.boundaries.size(), steps, c.h));
-        io::make_directory(o.output);
+        lock.create();
         if (o.resume) earlier = earlier_run(o, c);
         if (earlier.is_complete && earlier.end == steps) return report_complete(o, c);
         const bool resumed = o.resume && load();
+        if (o.resume && !resumed) warn(o.output + ": has no checkpoint; starting from the initial state");
         if (!resumed) {
             files.remove();
             io::Sinks<CaseSetup>::remove(o.output);

@@ -104,7 +104,8 @@ int run_kinematics(const KinematicsOptions& options)
     if (!options.quiet)
         for (const std::string& w : d.warnings) io::warning(w);
 
-    io::make_directory(directory);
+    io::OutputLock lock(directory);
+    lock.create();
     io::Sinks<RunSetup>::remove(directory);
     io::CheckpointFiles(directory).remove();
     std::remove((directory + "/summary.json").c_str());

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 namespace hilda::studies {
@@ -132,11 +133,12 @@ int run_study(const std::string& kind, StudyOptions options)
         throw io::UsageError("study " + kind + ": --resume needs the --output of the interrupted study");
     if (options.resume && options.force)
         throw io::UsageError("study " + kind + ": --force and --resume exclude each other");
+    std::optional<io::OutputLock> lock;
     if (!options.output.empty()) {
         io::check_output_directory(
             options.output, options.force || options.resume,
             FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
-        io::make_directory(options.output);
+        lock.emplace(options.output).create();
     }
     const io::EndOnSignal end_on_signal(options.output.empty()
                                             ? ""

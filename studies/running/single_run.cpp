@@ -70,6 +70,7 @@ SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::
 RunResult SingleRun::execute()
 {
     begin = Clock::now();
+    io::OutputLock lock(directory);
     read();
     lie::Settings integrator_settings = options.settings;
     integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
@@ -94,6 +95,7 @@ RunResult SingleRun::execute()
     if (options.error)
         refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
                                                 integrator_settings, grid);
+    lock.create();
     if (!from) clear_directory();
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, recorder);
@@ -243,7 +245,6 @@ void SingleRun::check_continues() const
 // Removes the files of an earlier run, so that they cannot be taken for those of this run.
 void SingleRun::clear_directory() const
 {
-    io::make_directory(directory);
     io::CheckpointFiles(directory).remove();
     io::Sinks<RunSetup>::remove(directory);
     std::remove(path("summary.json").c_str());

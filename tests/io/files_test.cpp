@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/files.hpp"
 
+#include "io/program.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <unistd.h>
@@ -98,6 +100,25 @@ TEST_CASE("an error of a file names its path and the reason", "[io][files]")
     CHECK_THAT(error([&] { io::is_missing_or_empty(in.file("long")); }), Contains("is not a directory"));
     CHECK(io::is_missing_or_empty(in.file("none")));
     CHECK_FALSE(io::is_missing_or_empty(in.path.string()));
+}
+
+TEST_CASE("an output directory is locked until the lock ends", "[io][files]")
+{
+    const Directory in;
+    const std::string directory = in.file("new/run");
+    {
+        io::OutputLock first(directory);  // does not exist yet
+        io::OutputLock second(directory);
+        CHECK_FALSE(std::filesystem::exists(directory));
+        first.create();
+        CHECK(std::filesystem::is_empty(directory));
+        first.create();
+        CHECK_THROWS_WITH(second.create(), directory +
+                                               ": another process writes to it; wait for its end, or "
+                                               "give another --output");
+        CHECK_THROWS_AS(io::OutputLock(directory), io::IoError);
+    }
+    CHECK_NOTHROW(io::OutputLock(directory));
 }
 
 TEST_CASE("an output file is continued at a given length", "[io][files]")

@@ -119,7 +119,9 @@ class Scene:
                             for k in (0, 1) for l in (0, 1) for m in (0, 1)]) @ run.turn.T
         lowest, highest = corners.min(axis=0), corners.max(axis=0)
         size = highest - lowest
-        axes.set_box_aspect(size, zoom=min(zoom, 0.8 * np.linalg.norm(size) / size[2]))  # a tall box stays in the panel
+        # a tall or wide box stays in the panel, with the label of the vertical axis on its right
+        width = abs(size[0] * np.sin(azimuth)) + abs(size[1] * np.cos(azimuth))
+        axes.set_box_aspect(size, zoom=min(zoom, 0.8 * np.linalg.norm(size) / size[2], 0.88 * np.linalg.norm(size) / width))
         axes.patch.set_visible(False)  # it would cover labels of the panel beside
         for set_limits, a, b in zip((axes.set_xlim3d, axes.set_ylim3d, axes.set_zlim3d), lowest, highest):
             set_limits(a, b, auto=False)

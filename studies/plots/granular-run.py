@@ -59,8 +59,8 @@ PANELS = {"energy": energy, "contacts": contacts, "stress": stress,
 
 def draw(folder):
     rows = read(folder, "run.csv")
-    if not rows:
-        options.refuse("run.csv has no rows")
+    if len(rows) < 2:
+        options.refuse("run.csv has fewer than two rows; a shorter --interval of the run gives more")
     boundaries = [name[:-3] for name in rows[0] if name.endswith("_Fx")]
     loaded = [b for b in boundaries if any(magnitudes(rows, b, "F")) or any(magnitudes(rows, b, "T"))]
     largest = sorted(loaded, key=lambda b: -max(magnitudes(rows, b, "F")))[:options.MOST_CURVES]

@@ -32,7 +32,8 @@ def draw(folder, run):
     entries = [(body, colour_of(k), "-") for k, body in enumerate(run.bodies)][:MOST_NAMES]
     if run.contacts:
         entries.append(("path of the contact point", PATH, "-"))
-    figure.suptitle(f"{run.name}: bodies, joints, and paths of the centres of mass", fontsize=11)
+    named = f" (the first {MOST_NAMES} of {len(run.bodies)} are named)" if len(run.bodies) > MOST_NAMES else ""
+    figure.suptitle(f"{run.name}: bodies{named}, joints, and paths of the centres of mass", fontsize=11)
     save(figure, folder, f"snapshots-{run.name}.png", legend(figure, entries), 0.96)
 
 

@@ -28,6 +28,7 @@
 #include <deque>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -162,7 +163,7 @@ private:
         io::check_output_directory(
             o.output, o.force || o.resume,
             begun ? "--force overwrites it, --resume continues it" : io::force_overwrites);
-        io::make_directory(o.output);
+        lock.emplace(o.output).create();
         if (o.resume) others = read_record(path(record_name), o.output, mode, all);
         write_record();
     }
@@ -283,6 +284,7 @@ private:
     std::string machine;
     std::vector<Reproduced> all;
     io::Json::List others;  ///< finished studies of other chapters
+    std::optional<io::OutputLock> lock;
     size_t ended_now = 0;
     const Clock::time_point begin = Clock::now();
 };

@@ -5,6 +5,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/json_source.hpp"
 #include "io/option_values.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
@@ -73,14 +74,31 @@ std::string file_in(const std::string& folder, const std::string& name)
 
 }  // namespace
 
+namespace {
+
+/// Throws io::UsageError for a file in a folder with another text, which may be a model that a user has changed.
+void check_replaceable(const std::string& file, const std::string& text)
+{
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error) &&
+        io::read_file(file, io::JsonSource::max_bytes) != text)
+        throw io::UsageError("models: --write: " + file +
+                             " exists and is another model; remove it, or choose another name");
+}
+
+}  // namespace
+
 int write_model(const std::string& name, const std::string& to)
 {
     const std::string text = text_of(problem(name));
     std::error_code error;
-    if (to.empty())
+    if (to.empty()) {
         std::cout << text;
-    else
-        io::write_file(std::filesystem::is_directory(to, error) ? file_in(to, name) : to, text);
+        return io::exit_code::done;
+    }
+    const bool is_folder = std::filesystem::is_directory(to, error);
+    if (is_folder) check_replaceable(file_in(to, name), text);
+    io::write_file(is_folder ? file_in(to, name) : to, text);
     return io::exit_code::done;
 }
 
@@ -89,6 +107,7 @@ int write_models(const std::string& folder)
     if (folder.ends_with(".json"))
         throw io::UsageError("models: --write without NAME writes all models to a folder; '" + folder +
                              "' is the name of a file");
+    for (const Problem& p : problems()) check_replaceable(file_in(folder, p.name), text_of(p));
     io::make_directory(folder);
     for (const Problem& p : problems()) io::write_file(file_in(folder, p.name), text_of(p));
     std::cout << fmt::format("written {} models to {}\n", problems().size(), folder);

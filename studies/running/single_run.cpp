@@ -97,6 +97,7 @@ RunResult SingleRun::execute()
                                                 integrator_settings, grid);
     lock.create();
     if (!from) clear_directory();
+    remove_figure(directory, "trajectory.png");  // of the shorter run, if this one continues it
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, recorder);
     if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
@@ -248,7 +249,6 @@ void SingleRun::clear_directory() const
     io::CheckpointFiles(directory).remove();
     io::Sinks<RunSetup>::remove(directory);
     std::remove(path("summary.json").c_str());
-    remove_figure(directory, "trajectory.png");
     io::write_file(path("model.json"), text_of_model());
 }
 

@@ -5,6 +5,7 @@
 #include "io/json.hpp"
 #include "io/json_source.hpp"
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -141,4 +142,15 @@ TEST_CASE("hilda models writes one model to a file or folder, and all models to 
         Contains("--write without NAME writes all models to a folder; 'mine.json' is the name of a file"));
     CHECK(read(in / "mine.json") == shown.out);
     CHECK(call(in, {"models", "--write", "/dev/null/x"}).code == 5);
+
+    // a model that was changed is not replaced
+    const std::string changed = read(in / "new/all/slider_crank.json") + "\n";
+    write(in / "new/all/slider_crank.json", changed);
+    fs::remove(in / "new/all/andrews_squeezer.json");
+    const std::string message =
+        "new/all/slider_crank.json exists and is another model; remove it, or choose another name";
+    check_refused(in, {"models", "--write", "new/all"}, 2, message);
+    check_refused(in, {"models", "slider_crank", "--write", "new/all"}, 2, message);
+    CHECK(read(in / "new/all/slider_crank.json") == changed);
+    CHECK(call(in, {"models", "four_link", "--write", "new/all"}).code == 0);
 }

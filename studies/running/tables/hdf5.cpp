@@ -56,15 +56,15 @@ hsize_t rows_of_chunk(size_t columns)
 /// Innermost message of the library's error stack
 std::string library_error()
 {
-    std::string text = "error of the HDF5 library";
+    const char* text = nullptr;  // the callback must not throw
     H5Ewalk2(
         H5E_DEFAULT, H5E_WALK_UPWARD,
         [](unsigned n, const H5E_error2_t* e, void* to) -> herr_t {
-            if (n == 0 && e->desc != nullptr) *static_cast<std::string*>(to) = e->desc;
+            if (n == 0) *static_cast<const char**>(to) = e->desc;
             return 0;
         },
         &text);
-    return text;
+    return text != nullptr ? text : "error of the HDF5 library";
 }
 
 /// Name of the dataset of a column: / is the separator of groups, and "." the group itself.

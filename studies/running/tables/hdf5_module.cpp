@@ -38,8 +38,7 @@ std::shared_ptr<RunTables> hdf5_tables(const std::string& directory, const RunRe
     if (file.empty())
         throw io::NotAvailable(
             "--format hdf5: this program was built without HDF5; install it (Debian: apt-get install "
-            "libhdf5-dev), "
-            "then configure and build again, or use --format csv");
+            "libhdf5-dev), then configure and build again, or use --format csv");
     void* loaded = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     void* symbol = loaded == nullptr ? nullptr : dlsym(loaded, "hilda_hdf5_tables");
     if (symbol == nullptr) throw io::NotAvailable(std::string("--format hdf5: ") + dlerror());

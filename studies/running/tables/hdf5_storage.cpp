@@ -53,10 +53,13 @@ H5FD_t* open_file(const char*, unsigned flags, hid_t access, haddr_t)
 {
     const void* info = H5Pget_driver_info(access);
     if (info == nullptr) return nullptr;
-    auto file = std::make_unique<DriverFile>();
-    file->storage = static_cast<const DriverInfo*>(info)->storage;
-    if ((flags & H5F_ACC_TRUNC) != 0) file->storage->clear();
-    return &file.release()->base;
+    std::unique_ptr<DriverFile> file;
+    const herr_t result = guarded([&] {
+        file = std::make_unique<DriverFile>();
+        file->storage = static_cast<const DriverInfo*>(info)->storage;
+        return (flags & H5F_ACC_TRUNC) == 0 || file->storage->clear();
+    });
+    return result < 0 ? nullptr : &file.release()->base;
 }
 
 herr_t close_file(H5FD_t* file)
@@ -157,17 +160,20 @@ hid_t Hdf5Storage::access()
 {
     const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
     const DriverInfo info{this};
-    H5Pset_driver(list, driver(), &info);
-    H5Pset_fclose_degree(list, H5F_CLOSE_STRONG);
-    H5Pset_libver_bounds(list, H5F_LIBVER_V18, H5F_LIBVER_V18);  // readable by HDF5 1.8 (2008) and later
+    // Without the driver the library would write the file itself, without transactions.
+    if (H5Pset_driver(list, driver(), &info) < 0 || H5Pset_fclose_degree(list, H5F_CLOSE_STRONG) < 0 ||
+        H5Pset_libver_bounds(list, H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) {  // readable by HDF5 1.8 (2008)
+        H5Pclose(list);
+        throw io::IoError(path + ": the HDF5 library does not accept the file driver");
+    }
     return list;
 }
 
-void Hdf5Storage::clear()
+bool Hdf5Storage::clear()
 {
     held.clear();
     end = written = 0;
-    if (!discarding && ftruncate(descriptor, 0) != 0) failed();
+    return discarding || ftruncate(descriptor, 0) == 0 || failed();
 }
 
 /// Notes the first error. Everything after it is discarded, so that the library can close the file.

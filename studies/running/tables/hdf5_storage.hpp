@@ -36,7 +36,7 @@ public:
     Hdf5Storage& operator=(const Hdf5Storage&) = delete;
     ~Hdf5Storage();
 
-    /// A file access property list with this storage as driver. The caller closes it.
+    /// A file access property list with this storage as driver. The caller closes it. io::IoError.
     hid_t access();
     /// Makes the state after the last H5Fflush or H5Fclose that of the file. io::IoError.
     void commit();
@@ -47,13 +47,13 @@ public:
     /// The first error of reading or writing: strerror text; empty if there is none
     const std::string& error() const { return error_text; }
 
-    // Called by the driver. They return false after an error.
+    // Called by the driver. The first three return false after an error.
     bool read(std::uint64_t at, size_t count, char* to);
     bool write(bool raw, std::uint64_t at, size_t count, const char* from);
+    bool clear();
     void set_end(std::uint64_t at) { end = at; }
     std::uint64_t allocated_end() const { return end; }
     std::uint64_t written_end() const { return written; }
-    void clear();
 
 private:
     void complete(const std::string& journal);

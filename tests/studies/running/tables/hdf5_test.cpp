@@ -283,11 +283,14 @@ TEST_CASE("an extended run and an interrupted run give the run.h5 of an uninterr
     require_success(call(in, with(run, {"parts", "--end", "0.6", "--resume"})));
     check_same(in / "parts/run.h5", in / "whole/run.h5");
 
-    const Program interrupted(in, with(run, {"killed", "--end", "0.6", "--checkpoint", "0.001"}));
-    REQUIRE(appears(in / "killed/checkpoint"));
-    interrupted.send(GENERATE(SIGINT, SIGKILL));
-    if (interrupted.wait().code != 0)  // 0: the run ended before the signal
-        require_success(call(in, with(run, {"killed", "--end", "0.6", "--resume"})));
+    // After the first chunk, with a checkpoint after each step, the signal comes in the middle of the 150th.
+    const int signal = GENERATE(SIGINT, SIGKILL);
+    require_success(call(in, with(run, {"killed", "--end", "0.25"})));
+    const std::vector<std::string> longer = with(run, {"killed", "--end", "0.6", "--resume"});
+    const Ended killed = call(in, with(longer, {"--checkpoint", "1e-9"}),
+                              {.end_at = {signal, 150, "killed/checkpoint.new.tmp"}});
+    REQUIRE(killed.code == 128 + signal);
+    require_success(call(in, longer));
     check_same(in / "killed/run.h5", in / "whole/run.h5");
 
     const Ended other =

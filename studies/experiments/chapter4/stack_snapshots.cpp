@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter4/stack_snapshots.hpp"
 
+#include "studies/experiments/chapter4/friction/experiment.hpp"
+
 namespace hilda::studies {
 
 namespace {
 
 constexpr double last_drop = 0.5, counted_drop = 0.1;  // descents of the upper sphere, over R
 constexpr int interval = 50;                           // steps between the frames of a path
-
-void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
-{
-    std::vector<Snapshots::ContactData> contacts;
-    for (size_t k = 0; k < scene.pair.size(); ++k) {
-        const contact::Scene::Pair& p = scene.pair[k];
-        if (p.contact_state.N > 0)
-            contacts.push_back(Snapshots::contact_data(static_cast<int>(k), p.i, p.contact_state, p.wrench,
-                                                       p.history.deflections));
-    }
-    to.add(scene.t, bodies, std::move(contacts));
-}
 
 }  // namespace
 
@@ -40,7 +30,7 @@ StackSnapshots stack_snapshots(const Stack& stack, const std::string& run, doubl
         of.step(h);  // computes the contacts of this node
         const double after = of.t;
         of.t = t;
-        if (n % interval == 0 || is_last) add_frame(snapshots, of, bodies);
+        if (n % interval == 0 || is_last) friction::add_frame(snapshots, of, bodies);
         if (is_last) break;
         of.t = after;
         if (result.collapses) continue;

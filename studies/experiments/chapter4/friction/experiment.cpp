@@ -10,6 +10,13 @@ namespace hilda::studies::friction {
 
 namespace {
 
+bool is_at_a_time(const std::vector<double>& times, long n, double h)
+{
+    return std::any_of(times.begin(), times.end(), [&](double t) { return std::lround(t / h) == n; });
+}
+
+}  // namespace
+
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
     std::vector<Snapshots::ContactData> contacts;
@@ -21,13 +28,6 @@ void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<con
     }
     to.add(scene.t, bodies, std::move(contacts));
 }
-
-bool is_at_a_time(const std::vector<double>& times, long n, double h)
-{
-    return std::any_of(times.begin(), times.end(), [&](double t) { return std::lround(t / h) == n; });
-}
-
-}  // namespace
 
 Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames)
 {

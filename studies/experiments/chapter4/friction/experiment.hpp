@@ -50,6 +50,10 @@ struct Frames {
     Snapshots snapshots = {};
 };
 
+/// Adds a frame at the time of the scene, with the contacts that have a normal force. `bodies`: the motions at this time;
+/// those of the scene may be a step later, as simulate() has them
+void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies);
+
 /// Integrates with the step h to the end. The record of a node is made after the step from this node, which computes
 /// the contact loads at it. Snapshots are stored in each of `frames`.
 Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames = {});

@@ -5,10 +5,7 @@
     stacking.py DIR     reads DIR/study.csv and DIR/study.json, writes DIR/stacking.png; from DIR/poses.csv and the files
                         beside it DIR/stacking-snapshots.png
 """
-import os
-
 import bodies
-
 from drawing import COLOURS, Line2D, directory, distinct, grid, number, numbers, plt, read, record, save, where
 
 MODES = {"rolling": "o", "both": "D", "sliding": "s", "-": "x"}
@@ -71,5 +68,5 @@ def snapshots(folder):
 
 
 draw(directory())
-if os.path.exists(os.path.join(directory(), "shapes.json")):
+if record(directory()).get("snapshots"):
     snapshots(directory())

@@ -25,6 +25,11 @@ foreach(component granular reference studies)
     message("${output}")
 endforeach()
 
+file(GLOB hdf5 "${work}/prefix/lib*/hilda/hilda-hdf5.so" "${work}/prefix/lib/*/hilda/hilda-hdf5.so")
+if(hdf5)
+    do("find the installed module for HDF5" "${work}/build/consumer_studies" hdf5)
+endif()
+
 # An installed header includes installed headers only.
 set(include "${work}/prefix/include/hilda")
 file(GLOB_RECURSE headers RELATIVE "${include}" "${include}/*.hpp")

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The component studies of an installed HILDA: its library contains the studies and problems, which register themselves.
+// The component studies of an installed HILDA: its library contains the studies and problems, which register themselves. With the
+// argument hdf5 it also loads the module for HDF5 files, which must be installed.
 #include <algorithm>
 #include <cstdio>
 
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
+#include "studies/running/tables/run_table.hpp"
 
-int main()
+int main(int argc, char**)
 {
+    if (argc > 1) hilda::studies::hdf5_tables(".", {});  // throws without the module
     const auto named = [](const auto& list, const char* name) {
         return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
     };

@@ -9,6 +9,7 @@
 #include <dlfcn.h>
 
 #include <filesystem>
+#include <vector>
 
 namespace hilda::studies {
 
@@ -20,12 +21,17 @@ using MakeTables = void (*)(const std::string& directory, const RunRecord& recor
                             std::shared_ptr<RunTables>& tables);
 
 /// The module beside the program (in the build folder, also of the tests) or in lib/hilda of the installation; empty if
-/// there is none
+/// there is none. A program that is linked with libhilda_studies.so may be anywhere.
 fs::path module()
 {
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& place : {folder, folder.parent_path(), folder.parent_path() / HILDA_LIBRARY_FOLDER})
+    std::vector<fs::path> places = {folder, folder.parent_path(),
+                                    folder.parent_path() / HILDA_LIBRARY_FOLDER};
+    Dl_info here{};
+    if (dladdr(reinterpret_cast<const void*>(&hdf5_tables), &here) != 0 && here.dli_fname[0] == '/')
+        places.push_back(fs::path(here.dli_fname).parent_path() / "hilda");
+    for (const fs::path& place : places)
         if (fs::is_regular_file(place / "hilda-hdf5.so", error)) return place / "hilda-hdf5.so";
     return {};
 }

@@ -12,19 +12,20 @@ struct Intervals {
     double rows, frames, checkpoints;
 };
 
-/// Reads `interval`, `frame_interval` and `checkpoint_interval`. Without the first, a run has 1000 rows; without the others,
-/// they are a hundredth of the end or the interval of the rows, whichever is longer. Throws io::PlacedError.
+/// Reads `interval`, `frame_interval` and `checkpoint_interval`. Without the first, a run has 1000 rows;
+/// without the others, they are a hundredth of the end or the interval of the rows, whichever is longer.
+/// Throws io::PlacedError.
 Intervals read_intervals(ObjectReader& o, double h, double end);
 
 /// The end of a case [s]. Throws io::PlacedError.
 double end_of(const io::JsonSource& source);
 
-/// Sets the intervals that a case does not state to those of `run`, the case of the run that it continues: a later end does
-/// not change them. Throws io::PlacedError.
+/// Sets the intervals that a case does not state to those of `run`, the case of the run that it continues: a
+/// later end does not change them. Throws io::PlacedError.
 void keep_intervals(io::JsonSource& source, const io::JsonSource& run);
 
-/// The canonical text of a case with its intervals and without its end: two runs with the same text compute the same states.
-/// Throws io::PlacedError.
+/// The canonical text of a case with its intervals and without its end: two runs with the same text compute
+/// the same states. Throws io::PlacedError.
 std::string identity(io::JsonSource source);
 
 }  // namespace hilda::granular

@@ -18,15 +18,15 @@ struct EarlierRun {
 
 /// The run in the output directory, which the run of case c continues.
 ///
-/// Throws io::IoError if it is of another case, or if its end differs and --end is not given; io::UsageError if it has
-/// reached an end after that of c, or if it is complete and has no checkpoint for a later end.
+/// Throws io::IoError if it is of another case, or if its end differs and --end is not given; io::UsageError
+/// if it has reached an end after that of c, or if it is complete and has no checkpoint for a later end.
 EarlierRun earlier_run(const Options& options, const Case& c);
 
 /// Throws io::UsageError: the end of c is not after the time [s] that the run in the output directory has reached.
 [[noreturn]] void refuse_end(const Options& options, const Case& c, double reached);
 
-/// Reports that the run in the output directory is complete, with --json by its summary. Returns the exit code. Throws
-/// io::IoError.
+/// Reports that the run in the output directory is complete, with --json by its summary. Returns the exit
+/// code. Throws io::IoError.
 int report_complete(const Options& options, const Case& c);
 
 }  // namespace hilda::granular

@@ -41,7 +41,8 @@ public:
         io::write_file(directory + frame(w.steps() / steps), particles_vtp(w));
     }
 
-    /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run to a later end.
+    /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run
+    /// to a later end.
     void close() override
     {
         remove_frames(directory, c.world->steps() / steps + 1);

@@ -217,9 +217,9 @@ private:
                seconds_since(begin);
     }
 
-    /// Writes the remaining outputs, and of a complete run checkpoint.end: the state from which a run to a later end
-    /// continues. This is the last multiple of checkpoint_interval, because the longer run rebuilds its neighbour list there
-    /// and not at this end.
+    /// Writes the remaining outputs, and of a complete run checkpoint.end: the state from which a run to a
+    /// later end continues. This is the last multiple of checkpoint_interval, because the longer run rebuilds
+    /// its neighbour list there and not at this end.
     void finish(int code)
     {
         const World& w = *c.world;

@@ -236,8 +236,8 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
 
 io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
-/// Writes the model with its projected initial state. The text is checked as hilda check would. io::UsageError if the
-/// file is that of the model, which has its parameters and notes.
+/// Writes the model with its projected initial state. The text is checked as hilda check would.
+/// io::UsageError if the file is that of the model, which has its parameters and notes.
 void write_projected(const dae::Description& d, const std::string& model, const std::string& file)
 {
     if (std::error_code error; std::filesystem::equivalent(model, file, error))

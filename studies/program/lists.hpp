@@ -12,8 +12,8 @@ int list_models(bool json);
 /// Writes the JSON of a built-in model to a file, to NAME.json in an existing folder, or to stdout if `to` is "".
 /// lie::InvalidInput for an unknown name.
 int write_model(const std::string& name, const std::string& to);
-/// Writes each built-in model to NAME.json in a folder, which is made if it does not exist. io::UsageError for the name of a
-/// JSON file.
+/// Writes each built-in model to NAME.json in a folder, which is made if it does not exist. io::UsageError
+/// for the name of a JSON file.
 int write_models(const std::string& folder);
 int list_integrators(bool json);
 int list_studies(bool json);

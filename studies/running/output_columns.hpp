@@ -10,12 +10,13 @@ namespace hilda::studies {
 
 /// The columns of all outputs, with the names NAME.quantity, or NAME for an expression.
 ///
-/// The variables of an expression are t, the columns of body_columns(), force_columns() and contact_columns(), and those
-/// of the preceding outputs. Only the groups that an expression uses are computed.
+/// The variables of an expression are t, the columns of body_columns(), force_columns() and
+/// contact_columns(), and those of the preceding outputs. Only the groups that an expression uses are
+/// computed.
 class OutputColumns final : public ColumnGroup {
 public:
-    /// The model and the outputs must outlive this object. lie::InvalidInput with the place of an expression that is
-    /// invalid or names an unknown column.
+    /// The model and the outputs must outlive this object. lie::InvalidInput with the place of an expression
+    /// that is invalid or names an unknown column.
     OutputColumns(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs);
     ~OutputColumns() override;
 

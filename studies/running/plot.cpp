@@ -41,8 +41,8 @@ std::vector<fs::path>& more_places()
     return places;
 }
 
-/// Path of a script in share/hilda/plots of an installed program, in the source tree or beside a plug-in; empty if there
-/// is none
+/// Path of a script in share/hilda/plots of an installed program, in the source tree or beside a plug-in;
+/// empty if there is none
 std::string find_script(const std::string& script)
 {
     std::error_code error;

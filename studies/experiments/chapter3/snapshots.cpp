@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Pictures of models at several times: their bodies, joints and springs, and the paths of their bodies and contact points.
+/// Pictures of models at several times: their bodies, joints and springs, and the paths of their bodies and
+/// contact points.
 ///
-/// The default models are the mechanisms of the dissertation (Fang 2022, Fig. 3.3). study.csv contains the number of bodies,
-/// of constraint rows by type, and of degrees of freedom (Table 3.1). poses.csv, contacts.csv and shapes.json contain what
-/// is drawn (SnapshotTables).
+/// The default models are the mechanisms of the dissertation (Fang 2022, Fig. 3.3). study.csv contains the
+/// number of bodies, of constraint rows by type, and of degrees of freedom (Table 3.1). poses.csv,
+/// contacts.csv and shapes.json contain what is drawn (SnapshotTables).
 
 #include "dae/constraints/cd.hpp"
 #include "dae/constraints/d.hpp"

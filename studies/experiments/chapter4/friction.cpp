@@ -3,8 +3,8 @@
 ///
 /// An experiment consists of a few runs of one body in contact. The table lists each measured value, the
 /// required value and the tolerance. NAME.csv contains the curves of experiment NAME, reduced to at most 2000
-/// rows per run. Some experiments have snapshots at the times of the dissertation: NAME-poses.csv, NAME-contacts.csv and
-/// NAME-shapes.json (SnapshotTables).
+/// rows per run. Some experiments have snapshots at the times of the dissertation: NAME-poses.csv,
+/// NAME-contacts.csv and NAME-shapes.json (SnapshotTables).
 ///
 /// --against FILE compares every step of the runs with the columns of a table. --check adds the runs that only the
 /// criteria need, and returns exit code 6 if a criterion fails.
@@ -65,7 +65,8 @@ std::vector<SelectedExperiment> selected(const StudyContext& s)
     return all;
 }
 
-/// The curves of all runs. The runs of an experiment may record different columns; the header is that of the first.
+/// The curves of all runs. The runs of an experiment may record different columns; the header is that of the
+/// first.
 std::string curves(const SelectedExperiment& c)
 {
     const auto first =

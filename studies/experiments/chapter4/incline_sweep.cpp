@@ -80,7 +80,8 @@ void run(InclineCell& cell, bool dissertation, double h, long steps)
     cell.R_omega = Incline::R * (run_scene.body[0].A * run_scene.body[0].omega_bar).y();
 }
 
-/// A row of the map: boundaries between states and their limits [degrees], and whether there is slip without rolling
+/// A row of the map: boundaries between states and their limits [degrees], and whether there is slip without
+/// rolling
 struct Boundaries {
     double eta, rest, rest_limit, rolling, rolling_limit;
     bool slips;
@@ -96,8 +97,8 @@ const Columns<Boundaries> columns_of_boundaries = {
 std::vector<Boundaries> boundaries(const StateMap& map)
 {
     const std::vector<double>& angle = map.grid.angle;
-    // The slope midway between the last cell with a state up to `most` and the next cell; NaN if there is no such cell
-    // or no cell after it
+    // The slope midway between the last cell with a state up to `most` and the next cell; NaN if there is no
+    // such cell or no cell after it
     const auto boundary = [&](size_t e, int most) {
         double at = std::nan("");
         for (size_t a = 0; a + 1 < angle.size(); ++a)

@@ -13,14 +13,14 @@ struct StackSnapshots {
     Stack stack;
     bool collapses = false;
     double t = 0;  ///< time of the second snapshot [s]; the first is at 0
-    /// The rolling and the sliding spring of the right lower sphere on the ground were at their bounds, until the upper
-    /// sphere had descended by R/10
+    /// The rolling and the sliding spring of the right lower sphere on the ground were at their bounds, until
+    /// the upper sphere had descended by R/10
     bool roll_saturates = false, slide_saturates = false;
     SnapshotTables tables = {};
 };
 
-/// Integrates with step h [s] until the time `end` [s], or until the upper sphere has descended by R/2. `run` is the name of
-/// the run in the tables.
+/// Integrates with step h [s] until the time `end` [s], or until the upper sphere has descended by R/2. `run`
+/// is the name of the run in the tables.
 StackSnapshots stack_snapshots(const Stack& stack, const std::string& run, double h, double end);
 
 }  // namespace hilda::studies

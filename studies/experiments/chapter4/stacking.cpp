@@ -4,10 +4,9 @@
 /// For each gap between the lower spheres and each η_r, the critical mass is the smallest mass of the upper
 /// sphere for which the stack collapses. It is found by bisection between 0.25 kg and 4 kg to one gram. The
 /// collapse mode is the motion of the lower spheres on the ground at the critical mass: rolling, sliding or
-/// both (Figs. 4.19c, e, g). Snapshots show stacks one gram lighter, which stand, and 0.01 kg heavier than these, which
-/// collapse. The default preset is `dissertation`. --check compares the results with
-/// reference values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion
-/// fails.
+/// both (Figs. 4.19c, e, g). Snapshots show stacks one gram lighter, which stand, and 0.01 kg heavier than
+/// these, which collapse. The default preset is `dissertation`. --check compares the results with reference
+/// values, computes one cell again with a fifth of the step, and returns exit code 6 if a criterion fails.
 
 #include "io/message.hpp"
 #include "studies/experiments/chapter4/stack_snapshots.hpp"

@@ -73,8 +73,8 @@ void connect_outer_points(int body, const std::vector<Vec3>& points, const conta
         if (box.exteriorDistance(p) > tolerance) to.add_line({body, body, p, Vec3::Zero()}, Snapshots::bar);
 }
 
-/// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing about its
-/// form, as in planar mechanisms that state one moment only.
+/// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing
+/// about its form, as in planar mechanisms that state one moment only.
 void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
                 const std::vector<Connection>& connections, Snapshots& to)
 {

@@ -27,14 +27,14 @@ struct SnapshotTables {
     void transfer(io::Archive& a) { a.list(poses), a.list(contacts), a.list(shapes); }
 };
 
-/// The tables of a run. `bodies` and `contacts` are names, by number; the frames nearest to the times `shown` [s] are the
-/// snapshots.
+/// The tables of a run. `bodies` and `contacts` are names, by number; the frames nearest to the times `shown`
+/// [s] are the snapshots.
 SnapshotTables snapshot_tables(const Snapshots& snapshots, const std::string& run,
                                const std::vector<std::string>& bodies,
                                const std::vector<std::string>& contacts, const std::vector<double>& shown);
 
-/// Names and contents of the files PREFIXposes.csv, PREFIXcontacts.csv and PREFIXshapes.json. Runs without frames are left
-/// out, and the contacts if there are none.
+/// Names and contents of the files PREFIXposes.csv, PREFIXcontacts.csv and PREFIXshapes.json. Runs without
+/// frames are left out, and the contacts if there are none.
 std::vector<std::pair<std::string, std::string>> snapshot_files(const std::string& prefix,
                                                                 const std::vector<SnapshotTables>& runs);
 

@@ -57,9 +57,9 @@ public:
     /// Adds a line between two points: a spring or a link.
     void add_line(const dae::PointPair& ends, Kind kind) { lines.push_back({ends, kind}); }
 
-    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], and the first
-    /// tangent u of the contact frame, all global. u is zero where the contact frame is not known, and is not part of a
-    /// checkpoint.
+    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], and the
+    /// first tangent u of the contact frame, all global. u is zero where the contact frame is not known, and
+    /// is not part of a checkpoint.
     struct ContactData {
         int contact, i;  ///< number of the contact, and of its first body
         lie::Vec3 C, N, F;

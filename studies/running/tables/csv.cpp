@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Tables as CSV files: a header row with the names, numbers as the shortest decimals that read back as the same double.
+/// Tables as CSV files: a header row with the names, numbers as the shortest decimals that read back as the
+/// same double.
 
 #include "io/csv.hpp"
 #include "io/files.hpp"

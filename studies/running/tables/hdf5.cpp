@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Tables in one HDF5 file, run.h5: a group for each table, a one-dimensional dataset for each column with the attributes
-/// name, unit and meaning; attributes of the root record the run. Numbers are binary64, counts 64-bit integers.
+/// Tables in one HDF5 file, run.h5: a group for each table, a one-dimensional dataset for each column with
+/// the attributes name, unit and meaning; attributes of the root record the run. Numbers are binary64, counts
+/// 64-bit integers.
 ///
-/// The datasets have chunks of the same number of rows. A chunk is written once, when it is full, because an overwritten
-/// chunk could be lost (Hdf5Storage). The rows after the last full chunk are in memory and in the checkpoints; close()
-/// writes them.
+/// The datasets have chunks of the same number of rows. A chunk is written once, when it is full, because an
+/// overwritten chunk could be lost (Hdf5Storage). The rows after the last full chunk are in memory and in the
+/// checkpoints; close() writes them.
 
 #include "io/error.hpp"
 #include "studies/running/tables/hdf5_storage.hpp"
@@ -43,8 +44,8 @@ private:
     herr_t (*release)(hid_t) = nullptr;
 };
 
-/// Rows of a chunk: a power of two from 256 to 4096; the rows of a table then take at most 2 MiB if it has at most 1024
-/// columns.
+/// Rows of a chunk: a power of two from 256 to 4096; the rows of a table then take at most 2 MiB if it has at
+/// most 1024 columns.
 hsize_t rows_of_chunk(size_t columns)
 {
     constexpr size_t most_bytes = 2 << 20;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Loads hilda-hdf5.so (hdf5.cpp and hdf5_storage.cpp) where --format hdf5 asks for it.
 ///
-/// The program is not linked with HDF5: on Debian 12 the library loads 33 others, among them libcurl and Kerberos, and
-/// every call of the program would start 16 ms later.
+/// The program is not linked with HDF5: on Debian 12 the library loads 33 others, among them libcurl and
+/// Kerberos, and every call of the program would start 16 ms later.
 
 #include "studies/running/tables/run_table.hpp"
 
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using MakeTables = void (*)(const std::string& directory, const RunRecord& record,
                             std::shared_ptr<RunTables>& tables);
 
-/// The module beside the program (in the build folder, also of the tests) or in lib/hilda of the installation; empty if
-/// there is none. A program that is linked with libhilda_studies.so may be anywhere.
+/// The module beside the program (in the build folder, also of the tests) or in lib/hilda of the
+/// installation; empty if there is none. A program that is linked with libhilda_studies.so may be anywhere.
 fs::path module()
 {
     std::error_code error;

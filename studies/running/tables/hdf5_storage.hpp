@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The bytes of an HDF5 file, written in transactions: a virtual file driver of the HDF5 library.
 ///
-/// The library overwrites the metadata of a file (object headers, B-trees, the superblock) in an order of its own. A
-/// process that is killed in between leaves a file that cannot be read. Therefore this driver writes raw data to the
-/// file at once, and holds metadata in memory until commit():
+/// The library overwrites the metadata of a file (object headers, B-trees, the superblock) in an order of its
+/// own. A process that is killed in between leaves a file that cannot be read. Therefore this driver writes
+/// raw data to the file at once, and holds metadata in memory until commit():
 ///
 ///     1. raw data to the disk (fdatasync)
 ///     2. all held metadata to FILE.journal (atomic, fsync)
 ///     3. metadata to the file, fdatasync
 ///     4. remove FILE.journal
 ///
-/// The file has the contents of the last commit at any time, except between 3 and 4: a process killed there leaves the
-/// journal, and the next opening for writing repeats step 3. Two conditions: raw data is written only to space that was
-/// free at the last commit (Hdf5File commits after it removes rows), and one process writes.
+/// The file has the contents of the last commit at any time, except between 3 and 4: a process killed there
+/// leaves the journal, and the next opening for writing repeats step 3. Two conditions: raw data is written
+/// only to space that was free at the last commit (Hdf5File commits after it removes rows), and one process
+/// writes.
 ///
-/// Alternatives not chosen: single-writer/multiple-reader (SWMR) mode needs a file format that programs with HDF5
-/// before 1.10 do not read, and a killed writer leaves a file that readers refuse; a copy of the file at each checkpoint
-/// doubles its size.
+/// Alternatives not chosen: single-writer/multiple-reader (SWMR) mode needs a file format that programs with
+/// HDF5 before 1.10 do not read, and a killed writer leaves a file that readers refuse; a copy of the file at
+/// each checkpoint doubles its size.
 
 #pragma once
 

@@ -42,20 +42,20 @@ struct BodyOnPlane {
     std::function<void(Curve&, Node)> record = {};
 };
 
-/// Snapshots of a run: at `count` nodes, the first, the last and evenly distributed nodes between, and at the nodes nearest
-/// to `times` [s]
+/// Snapshots of a run: at `count` nodes, the first, the last and evenly distributed nodes between, and at the
+/// nodes nearest to `times` [s]
 struct Frames {
     int count = 0;
     std::vector<double> times = {};
     Snapshots snapshots = {};
 };
 
-/// Adds a frame at the time of the scene, with the contacts that have a normal force. `bodies`: the motions at this time;
-/// those of the scene may be a step later, as simulate() has them
+/// Adds a frame at the time of the scene, with the contacts that have a normal force. `bodies`: the motions
+/// at this time; those of the scene may be a step later, as simulate() has them
 void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies);
 
-/// Integrates with the step h to the end. The record of a node is made after the step from this node, which computes
-/// the contact loads at it. Snapshots are stored in each of `frames`.
+/// Integrates with the step h to the end. The record of a node is made after the step from this node, which
+/// computes the contact loads at it. Snapshots are stored in each of `frames`.
 Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames = {});
 
 /// One run of an experiment
@@ -69,8 +69,8 @@ struct ExperimentRun {
 
 using Measure = std::function<double(const Curve&)>;
 
-/// Acceptance criterion of a run: |measured - required| <= tolerance. It is left out if the run was not selected or
-/// failed. A criterion without a run belongs to no curve.
+/// Acceptance criterion of a run: |measured - required| <= tolerance. It is left out if the run was not
+/// selected or failed. A criterion without a run belongs to no curve.
 struct Expected {
     std::string run = {}, what;
     Measure measure = {};

@@ -94,7 +94,7 @@ hilda_install_headers(
         granular/core/particles.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
         granular/world/output.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL
-    EXCEPT studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
+    EXCEPT studies/running/tables/hdf5_file.hpp studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
 install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"
     DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/granular")
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")

@@ -7,9 +7,7 @@
 /// overwritten chunk could be lost (Hdf5Storage). The rows after the last full chunk are in memory and in the
 /// checkpoints; close() writes them.
 
-#include "io/error.hpp"
-#include "studies/running/tables/hdf5_storage.hpp"
-#include "studies/running/tables/run_table.hpp"
+#include "studies/running/tables/hdf5_file.hpp"
 
 #include <algorithm>
 #include <set>
@@ -17,32 +15,6 @@
 namespace hilda::studies {
 
 namespace {
-
-constexpr const char* file_name = "run.h5";
-
-/// An identifier of the library, closed at the end of its scope
-class Id {
-public:
-    Id() = default;
-    Id(hid_t id, herr_t (*release)(hid_t)) : id(id), release(release) {}
-    Id(Id&& other) noexcept : id(std::exchange(other.id, H5I_INVALID_HID)), release(other.release) {}
-    Id& operator=(Id&& other) noexcept
-    {
-        std::swap(id, other.id), std::swap(release, other.release);
-        return *this;
-    }
-    ~Id()
-    {
-        if (id >= 0) release(id);
-    }
-    operator hid_t() const { return id; }  // NOLINT(google-explicit-constructor)
-    /// The result of the library
-    herr_t close() { return release(std::exchange(id, H5I_INVALID_HID)); }
-
-private:
-    hid_t id = H5I_INVALID_HID;
-    herr_t (*release)(hid_t) = nullptr;
-};
 
 /// Rows of a chunk: a power of two from 256 to 4096; the rows of a table then take at most 2 MiB if it has at
 /// most 1024 columns.
@@ -54,20 +26,6 @@ hsize_t rows_of_chunk(size_t columns)
     return rows;
 }
 
-/// Innermost message of the library's error stack
-std::string library_error()
-{
-    const char* text = nullptr;  // the callback must not throw
-    H5Ewalk2(
-        H5E_DEFAULT, H5E_WALK_UPWARD,
-        [](unsigned n, const H5E_error2_t* e, void* to) -> herr_t {
-            if (n == 0) *static_cast<const char**>(to) = e->desc;
-            return 0;
-        },
-        &text);
-    return text != nullptr ? text : "error of the HDF5 library";
-}
-
 /// Name of the dataset of a column: / is the separator of groups, and "." the group itself.
 std::string dataset_name(std::string name, std::set<std::string>& taken)
 {
@@ -75,115 +33,6 @@ std::string dataset_name(std::string name, std::set<std::string>& taken)
     if (name.empty() || name == "." || name == "..") name += '_';
     while (!taken.insert(name).second) name += '_';
     return name;
-}
-
-/// The file of a run, which its tables share
-class Hdf5File {
-public:
-    Hdf5File(const std::string& directory, RunRecord record)
-        : path(directory + '/' + file_name), record(std::move(record))
-    {}
-    Hdf5File(const Hdf5File&) = delete;
-    Hdf5File& operator=(const Hdf5File&) = delete;
-    /// Without close_table() nothing is written: a destructor could not report an error.
-    ~Hdf5File()
-    {
-        if (storage) storage->discard();
-    }
-
-    /// Opens the file unless another table has done so. io::IoError.
-    void open_table(bool resume);
-    /// Ends the file with its last table. io::IoError.
-    void close_table();
-
-    /// Group of a table; its members are listed in the order of their creation
-    Id group(const std::string& name, bool resume);
-    void attribute(hid_t object, const char* name, const std::string& text) const;
-    /// The result of a function of the library; io::IoError if it is negative
-    template <class Result>
-    Result check(Result result) const
-    {
-        if (result >= 0) return result;
-        throw io::IoError(path + ": cannot be written: " +
-                          (storage && !storage->error().empty() ? storage->error() : library_error()));
-    }
-
-    /// Makes everything that was written so far the contents of the file, see Hdf5Storage. io::IoError.
-    void commit();
-    /// Called after a table was created or rows were removed: the next rows are written after a commit.
-    void changed() { must_commit = true; }
-    void before_rows()
-    {
-        if (must_commit) commit();
-    }
-    /// Commits after every 4 MiB of compressed rows, so that the file of a killed run contains them.
-    void after_rows()
-    {
-        if (storage->uncommitted() > 4 << 20) commit();
-    }
-    const std::string& name() const { return path; }
-    /// True for the first call
-    bool is_first_table() { return !std::exchange(has_table, true); }
-
-private:
-    const std::string path;
-    const RunRecord record;
-    std::unique_ptr<Hdf5Storage> storage;
-    Id file;  // closed before `storage` is destroyed
-    int open_tables = 0;
-    bool must_commit = false, has_table = false;
-};
-
-void Hdf5File::open_table(bool resume)
-{
-    ++open_tables;
-    if (storage) return;
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not text on stderr
-    storage = std::make_unique<Hdf5Storage>(path, resume);
-    const Id access(storage->access(), H5Pclose);
-    if (resume) {
-        file = Id(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose);
-        if (file < 0) throw io::IoError(path + ": cannot be read: " + library_error());
-        return;
-    }
-    const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    check(H5Pset_istore_k(creation, 4));  // small index of chunks: 0.3 kB for each column, not 2 kB
-    check(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
-    file = Id(check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access)), H5Fclose);
-    for (const auto& [name, text] : record) attribute(file, name.c_str(), text);
-}
-
-Id Hdf5File::group(const std::string& name, bool resume)
-{
-    if (resume) return {check(H5Gopen2(file, name.c_str(), H5P_DEFAULT)), H5Gclose};
-    const Id creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-    check(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
-    return {check(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT)), H5Gclose};
-}
-
-void Hdf5File::attribute(hid_t object, const char* name, const std::string& text) const
-{
-    const Id type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
-    check(H5Tset_size(type, H5T_VARIABLE));
-    check(H5Tset_cset(type, H5T_CSET_UTF8));
-    const Id attribute(check(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT)), H5Aclose);
-    const char* bytes = text.c_str();
-    check(H5Awrite(attribute, type, &bytes));
-}
-
-void Hdf5File::commit()
-{
-    check(H5Fflush(file, H5F_SCOPE_LOCAL));
-    storage->commit();
-    must_commit = false;
-}
-
-void Hdf5File::close_table()
-{
-    if (--open_tables > 0) return;
-    commit();
-    check(file.close());
-    storage->commit();
 }
 
 class Hdf5Table final : public RunTable {
@@ -220,9 +69,9 @@ public:
     }
     std::vector<std::string> files() const override
     {
-        return is_first ? std::vector<std::string>{file_name} : std::vector<std::string>{};
+        return is_first ? std::vector<std::string>{hdf5_file_name} : std::vector<std::string>{};
     }
-    std::string label() const override { return std::string(file_name) + '/' + name; }
+    std::string label() const override { return std::string(hdf5_file_name) + '/' + name; }
 
 private:
     void create(const TableColumn& column);
@@ -237,15 +86,15 @@ private:
     hsize_t count = 0;           ///< rows after these, in `values`
     std::vector<double> values;  ///< of one chunk, column by column
     const bool is_first;
-    Id group;
-    std::vector<Id> datasets;  ///< of the columns
+    Hdf5Id group;
+    std::vector<Hdf5Id> datasets;  ///< of the columns
     std::set<std::string> taken;
 };
 
 /// Access to a dataset without a cache of chunks, which takes 1 MiB for each column
-Id without_cache()
+Hdf5Id without_cache()
 {
-    Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     H5Pset_chunk_cache(access, 1, 0, 1);
     return access;
 }
@@ -254,8 +103,9 @@ void Hdf5Table::create(const TableColumn& column)
 {
     constexpr unsigned fast = 1;  // level of deflate: level 6 saves little of binary numbers
     const hsize_t none = 0, most = H5S_UNLIMITED;
-    const Id space(H5Screate_simple(1, &none, &most), H5Sclose), links(H5Pcreate(H5P_LINK_CREATE), H5Pclose),
-        creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose), access = without_cache();
+    const Hdf5Id space(H5Screate_simple(1, &none, &most), H5Sclose),
+        links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose),
+        access = without_cache();
     file->check(H5Pset_char_encoding(links, H5T_CSET_UTF8));
     file->check(H5Pset_obj_track_times(creation, false));  // equal runs give equal bytes
     file->check(H5Pset_chunk(creation, 1, &chunk));
@@ -295,10 +145,10 @@ void Hdf5Table::restore()
     file->open_table(true);
     group = file->group(name, true);
     for (const TableColumn& column : columns) {
-        const Id access = without_cache();
+        const Hdf5Id access = without_cache();
         datasets.emplace_back(file->check(H5Dopen2(group, dataset_name(column.name, taken).c_str(), access)),
                               H5Dclose);
-        const Id space(file->check(H5Dget_space(datasets.back())), H5Sclose);
+        const Hdf5Id space(file->check(H5Dget_space(datasets.back())), H5Sclose);
         hsize_t length = 0;
         file->check(H5Sget_simple_extent_dims(space, &length, nullptr));
         if (length < full)
@@ -313,7 +163,7 @@ void Hdf5Table::restore()
 void Hdf5Table::write()
 {
     const hsize_t rows = full + count;
-    const Id from(H5Screate_simple(1, &count, nullptr), H5Sclose),
+    const Hdf5Id from(H5Screate_simple(1, &count, nullptr), H5Sclose),
         to(H5Screate_simple(1, &rows, nullptr), H5Sclose);
     file->check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &full, nullptr, &count, nullptr));
     for (size_t k = 0; k < datasets.size(); ++k) {

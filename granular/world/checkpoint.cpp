@@ -43,7 +43,8 @@ bool same_boundary(const Boundary& now, Boundary saved)
     for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F})
         if (!finite(v)) return false;
     saved.r = now.r, saved.axis = now.axis, saved.v = now.v, saved.omega = now.omega, saved.F = now.F;
-    return std::memcmp(&now, &saved, sizeof saved) == 0;
+    // There is no padding, and -0 or NaN in place of a number is another boundary.
+    return std::memcmp(&now, &saved, sizeof saved) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
 }
 
 /// The cell exists, and the particle is less than two cell widths away from its low corner: it was inside

@@ -35,9 +35,10 @@ const ConvergenceStudy study{.norms = {norm::names.begin(), norm::names.end()},
 /// Integrates with the given Newton tolerance and with a hundredth of it; errors and floor flags into `run`.
 void compute(ErrorRun& run, lie::Settings settings)
 {
-    EvaluatedRun with_tolerance{run}, tighter{run};
+    Run& common = run;  // the part that ErrorRun and EvaluatedRun have in common
+    EvaluatedRun with_tolerance{common}, tighter{common};
     evaluate(with_tolerance, settings);
-    static_cast<Run&>(run) = with_tolerance;
+    common = static_cast<const Run&>(with_tolerance);
     run.error.assign(with_tolerance.errors.value.begin(), with_tolerance.errors.value.end());
     run.constraint_norm = with_tolerance.constraint_norm;
     run.orthogonality = with_tolerance.orthogonality;

@@ -33,9 +33,10 @@ struct WorkRun : TimedRun {
 
 void compute(WorkRun& run, const StudyOptions& options)
 {
-    EvaluatedRun evaluated{run};
+    Run& common = run;  // the part that the row and EvaluatedRun have in common
+    EvaluatedRun evaluated{common};
     evaluate(evaluated, options.settings);
-    static_cast<Run&>(run) = evaluated;
+    common = static_cast<const Run&>(evaluated);
     run.errors = evaluated.errors;
 }
 

@@ -26,13 +26,26 @@ hsize_t rows_of_chunk(size_t columns)
     return rows;
 }
 
-/// Name of the dataset of a column: / is the separator of groups, and "." the group itself.
-std::string dataset_name(std::string name, std::set<std::string>& taken)
+/// Names of the datasets of columns: / is the separator of groups, and "." the group itself. A name that is changed for
+/// this reason ends with more underscores if it is the name of another column.
+std::vector<std::string> dataset_names(const std::vector<TableColumn>& columns)
 {
-    std::replace(name.begin(), name.end(), '/', '_');
-    if (name.empty() || name == "." || name == "..") name += '_';
-    while (!taken.insert(name).second) name += '_';
-    return name;
+    const auto allowed = [](std::string name) {
+        std::replace(name.begin(), name.end(), '/', '_');
+        if (name.empty() || name == "." || name == "..") name += '_';
+        return name;
+    };
+    std::set<std::string> exact, taken;
+    for (const TableColumn& column : columns) exact.insert(column.name);
+    std::vector<std::string> names;
+    for (const TableColumn& column : columns) {
+        std::string name = allowed(column.name);
+        if (name != column.name)
+            while (exact.contains(name)) name += '_';
+        while (!taken.insert(name).second) name += '_';
+        names.push_back(name);
+    }
+    return names;
 }
 
 class Hdf5Table final : public RunTable {
@@ -46,7 +59,8 @@ public:
     {
         file->open_table(false);
         group = file->group(name, false);
-        for (const TableColumn& column : columns) create(column);
+        const std::vector<std::string> names = dataset_names(columns);
+        for (size_t k = 0; k < columns.size(); ++k) create(columns[k], names[k]);
         values.resize(columns.size() * chunk);
         file->changed();
     }
@@ -74,7 +88,7 @@ public:
     std::string label() const override { return std::string(hdf5_file_name) + '/' + name; }
 
 private:
-    void create(const TableColumn& column);
+    void create(const TableColumn& column, const std::string& dataset_name);
     void restore();
     void write();
 
@@ -88,7 +102,6 @@ private:
     const bool is_first;
     Hdf5Id group;
     std::vector<Hdf5Id> datasets;  ///< of the columns
-    std::set<std::string> taken;
 };
 
 /// Access to a dataset without a cache of chunks, which takes 1 MiB for each column
@@ -99,7 +112,7 @@ Hdf5Id without_cache()
     return access;
 }
 
-void Hdf5Table::create(const TableColumn& column)
+void Hdf5Table::create(const TableColumn& column, const std::string& dataset_name)
 {
     constexpr unsigned fast = 1;  // level of deflate: level 6 saves little of binary numbers
     const hsize_t none = 0, most = H5S_UNLIMITED;
@@ -112,9 +125,8 @@ void Hdf5Table::create(const TableColumn& column)
     file->check(H5Pset_shuffle(creation));
     file->check(H5Pset_deflate(creation, fast));
     const hid_t type = column.is_integer ? H5T_STD_I64LE : H5T_IEEE_F64LE;
-    const std::string link = dataset_name(column.name, taken);
-    datasets.emplace_back(file->check(H5Dcreate2(group, link.c_str(), type, space, links, creation, access)),
-                          H5Dclose);
+    datasets.emplace_back(
+        file->check(H5Dcreate2(group, dataset_name.c_str(), type, space, links, creation, access)), H5Dclose);
     file->attribute(datasets.back(), "name", column.name);
     file->attribute(datasets.back(), "unit", column.unit);
     file->attribute(datasets.back(), "meaning", column.meaning);
@@ -144,10 +156,9 @@ void Hdf5Table::restore()
 {
     file->open_table(true);
     group = file->group(name, true);
-    for (const TableColumn& column : columns) {
+    for (const std::string& dataset_name : dataset_names(columns)) {
         const Hdf5Id access = without_cache();
-        datasets.emplace_back(file->check(H5Dopen2(group, dataset_name(column.name, taken).c_str(), access)),
-                              H5Dclose);
+        datasets.emplace_back(file->check(H5Dopen2(group, dataset_name.c_str(), access)), H5Dclose);
         const Hdf5Id space(file->check(H5Dget_space(datasets.back())), H5Sclose);
         hsize_t length = 0;
         file->check(H5Sget_simple_extent_dims(space, &length, nullptr));

@@ -60,6 +60,7 @@ struct Column {
     std::string name, unit, meaning;
     std::vector<double> values;
     bool is_integer;
+    std::string dataset;  ///< name of the dataset
 };
 /// The columns of a group, in the order of their creation
 using Columns = std::vector<Column>;
@@ -92,9 +93,9 @@ Columns columns_of(hid_t group)
         hsize_t rows = 0;
         REQUIRE(H5Sget_simple_extent_ndims(space) == 1);
         H5Sget_simple_extent_dims(space, &rows, nullptr);
-        Column column{text_attribute(dataset, "name"), text_attribute(dataset, "unit"),
+        Column column{text_attribute(dataset, "name"),    text_attribute(dataset, "unit"),
                       text_attribute(dataset, "meaning"), std::vector<double>(rows),
-                      H5Tget_class(type) == H5T_INTEGER};
+                      H5Tget_class(type) == H5T_INTEGER,  name.data()};
         CHECK(H5Tget_size(type) == 8);
         if (rows > 0)
             REQUIRE(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -237,6 +238,9 @@ TEST_CASE("run.h5 contains forces and outputs of the model, and names with any c
     REQUIRE(tables.at("outputs").size() == 3);
     CHECK(tables.at("outputs")[1].name == "a/b, \"c\" \u00e9");
     CHECK(tables.at("outputs")[2].name == "a_b, \"c\" \u00e9");
+    // the dataset with the name of a column is that of this column
+    CHECK(tables.at("outputs")[2].dataset == tables.at("outputs")[2].name);
+    CHECK(tables.at("outputs")[1].dataset == tables.at("outputs")[2].name + '_');
     CHECK(std::isnan(tables.at("outputs")[1].values[0]));
     CHECK(tables.at("outputs")[2].values.back() == 1. / 3);
 }

@@ -282,6 +282,7 @@ def longer(runs):
             process.communicate()
             kills += 1
             expect(kills < 200, "the extension comes to its end")
+    expect(kills > 0, "the extension is killed at least once")
     expect(runs.sha("out") == sha, f"an extension that was killed {kills} times gives the same files")
     runs.remove("out")
     process = runs.start(case, "--end", "0.1", "--output", "out", "--checkpoint", "1e-4")

@@ -115,9 +115,12 @@ void compare_with_reference(BrakedRun& run)
 void compute(BrakedRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
-    const ContactOutputs::Contact only = ContactOutputs(model).contacts.front();
-    const contact::EvolvingContact& contact = *only.constraint;
-    const contact::EvolvingFriction& friction = *only.friction;
+    const ContactOutputs outputs(model);
+    const ContactOutputs::Contact& braked =
+        *std::find_if(outputs.contacts.begin(), outputs.contacts.end(),
+                      [](const ContactOutputs::Contact& c) { return c.friction != nullptr; });
+    const contact::EvolvingContact& contact = *braked.constraint;
+    const contact::EvolvingFriction& friction = *braked.friction;
     run.bound = model.stable_step(run.c->started->x).h;
     run.curve = Curve(quantities);
     AtNodes sampler([&](const lie::State& x) {

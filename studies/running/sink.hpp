@@ -46,7 +46,7 @@ struct RunSetup {
     std::string directory;
     const io::SinkOptions& options;
     std::function<void(const std::string&)> warn;
-    const char* command = "run";  ///< of hilda, for messages
+    const char* command = "run";                  ///< of hilda, for messages
     std::shared_ptr<RunTables> tables = nullptr;  ///< format of the tables; nullptr: CSV
 };
 

@@ -2,6 +2,7 @@
 #include "io/csv.hpp"
 
 #include "io/error.hpp"
+#include "io/files.hpp"
 #include "io/message.hpp"
 
 #include <algorithm>
@@ -60,8 +61,7 @@ void read_csv(std::string_view text, const std::string& file, const std::functio
     std::vector<std::string_view> names;
     std::deque<std::string> of_names, of_row;  // the references to their texts stay valid
     long line = 0;
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = without_byte_order_mark(text);
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find('\n', from), text.size());
         const std::string_view here = trimmed(text.substr(from, to - from));

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace hilda::io {
 
@@ -20,6 +21,13 @@ void rename_file(const std::string& from, const std::string& to);
 
 /// Contents of a regular file of at most `most` bytes. IoError.
 std::string read_file(const std::string& path, size_t most);
+
+/// With this some editors begin a text in UTF-8.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+inline std::string_view without_byte_order_mark(std::string_view text)
+{
+    return text.substr(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+}
 
 /// True if the path does not exist or is an empty directory. IoError if it is not a directory.
 bool is_missing_or_empty(const std::string& directory);

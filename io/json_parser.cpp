@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Recursive descent parser of JSON (RFC 8259). The errors name the place, the text that was found there and
 /// what is expected.
+#include "io/files.hpp"
 #include "io/json_source.hpp"
 
 #include <algorithm>
@@ -35,10 +36,9 @@ std::string utf8(unsigned code)
 class Parser {
 public:
     Parser(std::string_view text, const JsonSource& source, std::size_t longest_string)
-        : text(text), source(source), longest_string(longest_string)
-    {
-        if (text.starts_with("\xEF\xBB\xBF")) at = 3;  // byte order mark
-    }
+        : text(text), source(source), longest_string(longest_string),
+          at(text.size() - without_byte_order_mark(text).size())
+    {}
 
     Json document()
     {

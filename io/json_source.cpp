@@ -2,6 +2,8 @@
 /// Locations in a JSON text, and changes by --set.
 #include "io/json_source.hpp"
 
+#include "io/files.hpp"
+
 #include <algorithm>
 #include <charconv>
 
@@ -9,13 +11,11 @@ namespace hilda::io {
 
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
 /// Positions of the first bytes of the lines
 std::vector<std::uint32_t> line_starts(std::string_view text)
 {
     std::vector<std::uint32_t> starts = {
-        text.starts_with(byte_order_mark) ? static_cast<std::uint32_t>(byte_order_mark.size()) : 0};
+        static_cast<std::uint32_t>(text.size() - without_byte_order_mark(text).size())};
     for (std::size_t k = 0; k < std::min(text.size(), JsonSource::max_bytes); ++k)
         if (text[k] == '\n') starts.push_back(static_cast<std::uint32_t>(k + 1));
     return starts;

@@ -17,13 +17,6 @@ namespace hilda::contact {
 
 namespace {
 
-/// The text without a byte order mark, with which some editors begin UTF-8
-std::string_view without_mark(std::string_view text)
-{
-    constexpr std::string_view mark = "\xEF\xBB\xBF";
-    return text.substr(text.starts_with(mark) ? mark.size() : 0);
-}
-
 /// The lines of a text and their words
 class Lines {
 public:
@@ -160,7 +153,7 @@ std::string MeshFile::message(const TriangleMesh::Fault& fault) const
 MeshFile parse_obj(std::string_view text, const std::string& name)
 {
     MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
-    Lines lines(without_mark(text), name);
+    Lines lines(io::without_byte_order_mark(text), name);
     while (lines.next()) {
         if (lines.first == "v") {
             mesh.vertices.push_back(lines.point());
@@ -200,7 +193,7 @@ MeshFile parse_stl(std::string_view bytes, const std::string& name)
     if (bytes.size() >= header + sizeof count) std::memcpy(&count, bytes.data() + header, sizeof count);
     const bool binary = bytes.size() >= header + sizeof count &&
                         bytes.size() == header + sizeof count + each * std::size_t{count};
-    const std::string_view text = without_mark(bytes);
+    const std::string_view text = io::without_byte_order_mark(bytes);
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     const bool is_text = begin != std::string_view::npos && text.substr(begin).starts_with("solid");
     if (!binary && is_text) return parse_stl_text(text, name);

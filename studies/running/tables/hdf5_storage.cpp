@@ -127,6 +127,20 @@ hid_t driver()
     return id;
 }
 
+/// Calls use(bytes, offset, length) for each part of the held bytes within the `count` bytes from the address `at`. offset:
+/// from `at`
+template <class Use>
+void for_overlaps(std::map<std::uint64_t, std::string>& held, std::uint64_t at, size_t count, const Use& use)
+{
+    auto entry = held.upper_bound(at);
+    if (entry != held.begin()) --entry;
+    for (; entry != held.end() && entry->first < at + count; ++entry) {
+        const std::uint64_t first = std::max(at, entry->first),
+                            last = std::min(at + count, entry->first + entry->second.size());
+        if (first < last) use(entry->second.data() + (first - entry->first), first - at, last - first);
+    }
+}
+
 [[noreturn]] void fail(const std::string& path, const char* what)
 {
     throw io::IoError(path + ": " + what + ": " + std::strerror(errno));
@@ -194,14 +208,9 @@ bool Hdf5Storage::read(std::uint64_t at, size_t count, char* to)
         if (n == 0) break;
         done += static_cast<size_t>(n);
     }
-    auto entry = held.upper_bound(at);
-    if (entry != held.begin()) --entry;
-    for (; entry != held.end() && entry->first < at + count; ++entry) {
-        const std::uint64_t first = std::max(at, entry->first),
-                            last = std::min(at + count, entry->first + entry->second.size());
-        if (first < last)
-            std::memcpy(to + (first - at), entry->second.data() + (first - entry->first), last - first);
-    }
+    for_overlaps(held, at, count, [&](char* bytes, std::uint64_t offset, size_t length) {
+        std::memcpy(to + offset, bytes, length);
+    });
     return true;
 }
 
@@ -253,14 +262,9 @@ void Hdf5Storage::hold(std::uint64_t at, size_t count, const char* from)
 /// Raw data in space that was metadata: the held bytes must not overwrite it.
 void Hdf5Storage::patch(std::uint64_t at, size_t count, const char* from)
 {
-    auto entry = held.upper_bound(at);
-    if (entry != held.begin()) --entry;
-    for (; entry != held.end() && entry->first < at + count; ++entry) {
-        const std::uint64_t first = std::max(at, entry->first),
-                            last = std::min(at + count, entry->first + entry->second.size());
-        if (first < last)
-            std::memcpy(entry->second.data() + (first - entry->first), from + (first - at), last - first);
-    }
+    for_overlaps(held, at, count, [&](char* bytes, std::uint64_t offset, size_t length) {
+        std::memcpy(bytes, from + offset, length);
+    });
 }
 
 void Hdf5Storage::commit()

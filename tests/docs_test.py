@@ -7,7 +7,7 @@
 Checked are README.md, CONTRIBUTING.md, CHANGELOG.md, studies/README.md and all pages in docs and examples:
 - The reference pages are those that docs/generate.py writes. commands.md needs the two programs.
 - Relative links lead to files and headings that exist.
-- File names in backticks such as `lie/so3.hpp` exist. `lie/steps/*.hpp` matches at least one file. Placeholders such as
+- File names in backticks such as `lie/so3.hpp` exist. `lie/steps/*.hpp` matches at least one file. Names of examples such as
   `dae/forces/x.cpp`, `contact/detection/x_y.cpp`, `dae/forces/NAME.cpp` and `dae/forces/my_force.cpp` are not checked,
   nor are files that the page declares with <!-- new file: dae/forces/drag.hpp -->, nor lines between
   <!-- old names --> and <!-- end of old names -->.
@@ -91,8 +91,8 @@ def file_name_faults(lines):
             continue
         for name in re.findall(r"`((?:[\w.-]+/)+[\w.*-]+\.\w+)`", line):
             room = name.split("/")[0]
-            placeholder = re.match(r"my_|x[_.]|[A-Z]+\.", name.split("/")[-1])
-            if room in NOT_SOURCES or not (ROOT / room).is_dir() or placeholder or name in new | GENERATED:
+            is_example = re.match(r"my_|x[_.]|[A-Z]+\.", name.split("/")[-1])
+            if room in NOT_SOURCES or not (ROOT / room).is_dir() or is_example or name in new | GENERATED:
                 continue
             if not ((ROOT / name).exists() or "*" in name and any(ROOT.glob(name))):
                 yield number, f"the file {name} does not exist"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dae/body.hpp"
+#include "dae/outputs/quantity.hpp"
 #include "lie/loads.hpp"
 
 #include <array>
@@ -13,12 +14,6 @@
 #include <vector>
 
 namespace hilda::dae {
-
-/// A scalar quantity for the output
-struct Quantity {
-    std::string name;           ///< of a force or an output without the name of the object
-    std::string unit, meaning;  ///< meaning with frame and sign convention
-};
 
 /// An applied load on one or more bodies. Derive from Force to add a force law.
 ///

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "dae/force.hpp"
 #include "dae/model_types.hpp"
+#include "dae/outputs/quantity.hpp"
 
 #include <memory>
 #include <string>

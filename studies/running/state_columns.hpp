@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include "dae/force.hpp"
 #include "studies/running/tables/table_sink.hpp"
 
 #include <memory>

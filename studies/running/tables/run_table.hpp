@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "dae/outputs/quantity.hpp"
 #include "io/sink.hpp"
 
 #include <memory>
@@ -12,11 +13,9 @@
 
 namespace hilda::studies {
 
-/// A column of an output table
-struct TableColumn {
-    std::string name;           ///< ENTITY.quantity
-    std::string unit, meaning;  ///< meaning with frame and sign convention
-    bool is_integer = false;    ///< a count; written without exponent
+/// A column of an output table, with the name ENTITY.quantity
+struct TableColumn : dae::Quantity {
+    bool is_integer = false;  ///< a count; written without exponent
 };
 
 /// One table in the output directory. The functions correspond to those of io::Sink.

@@ -7,7 +7,7 @@ const TableColumn TableSink::time_column = {"t", "s", "time"};
 
 void append(std::vector<TableColumn>& columns, const std::vector<dae::Quantity>& quantities)
 {
-    for (const dae::Quantity& q : quantities) columns.push_back({q.name, q.unit, q.meaning});
+    for (const dae::Quantity& q : quantities) columns.push_back({q});
 }
 
 TableSink::TableSink(const RunSetup& run, std::string name)

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include "dae/force.hpp"
 #include "studies/running/sink.hpp"
 #include "studies/running/tables/run_table.hpp"
 

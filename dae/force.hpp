@@ -59,6 +59,14 @@ public:
     /// Stability limit of the step [s] for schemes that evaluate this force explicitly, at the beginning of a
     /// step
     virtual double stable_step(const State& /*x*/) const { return std::numeric_limits<double>::infinity(); }
+    /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for each
+    /// accepted step; the function must not allocate memory.
+    virtual bool is_stable(const State& x, double h) const { return !(h > stable_step(x)); }
+    /// Whether the force cannot supply energy: the work that it does is at most the decrease of potential_energy() +
+    /// internal_energy()
+    virtual bool is_passive() const { return false; }
+    /// Energy of springs whose deflections are internal states, such as those of friction [J]
+    virtual double internal_energy(const State& /*x*/) const { return 0; }
 
     /// The bodies on which the force acts, if it depends on the motion of these bodies only; `ground` fills
     /// an unused place. Schemes with an exact Newton matrix differentiate the force by the motions of these

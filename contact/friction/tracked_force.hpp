@@ -27,6 +27,7 @@ public:
 
     int discrete_states() const override { return 1; }
     int internal_states() const override;
+    bool is_passive() const override { return true; }
     void update_internal_state(lie::State& x) const override;
 
     std::array<int, 2> bodies() const override { return {i, j}; }

@@ -30,6 +30,7 @@ public:
 
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
+    bool is_passive() const override { return true; }
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }

@@ -46,6 +46,7 @@ public:
         const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
         return 0.5 * stiffness * stretch * stretch;
     }
+    bool is_passive() const override { return damping >= 0 && !law; }
 
     std::vector<Quantity> quantities() const override
     {

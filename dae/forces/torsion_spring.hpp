@@ -28,6 +28,7 @@ public:
         const double twist = theta - free_angle;
         return 0.5 * stiffness * twist * twist;
     }
+    bool is_passive() const override { return damping >= 0; }
 };
 
 }  // namespace hilda::dae

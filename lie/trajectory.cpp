@@ -46,8 +46,7 @@ double March::time(long node) const
 }
 
 /// Throws if a body rotates by π or more in the step, at the angular velocity of its beginning or its end. The
-/// equations of an implicit scheme have several solutions, which differ by whole turns of a body, and angles are
-/// followed from step to step.
+/// turns of an angle that is followed from step to step would then be counted wrongly.
 void March::refuse_half_turns(const State& before, const State& to) const
 {
     for (size_t b = 0; b < to.body.size(); ++b) {

@@ -68,6 +68,7 @@ public:
             if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
                 place(x, h);
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
+                refuse_whole_turns(x, h, "rA-genalpha");
                 x.history = a_next;
                 return done(attempt, k);
             }

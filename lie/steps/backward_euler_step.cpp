@@ -28,6 +28,7 @@ int BackwardEulerStep::step(State& x, double h)
         z -= e;
         if (converged(k, h * h * length_of_motion(e), constraint_part(e), h * h)) {
             place(x, h);
+            refuse_whole_turns(x, h, name);
             for (Motion& body : x.body) body.A = orthonormalised(body.A);
             return done(attempt, k);
         }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <sstream>
 
@@ -104,6 +105,18 @@ void NewtonStep::take_loads(State& node, const State& after)
         node.body[i].rddot = after.body[i].rddot;
         node.body[i].omegadot_bar = after.body[i].omegadot_bar;
     }
+}
+
+void NewtonStep::refuse_whole_turns(const State& x, double h, const std::string& scheme) const
+{
+    for (int i = 0; i < bodies; ++i)
+        if (const double angle = h * x.body[i].omega_bar.norm(); !(angle < std::numbers::pi)) {
+            std::ostringstream what;
+            what.precision(3);
+            what << scheme << ": " << model.body_name(i) << " rotates by " << angle
+                 << " rad in one step, and the limit is pi; reduce the step";
+            throw NumericalFailure("step_too_large", what.str());
+        }
 }
 
 int NewtonStep::done(Attempt& attempt, int k)

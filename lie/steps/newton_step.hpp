@@ -82,6 +82,12 @@ protected:
     /// schemes.
     static void take_loads(State& node, const State& after);
 
+    /// Throws NumericalFailure if a body rotates by π or more in the step.
+    ///
+    /// The equations of an implicit scheme have several solutions, which differ by full revolutions of a
+    /// body. A rotation of at least π indicates the wrong one.
+    void refuse_whole_turns(const State& x, double h, const std::string& scheme) const;
+
     /// Marks the step as accepted, updates the counters and returns the number of iterations k.
     int done(Attempt& attempt, int k);
 

@@ -57,11 +57,18 @@ public:
     int first_discrete_state = 0, first_internal_state = 0;  ///< indices into the state, set by the model
 
     /// Stability limit of the step [s] for schemes that evaluate this force explicitly, at the beginning of a
-    /// step
-    virtual double stable_step(const State& /*x*/) const { return std::numeric_limits<double>::infinity(); }
+    /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d = damping_factor is 1 for a scheme whose
+    /// loads contain the velocities of the last step, and 2 if they contain velocities extrapolated to the node.
+    virtual double stable_step(const State& /*x*/, double /*damping_factor*/ = 1) const
+    {
+        return std::numeric_limits<double>::infinity();
+    }
     /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for each
     /// accepted step; the function must not allocate memory.
-    virtual bool is_stable(const State& x, double h) const { return !(h > stable_step(x)); }
+    virtual bool is_stable(const State& x, double h, double damping_factor) const
+    {
+        return !(h > stable_step(x, damping_factor));
+    }
     /// Whether the force cannot supply energy: the work that it does is at most the decrease of potential_energy() +
     /// internal_energy()
     virtual bool is_passive() const { return false; }

@@ -94,7 +94,18 @@ void Model::load(std::unique_ptr<Force> f)
 {
     if (f->last_body() >= static_cast<int>(body.size()))
         lie::reject(f->label(), "no body has this number", f->last_body());
+    const auto number = static_cast<int>(force.size());
+    const std::array<int, 2> on = f->bodies();
+    forces_on_body.resize(body.size());
+    for (size_t k = 0; k < on.size(); ++k)
+        if (on[k] != ground && (k == 0 || on[k] != on[0])) forces_on_body[on[k]].push_back(number);
     force.push_back(std::move(f));
+}
+
+std::span<const int> Model::forces_on(int b) const
+{
+    if (b == ground || b >= static_cast<int>(forces_on_body.size())) return {};
+    return forces_on_body[b];
 }
 
 void Model::prepare(State& x)
@@ -184,11 +195,12 @@ bool Model::internal_states_are_history() const
            });
 }
 
-Model::StableStep Model::stable_step(const State& x) const
+Model::StableStep Model::stable_step(const State& x, double damping_factor) const
 {
     StableStep smallest;
     for (size_t k = 0; k < force.size(); ++k)
-        if (const double h = force[k]->stable_step(x); h < smallest.h) smallest = {h, static_cast<int>(k)};
+        if (const double h = force[k]->stable_step(x, damping_factor); h < smallest.h)
+            smallest = {h, static_cast<int>(k)};
     return smallest;
 }
 

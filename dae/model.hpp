@@ -11,6 +11,7 @@
 #include "lie/system.hpp"
 
 #include <memory>
+#include <span>
 #include <unordered_set>
 
 namespace hilda::dae {
@@ -100,6 +101,8 @@ public:
     requires std::derived_from<F, Force>
     void load(F force) { load(std::make_unique<F>(std::move(force))); }
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
+    /// Indices of the forces that have this body among their bodies(), ascending
+    std::span<const int> forces_on(int body) const;
 
     /// Prepares the model and the state for a run from x. Called by dae::start().
     ///
@@ -118,7 +121,7 @@ public:
         double h = std::numeric_limits<double>::infinity();  ///< [s]
         int force = -1;  ///< index of the force, -1 if no force has a limit
     };
-    StableStep stable_step(const State& x) const;
+    StableStep stable_step(const State& x, double damping_factor = 1) const;
 
     /// A scalar row of a constraint. It is part of the equations, or removed from them as redundant.
     struct Row {
@@ -209,6 +212,7 @@ private:
     std::vector<int> active, dropped;  ///< ascending
     std::vector<std::unique_ptr<Constraint>> general_constraint;
     std::vector<std::unique_ptr<Force>> force;
+    std::vector<std::vector<int>> forces_on_body;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state
 
     lie::Mass inertia;

@@ -10,6 +10,7 @@
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/projection.hpp"
+#include "lie/trajectory.hpp"
 
 #include <algorithm>
 
@@ -288,11 +289,11 @@ void check_dropped_rows(const Model& model, const State& x)
         const Model::Row& row = model.all_rows()[k];
         const double residual = std::abs(model.scaled_residual(row, x));
         if (!(residual <= redundancy_tolerance))
-            throw lie::NumericalFailure("constraint_drift",
-                                        model.name_of(row) +
-                                            ": removed as redundant at the start, now violated by " +
-                                            number(residual) + " m or rad, more than " +
-                                            number(redundancy_tolerance) + "; it is no longer redundant");
+            throw lie::NodeFailure("constraint_drift",
+                                   model.name_of(row) +
+                                       ": removed as redundant at the start, now violated by " +
+                                       number(residual) + " m or rad, more than " +
+                                       number(redundancy_tolerance) + "; it is no longer redundant");
     }
 }
 

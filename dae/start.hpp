@@ -47,7 +47,7 @@ struct StartReport {
 /// converge.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
 
-/// Throws lie::NumericalFailure "constraint_drift" if the scaled residual of a row that was removed as
+/// Throws lie::NodeFailure "constraint_drift" if the scaled residual of a row that was removed as
 /// redundant exceeds 1e-6 m or rad in x. The row has then become independent of the others, and the computed
 /// motion is not that of the model.
 void check_dropped_rows(const Model& model, const State& x);

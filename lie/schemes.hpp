@@ -31,6 +31,11 @@ struct Scheme {
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
+    /// Whether the energy of a conservative system may drift in one direction, by an error of the order of the scheme.
+    /// Other schemes of fixed step conserve or dissipate it.
+    bool energy_drifts = false;
+    /// Whether the loads contain velocities extrapolated to the node, which lowers the stability limit of dampers
+    bool extrapolates_velocities = false;
     bool rho_infinity =
         false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;

@@ -12,6 +12,7 @@ struct Statistics {
     long factorizations = 0;    ///< with a new choice of pivots
     long refactorizations = 0;  ///< with earlier pivots of KLU, or by the condensed solver
     double correction = 0;      ///< norm of the last correction, in the units of Settings::tolerance
+    double condition = 1;       ///< reciprocal condition of the last matrix; 1 for a scheme without matrix
 
     double iterations_per_step() const
     {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "lie/check.hpp"
 #include "lie/state.hpp"
 
 #include <span>
@@ -11,6 +12,11 @@
 namespace hilda::lie {
 
 class Integrator;
+
+/// A failure that an observer found at a node, after it was passed to the observers before
+class NodeFailure : public NumericalFailure {
+    using NumericalFailure::NumericalFailure;
+};
 
 /// The nodes t_n = t_0 + n h, n = 0 … steps. The nodes at multiples of `interval`, and the last node, are
 /// output rows.
@@ -32,7 +38,7 @@ struct TimeGrid {
 class Observer {
 public:
     virtual ~Observer() = default;
-    /// Node n, and the number of iterations of the step that ends there (0 at the start)
+    /// Node n, and the number of iterations of the step that ends there (0 at the start). NodeFailure ends the run.
     virtual void accepted(const State& node, long n, int iterations) = 0;
 };
 

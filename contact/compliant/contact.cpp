@@ -26,6 +26,23 @@ std::string got(const std::string& what, double value, const std::string& unit)
     return text.str();
 }
 
+/// The length [m] to which the overlap of a surface is compared: the radius of curvature, or the size where the
+/// surface is flatter
+struct ReferenceLength {
+    double length;
+    bool round;  ///< the length is the radius of curvature
+};
+ReferenceLength reference_length(const Surface& surface, const Mat3& K, const ContactPoint& at)
+{
+    const double rounding = no_curvature * (at.K_i.norm() + at.K_j.norm());
+    const auto [kappa_1, kappa_2] = principal_curvatures(K, at.n);
+    const double curvature = std::max(std::abs(kappa_1), std::abs(kappa_2));
+    const double radius = curvature > rounding ? 1 / curvature : infinite;
+    const double size = surface.size() > 0 ? surface.size() : infinite;
+    const bool round = radius <= size * (1 + 1e-9);
+    return {round ? radius : size, round};
+}
+
 }  // namespace
 
 CompliantContact::CompliantContact(std::string name, Shape i, Shape j, Inertia inertia_i, Inertia inertia_j,
@@ -59,8 +76,8 @@ ContactPoint CompliantContact::detect(const Motion& bi, const Motion& bj, const 
     }
 }
 
-ContactState CompliantContact::state_without_displacement(const ContactPoint& contact_point, const Motion& bi,
-                                                          const Motion& bj) const
+ContactState CompliantContact::state_without_history(const ContactPoint& contact_point, const Motion& bi,
+                                                     const Motion& bj) const
 {
     ContactState now;
     now.contact_point = contact_point;
@@ -115,7 +132,7 @@ ContactState CompliantContact::state_at_largest_compression(const Motion& bi, co
     }
     contact_point.gap = -upper;
     const Motion still_i{.r = bi.r, .A = bi.A}, still_j{.r = bj.r, .A = bj.A};
-    return state_without_displacement(contact_point, still_i, still_j);
+    return state_without_history(contact_point, still_i, still_j);
 }
 
 std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) const
@@ -144,13 +161,7 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
         return got("the normal or friction law needs curvature: the sum of the curvatures must be positive",
                    mean, "1/m");
     const auto too_deep = [&](const Surface& surface, const Mat3& K) {
-        const auto [kappa_1, kappa_2] = principal_curvatures(K, contact_point.n);
-        const double curvature = std::max(std::abs(kappa_1), std::abs(kappa_2));
-        const double radius = curvature > rounding ? 1 / curvature : infinite;
-        // on a flat part of a surface the size is the reference
-        const double size = surface.size() > 0 ? surface.size() : infinite;
-        const bool round = radius <= size * (1 + 1e-9);
-        const double length = round ? radius : size;
+        const auto [length, round] = reference_length(surface, K, contact_point);
         if (!(-contact_point.gap > max_relative_overlap * length)) return std::string();
         std::ostringstream what;
         what << "the surfaces must not overlap by more than " << max_relative_overlap * length
@@ -162,12 +173,29 @@ std::string CompliantContact::start_error(const Motion& bi, const Motion& bj) co
     return {};
 }
 
-double CompliantContact::stable_step(const ContactState& now, const Motion& bi, const Motion& bj,
-                                     int contacts_of_i, int contacts_of_j) const
+double CompliantContact::relative_overlap(const ContactPoint& at) const
+{
+    return -at.gap / std::min(reference_length(*i.surface, at.K_i, at).length,
+                              reference_length(*j.surface, at.K_j, at).length);
+}
+
+NormalSupport CompliantContact::normal_support(const ContactState& now, const Motion& bi,
+                                               const Motion& bj) const
 {
     const NormalInput p = normal_input(now.contact_point, bi, bj);
-    return FrictionPair::stable_step(now, {.K = law->stiffness(p), .D = p.overlap > 0 ? law->damping(p) : 0},
-                                     bi, bj, contacts_of_i, contacts_of_j);
+    return {.K = law->stiffness(p), .D = p.overlap > 0 ? law->damping(p) : 0};
+}
+
+double CompliantContact::stable_step(const ContactState& now, const Motion& bi, const Motion& bj,
+                                     ContactCounts contacts, double damping_factor) const
+{
+    return FrictionPair::stable_step(now, normal_support(now, bi, bj), bi, bj, contacts, damping_factor);
+}
+
+bool CompliantContact::is_stable(double h, double damping_factor, const ContactState& now, const Motion& bi,
+                                 const Motion& bj, ContactCounts contacts) const
+{
+    return FrictionPair::is_stable(h, damping_factor, now, normal_support(now, bi, bj), bi, bj, contacts);
 }
 
 }  // namespace hilda::contact

@@ -29,16 +29,25 @@ public:
     ContactState evaluate_at(const ContactPoint& contact_point, const Motion& bi, const Motion& bj,
                              const ContactHistory& history) const;
 
+    /// The same without a sliding displacement: for the stability limit
+    ContactState state_without_history(const ContactPoint& contact_point, const Motion& bi,
+                                       const Motion& bj) const;
+
     /// The reason why a run cannot start at these poses, or an empty text if it can. The reasons are: the
     /// contact point is not unique; one surface does not fit into the other; a law needs a positive curvature
     /// and the surfaces have none; the overlap exceeds a tenth of the radius of curvature or of the size of a
     /// surface, whichever is smaller. Throws lie::NumericalFailure if the search for the contact point fails.
     std::string start_error(const Motion& bi, const Motion& bj) const;
 
+    /// Overlap relative to the smaller of the radii of curvature and sizes of both surfaces; negative for a gap
+    double relative_overlap(const ContactPoint& contact_point) const;
+
     /// The largest step [s] for which symplectic Euler is stable: FrictionPair::stable_step() with the
     /// stiffness and damping of the normal law in the state `now`
-    double stable_step(const ContactState& now, const Motion& bi, const Motion& bj, int contacts_of_i = 1,
-                       int contacts_of_j = 1) const;
+    double stable_step(const ContactState& now, const Motion& bi, const Motion& bj,
+                       ContactCounts contacts = {}, double damping_factor = 1) const;
+    bool is_stable(double h, double damping_factor, const ContactState& now, const Motion& bi,
+                   const Motion& bj, ContactCounts contacts = {}) const;
 
     /// Estimate of the contact state at the largest compression expected after this start, for stable_step().
     ///
@@ -62,9 +71,8 @@ public:
 
 private:
     NormalInput normal_input(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;
+    NormalSupport normal_support(const ContactState& now, const Motion& bi, const Motion& bj) const;
     ContactPoint detect(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
-    ContactState state_without_displacement(const ContactPoint& contact_point, const Motion& bi,
-                                            const Motion& bj) const;
 
     std::unique_ptr<const Detector> detector;
     double m_normal;

@@ -6,6 +6,9 @@
 
 #include "dae/model.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace hilda::contact {
 
 ContactForce::ContactForce(const std::string& name, const dae::Model& model, int i, const Shape& shape_i,
@@ -61,17 +64,46 @@ std::string ContactForce::start_error(const lie::State& x) const
     return contact.start_error(motion(x, i), motion(x, j));
 }
 
-double ContactForce::stable_step(const lie::State& x) const
+double ContactForce::stable_step(const lie::State& x, double damping_factor) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     double weight = 0;  // weight of all bodies: the largest static load of the contact
     for (const double m : model.mass().m) weight += m * model.gravity.norm();
     try {
         return contact.stable_step(contact.state_at_largest_compression(bi, bj, saved_history(x), weight), bi,
-                                   bj, contacts_of(i, x), contacts_of(j, x));
+                                   bj, near_contacts(x), damping_factor);
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
+}
+
+ContactPoint ContactForce::contact_point_of_node(const lie::State& x) const
+{
+    return restored<NodePoint>(x.internal_state.data() + first_internal_state +
+                               TrackedForce::internal_states())
+        .contact_point;
+}
+
+bool ContactForce::is_stable(const lie::State& x, double h, double damping_factor) const
+{
+    if (!is_active(x) || !is_touching(x)) return true;
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const ContactState now = contact.state_without_history(contact_point_of_node(x), bi, bj);
+    return contact.is_stable(h, damping_factor, now, bi, bj, touching_contacts(x));
+}
+
+double ContactForce::overlap(const lie::State& x) const
+{
+    static_assert(offsetof(NodePoint, contact_point.gap) % sizeof(double) == 0);
+    if (!is_active(x) || !is_touching(x)) return 0;
+    const double gap = x.internal_state[first_internal_state + TrackedForce::internal_states() +
+                                        offsetof(NodePoint, contact_point.gap) / sizeof(double)];
+    return std::max(0., -gap);
+}
+
+double ContactForce::relative_overlap(const lie::State& x) const
+{
+    return is_active(x) && is_touching(x) ? contact.relative_overlap(contact_point_of_node(x)) : 0;
 }
 
 }  // namespace hilda::contact

@@ -24,7 +24,12 @@ public:
     int internal_states() const override;
     /// Stability limit [s] at the largest compression expected, see
     /// CompliantContact::state_at_largest_compression
-    double stable_step(const lie::State& x) const override;
+    double stable_step(const lie::State& x, double damping_factor = 1) const override;
+    bool is_stable(const lie::State& x, double h, double damping_factor) const override;
+    /// Overlap at the last accepted node [m]; 0 while the surfaces are apart
+    double overlap(const lie::State& x) const;
+    /// CompliantContact::relative_overlap() at the last accepted node
+    double relative_overlap(const lie::State& x) const;
 
     /// Makes this force the fallback of constraint c: it is active only while c is in the fallback mode.
     void set_fallback_of(const dae::Constraint& c) { constraint = &c; }
@@ -39,6 +44,7 @@ private:
     bool applies_normal_force() const override { return true; }
     bool is_near_contact(const lie::State& x) const override;
     void save(const Instant& now, lie::State& x) const override;
+    ContactPoint contact_point_of_node(const lie::State& x) const;
 
     /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and the
     /// poses of the bodies there. Loads, energy and output at these poses do not detect the contact again. The

@@ -93,7 +93,7 @@ Rates EvolvingFriction::damper_rates(const Instant& now, const lie::State& x) co
             .psi = last.psi};
 }
 
-double EvolvingFriction::stable_step(const lie::State& x) const
+double EvolvingFriction::stable_step(const lie::State& x, double /*damping_factor*/) const
 {
     if (dae::Model::mode(contact, x) == EvolvingContact::fallback_active)
         return std::numeric_limits<double>::infinity();
@@ -104,7 +104,16 @@ double EvolvingFriction::stable_step(const lie::State& x) const
     const double N = std::max(normal_force(x), weight);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactState now = friction_pair.contact_state(contact_point(x), N, bi, bj, {});
-    return friction_pair.stable_step(now, {.rigid = true}, bi, bj, contacts_of(i, x), contacts_of(j, x));
+    return friction_pair.stable_step(now, {.rigid = true}, bi, bj, near_contacts(x));
+}
+
+bool EvolvingFriction::is_stable(const lie::State& x, double h, double /*damping_factor*/) const
+{
+    const double N = normal_force(x);
+    if (!(N > 0)) return true;
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const ContactState now = friction_pair.contact_state(contact_point(x), N, bi, bj, {});
+    return friction_pair.is_stable(h, 1, now, {.rigid = true}, bi, bj, touching_contacts(x));
 }
 
 }  // namespace hilda::contact

@@ -34,6 +34,13 @@ Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
     return {normal, 0.5 * (body.J_bar.trace() - normal)};
 }
 
+/// Largest eigenvalue of J̄⁻¹ [1/(kg m²)]
+double largest_inverse(const Inertia& body)
+{
+    if (!body.turns()) return 0;
+    return Eigen::SelfAdjointEigenSolver<Mat3>(body.J_bar_inverse(), Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
 }  // namespace
 
 Mat3 Inertia::J_bar_inverse() const { return turns() ? Mat3(J_bar.inverse()) : Mat3(Mat3::Zero()); }
@@ -42,7 +49,8 @@ FrictionPair::FrictionPair(std::string name, Shape i, Shape j, Inertia inertia_i
                            std::shared_ptr<const FrictionModel> friction)
     : name(std::move(name)), i(std::move(i)), j(std::move(j)), inertia_i(std::move(inertia_i)),
       inertia_j(std::move(inertia_j)), friction(std::move(friction)),
-      smaller_size(smaller_size_of(this->i, this->j)),
+      smaller_size(smaller_size_of(this->i, this->j)), j_i(largest_inverse(this->inertia_i)),
+      j_j(largest_inverse(this->inertia_j)),
       m(this->friction->fictitious(this->inertia_i.m, this->inertia_j.m))
 {}
 
@@ -94,51 +102,103 @@ void FrictionPair::advance(const ContactState& now, const Motion& bi, const Moti
     history.touching = touching;
 }
 
-double FrictionPair::stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
-                                 const Motion& bj, int contacts_of_i, int contacts_of_j) const
-{
+/// M⁻¹, K and D of the relative motions of a contact: sliding along u and w, approach along n, rolling about u and
+/// w, spinning about n
+struct FrictionPair::Linearised {
     using Mat6 = Eigen::Matrix<double, 6, 6>;
-    using Rows = Eigen::Matrix<double, 6, 3>;
     using Vec6 = Eigen::Matrix<double, 6, 1>;
-    const Springs springs = friction->springs(now);
+    Mat6 W = Mat6::Zero();
+    Vec6 K, D;
+
+    /// Whether the largest eigenvalue of √P W √P with P = 2 d h D + h² K is below 4; d: damping_factor
+    bool is_stable(double h, double damping_factor) const
+    {
+        const Vec6 P = 2 * damping_factor * h * D + h * h * K;
+        if (P.dot(W.diagonal()) < 4) return true;  // the trace is an upper limit
+        const Vec6 root = P.cwiseSqrt();
+        const Mat6 scaled = root.asDiagonal() * W * root.asDiagonal();
+        return Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
+               4;
+    }
+};
+
+FrictionPair::Linearised FrictionPair::linearised(const ContactState& now, const Springs& springs,
+                                                  const NormalSupport& normal, const Motion& bi,
+                                                  const Motion& bj, ContactCounts contacts) const
+{
+    using Rows = Eigen::Matrix<double, 6, 3>;
     const Vec3 n = now.contact_point.n, u = n.unitOrthogonal(), w = n.cross(u);
 
-    // Rows of W = M⁻¹: sliding along u and w, approach along n, rolling about u and w, spinning about n
     constexpr int normal_row = 2;
     Rows linear = Rows::Zero();
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
-    Mat6 W = Mat6::Zero();
-    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int contacts) {
+    Linearised of;
+    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int number) {
         if (!body.moves()) return;
         const Vec3 s = C - motion.r;
         Rows angular = Rows::Zero();
         angular << s.cross(u).transpose(), s.cross(w).transpose(), s.cross(n).transpose(), u.transpose(),
             w.transpose(), n.transpose();
         const Rows in_body = angular * motion.A;
-        W += contacts *
-             (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
+        of.W += number *
+                (linear * linear.transpose() / body.m + in_body * body.J_bar_inverse() * in_body.transpose());
     };
-    add(inertia_i, bi, now.contact_point.C_i, contacts_of_i);
-    add(inertia_j, bj, now.contact_point.C_j, contacts_of_j);
-    if (normal.rigid && W(normal_row, normal_row) > 0) {
+    add(inertia_i, bi, now.contact_point.C_i, contacts.of_i);
+    add(inertia_j, bj, now.contact_point.C_j, contacts.of_j);
+    if (normal.rigid && of.W(normal_row, normal_row) > 0) {
         // eliminate the constrained normal motion: Schur complement
-        const Vec6 normal_column = W.col(normal_row);
-        W -= normal_column * normal_column.transpose() / normal_column[normal_row];
+        const Linearised::Vec6 normal_column = of.W.col(normal_row);
+        of.W -= normal_column * normal_column.transpose() / normal_column[normal_row];
     }
-    Vec6 K, D;
-    K << springs.K_slide, springs.K_slide, normal.K, springs.K_roll, springs.K_roll, springs.K_spin;
-    D << springs.D_slide, springs.D_slide, normal.D, springs.D_roll, springs.D_roll, springs.D_spin;
-    const auto stable = [&](double h) {
-        const Vec6 root = (2 * h * D + h * h * K).cwiseSqrt();
-        const Mat6 scaled = root.asDiagonal() * W * root.asDiagonal();
-        return Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
-               4;
+    of.K << springs.K_slide, springs.K_slide, normal.K, springs.K_roll, springs.K_roll, springs.K_spin;
+    of.D << springs.D_slide, springs.D_slide, normal.D, springs.D_roll, springs.D_roll, springs.D_spin;
+    return of;
+}
+
+bool FrictionPair::is_stable(double h, double damping_factor, const ContactState& now,
+                             const NormalSupport& normal, const Motion& bi, const Motion& bj,
+                             ContactCounts contacts) const
+{
+    // An upper limit of the trace of P W: no row of a body is longer than √(1/m + s² j), or √j for a rotation
+    const Springs springs = friction->springs(now);
+    double translations = 0, rotations = 0;
+    const auto add = [&](const Inertia& body, double j, const Vec3& s, int number) {
+        if (!body.moves()) return;
+        translations += number * (1 / body.m + s.squaredNorm() * j);
+        rotations += number * j;
     };
+    add(inertia_i, j_i, now.contact_point.C_i - bi.r, contacts.of_i);
+    add(inertia_j, j_j, now.contact_point.C_j - bj.r, contacts.of_j);
+    const auto P = [&](double K, double D) { return 2 * damping_factor * h * D + h * h * K; };
+    const double normal_row = normal.rigid ? 0 : P(normal.K, normal.D);
+    if ((2 * P(springs.K_slide, springs.D_slide) + normal_row) * translations +
+            (2 * P(springs.K_roll, springs.D_roll) + P(springs.K_spin, springs.D_spin)) * rotations <
+        4)
+        return true;
+    return linearised(now, springs, normal, bi, bj, contacts).is_stable(h, damping_factor);
+}
+
+double FrictionPair::elastic_energy(const ContactState& now, const Wrench& load,
+                                    const ContactHistory& history) const
+{
+    if (!(now.N > 0)) return 0;
+    const Vec3 &n = now.slip.n, &u = now.slip.u;
+    const Deflections& d = history.deflections;
+    return 0.5 * (std::abs(load.F_E.dot(tangent(d.S, n, u))) +
+                  std::abs(n.cross(load.T_roll_E).dot(tangent(d.Theta_i, n, u))) +
+                  std::abs(n.cross(load.T_roll_E_j).dot(tangent(d.Theta_j, n, u))) +
+                  std::abs(load.T_spin_E * d.Psi));
+}
+
+double FrictionPair::stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
+                                 const Motion& bj, ContactCounts contacts, double damping_factor) const
+{
+    const Linearised of = linearised(now, friction->springs(now), normal, bi, bj, contacts);
     double lower = 1e-15, upper = 1e6;  // [s]
-    if (stable(upper)) return infinite;
+    if (of.is_stable(upper, damping_factor)) return infinite;
     while (upper > lower * (1 + 1e-12)) {
         const double middle = std::sqrt(lower * upper);
-        (stable(middle) ? lower : upper) = middle;
+        (of.is_stable(middle, damping_factor) ? lower : upper) = middle;
     }
     return lower;
 }

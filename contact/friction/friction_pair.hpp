@@ -34,6 +34,11 @@ struct NormalSupport {
     bool rigid = false;   ///< the normal direction is a constraint; K and D are not used
 };
 
+/// Numbers of contacts that the two bodies of a contact have, with this one
+struct ContactCounts {
+    int of_i = 1, of_j = 1;
+};
+
 /// A pair of surfaces with a friction law. The object is constant; the caller owns the ContactHistory. See
 /// CompliantContact for the order of the calls in a step.
 class FrictionPair {
@@ -60,13 +65,20 @@ public:
     /// relative motions: sliding along u and w, approach along n, rolling about u and w, spinning about n.
     /// For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
     ///
-    /// The mass of a body with several contacts is divided equally among them (contacts_of_i, contacts_of_j).
-    /// If each contact is stable with its share, the whole system is. Infinite if no finite step is unstable.
+    /// The mass of a body with several contacts is divided equally among them. If each contact is stable with
+    /// its share, the whole system is. Infinite if no finite step is unstable. damping_factor: see
+    /// dae::Force::stable_step(); it multiplies D.
     ///
     /// Example: for a sphere without rolling friction held on its surface, h = (√(d² + 4 k) - d)/k,
     /// where d = D q, k = K q, q = 1/m + R²/I.
     double stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
-                       const Motion& bj, int contacts_of_i = 1, int contacts_of_j = 1) const;
+                       const Motion& bj, ContactCounts contacts = {}, double damping_factor = 1) const;
+    /// Whether a step h [s] is below stable_step(); much cheaper for a single h
+    bool is_stable(double h, double damping_factor, const ContactState& now, const NormalSupport& normal,
+                   const Motion& bi, const Motion& bj, ContactCounts contacts = {}) const;
+    /// Energy of the springs of friction [J]: half the product of force and deflection of each. `load` is that of
+    /// `now` and `history`.
+    double elastic_energy(const ContactState& now, const Wrench& load, const ContactHistory& history) const;
 
     const std::string name;
     const Shape i, j;
@@ -79,10 +91,15 @@ protected:
     /// Sets m, I_roll, I_spin and max_lever of `now`
     void set_fictitious_inertia(ContactState& now, const Motion& bi, const Motion& bj) const;
 
+    struct Linearised;
+    Linearised linearised(const ContactState& now, const Springs& springs, const NormalSupport& normal,
+                          const Motion& bi, const Motion& bj, ContactCounts contacts) const;
+
     double smaller_size;  ///< smaller size of the two surfaces [m]; infinite if neither has one
 
 private:
-    double m;  // fictitious mass [kg]
+    double j_i, j_j;  ///< largest eigenvalues of the J̄⁻¹ of both bodies [1/(kg m²)]; 0 for the ground
+    double m;         ///< fictitious mass [kg]
 };
 
 }  // namespace hilda::contact

@@ -162,18 +162,44 @@ void TrackedForce::update_internal_state(lie::State& x) const
     if (is_active(x)) save(at(x), x);
 }
 
-int TrackedForce::contacts_of(int body, const lie::State& x) const
+bool TrackedForce::is_touching(const lie::State& x) const
 {
-    int count = 0;
-    for (const auto& force : model.forces()) {
-        const auto* other = dynamic_cast<const TrackedForce*>(force.get());
-        if (other == nullptr || (other->i != body && other->j != body)) continue;
-        if (other != this && other->normal_constraint() != nullptr &&
-            other->normal_constraint() == normal_constraint())
+    ContactHistory m;
+    set_flags(x.discrete_state[first_discrete_state], m);
+    return m.touching;
+}
+
+double TrackedForce::internal_energy(const lie::State& x) const
+{
+    if (!is_active(x) || !is_touching(x)) return 0;
+    const Instant now = at(x);
+    return pair().elastic_energy(now.contact_state, load(now, x), now.history);
+}
+
+template <class IsCounted>
+int TrackedForce::contacts_of(int body, IsCounted is_counted) const
+{
+    int count = 1;
+    for (const int k : model.forces_on(body)) {
+        const auto* other = dynamic_cast<const TrackedForce*>(model.forces()[k].get());
+        if (other == nullptr || other == this) continue;
+        if (other->normal_constraint() != nullptr && other->normal_constraint() == normal_constraint())
             continue;  // another force of the same contact; only one of them is active
-        if (other == this || other->is_near_contact(x)) ++count;
+        if (is_counted(*other)) ++count;
     }
-    return std::max(1, count);
+    return count;
+}
+
+ContactCounts TrackedForce::near_contacts(const lie::State& x) const
+{
+    const auto is_near = [&](const TrackedForce& other) { return other.is_near_contact(x); };
+    return {contacts_of(i, is_near), contacts_of(j, is_near)};
+}
+
+ContactCounts TrackedForce::touching_contacts(const lie::State& x) const
+{
+    const auto touches = [&](const TrackedForce& other) { return other.is_touching(x); };
+    return {contacts_of(i, touches), contacts_of(j, touches)};
 }
 
 void TrackedForce::rethrow(const lie::NumericalFailure& e, const lie::State& x) const

@@ -44,6 +44,9 @@ public:
         bool is_saved = false;
     };
     Instant at(const lie::State& x) const;
+    /// Whether the bodies were in contact at the node of the history in x
+    bool is_touching(const lie::State& x) const;
+    double internal_energy(const lie::State& x) const override;
     /// Friction loads at x, for output; zero while the force is not applied. `now` is at(x).
     Wrench friction(const Instant& now, const lie::State& x) const;
     Wrench friction(const lie::State& x) const;
@@ -69,8 +72,11 @@ protected:
     /// True if the bodies are in contact or close to it; used to count the contacts of a body
     virtual bool is_near_contact(const lie::State& x) const = 0;
 
-    /// Number of contacts of a body that are near contact at x, including this one
-    int contacts_of(int body, const lie::State& x) const;
+    /// Numbers of contacts of both bodies that are near contact at x (is_near_contact()), with this one. The ground
+    /// counts as a body with one contact.
+    ContactCounts near_contacts(const lie::State& x) const;
+    /// The same for the contacts that are in contact according to their histories in x, without detection
+    ContactCounts touching_contacts(const lie::State& x) const;
     /// Throws e again with the names of the bodies and the time of x appended
     [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
 
@@ -85,6 +91,8 @@ protected:
 
 private:
     Wrench load(const Instant& now, const lie::State& x) const;
+    template <class IsCounted>
+    int contacts_of(int body, IsCounted is_counted) const;
 
     const std::string name_i, name_j;
 };

@@ -77,7 +77,7 @@ void Scene::check(double h) const
         const Motion &bi = body[p.i], &bj = body[p.j];
         const double bound =
             p.contact.stable_step(p.contact.state_at_largest_compression(bi, bj, p.history, weight), bi, bj,
-                                  std::max(1, contacts[p.i]), std::max(1, contacts[p.j]));
+                                  {std::max(1, contacts[p.i]), std::max(1, contacts[p.j])});
         if (h > bound) {
             std::ostringstream what;
             what << "contact '" << p.contact.name << "': the step must not exceed its stability bound of "

@@ -145,6 +145,7 @@ const bool registered = register_scheme<GeneralisedAlpha>(
      .unknowns = "increment of (r, A), beta' h^2 lambda",
      .source = "Bruls, Cardona, Arnold (2012)",
      .algebraic = true,
+     .extrapolates_velocities = true,
      .rho_infinity = true});
 
 }  // namespace

@@ -42,7 +42,8 @@ const bool registered = register_scheme<HalfImplicit1>(
      .source = "Fang (2022), Sec. 3.5",
      .algebraic = true,
      .nonholonomic = true,
-     .regularised = true});
+     .regularised = true,
+     .energy_drifts = true});
 
 }  // namespace
 }  // namespace hilda::lie

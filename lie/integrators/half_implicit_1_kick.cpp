@@ -43,7 +43,9 @@ const bool registered = register_scheme<HalfImplicit1Kick>(
      .source = "Fang (2022), Sec. 3.5, with start and velocities of leapfrog",
      .algebraic = true,
      .nonholonomic = true,
-     .regularised = true});
+     .regularised = true,
+     .energy_drifts = true,
+     .extrapolates_velocities = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -123,7 +123,8 @@ const bool registered = register_scheme<HalfImplicit1Momentum>(
      .source = "Hante, Arnold (2021) without velocity projection; Fang (2022), Sec. 3.5",
      .algebraic = true,
      .nonholonomic = true,
-     .regularised = true});
+     .regularised = true,
+     .extrapolates_velocities = true});
 
 }  // namespace
 }  // namespace hilda::lie

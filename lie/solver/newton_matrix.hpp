@@ -40,6 +40,7 @@ public:
     const Klu& compressed() const { return klu; }
     long factorizations() const { return klu.factorizations(); }
     long refactorizations() const { return klu.refactorizations(); }
+    double reciprocal_condition() const { return klu.reciprocal_condition(); }
 
 private:
     Klu klu{Klu::Scaling::rows};

@@ -98,7 +98,12 @@ protected:
     template <class Matrix>
     Statistics statistics_with(const Matrix& N) const
     {
-        return {steps, iterations, N.factorizations(), N.refactorizations(), correction};
+        return {steps,
+                iterations,
+                N.factorizations(),
+                N.refactorizations(),
+                correction,
+                N.reciprocal_condition()};
     }
 
     const System& model;

@@ -353,7 +353,8 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .order_lambda = 1,
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
-         .source = "Fang (2022), Secs. 3.5, 3.9"});
+         .source = "Fang (2022), Secs. 3.5, 3.9",
+         .energy_drifts = true});
     return lie::register_scheme<HalfImplicit<Coordinates, true>>(
         {.name = HalfImplicit<Coordinates, true>::name(),
          .description = "leapfrog (SHAKE) on " + coordinates,
@@ -361,7 +362,9 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .order_lambda = 2,
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
-         .source = "Fang (2022), Secs. 3.5, 3.9, half-step start"});
+         .source = "Fang (2022), Secs. 3.5, 3.9, half-step start",
+         .energy_drifts = true,
+         .extrapolates_velocities = true});
 }
 
 }  // namespace hilda::reference

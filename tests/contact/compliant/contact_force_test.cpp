@@ -322,6 +322,78 @@ TEST_CASE("the stability limit is estimated before the bodies are in contact", "
     CHECK(bound(0.01, 0) > bound(0.1, 0));
 }
 
+TEST_CASE("a step is stable up to the stability limit", "[contact][force]")
+{
+    const OneBall resting(thrown(0));
+    const dae::Force& force = *resting.model.forces()[0];
+    for (const double damping_factor : {1., 2.}) {
+        const double h = force.stable_step(resting.x, damping_factor);
+        CHECK(force.is_stable(resting.x, 0.999 * h, damping_factor));
+        CHECK_FALSE(force.is_stable(resting.x, 1.001 * h, damping_factor));
+        CHECK(force.is_stable(resting.x, 1e-3 * h, damping_factor));
+    }
+    CHECK(force.stable_step(resting.x, 2) < 0.8 * force.stable_step(resting.x, 1));
+    Motion above = thrown(0);
+    above.r.z() += 0.1;
+    const OneBall falling(above);
+    CHECK(falling.model.forces()[0]->is_stable(falling.x, 1, 1));  // apart: no stiffness now
+}
+
+TEST_CASE("the stability limit is that of symplectic Euler and of leapfrog with extrapolated velocities",
+          "[contact][force]")
+{
+    // A ball on its static overlap, without friction and with a damped contact. A deviation grows above the limit.
+    const double zeta = 0.7, c = 2 * zeta * std::sqrt(k * m);
+    dae::Model model;
+    model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
+    model.load(std::make_unique<ContactForce>("c", model, 0, sphere(), dae::ground, floor(),
+                                              std::make_shared<Hooke>(k, c), frictionless()));
+    State start;
+    start.body.resize(1);
+    start.body[0].r.z() = R - N / k;
+    dae::start(model, start);
+    start.body[0].r.z() += 1e-6 * N / k;
+    const auto deviation = [&](const char* scheme, double h) {
+        const auto integrator = lie::scheme(scheme).make(model, {});
+        const State end = lie::march(start, *integrator, lie::TimeGrid::over(200 * h, h)).row.back();
+        return std::abs(end.body[0].r.z() - (R - N / k)) / (1e-6 * N / k);
+    };
+    for (const auto& [scheme, damping_factor] : {std::pair{"rA-half-1", 1.}, {"rA-half-1-kick", 2.}}) {
+        CAPTURE(scheme);
+        const double h = model.forces()[0]->stable_step(start, damping_factor);
+        CHECK(deviation(scheme, 0.97 * h) < 1);
+        CHECK(deviation(scheme, 1.03 * h) > 100);
+    }
+}
+
+TEST_CASE("the springs of friction store the work of the friction force", "[contact][force]")
+{
+    // A ball pressed on the floor by its weight is moved along x without rotation: stick up to mu N / K_E
+    OneBall pushed(thrown(0, 0));
+    const dae::Force& force = *pushed.model.forces()[0];
+    CHECK(force.internal_energy(pushed.x) == 0);
+    const double K_E = rubber().K_E, d = 1e-5;
+    State x = pushed.x;
+    x.body[0].r.x() += d;
+    x.t += 1e-3;
+    force.update_internal_state(x);
+    CHECK(force.internal_energy(x) == Approx(0.5 * K_E * d * d).epsilon(1e-3));
+    for (int n = 0; n < 200; ++n) {  // 2 mm: slips, the spring remains at its bound
+        x.body[0].r.x() += d;
+        x.t += 1e-3;
+        force.update_internal_state(x);
+    }
+    const double bound = rubber().mu_k * N;
+    CHECK(force.internal_energy(x) == Approx(0.5 * bound * bound / K_E).epsilon(1e-3));
+    State rolled = pushed.x;  // rotation in place: the springs of sliding and of rolling, Sec. 4.3
+    rolled.body[0].A = lie::exp(Vec3(0, 0, 1e-3));
+    rolled.t += 1e-3;
+    force.update_internal_state(rolled);
+    lie::Loads loads(1);
+    force.add(rolled, loads);
+    CHECK(force.internal_energy(rolled) > 0);
+}
+
 TEST_CASE("the message of a failed detection has the names of the bodies and the time", "[contact][force]")
 {
     dae::Model model;

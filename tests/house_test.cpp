@@ -50,7 +50,7 @@ const std::map<std::string, std::set<std::string>> folders = {
      {"", "benchmarks", "experiments", "experiments/chapter3", "experiments/chapter4",
       "experiments/chapter4/friction", "experiments/chapter5", "experiments/chapter7", "experiments/chapter8",
       "experiments/sweep", "framework", "plots", "problems", "program", "running", "running/frames",
-      "running/sinks", "running/tables"}},
+      "running/sinks", "running/tables", "running/watch"}},
 };
 
 /// A folder holds about 20 units. A unit is a header with its sources, or a source alone.

@@ -3,11 +3,19 @@
 
 #include "contact/evolving/unilateral.hpp"
 #include "dae/model_file.hpp"
+#include "io/message.hpp"
+#include "lie/integrator.hpp"
+#include "lie/trajectory.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/watch/watch.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
+#include <map>
+#include <optional>
+#include <sstream>
 
 namespace hilda::studies {
 
@@ -37,6 +45,7 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
     const dae::Description& d = *run.c->started;
     const double begin = thread_seconds();
     std::unique_ptr<lie::Integrator> integrator;
+    std::optional<Watch> watch;
     const auto ended = [&](const std::string& status, const std::string& message) {
         run.status = status;
         run.message = message;
@@ -44,13 +53,18 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
     try {
         integrator = contact::make_integrator(*d.model, *run.scheme, settings_of(run, of_study));
         lie::March march(d.x, *integrator, run.h);
-        const lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
-        while (march.number() < grid.steps) march.advance(observers);
+        lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
+        grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
+        watch.emplace(*d.model, d.x, *integrator, *run.scheme, grid, Watch::Action::record);
+        std::vector<lie::Observer*> all(observers.begin(), observers.end());
+        all.push_back(&*watch);
+        while (march.number() < grid.steps) march.advance(all);
         run.statistics =
             integrator
                 ->statistics();  // before the additional step of finish(), which is not a step of the run
         run.seconds = thread_seconds() - begin;
-        march.finish(observers);
+        march.finish(all);
+        run.findings = watch->text();
         return;
     } catch (const lie::NumericalFailure& failure) {
         ended(failure.status, failure.what());
@@ -58,8 +72,33 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
         ended("refused", refused.what());
     }
     if (integrator) run.statistics = integrator->statistics();
+    if (watch) run.findings = watch->text();
     run.seconds = thread_seconds() - begin;
 }
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text)
+{
+    std::vector<std::string> all;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+}
+
+/// The findings of all runs, counted: "large_turn (3 runs), energy_rises (1 run)"; empty if there are none
+std::string counted_findings(const std::vector<const Run*>& runs)
+{
+    std::map<std::string, long> number;
+    for (const Run* run : runs)
+        for (const std::string& line : lines_of(run->findings)) ++number[line.substr(0, line.find(':'))];
+    std::string all;
+    for (const auto& [name, count] : number)
+        all += fmt::format("{}{} ({})", all.empty() ? "" : ", ", name, io::counted(count, "run"));
+    return all;
+}
+
+}  // namespace
 
 std::string failures(const std::vector<const Run*>& run_pointers)
 {
@@ -85,7 +124,10 @@ std::string failures(const std::vector<const Run*>& run_pointers)
             "{} (number of runs): {}: the Euler angle phi is too close to a singular value, 0 or pi; "
             "use --reparametrise or an rA scheme\n",
             names, singular);
-    return lines.empty() ? lines : "\nfailed:\n" + lines;
+    std::string text = lines.empty() ? lines : "\nfailed:\n" + lines;
+    if (const std::string findings = counted_findings(run_pointers); !findings.empty())
+        text += "\nwarnings, in study.json for each run: " + findings + '\n';
+    return text;
 }
 
 io::Json as_json(const Run& m)
@@ -97,6 +139,7 @@ io::Json as_json(const Run& m)
         out["h"] = m.h;
     out["status"] = m.status;
     if (!m.message.empty()) out["message"] = m.message;
+    for (const std::string& line : lines_of(m.findings)) out["warnings"].push_back(line);
     return out;
 }
 

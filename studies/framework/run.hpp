@@ -23,9 +23,13 @@ struct Run {
     lie::Statistics statistics;
     double seconds = 0;  ///< thread CPU time of the integration [s]
     std::string status = "ok", message;
+    std::string findings;  ///< of the Watch: lines "NAME: TEXT"
 
     /// Writes or reads the results. A derived type adds its own: see Sweep.
-    void transfer(io::Archive& a) { a.value(statistics), a.value(seconds), a.list(status), a.list(message); }
+    void transfer(io::Archive& a)
+    {
+        a.value(statistics), a.value(seconds), a.list(status), a.list(message), a.list(findings);
+    }
 
     bool failed() const { return status != "ok"; }
     /// "h = 1e-3 s" or "rtol = 1e-6"
@@ -60,7 +64,8 @@ std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
     return pointers<const Run*>(runs);
 }
 
-/// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles
+/// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles; one
+/// line with the number of runs for each kind of finding
 std::string failures(const std::vector<const Run*>& run_pointers);
 
 /// problem, integrator, h or rtol, status and message of a run, for study.json

@@ -50,6 +50,9 @@ void add_run_options(CLI::App& c, RunArguments& to)
         "--resume", o.resume,
         "continue the run in the output directory from its last checkpoint; a complete run continues to a "
         "later --end");
+    c.add_flag(
+        "--strict", o.strict,
+        "end with exit code 4 at the first warning about the solution, such as a large rotation in one step");
     value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
           assign(o.checkpoint, nonnegative_number));
     io::add_sink_options<RunSetup>(c, o.outputs);

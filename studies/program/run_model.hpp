@@ -25,6 +25,7 @@ struct RunOptions {
 
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
+    bool strict = false;  ///< end at the first warning about the solution, see Watch
     bool plot = false;
     bool error = false;                       ///< estimate the discretisation error
     std::vector<std::string> figure_formats;  ///< empty: png

@@ -3,11 +3,13 @@
 
 #include "io/archive.hpp"
 
+#include <algorithm>
+
 namespace hilda::studies {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 9};
+constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 10};
 
 void transfer(io::Archive& a, lie::State& x)
 {
@@ -42,6 +44,7 @@ void transfer(io::Archive& a, Checkpoint& c)
     a.value(i.nodes), a.value(i.rows), a.value(i.energy_start), a.value(i.energy_end),
         a.value(i.energy_drift);
     a.value(i.constraint_norm), a.value(i.orthogonality), a.list(i.contact);
+    transfer(a, c.watch);
     constexpr size_t bytes_of_event = 2 * sizeof(int) + 2 * sizeof(double);
     size_t events = c.contacts.events.size();
     a.count(events, bytes_of_event);
@@ -85,6 +88,16 @@ void check_fits(const Checkpoint& c, const dae::Model& model, const lie::State& 
     check(c.number >= 0 && c.iterations >= 0, "negative number of the node");
     check(c.invariants.contact.empty() || c.invariants.contact.size() == evolving_contacts(model).size(),
           "wrong number of contacts");
+    const auto compliant = std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
+        return dynamic_cast<const contact::ContactForce*>(force.get()) != nullptr;
+    });
+    const auto in = [](const Extreme& e, size_t count) {
+        return e.place >= -1 && e.place < static_cast<long>(count);
+    };
+    check(in(c.watch.turn, x.body.size()) && in(c.watch.overlap, model.forces().size()) &&
+              in(c.watch.unstable, model.forces().size()) &&
+              static_cast<long>(c.watch.deepest.size()) == compliant,
+          "unknown body or force");
     for (const contact::ContactEvent& e : c.contacts.events)
         check(e.contact >= 0 && static_cast<size_t>(e.contact) < constraints, "unknown contact of an event");
 }

@@ -9,6 +9,7 @@
 #include "studies/running/invariants.hpp"
 #include "studies/running/run_settings.hpp"
 #include "studies/running/sink.hpp"
+#include "studies/running/watch/watch.hpp"
 
 #include <map>
 #include <string>
@@ -26,6 +27,7 @@ struct Checkpoint {
         pivots;  ///< state of the last choice of pivots (see PivotNode); no bodies: pivots not chosen yet
     lie::Statistics statistics;
     Invariants invariants;
+    WatchRecord watch;
     contact::UnilateralStep::History contacts;  ///< of unilateral contacts
     StepCost last_step;
     std::map<std::string, std::string> sinks;  ///< see io::Sinks

@@ -3,6 +3,7 @@
 
 #include "dae/model.hpp"
 #include "lie/solver/saddle.hpp"
+#include "lie/trajectory.hpp"
 
 #include <fmt/format.h>
 
@@ -67,8 +68,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         how = fmt::format("correction {:.1e} after {} iterations", newton->correction, newton->iterations);
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(h))) + 1, 1, 15);
     Diagnosis d;
-    // constraint_drift is detected at the node itself; all other failures occur in the step to the next node
-    const bool at_node = failure.status == "constraint_drift";
+    const bool at_node = dynamic_cast<const lie::NodeFailure*>(&failure) != nullptr;
     d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
                          number + (at_node ? 0 : 1), scheme, step_text(h), how);
     if (at_node || failure.status.starts_with("contact_"))

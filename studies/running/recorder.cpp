@@ -42,8 +42,8 @@ void PivotNode::restore(const lie::State& from, double h)
     last_count = integrator.statistics().factorizations;
 }
 
-Recorder::Recorder(const RunSetup& run, lie::Integrator& integrator)
-    : model(run.model), grid(run.grid), integrator(integrator), sinks(run),
+Recorder::Recorder(const RunSetup& run, lie::Integrator& integrator, Watch& watch)
+    : model(run.model), grid(run.grid), integrator(integrator), watch(watch), sinks(run),
       contacts(evolving_contacts(model)), pivots(integrator)
 {
     invariants.contact.resize(contacts.size());
@@ -53,6 +53,7 @@ void Recorder::open(const std::optional<Checkpoint>& from)
 {
     if (from) {
         invariants = from->invariants;
+        watch.restore(from->watch);
         last = from->last_step;
         pivots.restore(from->pivots, grid.h);
         if (auto* unilateral = dynamic_cast<contact::UnilateralStep*>(&integrator))
@@ -80,6 +81,7 @@ void Recorder::accepted(const lie::State& x, long n, int iterations)
                    .constraint_norm = constraint_norm,
                    .iterations = iterations,
                    .cost = last});
+    recorded = n;
     dae::check_dropped_rows(model, x);
     // lie::March reports a node after the following step; the counters since the last call are those of that
     // step.
@@ -102,6 +104,7 @@ Checkpoint Recorder::checkpoint(const lie::March& march)
     c.pivots = pivots.node;
     c.statistics = statistics();
     c.invariants = invariants;
+    c.watch = watch.record();
     if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))
         c.contacts = unilateral->history();
     c.last_step = last;

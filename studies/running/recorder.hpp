@@ -5,6 +5,7 @@
 
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/sink.hpp"
+#include "studies/running/watch/watch.hpp"
 
 #include <chrono>
 #include <optional>
@@ -42,17 +43,19 @@ private:
 /// of checkpoints.
 class Recorder final : public lie::Observer {
 public:
-    /// Makes the sinks that the options of the run request. io::UsageError.
-    Recorder(const RunSetup& run, lie::Integrator& integrator);
+    /// Makes the sinks that the options of the run request. io::UsageError. The objects must outlive this one.
+    Recorder(const RunSetup& run, lie::Integrator& integrator, Watch& watch);
 
     /// Opens the sinks and starts to measure times. With a checkpoint, continues the sinks and restores the counters
     /// and the pivots of the integrator. io::IoError.
     void open(const std::optional<Checkpoint>& from);
-    /// lie::NumericalFailure "constraint_drift" at the first node where a constraint row that was dropped as
+    /// lie::NodeFailure "constraint_drift" at the first node where a constraint row that was dropped as
     /// redundant is violated.
     void accepted(const lie::State& x, long n, int iterations) override;
-    /// PivotNode, and this object
-    std::vector<lie::Observer*> observers() { return {&pivots, this}; }
+    /// PivotNode, this object, and the Watch
+    std::vector<lie::Observer*> observers() { return {&pivots, this, &watch}; }
+    /// Number of the last node that the sinks received; -1: none
+    long last_node() const { return recorded; }
 
     /// Counters of the whole run, including the part before the checkpoint
     lie::Statistics statistics() const;
@@ -71,6 +74,7 @@ private:
     const dae::Model& model;
     const lie::TimeGrid& grid;
     lie::Integrator& integrator;
+    Watch& watch;
     io::Sinks<RunSetup> sinks;
     std::vector<const contact::EvolvingContact*> contacts;
     PivotNode pivots;
@@ -78,7 +82,7 @@ private:
     /// Cost of the step that ends at the current node. The node is passed on after the following step, because
     /// schemes with staggered velocities fill the node only then.
     StepCost last;
-    long factorizations = 0;
+    long factorizations = 0, recorded = -1;
     Clock::time_point since;
 };
 

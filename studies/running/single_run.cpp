@@ -76,6 +76,9 @@ RunResult SingleRun::execute()
     integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
     const std::unique_ptr<lie::Integrator> integrator =
         contact::make_integrator(*description.model, scheme, integrator_settings);
+    using Action = Watch::Action;
+    Watch watch(*description.model, description.x, *integrator, scheme, grid,
+                options.strict ? Action::strict : Action::stop, options.force);
     Recorder recorder({.model = *description.model,
                        .outputs = description.outputs,
                        .model_name = description.name,
@@ -90,7 +93,7 @@ RunResult SingleRun::execute()
                                              {"integrator", scheme.name},
                                              {"model", description.name},
                                              {"model_text", text_of_model()}})},
-                      *integrator);
+                      *integrator, watch);
     check_step(from.has_value());
     if (options.error)
         refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
@@ -106,6 +109,9 @@ RunResult SingleRun::execute()
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
                      event_name(e.type), e.speed});
+    result.watch = watch.json();
+    for (const Finding& found : watch.findings())
+        if (found.name != result.status) add_warning(found.text);
     if (refined) result.error = refined->estimate(result.events.size());
     finish(recorder);
     return std::move(result);
@@ -193,7 +199,8 @@ void SingleRun::check_step(bool resumed) const
                                 scheme.name, force->label()));
         return;
     }
-    const dae::Model::StableStep stable = model.stable_step(description.x);
+    const dae::Model::StableStep stable =
+        model.stable_step(description.x, scheme.extrapolates_velocities ? 2 : 1);
     if (!(grid.h > stable.h)) return;
     const std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
@@ -280,12 +287,14 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
 
 // Warnings: λ_N ≠ 0 if a surface returns normals that are not those of its points; F_N < 0 in a bilateral
 // contact means that bodies free to separate would have separated.
+void SingleRun::add_warning(const std::string& what)
+{
+    warn(what);
+    result.warnings.push_back(what);
+}
+
 void SingleRun::check_contacts()
 {
-    const auto add_warning = [&](const std::string& what) {
-        warn(what);
-        result.warnings.push_back(what);
-    };
     const auto contacts = evolving_contacts(*description.model);
     for (size_t k = 0; k < result.contacts.size(); ++k) {
         const ContactExtremes& c = result.invariants.contact[k];
@@ -347,7 +356,7 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         line.clear();
         failed(failure, march);
         // The start node of the failed step is the last valid node, and may be an output row.
-        if (failure.status != "constraint_drift") march.finish(observers);
+        if (recorder.last_node() != march.number()) march.finish(observers);
     }
 }
 

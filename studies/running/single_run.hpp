@@ -57,6 +57,7 @@ private:
     std::string checkpoint(const lie::March& march, Recorder& recorder) const;
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
+    void add_warning(const std::string& what);
     void check_contacts();
     void failed(const lie::NumericalFailure& failure, const lie::March& march);
     void finish(const Recorder& recorder);

@@ -59,6 +59,7 @@ io::Json summary(const RunResult& r)
                          {"energy_end", r.invariants.energy_end},
                          {"energy_drift", r.invariants.energy_drift},
                          {"energy_drift_end", r.invariants.energy_end - r.invariants.energy_start}};
+    out["watch"] = r.watch;
     if (r.error) out["error_estimate"] = r.error->json();
     if (!r.contacts.empty()) {
         out["contacts"] = io::Json::array();

@@ -41,6 +41,7 @@ struct RunResult {
 
     lie::Statistics statistics;
     Invariants invariants;
+    io::Json watch;                      ///< see Watch::json()
     std::optional<ErrorEstimate> error;  ///< of --error
     double setup_seconds = 0, wall_seconds = 0;
     long resumed_at = -1;  ///< number of the step; -1: not resumed

@@ -6,23 +6,6 @@
 
 namespace hilda::studies {
 
-void NodeIntegral::add(double value, double h)
-{
-    if (count > 1 && std::abs(h - step) > 1e-9 * h) count = 1;
-    step = h;
-    if (count <= 1) before = sum;
-    if (count == 1)
-        sum = before + h / 2 * (value + last[0]);
-    else if (count == 2)
-        sum = before + h / 3 * (value + 4 * last[0] + last[1]);
-    else if (count == 3)
-        sum = before + 3 * h / 8 * (value + 3 * last[0] + 3 * last[1] + last[2]);
-    else if (count > 3)
-        sum += h / 24 * (9 * value + 19 * last[0] - 5 * last[1] + last[2]);
-    last = {value, last[0], last[1]};
-    count = std::min(count + 1, 4);
-}
-
 WorkBalance::WorkBalance(const dae::Model& model)
     : model(model), force(model.forces().size()),
       driven(static_cast<size_t>(model.constraints()) + model.general_constraints().size()),

@@ -9,12 +9,7 @@
 ///
 /// For pairs of regularised rows (implicit friction) ν is the velocity Φ_r ṙ + Π̄ ω̄ itself. A force is
 /// conservative if its loads depend neither on velocities nor explicitly on time, and P_f = -dV_f/dt. The
-/// integrals use the powers at the nodes, by the Adams-Moulton formula of fourth order:
-///
-///     ∫ P dt = h/24 (9 P_n+1 + 19 P_n - 5 P_n-1 + P_n-2)       over [t_n, t_n+1]
-///
-/// The first three steps together have Simpson's 3/8 rule. After one step and after two steps the value is that
-/// of the trapezoidal rule and of Simpson's rule.
+/// integrals use the powers at the nodes, see NodeIntegral.
 ///
 /// Where a load jumps, as at the beginning of a contact, the error is of the order of the jump of the power
 /// times h. The energy lost in impacts of unilateral contacts is not a part of W.
@@ -22,27 +17,12 @@
 #pragma once
 
 #include "dae/model.hpp"
+#include "studies/running/watch/node_integral.hpp"
 
-#include <array>
 #include <string>
 #include <vector>
 
 namespace hilda::studies {
-
-/// Integral over time of a quantity that is known at equidistant nodes
-class NodeIntegral {
-public:
-    /// Adds a node. h [s]: the step that ends there, ignored for the first node. A change of h restarts the
-    /// formula.
-    void add(double value, double h);
-    double value() const { return sum; }
-
-private:
-    std::array<double, 3> last{};  ///< values of the last nodes, the latest first
-    int count = 0;                 ///< number of nodes since the start of the formula, at most 4
-    double step = 0, sum = 0;
-    double before = 0;  ///< the integral up to the start of the formula
-};
 
 /// Follows a run, node by node.
 class WorkBalance {

@@ -21,6 +21,22 @@ std::vector<std::uint32_t> line_starts(std::string_view text)
     return starts;
 }
 
+constexpr std::size_t block_size = 256;  // [bytes]
+
+bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
+
+/// Number of UTF-8 characters before each block of the text, and before its end
+std::vector<std::uint32_t> characters_before_blocks(std::string_view text)
+{
+    std::vector<std::uint32_t> counts = {0};
+    std::uint32_t count = 0;
+    for (std::size_t k = 0; k < std::min(text.size(), JsonSource::max_bytes); ++k) {
+        count += begins_character(text[k]) ? 1 : 0;
+        if ((k + 1) % block_size == 0) counts.push_back(count);
+    }
+    return counts;
+}
+
 bool is_utf8(std::string_view s)
 {
     for (std::size_t n = 0; !s.empty(); s.remove_prefix(n))
@@ -90,7 +106,8 @@ std::string with_first_part(const std::string& pointer, const std::string& from,
 }  // namespace
 
 JsonSource::JsonSource(std::string t, std::string f, std::size_t longest_string)
-    : text(std::move(t)), file(std::move(f)), line_start(line_starts(text))
+    : text(std::move(t)), file(std::move(f)), line_start(line_starts(text)),
+      characters_before_block(characters_before_blocks(text))
 {
     if (text.size() > max_bytes)
         fail(root, "",
@@ -179,12 +196,19 @@ std::string JsonSource::place(const std::string& pointer) const
     return place(find(pointer).offset, pointer);
 }
 
+std::size_t JsonSource::characters_before(std::size_t offset) const
+{
+    const std::size_t block = offset / block_size;
+    std::size_t count = characters_before_block[block];
+    for (std::size_t k = block * block_size; k < offset; ++k) count += begins_character(text[k]) ? 1 : 0;
+    return count;
+}
+
 std::string JsonSource::place(std::size_t offset, const std::string& pointer) const
 {
     const auto after = std::upper_bound(line_start.begin() + 1, line_start.end(), offset);
-    std::size_t column = 1;
-    for (std::size_t k = *(after - 1); k < offset; ++k)
-        if ((static_cast<unsigned char>(text[k]) & 0xC0) != 0x80) ++column;  // begins a UTF-8 character
+    const std::size_t start = std::min<std::size_t>(*(after - 1), offset);
+    const std::size_t column = 1 + characters_before(offset) - characters_before(start);
     std::string in_text = pointer.empty() ? "/" : pointer;
     for (const Renamed& key : renamed)
         if (key.in_text) in_text = with_first_part(in_text, key.new_name, key.old_name);

@@ -82,7 +82,11 @@ private:
     void notice(const std::string& pointer, const Renamed& key);
 
     std::string text, file;
+    /// Number of UTF-8 characters before this byte of the text
+    std::size_t characters_before(std::size_t offset) const;
+
     std::vector<std::uint32_t> line_start;
+    std::vector<std::uint32_t> characters_before_block;  ///< the same for each block of the text
     std::vector<std::string> origins;
     std::vector<Renamed> renamed;
     bool changed = false;  ///< by --set, or because a key has its new name

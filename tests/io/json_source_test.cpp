@@ -219,6 +219,17 @@ TEST_CASE("a renamed key is read under its old name, with a notice", "[io][json]
     CHECK(none.notices.size() == 1);
 }
 
+TEST_CASE("columns of a long line are counted in characters", "[io][json]")
+{
+    // elements of 8 characters in 9 bytes; the pointer of element k is /k, its column 2 + 9 k
+    std::string text = "[";
+    for (int k = 0; k < 500; ++k) text += k > 0 ? ",\"\u00e4bcdef\"" : "\"\u00e4bcdef\"";
+    const JsonSource source(text + "]", "f");
+    for (const int k : {0, 1, 25, 28, 29, 57, 499})
+        CHECK(source.place("/" + std::to_string(k)) ==
+              "f:1:" + std::to_string(2 + 9 * k) + " (/" + std::to_string(k) + ")");
+}
+
 TEST_CASE("the place of a value in the text is found by its pointer", "[io][json]")
 {
     const JsonSource source(

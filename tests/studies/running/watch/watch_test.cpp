@@ -3,12 +3,15 @@
 
 #include "studies/running/watch/watch.hpp"
 
+#include "dae/model_file.hpp"
 #include "dae/start.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
+#include "studies/framework/problem.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/studies/resumed_run.hpp"
+#include "tests/support/no_allocation.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -110,6 +113,21 @@ TEST_CASE("a passive model whose energy rises ends with energy_created", "[studi
     CHECK(end_of_run("rA-half-1-momentum", Watch::Action::record) == "energy_rises");
     CHECK(end_of_run("rA-half-1", Watch::Action::stop) == "energy_rises");  // its energy drifts anyway
     CHECK(end_of_run("rA-half-1", Watch::Action::strict) == "energy_rises");
+}
+
+TEST_CASE("the checks of a node do not allocate memory", "[studies][watch][allocation]")
+{
+    dae::Description d = dae::read_model(studies::problem("rolling_ball").model, "rolling_ball");
+    dae::start(d);
+    const lie::Scheme& scheme = lie::scheme("rA-half-1-momentum");
+    const auto integrator = scheme.make(*d.model, {});
+    Watch watch(*d.model, d.x, *integrator, scheme, lie::TimeGrid::over(1, 1e-4), Watch::Action::stop);
+    lie::State x = d.x;
+    const long taken = allocations_during([&] {
+        for (int n = 0; n < 100; ++n) watch.accepted(x, n, 1);
+    });
+    if (counts_allocations) CHECK(taken == 0);
+    CHECK(watch.record().energy.evaluations == 100);
 }
 
 TEST_CASE("a large rotation in one step is a warning, with --strict a failure", "[studies][watch]")

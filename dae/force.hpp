@@ -15,6 +15,8 @@
 
 namespace hilda::dae {
 
+using lie::LoadEvaluation;
+
 /// An applied load on one or more bodies. Derive from Force to add a force law.
 ///
 /// A force is constant during a run. Everything that changes is in the state.
@@ -56,18 +58,37 @@ public:
     virtual bool internal_state_uses_multipliers() const { return false; }
     int first_discrete_state = 0, first_internal_state = 0;  ///< indices into the state, set by the model
 
+    /// A direction in which the force acts as a linear spring and damper. Its deflection has the rate
+    /// r_i · ṙ_i + pi_i · ω̄_i + r_j · ṙ_j + pi_j · ω̄_j, with i and j from bodies() [m/s or rad/s].
+    struct SpringRow {
+        Vec3 r_i, pi_i, r_j, pi_j;          ///< global frame, body frame
+        double stiffness = 0, damping = 0;  ///< [N/m], [N s/m] or [N m/rad], [N m s/rad]
+    };
+    /// The springs and dampers of the force in the state x
+    virtual std::vector<SpringRow> spring_rows(const State& /*x*/) const { return {}; }
+    /// Stability limits of the steps for the spring rows, with the effective masses of the constrained bodies
+    /// at the start [s]; set by dae::start(), see dae/forces/spring_limits.hpp
+    struct SpringLimits {
+        double at_step = std::numeric_limits<double>::infinity();
+        double extrapolated = std::numeric_limits<double>::infinity();
+    } spring_limits;
+
     /// Stability limit of the step [s] for schemes that evaluate this force explicitly, at the beginning of a
-    /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d = damping_factor is 1 for a scheme whose
-    /// loads contain the velocities of the last step, and 2 if they contain velocities extrapolated to the node.
-    virtual double stable_step(const State& /*x*/, double /*damping_factor*/ = 1) const
+    /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d is 1 for a scheme whose loads contain the
+    /// velocities of the last step, and 2 if they contain velocities extrapolated to the node. The default is
+    /// spring_limits.
+    virtual double stable_step(const State& /*x*/,
+                               LoadEvaluation evaluation = LoadEvaluation::at_step) const
     {
-        return std::numeric_limits<double>::infinity();
+        return evaluation == LoadEvaluation::at_step        ? spring_limits.at_step
+               : evaluation == LoadEvaluation::extrapolated ? spring_limits.extrapolated
+                                                            : std::numeric_limits<double>::infinity();
     }
     /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for each
     /// accepted step; the function must not allocate memory.
-    virtual bool is_stable(const State& x, double h, double damping_factor) const
+    virtual bool is_stable(const State& x, double h, LoadEvaluation evaluation) const
     {
-        return !(h > stable_step(x, damping_factor));
+        return !(h > stable_step(x, evaluation));
     }
     /// Whether the force cannot supply energy: the work that it does is at most the decrease of potential_energy() +
     /// internal_energy()

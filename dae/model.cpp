@@ -195,11 +195,11 @@ bool Model::internal_states_are_history() const
            });
 }
 
-Model::StableStep Model::stable_step(const State& x, double damping_factor) const
+Model::StableStep Model::stable_step(const State& x, LoadEvaluation evaluation) const
 {
     StableStep smallest;
     for (size_t k = 0; k < force.size(); ++k)
-        if (const double h = force[k]->stable_step(x, damping_factor); h < smallest.h)
+        if (const double h = force[k]->stable_step(x, evaluation); h < smallest.h)
             smallest = {h, static_cast<int>(k)};
     return smallest;
 }

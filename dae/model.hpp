@@ -116,12 +116,13 @@ public:
     /// prepare(), and by dae::start() when x satisfies the constraints.
     void set_internal_state_at_start(State& x) const;
 
-    /// Smallest Force::stable_step() of the forces
+    /// Smallest stability limit of the forces for an integrator with this evaluation of the loads. An
+    /// implicit evaluation has no limit for springs and dampers (Force::spring_rows); contacts keep theirs.
     struct StableStep {
         double h = std::numeric_limits<double>::infinity();  ///< [s]
         int force = -1;  ///< index of the force, -1 if no force has a limit
     };
-    StableStep stable_step(const State& x, double damping_factor = 1) const;
+    StableStep stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const;
 
     /// A scalar row of a constraint. It is part of the equations, or removed from them as redundant.
     struct Row {

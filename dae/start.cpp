@@ -5,6 +5,7 @@
 #include "dae/constraints/d.hpp"
 #include "dae/constraints/dp1.hpp"
 #include "dae/constraints/driven_hinge.hpp"
+#include "dae/forces/spring_limits.hpp"
 #include "dae/model.hpp"
 #include "dae/rank.hpp"
 #include "lie/solver/saddle.hpp"
@@ -280,6 +281,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
     for (const int k : dropped) check_redundant_row(model, model.all_rows()[k], x);
+    set_spring_limits(model, K, x);
     return report;
 }
 

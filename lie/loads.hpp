@@ -9,6 +9,20 @@
 
 namespace hilda::lie {
 
+/// Evaluation of loads that depend on positions and velocities. It sets the step up to which stiff springs
+/// and dampers are stable.
+enum class LoadEvaluation {
+    at_step,       ///< explicit, with velocities that a step has computed
+    extrapolated,  ///< explicit with extrapolated velocities, or an iteration without load derivatives
+    implicit       ///< the Newton matrix contains the derivatives of the loads
+};
+
+/// Factor of the damping in the stability limit of a step: 2 for extrapolated velocities
+constexpr double damping_factor(LoadEvaluation evaluation)
+{
+    return evaluation == LoadEvaluation::extrapolated ? 2 : 1;
+}
+
 /// Inertia of all bodies. It is constant.
 struct Mass {
     std::vector<double> m;    ///< [kg], positive

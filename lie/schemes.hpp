@@ -4,6 +4,7 @@
 #pragma once
 
 #include "io/registry.hpp"
+#include "lie/loads.hpp"
 
 #include <memory>
 #include <string>
@@ -28,14 +29,13 @@ struct Scheme {
     /// Whether the scheme chooses internal steps from rtol and atol. Its past steps are not part of State; a
     /// run cannot be resumed.
     bool adaptive = false;
+    LoadEvaluation loads = LoadEvaluation::at_step;
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of the scheme.
     /// Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;
-    /// Whether the loads contain velocities extrapolated to the node, which lowers the stability limit of dampers
-    bool extrapolates_velocities = false;
     bool rho_infinity =
         false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;

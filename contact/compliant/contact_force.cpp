@@ -64,14 +64,14 @@ std::string ContactForce::start_error(const lie::State& x) const
     return contact.start_error(motion(x, i), motion(x, j));
 }
 
-double ContactForce::stable_step(const lie::State& x, double damping_factor) const
+double ContactForce::stable_step(const lie::State& x, lie::LoadEvaluation evaluation) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     double weight = 0;  // weight of all bodies: the largest static load of the contact
     for (const double m : model.mass().m) weight += m * model.gravity.norm();
     try {
         return contact.stable_step(contact.state_at_largest_compression(bi, bj, saved_history(x), weight), bi,
-                                   bj, near_contacts(x), damping_factor);
+                                   bj, near_contacts(x), lie::damping_factor(evaluation));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
@@ -84,12 +84,12 @@ ContactPoint ContactForce::contact_point_of_node(const lie::State& x) const
         .contact_point;
 }
 
-bool ContactForce::is_stable(const lie::State& x, double h, double damping_factor) const
+bool ContactForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const
 {
     if (!is_active(x) || !is_touching(x)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactState now = contact.state_without_history(contact_point_of_node(x), bi, bj);
-    return contact.is_stable(h, damping_factor, now, bi, bj, touching_contacts(x));
+    return contact.is_stable(h, lie::damping_factor(evaluation), now, bi, bj, touching_contacts(x));
 }
 
 double ContactForce::overlap(const lie::State& x) const

@@ -24,8 +24,9 @@ public:
     int internal_states() const override;
     /// Stability limit [s] at the largest compression expected, see
     /// CompliantContact::state_at_largest_compression
-    double stable_step(const lie::State& x, double damping_factor = 1) const override;
-    bool is_stable(const lie::State& x, double h, double damping_factor) const override;
+    double stable_step(const lie::State& x,
+                       lie::LoadEvaluation evaluation = lie::LoadEvaluation::at_step) const override;
+    bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const override;
     /// Overlap at the last accepted node [m]; 0 while the surfaces are apart
     double overlap(const lie::State& x) const;
     /// CompliantContact::relative_overlap() at the last accepted node

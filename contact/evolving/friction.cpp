@@ -93,7 +93,7 @@ Rates EvolvingFriction::damper_rates(const Instant& now, const lie::State& x) co
             .psi = last.psi};
 }
 
-double EvolvingFriction::stable_step(const lie::State& x, double /*damping_factor*/) const
+double EvolvingFriction::stable_step(const lie::State& x, lie::LoadEvaluation /*evaluation*/) const
 {
     if (dae::Model::mode(contact, x) == EvolvingContact::fallback_active)
         return std::numeric_limits<double>::infinity();
@@ -107,7 +107,7 @@ double EvolvingFriction::stable_step(const lie::State& x, double /*damping_facto
     return friction_pair.stable_step(now, {.rigid = true}, bi, bj, near_contacts(x));
 }
 
-bool EvolvingFriction::is_stable(const lie::State& x, double h, double /*damping_factor*/) const
+bool EvolvingFriction::is_stable(const lie::State& x, double h, lie::LoadEvaluation /*evaluation*/) const
 {
     const double N = normal_force(x);
     if (!(N > 0)) return true;

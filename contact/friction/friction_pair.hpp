@@ -67,7 +67,7 @@ public:
     ///
     /// The mass of a body with several contacts is divided equally among them. If each contact is stable with
     /// its share, the whole system is. Infinite if no finite step is unstable. damping_factor: see
-    /// dae::Force::stable_step(); it multiplies D.
+    /// lie::damping_factor(); it multiplies D.
     ///
     /// Example: for a sphere without rolling friction held on its surface, h = (√(d² + 4 k) - d)/k,
     /// where d = D q, k = K q, q = 1/m + R²/I.

@@ -51,6 +51,32 @@ void Bushing::add(const State& x, lie::Loads& out) const
     if (i != ground) out.n_bar[i] -= A_ji.transpose() * n_j;
 }
 
+std::vector<Force::SpringRow> Bushing::spring_rows(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 s_bar_q = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);
+    std::vector<SpringRow> rows;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 e_i = Vec3::Unit(axis), e = bi.A * e_i;
+        rows.push_back({.r_i = -e,
+                        .pi_i = -s_bar_q.cross(e_i),
+                        .r_j = e,
+                        .pi_j = s_bar_j.cross(bj.A.transpose() * e),
+                        .stiffness = coefficients.stiffness[axis],
+                        .damping = coefficients.damping[axis]});
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 e_j = Vec3::Unit(axis);
+        rows.push_back({.r_i = Vec3::Zero(),
+                        .pi_i = -(bi.A.transpose() * (bj.A * e_j)),
+                        .r_j = Vec3::Zero(),
+                        .pi_j = e_j,
+                        .stiffness = coefficients.rotational_stiffness[axis],
+                        .damping = coefficients.rotational_damping[axis]});
+    }
+    return rows;
+}
+
 double Bushing::potential_energy(const State& x) const
 {
     const Deflection at = deflection(x);

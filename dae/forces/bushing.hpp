@@ -31,6 +31,8 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
     bool is_passive() const override { return true; }
+    /// The three translations in the frame of body i, then the three rotations, for small relative rotations
+    std::vector<SpringRow> spring_rows(const State& x) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }

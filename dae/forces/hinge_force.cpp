@@ -74,6 +74,18 @@ void HingeForce::check_step(const State& before, const State& after) const
     throw lie::NumericalFailure("step_too_large", what.str());
 }
 
+std::vector<Force::SpringRow> HingeForce::spring_rows(const State& x) const
+{
+    const auto [stiffness, damping] = coefficients();
+    const Vec3 axis = motion(x, i).A * axis_bar_i;
+    return {{.r_i = Vec3::Zero(),
+             .pi_i = -axis_bar_i,
+             .r_j = Vec3::Zero(),
+             .pi_j = motion(x, j).A.transpose() * axis,
+             .stiffness = stiffness,
+             .damping = damping}};
+}
+
 void HingeForce::add(const State& x, lie::Loads& out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);

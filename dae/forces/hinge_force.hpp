@@ -5,6 +5,7 @@
 #include "dae/force.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hilda::dae {
 
@@ -31,6 +32,8 @@ public:
 
     virtual double torque(double theta, double thetadot) const = 0;
     virtual double potential(double theta) const = 0;  ///< [J]
+    /// Stiffness [N m/rad] and damping [N m s/rad] of the torque, for the stability limit of the step
+    virtual std::pair<double, double> coefficients() const { return {0, 0}; }
 
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override { return potential(angle(x)); }
@@ -41,6 +44,7 @@ public:
     int discrete_states() const override { return 1; }
     void update_internal_state(State& x) const override;
     void check_step(const State& before, const State& after) const override;
+    std::vector<SpringRow> spring_rows(const State& x) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 

@@ -32,6 +32,29 @@ void DistanceLimit::add(const State& x, lie::Loads& out) const
     apply_force(j, -F, s_bar_j, x, out);
 }
 
+std::vector<Force::SpringRow> DistanceLimit::spring_rows(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 d = d_ij(x);
+    if (!(d.norm() > 0)) return {};
+    const Vec3 along = d.normalized();
+    return {{.r_i = -along,
+             .pi_i = -s_bar_i.cross(bi.A.transpose() * along),
+             .r_j = along,
+             .pi_j = s_bar_j.cross(bj.A.transpose() * along),
+             .stiffness = stop.stiffness}};
+}
+
+double DistanceLimit::stable_step(const State& x, LoadEvaluation evaluation) const
+{
+    return stop.is_within(d_ij(x).norm()) ? std::numeric_limits<double>::infinity() : Force::stable_step(x, evaluation);
+}
+
+double AngleLimit::stable_step(const State& x, LoadEvaluation evaluation) const
+{
+    return stop.is_within(angle(x)) ? std::numeric_limits<double>::infinity() : Force::stable_step(x, evaluation);
+}
+
 double DistanceLimit::potential_energy(const State& x) const { return stop.potential(d_ij(x).norm()); }
 
 std::vector<Quantity> DistanceLimit::quantities() const

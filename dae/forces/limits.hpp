@@ -26,6 +26,7 @@ struct Stop {
         if (q < minimum) return stiffness * (q - minimum) * std::max(0., 1 - damping * qdot);
         return 0;
     }
+    bool is_within(double q) const { return !(q > maximum) && !(q < minimum); }
     double potential(double q) const
     {
         const double delta = std::max({0., q - maximum, minimum - q});
@@ -43,6 +44,10 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
     bool is_passive() const override { return true; }
+    std::vector<SpringRow> spring_rows(const State& x) const override;
+    /// Infinite within the limits
+    double stable_step(const State& x,
+                       LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
@@ -69,6 +74,10 @@ public:
     double torque(double theta, double thetadot) const override { return stop.force(theta, thetadot); }
     double potential(double theta) const override { return stop.potential(theta); }
     bool is_passive() const override { return true; }
+    std::pair<double, double> coefficients() const override { return {stop.stiffness, 0}; }
+    /// Infinite within the limits
+    double stable_step(const State& x,
+                       LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
 
 private:
     const Stop stop;

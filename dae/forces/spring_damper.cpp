@@ -4,7 +4,33 @@
 
 #include "dae/model_types.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hilda::dae {
+
+std::vector<Force::SpringRow> SpringDamper::spring_rows(const State& x) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    if (!((bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() > 0)) return {};
+    const Stretch at = stretch(x);
+    SpringRow row{.r_i = -at.along,
+                  .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
+                  .r_j = at.along,
+                  .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
+                  .stiffness = stiffness,
+                  .damping = damping};
+    if (law) {
+        const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
+        const auto F = [&](double l, double ldot) {
+            const double variables[] = {l, ldot, x.t};
+            return law->value(variables);
+        };
+        row.stiffness += (F(at.l + step_l, at.ldot) - F(at.l - step_l, at.ldot)) / (2 * step_l);
+        row.damping += (F(at.l, at.ldot + step_ldot) - F(at.l, at.ldot - step_ldot)) / (2 * step_ldot);
+    }
+    return {row};
+}
 
 namespace {
 

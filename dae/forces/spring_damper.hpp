@@ -61,6 +61,8 @@ public:
         out[0] = at.l, out[1] = at.ldot, out[2] = at.f;
     }
 
+    /// Along the line from P to Q, with the derivatives of F in the state x. None while the points coincide.
+    std::vector<SpringRow> spring_rows(const State& x) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
     int last_body() const override { return std::max(i, j); }

@@ -28,6 +28,7 @@ public:
         const double twist = theta - free_angle;
         return 0.5 * stiffness * twist * twist;
     }
+    std::pair<double, double> coefficients() const override { return {stiffness, damping}; }
     bool is_passive() const override { return damping >= 0; }
 };
 

@@ -46,6 +46,7 @@ const bool registered = register_scheme<FullyImplicit1>(
      .formulation = "rA",
      .unknowns = "r'', omega', lambda",
      .source = "Fang (2022), Sec. 3.4",
+     .loads = LoadEvaluation::extrapolated,
      .algebraic = true});
 
 }  // namespace

@@ -118,7 +118,8 @@ const bool registered = register_scheme<FullyImplicit1Exact>(
      .order_lambda = 1,
      .formulation = "rA",
      .unknowns = "r'', omega', lambda",
-     .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix"});
+     .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix",
+     .loads = LoadEvaluation::implicit});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -144,8 +144,8 @@ const bool registered = register_scheme<GeneralisedAlpha>(
      .formulation = "rA",
      .unknowns = "increment of (r, A), beta' h^2 lambda",
      .source = "Bruls, Cardona, Arnold (2012)",
+     .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
-     .extrapolates_velocities = true,
      .rho_infinity = true});
 
 }  // namespace

@@ -41,11 +41,11 @@ const bool registered = register_scheme<HalfImplicit1Kick>(
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Fang (2022), Sec. 3.5, with start and velocities of leapfrog",
+     .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
      .nonholonomic = true,
      .regularised = true,
-     .energy_drifts = true,
-     .extrapolates_velocities = true});
+     .energy_drifts = true});
 
 }  // namespace
 }  // namespace hilda::lie

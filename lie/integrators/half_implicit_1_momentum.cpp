@@ -121,10 +121,10 @@ const bool registered = register_scheme<HalfImplicit1Momentum>(
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Hante, Arnold (2021) without velocity projection; Fang (2022), Sec. 3.5",
+     .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
      .nonholonomic = true,
-     .regularised = true,
-     .extrapolates_velocities = true});
+     .regularised = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -57,9 +57,9 @@ const bool registered = register_scheme<HalfImplicit2>(
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Fang (2022), Sec. 3.6",
+     .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
-     .energy_drifts = true,
-     .extrapolates_velocities = true});
+     .energy_drifts = true});
 
 }  // namespace
 }  // namespace hilda::lie

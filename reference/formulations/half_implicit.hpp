@@ -363,8 +363,8 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
          .source = "Fang (2022), Secs. 3.5, 3.9, half-step start",
-         .energy_drifts = true,
-         .extrapolates_velocities = true});
+         .loads = lie::LoadEvaluation::extrapolated,
+         .energy_drifts = true});
 }
 
 }  // namespace hilda::reference

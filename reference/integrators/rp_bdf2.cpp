@@ -65,7 +65,8 @@ const bool registered = lie::register_scheme<RpBdf2>({.name = "rp-bdf2",
                                                       .order_lambda = 2,
                                                       .formulation = "rp",
                                                       .unknowns = "r'', p'', lambda, lambda_P",
-                                                      .source = "Fang (2022), Sec. 2.1.7, with BDF2"});
+                                                      .source = "Fang (2022), Sec. 2.1.7, with BDF2",
+                                                      .loads = lie::LoadEvaluation::implicit});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -43,7 +43,8 @@ const bool registered =
                                    .order_lambda = 1,
                                    .formulation = "rp",
                                    .unknowns = "r'', p'', lambda, lambda_P",
-                                   .source = "Fang (2022), Sec. 2.1.7"});
+                                   .source = "Fang (2022), Sec. 2.1.7",
+                                   .loads = lie::LoadEvaluation::implicit});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -76,7 +76,7 @@ bool divides(double h, double end)
 void check_stable(const std::string& kind, const Benchmark& c, const std::vector<double>& steps)
 {
     const dae::Model& model = *c.started->model;
-    const dae::Model::StableStep stable = model.stable_step(c.started->x);
+    const dae::Model::StableStep stable = model.stable_step(c.started->x, lie::LoadEvaluation::implicit);
     for (const double h : steps)
         if (h > stable.h)
             throw io::UsageError(

@@ -2,6 +2,7 @@
 #include "studies/running/diagnosis.hpp"
 
 #include "dae/model.hpp"
+#include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/trajectory.hpp"
 
@@ -48,6 +49,14 @@ double reciprocal_condition(const dae::Model& model, const lie::State& x)
     }
 }
 
+/// Evaluation of the loads of a scheme of the list
+lie::LoadEvaluation loads_of(const std::string& name)
+{
+    for (const lie::Scheme& scheme : lie::schemes())
+        if (scheme.name == name) return scheme.loads;
+    return lie::LoadEvaluation::at_step;
+}
+
 }  // namespace
 
 std::string step_text(double h)
@@ -83,12 +92,18 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         }
     if (model.rows() == 0 && model.all_rows().empty()) return d;
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
+    const lie::LoadEvaluation loads = loads_of(scheme);
     const dae::Model::Residual worst = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
     d.detail = fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
                            newton != nullptr ? newton->largest : model.name_of(worst),
                            newton != nullptr ? newton->residual : worst.value, rcond,
                            rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+    for (const auto& force : model.forces())
+        if (std::isfinite(force->spring_limits.at_step))
+            if (const double limit = force->stable_step(node, loads); h > limit)
+                d.detail = fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
+                                       limit, force->label());
     return d;
 }
 

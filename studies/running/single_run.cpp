@@ -199,8 +199,7 @@ void SingleRun::check_step(bool resumed) const
                                 scheme.name, force->label()));
         return;
     }
-    const dae::Model::StableStep stable =
-        model.stable_step(description.x, scheme.extrapolates_velocities ? 2 : 1);
+    const dae::Model::StableStep stable = model.stable_step(description.x, scheme.loads);
     if (!(grid.h > stable.h)) return;
     const std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,

@@ -118,3 +118,43 @@ TEST_CASE("a study rejects steps above the stability limit of a force", "[studie
             in, {"study", "convergence", "--problem", "rolling_ball", "--steps", "2e-2,1e-2", "--no-plot"}, 2,
             message);
 }
+
+namespace {
+
+/// A slider of 2 kg with a damper of 4e4 N s/m: explicit integrators that extrapolate velocities need steps
+/// below m/c = 5e-5 s, the others below 1e-4 s
+const char* const damped_slider = R"({"hilda_model": 1, "name": "m", "end": 0.05, "gravity": [9.81, 0, 0],
+ "bodies": [{"name": "slider", "mass": 2, "inertia": [1, 1, 1], "r": [1, 0, 0]}],
+ "constraints": [{"name": "rail", "type": "translational", "body_i": "ground", "body_j": "slider",
+   "s_bar_p_i": [1, 0, 0], "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}],
+ "forces": [{"name": "damper", "type": "spring-damper", "body_i": "ground", "body_j": "slider",
+   "stiffness": 10, "damping": 4e4, "free_length": 1}]})";
+
+}  // namespace
+
+TEST_CASE("a step above the stability limit of a damper is rejected for explicit integrators",
+          "[studies][stable_step]")
+{
+    const tests::Scratch in;
+    tests::write(in / "m.json", damped_slider);
+    const auto run = [&](const std::string& scheme, const std::vector<std::string>& more = {}) {
+        return tests::call(in,
+                           tests::with({"run", "m.json", "--integrator", scheme, "--output", scheme}, more));
+    };
+    for (const auto& [scheme, limit] : {std::pair("rA-half-1-momentum", "4.999e-05 s"),
+                                        {"rA-half-1", "9.999e-05 s"},
+                                        {"rA-rattle", "9.999e-05 s"}}) {
+        const tests::Ended refused = run(scheme);
+        CHECK(refused.code == 2);
+        CHECK(refused.err ==
+              std::string("hilda: error: run: the step 0.001 s is above ") + limit +
+                  ", the stability limit of force 'damper' in an explicit step; --force accepts it\n");
+        CHECK(run(scheme, {"--step", "4.99e-5", "--quiet"}).code == 0);
+    }
+    const tests::Ended forced = run("rA-half-1-momentum", {"--force"});
+    CHECK(forced.code == 4);
+    CHECK_THAT(forced.err,
+               Catch::Contains("the step is above 5e-05 s, the stability limit of force 'damper'") &&
+                   !Catch::Contains("singular constraints"));
+    for (const char* scheme : {"rA-full-1-exact", "rp-bdf2", "ida-rp"}) CHECK(run(scheme).code == 0);
+}

@@ -32,7 +32,7 @@ Watch::Watch(const dae::Model& model, const lie::State& x, const lie::Integrator
         const dae::Force* force = model.forces()[static_cast<size_t>(k)].get();
         if (const auto* contact = dynamic_cast<const contact::ContactForce*>(force))
             compliant.emplace_back(contact, k);
-        else if (force->internal_states() > 0 || std::isfinite(force->stable_step(x)))
+        else if (force->internal_states() > 0 || std::isfinite(force->stable_step(x, scheme.loads)))
             with_limit.push_back(k);
     }
     values.deepest.resize(compliant.size());
@@ -67,9 +67,8 @@ void Watch::accepted(const lie::State& x, long n, int)
 void Watch::check_stability(int k, const lie::State& x)
 {
     if (values.unstable.place >= 0 || scheme.adaptive) return;
-    const double damping_factor = scheme.extrapolates_velocities ? 2 : 1;
     const auto number = static_cast<size_t>(k);
-    if (model.forces()[number]->is_stable(x, grid.h, damping_factor)) return;
+    if (model.forces()[number]->is_stable(x, grid.h, scheme.loads)) return;
     values.unstable.include(1, x.t, number);
     if (action == Action::strict || (action == Action::stop && values.ignore_stability == 0))
         stop("unstable_step", stability_finding().text);

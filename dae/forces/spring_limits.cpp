@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/forces/spring_limits.hpp"
+
+#include "dae/model.hpp"
+#include "lie/solver/saddle.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace hilda::dae {
+
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double symplectic_euler = 2, leapfrog = 4;  // β
+constexpr double rounding = 1e-10;  // of W, relative to that of free bodies: the constraints permit no motion
+
+/// The largest h for which the eigenvalues of W (h² k + β h c) are below 4
+double limit(const MatrixXd& W, const VectorXd& k, const VectorXd& c, double beta)
+{
+    const auto stable = [&](double h) {
+        const VectorXd root = (h * h * k + beta * h * c).cwiseMax(0).cwiseSqrt();
+        const MatrixXd scaled = root.asDiagonal() * W * root.asDiagonal();
+        return Eigen::SelfAdjointEigenSolver<MatrixXd>(scaled, Eigen::EigenvaluesOnly)
+                   .eigenvalues()
+                   .maxCoeff() < 4;
+    };
+    double lower = 1e-15, upper = 1e6;  // [s]
+    if (stable(upper)) return std::numeric_limits<double>::infinity();
+    while (upper > lower * (1 + 1e-12)) {
+        const double middle = std::sqrt(lower * upper);
+        (stable(middle) ? lower : upper) = middle;
+    }
+    return lower;
+}
+
+}  // namespace
+
+void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
+{
+    const lie::Mass& mass = model.mass();
+    VectorXd b(K.size());
+    for (const auto& force : model.forces()) {
+        force->spring_limits = {};
+        const std::vector<Force::SpringRow> rows = force->spring_rows(x);
+        const auto n = static_cast<Eigen::Index>(rows.size());
+        if (n == 0) continue;
+        const auto [i, j] = force->bodies();
+        MatrixXd W(n, n);
+        VectorXd k(n), c(n);
+        for (Eigen::Index column = 0; column < n; ++column) {
+            const Force::SpringRow& row = rows[static_cast<size_t>(column)];
+            k[column] = row.stiffness, c[column] = row.damping;
+            double free = 0;  // inverse effective mass of the bodies without constraints
+            b.setZero();
+            const auto set = [&](int body, const Vec3& r, const Vec3& pi) {
+                if (body == ground) return;
+                b.segment<3>(6 * body) = r, b.segment<3>(6 * body + 3) = pi;
+                free += r.squaredNorm() / mass.m[body] + pi.dot(mass.J_bar[body].inverse() * pi);
+            };
+            set(i, row.r_i, row.pi_i);
+            set(j, row.r_j, row.pi_j);
+            K.solve(b);
+            const auto along = [&](int body, const Vec3& r, const Vec3& pi) {
+                return body == ground ? 0
+                                      : r.dot(b.segment<3>(6 * body)) + pi.dot(b.segment<3>(6 * body + 3));
+            };
+            for (Eigen::Index other = 0; other < n; ++other) {
+                const Force::SpringRow& of = rows[static_cast<size_t>(other)];
+                W(other, column) = along(i, of.r_i, of.pi_i) + along(j, of.r_j, of.pi_j);
+            }
+            if (!(W(column, column) > rounding * free)) W(column, column) = 0;
+        }
+        W = (0.5 * (W + W.transpose())).eval();
+        force->spring_limits = {limit(W, k, c, symplectic_euler), limit(W, k, c, leapfrog)};
+    }
+}
+
+}  // namespace hilda::dae

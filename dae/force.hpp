@@ -77,8 +77,7 @@ public:
     /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d is 1 for a scheme whose loads contain the
     /// velocities of the last step, and 2 if they contain velocities extrapolated to the node. The default is
     /// spring_limits.
-    virtual double stable_step(const State& /*x*/,
-                               LoadEvaluation evaluation = LoadEvaluation::at_step) const
+    virtual double stable_step(const State& /*x*/, LoadEvaluation evaluation = LoadEvaluation::at_step) const
     {
         return evaluation == LoadEvaluation::at_step        ? spring_limits.at_step
                : evaluation == LoadEvaluation::extrapolated ? spring_limits.extrapolated

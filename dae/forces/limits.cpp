@@ -47,12 +47,14 @@ std::vector<Force::SpringRow> DistanceLimit::spring_rows(const State& x) const
 
 double DistanceLimit::stable_step(const State& x, LoadEvaluation evaluation) const
 {
-    return stop.is_within(d_ij(x).norm()) ? std::numeric_limits<double>::infinity() : Force::stable_step(x, evaluation);
+    return stop.is_within(d_ij(x).norm()) ? std::numeric_limits<double>::infinity()
+                                          : Force::stable_step(x, evaluation);
 }
 
 double AngleLimit::stable_step(const State& x, LoadEvaluation evaluation) const
 {
-    return stop.is_within(angle(x)) ? std::numeric_limits<double>::infinity() : Force::stable_step(x, evaluation);
+    return stop.is_within(angle(x)) ? std::numeric_limits<double>::infinity()
+                                    : Force::stable_step(x, evaluation);
 }
 
 double DistanceLimit::potential_energy(const State& x) const { return stop.potential(d_ij(x).norm()); }

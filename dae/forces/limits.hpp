@@ -46,8 +46,7 @@ public:
     bool is_passive() const override { return true; }
     std::vector<SpringRow> spring_rows(const State& x) const override;
     /// Infinite within the limits
-    double stable_step(const State& x,
-                       LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
+    double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
@@ -76,8 +75,7 @@ public:
     bool is_passive() const override { return true; }
     std::pair<double, double> coefficients() const override { return {stop.stiffness, 0}; }
     /// Infinite within the limits
-    double stable_step(const State& x,
-                       LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
+    double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
 
 private:
     const Stop stop;

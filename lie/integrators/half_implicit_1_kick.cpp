@@ -35,7 +35,9 @@ public:
 
 const bool registered = register_scheme<HalfImplicit1Kick>(
     {.name = "rA-half-1-kick",
-     .description = "leapfrog (SHAKE): rA-half-1 started with half a kick and read at the nodes",
+     .description =
+         "leapfrog (SHAKE): rA-half-1 started with half a kick and read at the nodes; the energy of "
+         "spinning bodies drifts",
      .order = 2,
      .order_lambda = 2,
      .formulation = "rA",

@@ -115,7 +115,7 @@ private:
 
 const bool registered = register_scheme<HalfImplicit1Momentum>(
     {.name = "rA-half-1-momentum",
-     .description = "leapfrog in angular momentum",
+     .description = "leapfrog in angular momentum, the default",
      .order = 2,
      .order_lambda = 2,
      .formulation = "rA",

@@ -81,9 +81,9 @@ const bool registered =
                                         .formulation = "rA",
                                         .unknowns = "r, h omega, h^2 lambda",
                                         .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
-     .loads = LoadEvaluation::extrapolated,
-     .algebraic = true,
-     .energy_drifts = true});
+                                        .loads = LoadEvaluation::extrapolated,
+                                        .algebraic = true,
+                                        .energy_drifts = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -8,6 +8,7 @@
 #include "io/json.hpp"
 #include "io/message.hpp"
 #include "lie/solver/saddle.hpp"
+#include "studies/framework/recommended_integrator.hpp"
 #include "studies/running/contact_outputs.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
@@ -21,9 +22,6 @@
 namespace hilda::studies {
 
 namespace {
-
-/// Integrator for models with contact constraints
-constexpr const char* recommended = "rA-half-1-momentum";
 
 /// The largest value of a quantity, and the body at which it occurs
 struct Largest {
@@ -258,6 +256,7 @@ int check_model(const CheckOptions& options)
     const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
     if (!options.write.empty()) write_projected(d, options.model, options.write);
     const dae::Model& model = *d.model;
+    const Recommendation recommended = recommended_integrator(model, d.x, start.degrees_of_freedom);
     const size_t output_columns = OutputColumns(model, d.outputs).columns.size();
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
@@ -295,14 +294,15 @@ int check_model(const CheckOptions& options)
             {"largest_reaction_force", as_json(loads.F)},
             {"largest_reaction_torque", as_json(loads.T)},
             {"end", d.end},
+            {"recommended_integrator", recommended.integrator},
+            {"recommendation", recommended.reason},
             {"warnings", d.warnings}};
         if (output_columns > 0) out["output_columns"] = output_columns;
         if (!d.parameters.empty())
             for (const auto& [name, value] : d.parameters) out["parameters"][name] = value;
         for (const CompliantContactInfo& c : compliant) out["contacts"].push_back(as_json(c));
         for (const ContactConstraintInfo& c : constrained) out["evolving_contacts"].push_back(as_json(c));
-        if (!constrained.empty())
-            out.update({{"condition", condition}, {"recommended_integrator", recommended}});
+        if (!constrained.empty()) out["condition"] = condition;
         if (fix_initial)
             out["fix_initial"] = {{"projected", start.projected},
                                   {"r", as_json(change_of_start.r)},
@@ -360,13 +360,9 @@ int check_model(const CheckOptions& options)
          initial(start.position_residual, "m or rad", start.worst_position, start.position_violation));
     line("velocity residual",
          initial(start.velocity_residual, "m/s or rad/s", start.worst_velocity, start.velocity_violation));
-    if (!constrained.empty()) {
+    if (!constrained.empty())
         line("condition", fmt::format("{:.1e} of the row-scaled saddle matrix", condition));
-        line("recommended",
-             fmt::format("--integrator {}: second order in motion and normal force; the default rA-half-1 is "
-                         "the scheme of the dissertation",
-                         recommended));
-    }
+    line("recommended", fmt::format("--integrator {}; {}", recommended.integrator, recommended.reason));
     line("energy", fmt::format("{:.6e} J", energy));
     line("largest reaction", at(loads.F, "N") + ", " + at(loads.T, "N m"));
     line("end", fmt::format("{:g} s", d.end));

@@ -151,8 +151,9 @@ int list_integrators(bool json)
     print_aligned(lines);
     std::cout
         << "\ncontacts: supported contact constraints. constraint: without friction, or with friction as a "
-           "force; rolling: also rolling without slip.\nFor contact constraints rA-half-1-momentum is "
-           "recommended; rA-half-1 is the scheme of the dissertation.\n";
+           "force; rolling: also rolling without slip.\nThe default is rA-half-1-momentum; hilda check names "
+           "the "
+           "integrator that suits a model.\n";
     return io::exit_code::done;
 }
 

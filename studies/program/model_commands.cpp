@@ -25,8 +25,8 @@ void add_run_options(CLI::App& c, RunArguments& to)
     RunOptions& o = to.options;
     add_model(c, o.model);
     values(c, "--integrator", "NAME[,NAME...]",
-           "integrators, one run each; recommended for contact constraints: rA-half-1-momentum; default: "
-           "rA-half-1",
+           std::string("integrators, one run each; hilda check names one that suits the model; default: ") +
+               default_integrator,
            append(to.integrators, integrators));
     value(c, "--step", "H", "step size [s]; not for ida-rp, which chooses its own; default: 1e-3",
           assign(o.step, positive_number));

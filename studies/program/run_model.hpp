@@ -5,6 +5,7 @@
 
 #include "io/sink.hpp"
 #include "lie/settings.hpp"
+#include "studies/running/run_settings.hpp"
 
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ namespace hilda::studies {
 
 struct RunOptions {
     std::string model;  ///< name of a built-in model, or path of a model file
-    std::vector<std::string> integrators{"rA-half-1"};
+    std::vector<std::string> integrators{default_integrator};
     std::optional<double> step;           ///< [s]; default: 1e-3
     std::optional<double> end, interval;  ///< [s]; defaults: end of the model, end/1000
     lie::Settings settings;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace hilda::studies {
 
@@ -102,8 +103,9 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
             if (const double limit = force->stable_step(node, loads); h > limit)
-                d.detail = fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
-                                       limit, force->label());
+                d.detail =
+                    fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
+                                limit, force->label());
     return d;
 }
 

@@ -30,8 +30,6 @@ namespace {
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-constexpr double default_step = 1e-3;  // [s]
-
 /// Time grid of a run. For an adaptive scheme each node is an output row.
 lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive)
 {

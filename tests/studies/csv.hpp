@@ -50,7 +50,7 @@ inline std::vector<CsvRow> csv(const fs::path& file)
 inline double number(const CsvRow& row, const std::string& column)
 {
     const std::string& text = row.at(column);
-    return text.empty() ? std::nan("") : std::stod(text);
+    return text.empty() ? std::nan("") : std::strtod(text.c_str(), nullptr);
 }
 
 }  // namespace hilda::tests

@@ -9,6 +9,7 @@
 #include "tests/support/bristle_contacts.hpp"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using namespace hilda;
 using studies::SingleRun;
@@ -157,4 +158,22 @@ TEST_CASE("a step above the stability limit of a damper is rejected for explicit
                Catch::Contains("the step is above 5e-05 s, the stability limit of force 'damper'") &&
                    !Catch::Contains("singular constraints"));
     for (const char* scheme : {"rA-full-1-exact", "rp-bdf2", "ida-rp"}) CHECK(run(scheme).code == 0);
+}
+
+TEST_CASE("check names an integrator that suits the model, and the reason", "[studies][check]")
+{
+    const tests::Scratch in;
+    tests::write(in / "m.json", damped_slider);
+    const auto recommended = [&](const std::string& model) {
+        const auto facts = nlohmann::json::parse(tests::call(in, {"check", model, "--json"}).out);
+        const std::string scheme = facts["recommended_integrator"], reason = facts["recommendation"];
+        CHECK_THAT(tests::call(in, {"check", model}).out,
+                   Catch::Contains("recommended         --integrator " + scheme + "; " + reason + '\n'));
+        return scheme + ": " + reason;
+    };
+    CHECK_THAT(recommended("double_pendulum"), Catch::StartsWith("rA-half-1-momentum: smooth motion"));
+    CHECK_THAT(recommended("slider_crank"), Catch::StartsWith("rA-rkmk-4: no degrees of freedom"));
+    CHECK_THAT(recommended("ball_in_bowl"), Catch::StartsWith("rA-half-1-momentum: contact constraints"));
+    CHECK_THAT(recommended("rolling_ball"), Catch::StartsWith("rA-half-1-momentum: compliant contacts"));
+    CHECK_THAT(recommended("m.json"), Catch::StartsWith("rp-bdf2: stiff: force 'damper' limits the step"));
 }

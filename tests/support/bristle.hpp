@@ -50,7 +50,10 @@ public:
     }
 
     /// Stability limit [s] for a reduced mass of 1 kg
-    double stable_step(const lie::State&, lie::LoadEvaluation = lie::LoadEvaluation::at_step) const override { return 2 / std::sqrt(stiffness); }
+    double stable_step(const lie::State&, lie::LoadEvaluation = lie::LoadEvaluation::at_step) const override
+    {
+        return 2 / std::sqrt(stiffness);
+    }
 
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }

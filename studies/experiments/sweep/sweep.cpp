@@ -17,6 +17,7 @@
 #include "studies/running/invariants.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
+#include "studies/running/run_settings.hpp"
 #include "studies/running/sink.hpp"
 
 #include <fmt/format.h>
@@ -214,7 +215,7 @@ void sweep(StudyContext& s)
                 s.refuse("--set and --sweep change the same entry, " + entry.pointer);
     const std::string name = s.options.problems.empty() ? "double_pendulum" : s.options.problems.front();
     const SweptModel model(s.options, problem_or_file(name), entries);
-    const Schemes schemes = s.schemes({"rA-half-1"});
+    const Schemes schemes = s.schemes({default_integrator});
     const std::vector<double> steps = s.steps({1e-3});
 
     // The models are read again when they run: a grid of large models would not fit into the memory.

@@ -332,11 +332,13 @@ TEST_CASE("a step is stable up to the stability limit", "[contact][force]")
         CHECK_FALSE(force.is_stable(resting.x, 1.001 * h, evaluation));
         CHECK(force.is_stable(resting.x, 1e-3 * h, evaluation));
     }
-    CHECK(force.stable_step(resting.x, lie::LoadEvaluation::extrapolated) < 0.8 * force.stable_step(resting.x));
+    CHECK(force.stable_step(resting.x, lie::LoadEvaluation::extrapolated) <
+          0.8 * force.stable_step(resting.x));
     Motion above = thrown(0);
     above.r.z() += 0.1;
     const OneBall falling(above);
-    CHECK(falling.model.forces()[0]->is_stable(falling.x, 1, lie::LoadEvaluation::at_step));  // apart: no stiffness now
+    CHECK(falling.model.forces()[0]->is_stable(falling.x, 1,
+                                               lie::LoadEvaluation::at_step));  // apart: no stiffness now
 }
 
 TEST_CASE("the stability limit is that of symplectic Euler and of leapfrog with extrapolated velocities",

@@ -149,8 +149,8 @@ TEST_CASE("the option --error does not change the files of a run, and needs a wh
     CHECK(a["counters"] == b["counters"]);
     CHECK(a["invariants"] == b["invariants"]);
     CHECK_FALSE(a.contains("error_estimate"));
-    CHECK(b["error_estimate"]["r"]["order"] == 1);
-    CHECK(b["error_estimate"]["omega"]["observed_order"].get<double>() == Approx(1).margin(0.1));
+    CHECK(b["error_estimate"]["r"]["order"] == 2);
+    CHECK(b["error_estimate"]["omega"]["observed_order"].get<double>() == Approx(2).margin(0.1));
 
     tests::check_refused(in, tests::with(run, {"b", "--error", "--resume"}), 2, "--error");
     tests::check_refused(in, tests::with(run, {"c", "--error", "--integrator", "ida-rp"}), 2,

@@ -152,12 +152,27 @@ TEST_CASE("a step above the stability limit of a damper is rejected for explicit
                   ", the stability limit of force 'damper' in an explicit step; --force accepts it\n");
         CHECK(run(scheme, {"--step", "4.99e-5", "--quiet"}).code == 0);
     }
-    const tests::Ended forced = run("rA-half-1-momentum", {"--force"});
+    CHECK_THAT(
+        run("rA-half-1-momentum", {"--force"}).err,
+        Catch::StartsWith("hilda: warning: the step 0.001 s is above 4.999e-05 s, the stability limit"));
+    for (const char* scheme : {"rA-full-1-exact", "rp-bdf2", "ida-rp"}) CHECK(run(scheme).code == 0);
+}
+
+TEST_CASE("a run that fails above the stability limit of a force names the force", "[studies][stable_step]")
+{
+    const tests::Scratch in;
+    tests::write(in / "m.json", R"({"hilda_model": 1, "name": "m", "end": 1,
+ "bodies": [{"name": "bar", "mass": 1, "inertia": [1, 0.1, 1], "r": [0, 1, 0], "r_dot": [0, 0, 1], "omega": [1, 0, 0]}],
+ "constraints": [{"name": "pin", "type": "revolute", "body_i": "ground", "body_j": "bar", "s_bar_q_j": [0, -1, 0],
+   "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}],
+ "forces": [{"name": "brake", "type": "torsion-spring", "body_i": "ground", "body_j": "bar", "axis_bar_i": [1, 0, 0],
+   "axis_bar_j": [1, 0, 0], "stiffness": 0, "damping": 1e4, "free_angle": 0}]})");
+    // The moment of inertia about the pin is 2 kg m^2.
+    const tests::Ended forced = tests::call(in, {"run", "m.json", "--force", "--output", "a"});
     CHECK(forced.code == 4);
     CHECK_THAT(forced.err,
-               Catch::Contains("the step is above 5e-05 s, the stability limit of force 'damper'") &&
+               Catch::Contains("the step is above 0.0002 s, the stability limit of force 'brake'") &&
                    !Catch::Contains("singular constraints"));
-    for (const char* scheme : {"rA-full-1-exact", "rp-bdf2", "ida-rp"}) CHECK(run(scheme).code == 0);
 }
 
 TEST_CASE("check names an integrator that suits the model, and the reason", "[studies][check]")

@@ -160,6 +160,9 @@ Finding Watch::energy_finding() const
         r.rise_t, percent(r.rise / r.kinetic_most), r.kinetic_most);
     if (scheme.energy_drifts)
         text += fmt::format("; the energy of {} drifts with an error of order {}", scheme.name, scheme.order);
+    if (values.unstable.place >= 0)
+        text += fmt::format("; the step is above the stability limit of {}",
+                            model.forces()[static_cast<size_t>(values.unstable.place)]->label());
     return {"energy_rises", text + "; reduce the step"};
 }
 

@@ -8,6 +8,7 @@
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
+#include "granular/program/waiting_threads.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/program.hpp"
@@ -72,5 +73,6 @@ int run_program(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
+    let_threads_sleep(argc, argv);
     return io::run_program([&] { return run_program(argc, argv); });
 }

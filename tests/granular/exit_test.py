@@ -5,6 +5,7 @@
     exit_test.py PROGRAM
 """
 import json
+import os
 import re
 import resource
 import subprocess
@@ -107,6 +108,16 @@ def main():
         expect((here / "old" / "run.csv").read_text().count("\n") == 6, "--interval replaces the old name in the file")
         (here / "both.json").write_text(json.dumps(dict(old, interval=5e-5)))
         refused(3, r"both.json:1:\d+ \(/every\): every is the old name of interval, which is given as well; remove one of them", case="both")
+
+        # waiting threads sleep; settings of the user remain
+        for given, spins in ({}, "1000"), ({"GOMP_SPINCOUNT": "77"}, "77"):
+            environment = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+            process = subprocess.run([sys.argv[1], "short.json", "--output", f"spins{spins}", "--quiet", "--threads", "2"], cwd=here,
+                                     capture_output=True, text=True, env=dict(environment, OMP_DISPLAY_ENV="verbose", **given))
+            expect(process.returncode == 0 and f"GOMP_SPINCOUNT = '{spins}'" in process.stderr.split("OPENMP DISPLAY ENVIRONMENT END")[-2],
+                   f"{process.returncode}: {process.stderr}")
+            expect((here / f"spins{spins}" / "particles.csv").read_bytes() == (here / "out" / "short" / "particles.csv").read_bytes(),
+                   "the waiting of threads does not change the results")
 
         # a full device behind stdout
         with open("/dev/full", "w") as full:

@@ -6,6 +6,7 @@
 #include "io/error.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
+#include "io/nearest.hpp"
 #include "io/option_values.hpp"
 #include "io/provenance.hpp"
 
@@ -26,6 +27,19 @@ std::optional<Device> device_of(const std::string& name)
     const auto number = io::number_in<int>(name.starts_with("cuda:") ? name.substr(5) : "");
     if (number && *number >= 0) return Device{.kind = Device::cuda, .number = *number};
     return {};
+}
+
+/// Throws io::UsageError for the first argument that is no option of the program, if there is one.
+void refuse_extras(const CLI::App& app)
+{
+    const std::vector<std::string> extras = app.remaining();
+    if (extras.empty()) return;
+    const std::string& word = extras.front();
+    if (!word.starts_with('-')) throw io::UsageError("one argument too many: '" + word + "'");
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    throw io::UsageError("unknown option" + io::with_nearest(word.substr(0, word.find('=')), known));
 }
 
 }  // namespace
@@ -106,11 +120,13 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
     app.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
     app.add_flag("-v,--verbose", o.verbose, "report steps, checkpoints and resumption on stderr");
+    app.allow_extras();  // refuse_extras() names the nearest option
     app.footer(
         "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 invalid case, 4 numerical failure,\n"
         "5 input/output, 6 a check of a validation failed, 7 device not available, 129/130/143 interrupted.");
     try {
         app.parse(argc, argv);
+        refuse_extras(app);
         if (o.force && o.resume) throw io::UsageError("--force and --resume exclude each other");
         if (!every.empty() && !interval.empty())
             throw io::UsageError("--every is the old name of --interval; give only one of them");
@@ -120,6 +136,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
             return io::exit_code::done;
         }
         if (e.get_exit_code() == 0) return app.exit(e);
+        try {
+            refuse_extras(app);  // the cause, if an argument is missing as well
+        } catch (const io::UsageError& unknown) {
+            return io::report(io::UsageError(std::string("granular: ") + unknown.what()));
+        }
         return io::report(io::UsageError(std::string("granular: ") + e.what()));
     } catch (const io::UsageError& e) {
         return io::report(io::UsageError(std::string("granular: ") + e.what()));
@@ -128,7 +149,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         interval = every;  // the origin in messages is then --interval
         if (!o.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
-    const std::set<std::string> of_all = {"CASE", "--threads", "--device", "--full", "--quiet", "--verbose"};
+    const std::set<std::string> of_all = {"CASE",     "--threads", "--device", "--full",
+                                          "--strict", "--quiet",   "--verbose"};
     for (const CLI::Option* option : app.get_options())
         if (option->count() > 0 && !of_all.contains(option->get_name()) && o.case_only_option.empty())
             o.case_only_option = option->get_name();

@@ -26,7 +26,9 @@ def main():
             lines = err.strip().split("\n")
             expect(len(lines) == 1 and re.search(f"^hilda: error.*{message}", lines[0]), f"{message} in one line: {err}")
 
-        refused(2, "--checkpoin", "--checkpoin", "1")
+        refused(2, "granular: unknown option '--checkpoin'; did you mean '--checkpoint'\\?", "--checkpoin", "1")
+        refused(2, "granular: unknown option '--seeds'; did you mean '--seed'\\?", "--seeds=1")
+        refused(2, "granular: one argument too many: 'other.json'", "other.json")
         refused(2, "--device: must be cpu, cuda or cuda:N", "--device", "gpu")
         for option, value, message in (
                 ("--end", "0", "must be a positive, finite number, got '0'"), ("--step", "-1e-6", "must be a positive, finite number"),

@@ -310,6 +310,7 @@ def longer(runs):
     expect("its end is 0.01 s, --end continues it to another" in err, f"the end of the case: {err}")
     err = longer_run(case, "0.02", "--set", "/laws/0/mu=0.2", code=5)
     expect("is another case, or this case with other options; --force overwrites it" in err, f"another case: {err}")
+    expect("--resume: " in err and "; /laws/0/mu was 0.3 and is 0.2 now" in err, f"the entry that differs: {err}")
     err = longer_run(case, "0.02", "--interval", "2e-3", code=5)
     expect("is another case, or this case with other options" in err, f"another interval: {err}")
     end = runs.folder / "out" / "checkpoint.end"

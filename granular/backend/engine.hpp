@@ -5,6 +5,7 @@
 
 #include "granular/core/integrator.hpp"
 #include "granular/core/neighbours.hpp"
+#include "granular/core/watch.hpp"
 
 #include <memory>
 #include <stdexcept>
@@ -66,6 +67,23 @@ public:
     virtual float largest_displacement() = 0;
     /// Sums of the current contact loads on boundaries with a mass, by boundary number; zero for the others
     virtual const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) = 0;
+
+    // The watch over a run. The sums do not depend on the number of threads; see watch.hpp.
+
+    /// Whether the memory for the sums is available after the next neighbour search, and overlaps are compared.
+    virtual void set_watched(bool on) = 0;
+    /// Largest overlap over the smaller radius in all find_loads since the last call
+    virtual float take_largest_overlap() = 0;
+    /// Loads of boundaries and fixed particles, after find_loads. `before` and `after` are the velocities of the
+    /// boundaries in the previous and in the next move; empty if no boundary moves.
+    virtual ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
+                                       const std::vector<BoundaryVelocity>& after) = 0;
+    /// Sums over the particles. Copies the velocities for kinetic_sums(), unless only the applied forces are
+    /// summed.
+    virtual ParticleSums particle_sums(const Domain& domain, bool only_forces) = 0;
+    virtual ContactSums contact_sums(const Domain& domain, float h) = 0;
+    /// See AddKinetic; after particle_sums() and advance().
+    virtual KineticSums kinetic_sums(double s) = 0;
 
     /// Waits until the device has finished all work, for time measurements.
     virtual void wait() = 0;

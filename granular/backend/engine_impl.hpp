@@ -6,7 +6,9 @@
 
 #include <chrono>
 #include <cstring>
+#include <span>
 #include <type_traits>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -131,20 +133,18 @@ public:
                          .rotation_laws = rotation_laws},
                         own.particle, own.pairs);
         free_pairs = 0;
-        if (!any_free) return;
-        const std::uint32_t n = own.pairs.count;
-        counts.resize(n), offset.resize(n + 1);
-        par::for_each(on, n,
-                      detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), counts.data()});
-        free_pairs = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), offset.data(), n));
-        par::for_each(on, n, detail::CompactIndices{offset.data(), counts.data()});
+        if (any_free)
+            free_pairs = list_pairs(
+                detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), nullptr}, counts);
+        if (watched) prepare_watch();
     }
 
     void find_loads(const Domain& domain, float h) override
     {
         host_is_current = false;
-        granular::find_loads(on, particle_view(domain, own.particle), pair_view(),
-                             {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
+        PairView pairs = pair_view();
+        if (watched) pairs.largest_overlap = overlaps.data();
+        granular::find_loads(on, particle_view(domain, own.particle), pairs, law_view(h));
     }
 
     float advance(const StepParameters& step) override
@@ -195,6 +195,86 @@ public:
         return wrenches;
     }
 
+    void set_watched(bool is_watched) override
+    {
+        watched = is_watched;
+        if (watched && own.pairs.start.size() > 0) prepare_watch();
+    }
+
+    float take_largest_overlap() override
+    {
+        float largest = std::exchange(earlier_overlap, 0.f);
+        for (const float overlap : to_host(overlaps, host_overlaps)) largest = larger(largest, overlap);
+        par::fill(on, overlaps.data(), overlaps.size(), 0.f);
+        return largest;
+    }
+
+    ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
+                               const std::vector<BoundaryVelocity>& after) override
+    {
+        if (external_pairs == 0) return {};
+        if (!before.empty()) send(velocities_before, before), send(velocities_after, after);
+        const bool moves = !before.empty();
+        par::for_each(on, external_blocks.size(),
+                      AddExternal{.grid = domain.grid,
+                                  .position = own.particle.position.data(),
+                                  .velocity = own.particle.velocity.data(),
+                                  .omega = own.particle.omega.data(),
+                                  .i = own.pairs.i.data(),
+                                  .j = own.pairs.j.data(),
+                                  .load = own.pairs.load.data(),
+                                  .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
+                                  .in_contact = own.pairs.in_contact.data(),
+                                  .boundary = boundaries.data(),
+                                  .before = moves ? velocities_before.data() : nullptr,
+                                  .after = moves ? velocities_after.data() : nullptr,
+                                  .which = external.data(),
+                                  .count = external_pairs,
+                                  .out = external_blocks.data()},
+                      serial_blocks);
+        return total(external_blocks, host_external_blocks);
+    }
+
+    ParticleSums particle_sums(const Domain& domain, bool only_forces) override
+    {
+        const Particles<Backend>& p = own.particle;
+        par::for_each(on, particle_blocks.size(),
+                      AddParticles{.grid = domain.grid,
+                                   .position = p.position.data(),
+                                   .velocity = p.velocity.data(),
+                                   .omega = p.omega.data(),
+                                   .velocity_copy = only_forces ? nullptr : velocity_copy.data(),
+                                   .omega_copy = only_forces ? nullptr : omega_copy.data(),
+                                   .force = force.size() > 0 ? force.data() : nullptr,
+                                   .id = p.id.data(),
+                                   .count = p.count,
+                                   .out = particle_blocks.data()},
+                      serial_blocks);
+        return total(particle_blocks, host_particle_blocks);
+    }
+
+    ContactSums contact_sums(const Domain& domain, float h) override
+    {
+        add_contacts(on, particle_view(domain, own.particle), pair_view(), law_view(h),
+                     contact_blocks.data());
+        return total(contact_blocks, host_contact_blocks);
+    }
+
+    KineticSums kinetic_sums(double s) override
+    {
+        const Particles<Backend>& p = own.particle;
+        par::for_each(on, kinetic_blocks.size(),
+                      AddKinetic{.velocity = p.velocity.data(),
+                                 .omega = p.omega.data(),
+                                 .velocity_before = velocity_copy.data(),
+                                 .omega_before = omega_copy.data(),
+                                 .s = s,
+                                 .count = p.count,
+                                 .out = kinetic_blocks.data()},
+                      serial_blocks);
+        return total(kinetic_blocks, host_kinetic_blocks);
+    }
+
     void wait() override { par::wait(on); }
 
     double copy_rate() override
@@ -214,7 +294,7 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               counts.bytes() + offset.bytes() + boundary_loads.bytes();
+               counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes();
     }
 
 private:
@@ -232,6 +312,63 @@ private:
                 rotation_laws ? p.torque.data() : nullptr,
                 p.in_contact.data(),
                 p.count};
+    }
+
+    LawView law_view(float h) const
+    {
+        return {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
+    }
+
+    /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there are.
+    template <class Flag>
+    std::uint32_t list_pairs(Flag flag, par::Array<Backend, std::uint32_t>& list)
+    {
+        const std::uint32_t n = own.pairs.count;
+        list.resize(n), offset.resize(n + 1);
+        flag.flag = list.data();
+        par::for_each(on, n, flag);
+        const std::uint64_t count = par::exclusive_scan(on, list.data(), offset.data(), n);
+        par::for_each(on, n, detail::CompactIndices{offset.data(), list.data()});
+        return static_cast<std::uint32_t>(count);
+    }
+
+    /// Lists the pairs with external loads and provides the memory of the sums.
+    void prepare_watch()
+    {
+        earlier_overlap = take_largest_overlap();
+        external_pairs = list_pairs(
+            FlagExternalPair{own.pairs.i.data(), own.pairs.j.data(), own.particle.omega.data(), nullptr},
+            external);
+        const std::uint32_t n = own.particle.count, pairs = own.pairs.count;
+        velocity_copy.resize(n), omega_copy.resize(n);
+        particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
+        contact_blocks.resize(watch_blocks(pairs)), external_blocks.resize(watch_blocks(external_pairs));
+        overlaps.resize(is_cpu ? (pairs + loop_chunk - 1) / loop_chunk : 1);
+        par::fill(on, overlaps.data(), overlaps.size(), 0.f);
+    }
+
+    std::size_t watch_bytes() const
+    {
+        return external.bytes() + velocity_copy.bytes() + omega_copy.bytes() + particle_blocks.bytes() +
+               kinetic_blocks.bytes() + contact_blocks.bytes() + external_blocks.bytes() + overlaps.bytes() +
+               velocities_before.bytes() + velocities_after.bytes();
+    }
+
+    /// The elements of an array in the memory of the host
+    template <class T>
+    std::span<const T> to_host(const par::Array<Backend, T>& from, std::vector<T>& copy)
+    {
+        if constexpr (is_cpu) return {from.data(), from.size()};
+        copy.resize(from.size());
+        par::copy_to_host(on, copy.data(), from.data(), from.size() * sizeof(T));
+        return copy;
+    }
+    template <class Sum>
+    Sum total(const par::Array<Backend, Sum>& blocks, std::vector<Sum>& copy)
+    {
+        Sum sum;
+        for (const Sum& block : to_host(blocks, copy)) sum += block;
+        return sum;
     }
 
     template <class T>
@@ -285,6 +422,26 @@ private:
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
     std::vector<Wrench> wrenches;
+
+    // the watch
+    static constexpr std::size_t serial_blocks = 16;
+    bool watched = false;
+    std::uint32_t external_pairs = 0;
+    par::Array<Backend, std::uint32_t> external;  ///< numbers of the pairs with external loads
+    par::Array<Backend, Float4> velocity_copy, omega_copy;
+    par::Array<Backend, BoundaryVelocity> velocities_before, velocities_after;
+    par::Array<Backend, float> overlaps;
+    float earlier_overlap =
+        0;  ///< largest overlap since the last call of take_largest_overlap(), before `overlaps`
+    par::Array<Backend, ParticleSums> particle_blocks;
+    par::Array<Backend, KineticSums> kinetic_blocks;
+    par::Array<Backend, ContactSums> contact_blocks;
+    par::Array<Backend, ExternalSums> external_blocks;
+    std::vector<ParticleSums> host_particle_blocks;
+    std::vector<KineticSums> host_kinetic_blocks;
+    std::vector<ContactSums> host_contact_blocks;
+    std::vector<ExternalSums> host_external_blocks;
+    std::vector<float> host_overlaps;
 };
 
 }  // namespace hilda::granular

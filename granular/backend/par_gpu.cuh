@@ -75,7 +75,7 @@ __global__ void for_each_kernel(std::uint32_t n, Functor f)
     if (k < n) f(k);
 }
 template <class Functor>
-void for_each(Gpu, std::size_t n, const Functor& f)
+void for_each(Gpu, std::size_t n, const Functor& f, std::size_t /*serial_below*/ = 0)
 {
     if (n == 0) return;
     for_each_kernel<<<blocks(n), block>>>(static_cast<std::uint32_t>(n), f);

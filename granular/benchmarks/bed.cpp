@@ -5,18 +5,22 @@
 ///     cmake --preset native && cmake --build --preset native --target hilda_granular_benchmark
 ///     build/native/hilda_granular_benchmark 50000         with 1, 2, 4 … threads
 ///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
+///     build/native/hilda_granular_benchmark watch 10000   cost of the watch: CPU time of steps with and without it
 ///
 /// For the bed at rest the program then prints the memory throughput of each part of a step: the bytes that
 /// it has to transfer at least, divided by its time, also as a fraction of the throughput of a copy.
 
 #include "granular/world/world.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <tuple>
+#include <vector>
 
 #include <omp.h>
 
@@ -112,14 +116,54 @@ void report_memory(World& world, long steps)
     std::printf("%-10s %18s %13.1f\n", "neighbours", "", 1e6 * t.neighbours / static_cast<double>(steps));
 }
 
+/// CPU time of this process [s]
+double cpu_time()
+{
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Prints the CPU time of a step of the bed at rest with and without the watch, and the median of the ratios.
+/// Blocks of steps of two equal worlds alternate, so that the load of the machine affects both.
+void report_watch(std::size_t n)
+{
+    omp_set_num_threads(1);
+    World worlds[] = {bed(n, {}), bed(n, {})};
+    worlds[0].set_watch(false);
+    for (World& w : worlds) w.step(std::lround(0.25 / h));
+    constexpr int rounds = 31;
+    constexpr long steps = 192;  // three samples
+    std::vector<double> ratios;
+    double total[2] = {0, 0};
+    for (int round = 0; round < rounds; ++round) {
+        double seconds[2];
+        for (const int k : {round % 2, 1 - round % 2}) {
+            const double begin = cpu_time();
+            worlds[k].step(steps);
+            total[k] += seconds[k] = cpu_time() - begin;
+        }
+        ratios.push_back(seconds[1] / seconds[0]);
+    }
+    std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
+    std::printf(
+        "%zu particles, bed at rest, one thread, CPU time of a step: %.2f us without, %.2f us with the "
+        "watch; median of %d ratios: %.4f\n",
+        n, 1e6 * total[0] / (rounds * steps), 1e6 * total[1] / (rounds * steps), rounds, ratios[rounds / 2]);
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 try {
+    if (argc == 3 && std::strcmp(argv[1], "watch") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
+        report_watch(std::strtoul(argv[2], nullptr, 10));
+        return 0;
+    }
     const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;
     const bool gpu = argc > 2 && std::strcmp(argv[2], "cuda") == 0;
     if (n < 1 || (argc > 2 && !gpu)) {
-        std::fprintf(stderr, "usage: hilda_granular_benchmark [PARTICLES [cuda]]\n");
+        std::fprintf(stderr, "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES\n");
         return 2;
     }
     World world = bed(n, {.kind = gpu ? Device::cuda : Device::cpu});

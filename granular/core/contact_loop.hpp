@@ -29,7 +29,12 @@ struct PairView {
     Float4* torque;            ///< of rolling and spin on body i [N m]; nullptr if rotation_history is
     std::uint8_t* in_contact;  ///< 1 if the bodies overlap
     std::uint32_t count;       ///< number of pairs
+    /// Receives the largest overlap over the smaller radius, for each chunk of the loop; nullptr: not computed
+    float* largest_overlap = nullptr;
 };
+
+/// Pairs of a chunk of the loop on the CPU; the number of chunks is that of the elements of largest_overlap.
+constexpr std::uint32_t loop_chunk = 2048;
 
 /// The particle arrays that the contact loop reads
 struct ParticleView {

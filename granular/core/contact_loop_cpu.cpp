@@ -10,7 +10,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr std::uint32_t chunk = 2048;  // pairs per task, independent of the number of threads
+constexpr std::uint32_t chunk = loop_chunk;  // pairs per task, independent of the number of threads
 
 /// Four words of a row as packs
 template <class T>
@@ -133,19 +133,22 @@ struct ContactLoop {
             for (unsigned remaining = ended; remaining != 0; remaining &= remaining - 1)
                 clear_contact(first + static_cast<std::uint32_t>(__builtin_ctz(remaining)));
         }
+        Pack overlaps(0.f);  // over the smaller radius; the largest ones
         by_law(touching, touching_count,
                [&](const PairLaw& law, const std::uint32_t* of_law, std::uint32_t count) {
                    for (std::uint32_t first = 0; first < count; first += lanes) {
                        std::uint32_t which[lanes];
                        for (std::uint32_t k = 0; k < lanes; ++k)
                            which[k] = of_law[std::min(first + k, count - 1)];
-                       evaluate_particles(law, which);
+                       evaluate_particles(law, which, overlaps);
                    }
                });
         by_law(boundary_pairs, boundary_count,
                [&](const PairLaw& law, const std::uint32_t* of_law, std::uint32_t count) {
-                   evaluate_boundaries(law, of_law, count);
+                   evaluate_boundaries(law, of_law, count, overlaps);
                });
+        if (pairs.largest_overlap != nullptr)
+            pairs.largest_overlap[number] = larger(pairs.largest_overlap[number], largest(overlaps));
     }
 
     /// Calls f(law, pairs, number of pairs) once per law. The pairs of a law keep their order.
@@ -166,7 +169,8 @@ struct ContactLoop {
 
     /// Contacts with boundaries: the geometry is computed per pair in double precision, the force law per
     /// pack. These contacts are few.
-    void evaluate_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t count) const
+    void evaluate_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t count,
+                             Pack& overlaps) const
     {
         // a pack of contacts in the memory layout of ContactPoint<Pack>
         constexpr int values = sizeof(ContactPoint<float>) / sizeof(float);
@@ -185,6 +189,7 @@ struct ContactLoop {
             ContactPoint<Pack> contact;
             std::memcpy(static_cast<void*>(&contact), &in, sizeof in);
             contact.h = laws.h;
+            overlaps = larger(overlaps, contact.delta / contact.R_i);
             evaluate_pack(law, contact, touching);
             touching_count = 0;
         };
@@ -208,7 +213,7 @@ struct ContactLoop {
     }
 
     /// Contacts of particles: one pack of pairs with the same law
-    void evaluate_particles(const PairLaw& law, const std::uint32_t* which) const
+    void evaluate_particles(const PairLaw& law, const std::uint32_t* which, Pack& overlaps) const
     {
         std::uint32_t i[lanes], j[lanes];
         for (int k = 0; k < lanes; ++k) i[k] = pairs.i[which[k]], j[k] = pairs.j[which[k]];
@@ -224,6 +229,7 @@ struct ContactLoop {
         set_masses(contact, w_i.w, w_j.w);
         set_rates(contact, Vec<Pack>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
                   Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
+        overlaps = larger(overlaps, contact.delta / smaller(contact.R_i, contact.R_j));
         evaluate_pack(law, contact, which);
     }
 

@@ -3,12 +3,27 @@
 // bitwise equal to those of the packs in contact_loop_cpu.cpp and integrator_cpu.cpp.
 #pragma once
 
+#include "granular/core/add_contacts.hpp"
 #include "granular/core/contact_loop.hpp"
 #include "granular/core/integrator.hpp"
 
 namespace hilda::granular {
 
 namespace detail {
+
+/// Sets *to to x if x is larger. x ≥ 0; bit patterns of such floats have the same order.
+HILDA_HD inline void raise(float* to, float x)
+{
+#ifdef __CUDA_ARCH__
+    if (x > *static_cast<volatile float*>(to)) atomicMax(reinterpret_cast<int*>(to), __float_as_int(x));
+#else
+    auto* const bits = reinterpret_cast<std::int32_t*>(to);
+    std::int32_t now = __atomic_load_n(bits, __ATOMIC_RELAXED);
+    while (as_float(now) < x &&
+           !__atomic_compare_exchange_n(bits, &now, as_int(x), true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
+#endif
+}
 
 /// Load and history of one pair
 struct FindLoad {
@@ -58,6 +73,9 @@ struct FindLoad {
             return;
         }
         pairs.in_contact[k] = 1;
+        if (pairs.largest_overlap != nullptr)
+            raise(pairs.largest_overlap,
+                  contact.delta / (contact.R_j > 0 ? smaller(contact.R_i, contact.R_j) : contact.R_i));
         const Float4 u = pairs.history[k];
         History<float> history{{u.x, u.y, u.z}, abs(u.w) + laws.h, {0, 0, 0}, 0, u.w < 0};
         if (rotation_laws) {
@@ -154,6 +172,15 @@ void find_loads(Backend on, const ParticleView& particles, const PairView& pairs
 {
     const auto unit = static_cast<float>(particles.grid.unit);
     par::for_each(on, pairs.count, detail::FindLoad{particles, pairs, laws, 1 / unit, unit});
+}
+
+template <class Backend>
+void add_contacts(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws,
+                  ContactSums* out)
+{
+    const auto unit = static_cast<float>(particles.grid.unit);
+    par::for_each(on, watch_blocks(pairs.count),
+                  detail::AddContacts{particles, pairs, laws, 1 / unit, unit, out});
 }
 
 template <class Backend>

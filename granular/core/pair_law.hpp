@@ -21,6 +21,16 @@ struct PairLaw {
 
     /// Whether there is a law of rolling or spin
     bool resists_rotation() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
+    /// Whether the elastic energy of the normal force and of the cohesion is known: the laws have a member energy().
+    bool has_energy() const
+    {
+        bool known = true;
+        const auto check = [&]<class Law>(const Law&) {
+            known = known && requires(const Law& l, const ContactPoint<float>& c) { l.energy(c); };
+        };
+        normal.visit(check), cohesion.visit(check);
+        return known;
+    }
 };
 
 /// Hertzian contact of a material with itself: `hertz`, and `mindlin` with the friction coefficient mu
@@ -72,6 +82,45 @@ HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<
     law.spin.visit([&](const auto& l) { about_n = l(contact, normal, k_t, gamma_t, history); });
     out.T += about_n * contact.n;
     return out;
+}
+
+/// Elastic energy of a contact: of the normal spring with the cohesion, and of the springs of friction,
+/// rolling and spin [J]
+template <class R>
+struct ElasticEnergy {
+    R normal, tangential;
+};
+
+/// The elastic energy of a contact. Of the members of `contact` it uses the overlap, the radii and the masses.
+/// A law without a member energy() contributes nothing.
+///
+///     normal law, cohesion:        energy(contact)
+///     friction, rolling, spin:     energy(contact, k_t, history), k_t the stiffness of the tangential spring
+template <class R>
+HILDA_HD inline ElasticEnergy<R> elastic_energy(const PairLaw& law, const ContactPoint<R>& contact,
+                                                const History<R>& history, bool rotation_laws)
+{
+    ElasticEnergy<R> U{R(0.f), R(0.f)};
+    NormalForce<R> normal{};
+    law.normal.visit([&](const auto& l) {
+        normal = l(contact);
+        if constexpr (requires { l.energy(contact); }) U.normal += l.energy(contact);
+    });
+    law.cohesion.visit([&](const auto& l) {
+        if constexpr (requires { l.energy(contact); }) U.normal += l.energy(contact);
+    });
+    R k_t = R(0.f);
+    law.tangential.visit([&](const auto& l) {
+        if constexpr (requires { l.spring; }) k_t = l.spring.stiffness(normal);
+    });
+    const auto add_spring = [&](const auto& l) {
+        if constexpr (requires { l.energy(contact, k_t, history); })
+            U.tangential += l.energy(contact, k_t, history);
+    };
+    law.tangential.visit(add_spring);
+    if (!rotation_laws) return U;
+    law.rolling.visit(add_spring), law.spin.visit(add_spring);
+    return U;
 }
 
 }  // namespace hilda::granular

@@ -60,8 +60,9 @@ int run_program(int argc, char** argv)
     try {
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();
-        return validation != nullptr ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet)
-                                     : run_case(o);
+        return validation != nullptr
+                   ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet, o.strict)
+                   : run_case(o);
     } catch (const DeviceError& e) {
         throw io::NotAvailable("--device " + o.device_name + ": " + e.what());
     } catch (const std::bad_alloc&) {

@@ -5,6 +5,7 @@
 #include "granular/program/earlier_run.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/program/sink.hpp"
+#include "granular/program/watch_report.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -40,6 +41,7 @@ public:
     {
         io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
         io::OutputLock lock(o.output);
+        c.world->set_watch(true, interval);
         for (const std::string& n : c.notices) warn(n);
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written
@@ -49,6 +51,8 @@ public:
         if (o.resume) earlier = earlier_run(o, c);
         if (earlier.is_complete && earlier.end == steps) return report_complete(o, c);
         const bool resumed = o.resume && load();
+        // with --strict the warnings of an earlier part of the run end this one
+        if (resumed && !o.strict) known_warnings = c.world->watch().warnings;
         if (o.resume && !resumed) warn(o.output + ": has no checkpoint; starting from the initial state");
         if (!resumed) {
             files.remove();
@@ -120,6 +124,11 @@ private:
                            next = std::min({steps, instant, sinks.next(w.steps())});
                 while (w.steps() < next && io::Interrupt::caught() == 0) {
                     w.step();
+                    if (w.watch().warnings != known_warnings)
+                        report_watch(w.watch(), known_warnings, o.strict, [&](const std::string& text) {
+                            line.clear();
+                            warn(io::formatted("t = %.9g s: ", w.t()) + text);
+                        });
                     if (line.is_due()) line.show(progress());
                 }
                 if (w.steps() < next) break;
@@ -266,6 +275,7 @@ private:
         s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows}, {"t", w.t()}};
         if (status == "interrupted") s["counters"]["t_checkpoint"] = snapshot_time;
         s["kinetic_energy"] = w.kinetic_energy();
+        s["watch"] = watch_summary(w.watch());
         s["files"] = sinks.files();
         s["timing"] = {{"wall_seconds", seconds},
                        {"steps_per_second", static_cast<double>(w.steps() - resumed_at) / seconds},
@@ -286,6 +296,7 @@ private:
     io::Sinks<CaseSetup> sinks;
     long rows = 0;  ///< of run.csv
     long resumed_at = 0;
+    std::int64_t known_warnings = 0;  ///< of the watch, which were reported
     EarlierRun earlier;
     std::string snapshot;                            ///< state at the last instant of a possible checkpoint
     double snapshot_time = 0, snapshot_seconds = 0;  ///< its time, and the wall time to take it [s]

@@ -2,6 +2,7 @@
 #include "granular/program/validate.hpp"
 
 #include "granular/program/arguments.hpp"
+#include "granular/program/watch_report.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "io/progress.hpp"
@@ -64,21 +65,27 @@ std::string known_validations()
     return all;
 }
 
-int validate(const Validation& v, ValidationOptions options, bool quiet)
+int validate(const Validation& v, ValidationOptions options, bool quiet, bool strict)
 {
     io::ProgressLine line(quiet);
     options.progress = [&](double share) {
         if (line.is_due()) line.show(v.name + ' ' + std::to_string(std::lround(100 * share)) + " %");
     };
     ValidationResult result;
+    WatchRecord worst;
+    options.watch = &worst;
     try {
         result = v.run(options);
+        line.clear();
+        std::int64_t known = 0;
+        report_watch(worst, known, strict, [&](const std::string& text) {
+            if (!quiet) io::warning(v.name + ": " + text);
+        });
     } catch (const io::NumericalFailure& e) {
         line.clear();
         io::message("hilda: error[" + e.status + "]: " + v.name + ": " + e.what() + '\n');
         return io::exit_code::numerical_failure;
     }
-    line.clear();
     std::vector<std::vector<std::string>> lines = {{"measured", "lower", "upper", "", "what"}};
     for (const ValidationCheck& c : result.checks)
         lines.push_back(

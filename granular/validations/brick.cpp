@@ -81,9 +81,9 @@ struct Slide {
     double friction_ratio = 0;       ///< largest |F_t|/(μ |F_n|) over all steps
 };
 
-Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
+Slide slide(double mu, bool incremental, const ValidationOptions& options, ValidationTable* motion)
 {
-    World world(world_options(device), {soft()});
+    World world(world_options(options.device), {soft()});
     world.set_law(0, 0, soft_law(restitution, mu, incremental));
     world.add(Boundary{});
     world.set_omega_locked(true);
@@ -105,6 +105,7 @@ Slide slide(double mu, bool incremental, Device device, ValidationTable* motion)
             out.friction_ratio =
                 max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
+    options.include(world);
     return out;
 }
 
@@ -122,7 +123,7 @@ ValidationResult run(const ValidationOptions& options)
             options.progress(done++ / 18);
             // the normal force is constant, so both laws agree
             if (is_incremental && !options.full && mu < 0.39) continue;
-            const Slide s = slide(mu, is_incremental, options.device, is_incremental ? nullptr : &motion);
+            const Slide s = slide(mu, is_incremental, options, is_incremental ? nullptr : &motion);
             const double d = v_i * v_i / (2 * mu * g), distance_double = in_double(mu, is_incremental),
                          spring = distance_with_spring(mu), difference = s.distance / d - 1;
             table.rows.push_back({is_incremental ? "mindlin-incremental" : "mindlin", mu, s.distance, d,

@@ -90,9 +90,10 @@ double rebound(const Collision& m, Scheme scheme, double h, bool clamped = false
 }
 
 /// A world with several collisions side by side at a distance of 4 m, all with the restitution of the first
-World world_of(const std::vector<Collision>& all, Scheme scheme, double h, Device device)
+World world_of(const std::vector<Collision>& all, Scheme scheme, double h, const ValidationOptions& options)
 {
-    World world(options_without_gravity(h, scheme, 4 * static_cast<double>(all.size()), device), {soft()});
+    World world(options_without_gravity(h, scheme, 4 * static_cast<double>(all.size()), options.device),
+                {soft()});
     world.set_law(0, 0, law(all[0].restitution, false));
     for (std::size_t k = 0; k < all.size(); ++k)
         for (Particle p : approaching(all[k])) {
@@ -103,9 +104,10 @@ World world_of(const std::vector<Collision>& all, Scheme scheme, double h, Devic
 }
 
 /// |v_end/v_i| of each collision, computed by World
-std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, double h, Device device)
+std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, double h,
+                             const ValidationOptions& options)
 {
-    World world = world_of(all, scheme, h, device);
+    World world = world_of(all, scheme, h, options);
     std::vector<double> out(all.size());
     for (bool separated = false; !separated && world.t() < end;) {
         world.step(std::lround(0.01 / h));
@@ -114,6 +116,7 @@ std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, d
         separated =
             world.contacts().empty() && std::all_of(out.begin(), out.end(), [](double v) { return v > 0; });
     }
+    options.include(world);
     return out;
 }
 
@@ -122,13 +125,13 @@ std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, d
 struct MomentumChange {
     double of_step = 0, of_all = 0;
 };
-MomentumChange momentum_change(double drift, Device device)
+MomentumChange momentum_change(double drift, const ValidationOptions& options)
 {
     const double ulp = std::ldexp(1, -23);
     MomentumChange momentum_change;
     for (const double e : restitutions()) {
         World world =
-            world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text, device);
+            world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text, options);
         double start = std::nan(""), last = start;
         while (world.t() < 0.1) {
             world.step();
@@ -139,6 +142,7 @@ MomentumChange momentum_change(double drift, Device device)
             momentum_change.of_all = max_or_nan(momentum_change.of_all, std::abs(now - start) / ulp);
             last = now;
         }
+        options.include(world);
     }
     return momentum_change;
 }
@@ -161,7 +165,8 @@ double fitted_slope(const std::vector<double>& h, const std::vector<double>& e)
 struct SchemeErrors {
     double world = 0, in_double = 0, difference = 0;
 };
-SchemeErrors scheme_errors(Scheme scheme, double h, int offsets, bool in_world, Device device)
+SchemeErrors scheme_errors(Scheme scheme, double h, int offsets, bool in_world,
+                           const ValidationOptions& options)
 {
     SchemeErrors out;
     if (!in_world) out.world = std::nan("");
@@ -176,7 +181,7 @@ SchemeErrors scheme_errors(Scheme scheme, double h, int offsets, bool in_world, 
             out.in_double = max_or_nan(out.in_double, std::abs(in_double.back() - e));
         }
         if (!in_world) continue;
-        const std::vector<double> v = rebounds(all, scheme, h, device);
+        const std::vector<double> v = rebounds(all, scheme, h, options);
         for (std::size_t k = 0; k < all.size(); ++k) {
             out.world = max_or_nan(out.world, std::abs(v[k] - e));
             out.difference = max_or_nan(out.difference, std::abs(v[k] - in_double[k]));
@@ -200,14 +205,14 @@ ValidationResult run(const ValidationOptions& options)
     double difference = 0, progress = 0;
     for (const SchemeLimits& s : schemes) {
         for (const double e : restitutions()) {
-            const double v = rebounds({{e}}, s.scheme, step_of_text, options.device)[0],
+            const double v = rebounds({{e}}, s.scheme, step_of_text, options)[0],
                          in_double = rebound({e}, s.scheme, step_of_text);
             at_text.rows.push_back({s.name(), step_of_text, e, v, v - e, in_double, in_double - e});
         }
         std::vector<double> errors;
         for (const double h : steps) {
             const bool in_world = options.full || h > 2e-6 || s.scheme == Scheme::symplectic_euler;
-            const SchemeErrors w = scheme_errors(s.scheme, h, offsets, in_world, options.device);
+            const SchemeErrors w = scheme_errors(s.scheme, h, offsets, in_world, options);
             const auto n = errors.size();
             const double order =
                 n == 0 ? std::nan("") : std::log(w.in_double / errors[n - 1]) / std::log(h / steps[n - 1]);
@@ -234,8 +239,7 @@ ValidationResult run(const ValidationOptions& options)
                     {"clamped law: rebound less COR, COR " + std::to_string(e).substr(0, 3), v - e,
                      gain - 1e-3, gain + 1e-3});
     }
-    const MomentumChange still = momentum_change(0, options.device),
-                         drifting = momentum_change(0.37, options.device);
+    const MomentumChange still = momentum_change(0, options), drifting = momentum_change(0.37, options);
     result.checks.push_back({"momentum of a pair, largest change in one step [ulp]", drifting.of_step, 0, 1});
     result.checks.push_back({"momentum of a pair, largest change in a run [ulp]", drifting.of_all, 0, 1});
     result.checks.push_back(

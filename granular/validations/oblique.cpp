@@ -70,9 +70,10 @@ Rebound in_double(double angle, double h, int law_index)
 }
 
 /// All angles in one world, side by side
-std::vector<Rebound> in_world(const std::vector<double>& angles, int law_index, Device device)
+std::vector<Rebound> in_world(const std::vector<double>& angles, int law_index,
+                              const ValidationOptions& options)
 {
-    World world(options_of(step, 2 * static_cast<double>(angles.size()), device), {soft()});
+    World world(options_of(step, 2 * static_cast<double>(angles.size()), options.device), {soft()});
     world.set_law(0, 0, soft_law(e, mu, law_index == 1));
     world.add(Boundary{});
     for (std::size_t k = 0; k < angles.size(); ++k) {
@@ -81,6 +82,7 @@ std::vector<Rebound> in_world(const std::vector<double>& angles, int law_index, 
         world.add(p);
     }
     world.step(std::lround(end / step));
+    options.include(world);
     const std::vector<Particle> after = world.particles();
     std::vector<Rebound> out;
     for (std::size_t k = 0; k < angles.size(); ++k) out.emplace_back(after[k], angles[k]);
@@ -103,15 +105,15 @@ struct LargestErrors {
 };
 
 /// Results of World, in double precision and of the closed form, with the largest deviations
-ValidationTable compare(const std::vector<double>& angles, Device device, LargestErrors& largest,
-                        const std::function<void()>& done)
+ValidationTable compare(const std::vector<double>& angles, const ValidationOptions& options,
+                        LargestErrors& largest, const std::function<void()>& done)
 {
     ValidationTable table = {"study",
                              {"law", "from_normal", "from_surface", "e_t", "omega", "e_t_double",
                               "omega_double", "e_t_sliding", "omega_sliding", "energy"},
                              {}};
     for (const int law_index : {0, 1}) {
-        const std::vector<Rebound> of_world = in_world(angles, law_index, device);
+        const std::vector<Rebound> of_world = in_world(angles, law_index, options);
         for (std::size_t k = 0; k < angles.size(); ++k) {
             const double theta = angles[k];
             const Rebound &w = of_world[k], d = in_double(theta, step, law_index);
@@ -192,7 +194,7 @@ ValidationResult run(const ValidationOptions& options)
     const auto done = [&] { options.progress(++part / parts); };
     LargestErrors largest;
     ValidationResult result;
-    result.tables = {compare(angles, options.device, largest, done), reference(degrees, done),
+    result.tables = {compare(angles, options, largest, done), reference(degrees, done),
                      refine(result.checks, done)};
     result.checks.insert(
         result.checks.begin(),

@@ -91,7 +91,7 @@ public:
     explicit Stacking(const ValidationOptions& options)
         : options(options), mu_r(all_mu_r(options.full)), models(rolling_models)
     {
-        for (RollingModel& m : models) m.run.device = options.device;
+        for (RollingModel& m : models) m.run.device = options.device, m.run.watched_by = options.watch;
     }
 
     ValidationResult run()

@@ -20,8 +20,14 @@ namespace hilda::granular {
 struct ValidationOptions {
     /// All parameter values of the dissertation; otherwise a selection that takes less time
     bool full = false;
-    Device device = {};                                    ///< device of all worlds
+    Device device = {};            ///< device of all worlds
+    WatchRecord* watch = nullptr;  ///< receives the warnings and extremes of all worlds
     std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
+
+    void include(const World& world) const
+    {
+        if (watch != nullptr) watch->include(world.watch());
+    }
 };
 
 /// A table with named columns. The first table of a result is written to study.csv, each other one to

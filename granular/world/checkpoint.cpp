@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 namespace hilda::granular {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 7};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 8};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
 template <class Array>
@@ -35,6 +36,17 @@ bool valid(const Domain& d, const WorldOptions& options)
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
     return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
            d.replicas >= 1;
+}
+
+bool valid(const WatchRecord& w)
+{
+    static_assert(sizeof w % sizeof(double) == 0);
+    constexpr std::size_t integers = 4, numbers = sizeof w / sizeof(double) - integers;
+    static_assert(offsetof(WatchRecord, kinetic) == integers * sizeof(double));
+    double all[numbers];
+    std::memcpy(all, reinterpret_cast<const char*>(&w) + integers * sizeof(double), sizeof all);
+    return w.samples >= 0 &&
+           std::all_of(std::begin(all), std::end(all), [](double x) { return std::isfinite(x); });
 }
 
 /// All members are equal except those that change during a run: r, axis, v, omega and F, which are finite.
@@ -107,10 +119,18 @@ void World::transfer(io::Archive& a)
 {
     a.value(step_count), a.value(rebuild_count), a.value(max_speed), a.value(domain);
     a.check(step_count >= 0 && std::isfinite(max_speed) && valid(domain, options), "invalid domain or time");
+    a.value(record), a.list(moved);
+    a.check(valid(record), "a number of the watch that is not finite");
     std::vector<Boundary> now = boundaries;
     a.list(boundaries), a.list(forces);
     a.check(std::equal(now.begin(), now.end(), boundaries.begin(), boundaries.end(), same_boundary),
             "other boundaries than in this world");
+    a.check(moved.empty() || moved.size() == boundaries.size(), "wrong number of boundaries");
+    if (a.reads()) {
+        moved_to.clear();
+        if (!moved.empty())
+            for (const Boundary& b : boundaries) moved_to.push_back({b.r, b.axis});
+    }
     Arrays<par::Cpu>& all = engine->arrays();
     Particles<par::Cpu>& p = all.particle;
     std::size_t n = p.count;

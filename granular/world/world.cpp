@@ -50,6 +50,7 @@ World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<E
         if (!(m.nu > -1 && m.nu < 0.5)) refuse(where, "nu must be between -1 and 0.5", m.nu);
     }
     law_of.assign(materials.size() * materials.size(), no_law);
+    engine->set_watched(watched);
 }
 
 World::~World() = default;
@@ -62,6 +63,7 @@ void World::set_law(int i, int j, const PairLaw& law)
     if (laws.size() >= 255) refuse("law", "no more than 255 laws are possible", laws.size() + 1);
     law_of[i * n + j] = law_of[j * n + i] = static_cast<std::uint8_t>(laws.size());
     laws.push_back(law);
+    start_balance();
     laws_changed = true;
     invalidate_neighbours();
 }
@@ -80,6 +82,7 @@ int World::add(const Boundary& b)
     if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
         refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
     boundaries.push_back(b);
+    start_balance();
     laws_changed = true;
     invalidate_neighbours();
     return static_cast<int>(boundaries.size()) - 1;
@@ -98,6 +101,7 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
             store_bfloat16(p.compensation.data()[k].omega, rounding_error(omega), dither_to_nearest);
             p.omega.data()[k] = to_float4(omega, p.omega.data()[k].w);
         }
+    start_balance();
     engine->arrays_modified();
 }
 
@@ -208,7 +212,10 @@ double World::move_boundaries()
 {
     const double h = options.h;
     double largest = 0;
-    for (Boundary& b : boundaries) {
+    moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
+    for (std::size_t k = 0; k < boundaries.size(); ++k) {
+        Boundary& b = boundaries[k];
+        moved[k] = {b.v, b.omega};
         b.r += h * b.v;
         double displacement = h * b.v.norm();
         const double angle = h * b.omega.norm();
@@ -225,6 +232,7 @@ double World::move_boundaries()
                             .norm();
         }
         largest = std::max(largest, displacement);
+        moved_to[k] = {b.r, b.axis};
     }
     return largest;
 }
@@ -239,6 +247,7 @@ void World::step(long n)
         insert_pending();
         one_step();
         time = static_cast<double>(++step_count) * options.h;
+        if (watched) check_watch();
     }
 }
 
@@ -289,11 +298,15 @@ void World::one_step()
         boundary_displacement += move_boundaries();
         find_loads();
         accelerate_tools();
+        watch_loads();
         advance(Part::after_loads);
+        watch_advance();
     } else {
         if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads();
         accelerate_tools();
+        watch_loads();
         particle_displacement += advance(Part::whole);
+        watch_advance();
         boundary_displacement += move_boundaries();
     }
     take(times.advance);

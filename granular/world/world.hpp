@@ -7,6 +7,7 @@
 #include "granular/backend/engine.hpp"
 #include "granular/core/boundary.hpp"
 #include "granular/core/pair_law.hpp"
+#include "granular/world/watch.hpp"
 #include "io/error.hpp"
 
 #include <array>
@@ -109,8 +110,14 @@ public:
     std::uint32_t add(const Particle& particle);
 
     /// Inserts pending particles and computes n ≥ 0 steps. Throws io::InvalidInput if a pending particle cannot be
-    /// inserted (with n = 0 as well), ParticleLost, DeviceError.
+    /// inserted (with n = 0 as well), ParticleLost, DeviceError; OverlapTooLarge and EnergyCreated after a complete
+    /// step, if the run is watched.
     void step(long n = 1);
+    /// Whether the run is watched, with a sample in every 64th step and, if `node_interval` is positive, in the last
+    /// step before each multiple of it. The default is a watched run. The watch does not change the results.
+    void set_watch(bool on, long node_interval = 0);
+    /// What the watch has found so far
+    const WatchRecord& watch() const { return record; }
     double t() const { return time; }
     long steps() const { return step_count; }
 
@@ -212,7 +219,8 @@ public:
         double rayleigh = std::numeric_limits<double>::infinity();   ///< smallest Rayleigh time [s]
         double collision = std::numeric_limits<double>::infinity();  ///< shortest duration of a collision [s]
     };
-    StepLimits step_limits() const;
+    /// `least_speed` replaces the 0.1 m/s.
+    StepLimits step_limits(double least_speed = 0.1) const;
 
 private:
     static constexpr std::uint8_t no_law = 255;
@@ -236,6 +244,14 @@ private:
     double move_boundaries();
     void accelerate_tools();
     StepParameters step_parameters(Part part) const;
+    bool laws_have_energy() const;
+    bool boundaries_move();
+    void watch_loads();
+    void watch_advance();
+    void start_balance() { record.is_balanced = 0; }
+    double gain_tolerance() const;
+    void check_watch();
+    [[noreturn]] void throw_overlap() const;
     [[noreturn]] void throw_lost(std::uint32_t k, const std::string& how) const;
 
     WorldOptions options;
@@ -260,6 +276,18 @@ private:
     float max_speed = 0;                 ///< largest speed of the particles after the last step [m/s]
     long step_count = 0;
     bool rotation_locked = false, forces_changed = false, timed = false;
+
+    bool watched = true, sampling = false;  ///< sampling: the present step is a sample of the watch
+    long node_interval = 0;
+    double next_work = 0;  ///< work from t_n on in the present step [J]
+    WatchRecord record;
+    struct BoundaryPlace {
+        Vec3 r, axis;
+    };
+    /// Of the boundaries: velocities of the last move and place after it; velocities of the next move
+    std::vector<BoundaryVelocity> moved, next_move;
+    std::vector<BoundaryPlace> moved_to;
+
     std::string insertion_error;  ///< message of a failed overlap check; further steps throw it again
     Times times;
 };

@@ -178,6 +178,7 @@ void World::insert_pending()
         }
     }
     pending.clear();
+    start_balance();
     inserted_count = all.size();
     if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
     engine->arrays_modified();

@@ -53,7 +53,7 @@ Vec3 World::momentum() const
     return P;
 }
 
-World::StepLimits World::step_limits() const
+World::StepLimits World::step_limits(double least_speed) const
 {
     StepLimits limits;
     const std::vector<Particle> all = particles();
@@ -70,15 +70,15 @@ World::StepLimits World::step_limits() const
                 // collision of two equal particles
                 const double mass = p.mass / 2, R = p.radius / 2;
                 if constexpr (requires { l.collision_time(mass, R, max_speed); }) {
-                    limits.collision =
-                        std::min(limits.collision, l.collision_time(mass, R, std::max(max_speed, 0.1)));
+                    limits.collision = std::min(limits.collision,
+                                                l.collision_time(mass, R, std::max(max_speed, least_speed)));
                 } else if constexpr (requires { l.k_n, l.gamma_n; }) {
                     limits.collision =
                         std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
                     if (l.gamma_n > 0)  // a damper alone is stable up to h = 2/γ
                         limits.collision = std::min(limits.collision, M_PI / static_cast<double>(l.gamma_n));
                 } else if constexpr (requires { l.E_eff; }) {
-                    const double E_eff = l.E_eff, v = std::max(max_speed, 0.1);
+                    const double E_eff = l.E_eff, v = std::max(max_speed, least_speed);
                     limits.collision = std::min(limits.collision,
                                                 2.87 * std::pow(mass * mass / (R * E_eff * E_eff * v), 0.2));
                 }
@@ -87,10 +87,15 @@ World::StepLimits World::step_limits() const
     return limits;
 }
 
+bool World::laws_have_energy() const
+{
+    return std::all_of(laws.begin(), laws.end(), [](const PairLaw& law) { return law.has_energy(); });
+}
+
 std::size_t World::bytes_needed(std::size_t n, bool orientation)
 {
     // arrays of a world with rolling and spin laws; 6 pairs per particle
-    constexpr std::size_t of_particle = 3 * sizeof(Position) + 4 * sizeof(Float4) + sizeof(Compensation) +
+    constexpr std::size_t of_particle = 3 * sizeof(Position) + 6 * sizeof(Float4) + sizeof(Compensation) +
                                         sizeof(Species) + 40,
                           of_pair = 3 * sizeof(Float4) + sizeof(Load) + 14, pairs = 6;
     return n *

@@ -111,6 +111,21 @@ def main():
         (here / "both.json").write_text(json.dumps(dict(old, interval=5e-5)))
         refused(3, r"both.json:1:\d+ \(/every\): every is the old name of interval, which is given as well; remove one of them", case="both")
 
+        # the watch over a run: its summary, its warnings, and --strict
+        watch = summary["watch"]
+        expect(watch["samples"] == 3 and not watch["energy"]["passive"] and watch["warnings"] == [] and 0 < watch["largest_displacement"] < 0.1
+               and len(watch["momentum"]["impulse"]) == 3, f"the watch: {watch}")
+        grain = {"radius": 1e-3, "material": "glass"}
+        hits = runs.case("hits", fill=[], gravity=[0, 0, 0], boundaries=[], step=2e-6, end=1e-3, interval=1e-4,
+                         particles=[dict(grain, r=[0.008, 0.01, 0.05], v=[2, 0, 0]), dict(grain, r=[0.012, 0.01, 0.05], v=[-2, 0, 0])])
+        err = runs.finish(hits, "--output", "hits")
+        expect(len(re.findall(r"hilda: warning: t = \S+ s: an overlap of 0.05\d* of the smaller radius is above 0.05", err)) == 1, f"one warning: {err}")
+        watch = json.loads((here / "hits" / "summary.json").read_text())["watch"]
+        expect(watch["warnings"] == ["overlap_large"] and 0.08 < watch["largest_overlap"] < 0.12 and watch["energy"]["passive"], f"the watch: {watch}")
+        refused(4, r"\[overlap_large\]: .*--strict", "--strict", "--output", "strict", case=hits)
+        expect(json.loads((here / "strict" / "summary.json").read_text())["status"] == "overlap_large", "the status of a strict run")
+        runs.finish(short, "--quiet", "--strict", "--output", "strict", "--force")
+
         # waiting threads sleep; settings of the user remain
         for given, spins in ({}, "1000"), ({"GOMP_SPINCOUNT": "77"}, "77"):
             environment = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}

@@ -24,6 +24,12 @@ struct ConstantCohesion {
     {
         return R(F_c);
     }
+    /// Energy -F_c δ [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact) const
+    {
+        return -F_c * contact.delta;
+    }
     template <class Keys>
     static ConstantCohesion read(Keys& keys)
     {

@@ -16,6 +16,11 @@ struct NoCohesion {
     {
         return R(0.f);
     }
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>&) const
+    {
+        return R(0.f);
+    }
     template <class Keys>
     static NoCohesion read(Keys&)
     {

@@ -24,6 +24,12 @@ struct Sjkr {
     {
         return Number<R>(3.14159265358979323846) * k * contact.R_eff * contact.delta;
     }
+    /// Energy -π/2 k R* δ² [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact) const
+    {
+        return -Number<R>(1.57079632679489661923) * k * contact.R_eff * contact.delta * contact.delta;
+    }
     template <class Keys>
     static Sjkr read(Keys& keys)
     {

@@ -31,6 +31,14 @@ struct Hertz {
         return {clamped != 0 ? larger(F, R(0.f)) : F, a, Number<R>(0.5)};
     }
 
+    /// Elastic energy 4/15 S δ² [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact) const
+    {
+        return Number<R>(8) / 15 * E_eff * sqrt(contact.R_eff * contact.delta) * contact.delta *
+               contact.delta;
+    }
+
     template <class Keys>
     static Hertz read(Keys& keys)
     {

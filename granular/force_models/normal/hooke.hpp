@@ -27,6 +27,13 @@ struct Hooke {
         return {clamped != 0 ? larger(F, R(0.f)) : F, R(1.f)};
     }
 
+    /// Elastic energy [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact) const
+    {
+        return Number<R>(0.5) * k_n * contact.delta * contact.delta;
+    }
+
     template <class Keys>
     static Hooke read(Keys& keys)
     {

@@ -31,6 +31,14 @@ struct ScaledHooke {
         return {clamped != 0 ? larger(F, R(0.f)) : F, scale, Number<R>(0.5)};
     }
 
+    /// Elastic energy 2/5 √(δ/R) k_n δ² [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact) const
+    {
+        return Number<R>(0.4) * k_n * sqrt(contact.delta / larger(contact.R_i, contact.R_j)) * contact.delta *
+               contact.delta;
+    }
+
     template <class Keys>
     static ScaledHooke read(Keys& keys)
     {

@@ -38,6 +38,13 @@ struct Epsd {
         return -(k_r * history.psi) - C * omega_r;
     }
 
+    /// Energy of the spring, k_r ψ²/2 [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact, const R& k_t, const History<R>& history) const
+    {
+        return Number<R>(0.5) * k_t * contact.R_eff * contact.R_eff * history.psi.dot(history.psi);
+    }
+
     template <class Keys>
     static Epsd read(Keys& keys)
     {

@@ -38,6 +38,13 @@ struct PseudoForce {
         return contact.R_eff * contact.n.cross(F);
     }
 
+    /// Energy of the spring [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact, const R& k_t, const History<R>& history) const
+    {
+        return Number<R>(0.5) * k_r * k_t * contact.R_eff * contact.R_eff * history.psi.dot(history.psi);
+    }
+
     template <class Keys>
     static PseudoForce read(Keys& keys)
     {

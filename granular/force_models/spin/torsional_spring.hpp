@@ -36,6 +36,13 @@ struct TorsionalSpring {
         return M;
     }
 
+    /// Energy of the spring, K/2 times the square of its angle [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>& contact, const R& k_t, const History<R>& history) const
+    {
+        return Number<R>(0.25) * k_t * contact.R_eff * contact.delta * history.spin * history.spin;
+    }
+
     template <class Keys>
     static TorsionalSpring read(Keys& keys)
     {

@@ -39,6 +39,13 @@ struct Mindlin {
         return F;
     }
 
+    /// Energy of the spring, k u²/2 [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>&, const R& k, const History<R>& history) const
+    {
+        return Number<R>(0.5) * k * history.u.dot(history.u);
+    }
+
     template <class Keys>
     static Mindlin read(Keys& keys)
     {

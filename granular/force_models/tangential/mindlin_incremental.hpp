@@ -42,6 +42,13 @@ struct MindlinIncremental {
         return F;
     }
 
+    /// Energy of the spring, T²/(2 k) [J]
+    template <class R>
+    HILDA_HD R energy(const ContactPoint<R>&, const R& k, const History<R>& history) const
+    {
+        return Number<R>(0.5) * history.u.dot(history.u) / larger(k, R(tiny));
+    }
+
     template <class Keys>
     static MindlinIncremental read(Keys& keys)
     {

@@ -267,6 +267,7 @@ private:
 Case read_case(const std::string& text, const std::string& file, const Environment& environment)
 {
     Case out{.source = io::JsonSource(text, file)};
+    out.source.folder = environment.folder;
     out.source.rename("every", "interval");
     out.source.rename("frames_every", "frame_interval");
     out.source.rename("checkpoint_every", "checkpoint_interval");

@@ -50,7 +50,7 @@ Particle particle(const io::CsvRow& row)
 FillSpec read_table(ObjectReader& o)
 {
     FillSpec f;
-    const std::string file = o.text("file");
+    const std::string file = o.file("file");
     try {
         const std::string text = io::read_file(file, std::size_t{1} << 36);
         f.particles = particles_of_csv(text, file);
@@ -72,7 +72,7 @@ const bool registered = io::Registry<FillType>::add(
           .keys =
               {{"file",
                 "CSV file with the particles. A relative path refers to the working directory of the "
-                "program. "
+                "program. The file must be below the folder of the case, unless --allow-paths is given. "
                 "The first line has the column names. Columns x, y, z and radius (m) are required; vx, vy, "
                 "vz "
                 "(m/s), omega_x, omega_y, omega_z (rad/s), e0, e1, e2, e3 and material (number of the "

@@ -2,6 +2,7 @@
 #include "granular/case/object_reader.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace hilda::granular {
 
@@ -58,6 +59,21 @@ VectorFormula ObjectReader::formulas(std::string_view key)
     for (std::size_t k = 0; k < 3; ++k)
         all.of[k] = [e = std::move(parts[k])](double t) { return e.value(t); };
     return all;
+}
+
+std::string ObjectReader::file(std::string_view key)
+{
+    namespace fs = std::filesystem;
+    std::string path = text(key);
+    if (source.folder.empty()) return path;
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(source.folder, error),
+                   canonical = fs::weakly_canonical(fs::absolute(path, error), error);
+    if (error ||
+        std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first != folder.end())
+        fail(key, std::string(key) + " must be below the folder of the case, " + folder.string() + ", got " +
+                      io::described(*find(key)) + "; --allow-paths accepts it");
+    return path;
 }
 
 std::vector<ObjectReader> ObjectReader::objects(std::string_view key)

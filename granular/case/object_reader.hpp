@@ -23,6 +23,9 @@ public:
     bool has_formula(std::string_view key);
     /// A vector of three components, each a number or a formula in t
     VectorFormula formulas(std::string_view key);
+    /// The path of a file, relative to the working directory. It must be below the folder of the case
+    /// (Environment::folder), also after symbolic links have been followed.
+    std::string file(std::string_view key);
     /// Readers of the elements of a list. Empty if the key is missing.
     std::vector<ObjectReader> objects(std::string_view key);
     ObjectReader object(std::string_view key) { return io::ObjectReader::object(key); }

@@ -99,6 +99,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         assign(o.output, io::path));
     app.add_flag("--force", o.force,
                  "overwrite an output directory that is not empty; accept a step above the stability limit");
+    app.add_flag("--allow-paths", o.allow_paths,
+                 "read the tables that the case names also if they are not below the folder of the case");
     app.add_flag("--resume", o.resume,
                  "continue the run in the output directory from its last checkpoint; a complete run "
                  "continues to a later --end");

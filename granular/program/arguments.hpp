@@ -20,6 +20,7 @@ struct Options {
     bool full = false;             ///< full grid of a validation
     bool quiet = false, verbose = false, json = false, force = false, resume = false;
     bool strict = false;  ///< a warning of the watch ends the run
+    bool allow_paths = false;  ///< the case may name files that are not below its folder
 };
 
 /// Reads the command line into `options`. Returns the exit code if the program must end: after --help,

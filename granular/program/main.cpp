@@ -29,6 +29,7 @@ int run_case(const Options& o)
         .memory = available_memory(), .device = o.device, .settings = o.settings, .seed = o.seed};
     make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
+    if (!o.allow_paths) here.folder = std::filesystem::absolute(o.file).parent_path().string();
     std::string text;
     try {
         text = io::read_file(o.file, std::size_t{64} << 20);

@@ -135,6 +135,28 @@ def main():
                    f"{process.returncode}: {process.stderr}")
             expect((here / f"spins{spins}" / "particles.csv").read_bytes() == (here / "out" / "short" / "particles.csv").read_bytes(),
                    "the waiting of threads does not change the results")
+        # the table of a fill is below the folder of the case, also behind a symbolic link
+        (here / "below" / "deeper").mkdir(parents=True)
+        for folder in (here, here / "below" / "deeper"):
+            (folder / "table.csv").write_text("x,y,z,radius\n0.01,0.01,0.02,1e-3\n")
+        (here / "below" / "link.csv").symlink_to(here / "table.csv")
+        (here / "below" / "folder").symlink_to(here)
+        for k, (path, accepted) in enumerate((("below/deeper/table.csv", True), (f"{here}/below/deeper/table.csv", True),
+                                              ("below/../below/deeper/table.csv", True), ("table.csv", False), (f"{here}/table.csv", False),
+                                              ("below/../table.csv", False), ("below/link.csv", False), ("below/folder/table.csv", False),
+                                              ("/dev/zero", False), ("/etc/passwd", False), ("none.csv", False), ("below/none.csv", None))):
+            table = runs.case(f"below/table{k}", end=1e-4, interval=5e-5, fill=[{"type": "csv", "file": path, "material": "glass"}])
+            if accepted:
+                runs.finish(table, "--quiet", "--output", f"table{k}")
+            elif accepted is None:
+                refused(3, r"\(/fill/0/file\): below/none.csv: does not exist", case=table)
+            else:
+                refused(3, rf'\(/fill/0/file\): file must be below the folder of the case, \S+/below, got "{path}"; --allow-paths accepts it', case=table)
+                expect(not (here / f"out/table{k}").exists(), "a refused case writes no files")
+        runs.finish("below/table3", "--quiet", "--output", "table3", "--allow-paths")
+        refused(3, "/dev/zero: is not a regular file", "--allow-paths", case="below/table8")
+        process = subprocess.run([sys.argv[1], "head-on", "--allow-paths"], cwd=here, capture_output=True, text=True)
+        expect(process.returncode == 2 and "--allow-paths: is valid for cases only" in process.stderr, f"{process.stderr}")
 
         # a full device behind stdout
         with open("/dev/full", "w") as full:

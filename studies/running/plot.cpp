@@ -10,16 +10,23 @@
 #include <hilda/version.hpp>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 #include <sstream>
+#include <thread>
 
 extern char** environ;
 
@@ -56,13 +63,53 @@ std::string find_script(const std::string& script)
 }
 
 struct ProcessResult {
-    int code = -1;       ///< -1: the process could not be started
-    std::string output;  ///< stdout and stderr together
+    int code = -1;          ///< -1: the process could not be started; 128 + N: ended by signal N
+    std::string output;     ///< stdout and stderr together
+    bool too_slow = false;  ///< killed at the time limit
 };
 
-/// Runs a program without a shell and waits for it. At most about 1 MiB of its output is stored.
-ProcessResult run(std::vector<std::string> words)
+using Clock = std::chrono::steady_clock;
+
+/// Time until `end`, for poll(). At least 0
+int milliseconds_until(Clock::time_point end)
 {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    return static_cast<int>(std::clamp<decltype(left)>(left, 0, std::numeric_limits<int>::max()));
+}
+
+/// Appends what is read until the end of the file. False at the time limit
+bool read_until(int descriptor, Clock::time_point end, std::string& output)
+{
+    std::array<char, 4096> chunk{};
+    while (true) {
+        pollfd ready = {.fd = descriptor, .events = POLLIN, .revents = 0};
+        const int left = milliseconds_until(end), polled = poll(&ready, 1, left);
+        if (polled == 0 || left == 0) return false;
+        if (polled < 0 && errno == EINTR) continue;
+        const ssize_t n = read(descriptor, chunk.data(), chunk.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return true;
+        if (output.size() < 1 << 20) output.append(chunk.data(), static_cast<size_t>(n));
+    }
+}
+
+/// Waits for the end of a process. False at the time limit
+bool wait_until(pid_t child, Clock::time_point end, int& status)
+{
+    while (true) {
+        const pid_t ended = waitpid(child, &status, WNOHANG);
+        if (ended == child || (ended < 0 && errno != EINTR)) return true;
+        if (milliseconds_until(end) == 0) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+}
+
+/// Runs a program without a shell and waits for it, at most `limit` seconds. At most about 1 MiB of its output is
+/// stored.
+ProcessResult run(std::vector<std::string> words, double limit)
+{
+    const Clock::time_point end =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit));
     std::array<int, 2> pipe_ends{};
     if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return {};
     std::vector<char*> argv;
@@ -81,15 +128,14 @@ ProcessResult run(std::vector<std::string> words)
 
     ProcessResult result;
     if (error == 0) {
-        std::array<char, 4096> chunk{};
-        for (ssize_t n = 0;
-             (n = read(pipe_ends[0], chunk.data(), chunk.size())) > 0 || (n < 0 && errno == EINTR);)
-            if (n > 0 && result.output.size() < 1 << 20)
-                result.output.append(chunk.data(), static_cast<size_t>(n));
         int status = 0;
-        while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+        result.too_slow = !read_until(pipe_ends[0], end, result.output) || !wait_until(child, end, status);
+        if (result.too_slow) {
+            kill(child, SIGKILL);
+            while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+            }
         }
-        result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+        result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
     close(pipe_ends[0]);
     return result;
@@ -102,14 +148,21 @@ std::string last_line(std::string text)
 }
 
 /// One line with the reason why a Python process failed; empty if it succeeded
-std::string failure_reason(const ProcessResult& result)
+std::string failure_reason(const ProcessResult& result, double limit)
 {
+    if (result.too_slow) return fmt::format("{} did not end within {:g} s and was stopped", python(), limit);
     if (result.code == 0) return {};
+    if (result.code > 128)
+        return fmt::format("{} was ended by signal {} ({})", python(), result.code - 128,
+                           strsignal(result.code - 128));
     if (result.code == -1 || result.code == 127)
         return python() + " was not found (Debian: apt-get install python3-matplotlib)";
     if (result.output.find("No module named 'matplotlib'") != std::string::npos)
         return python() + " has no matplotlib (Debian: apt-get install python3-matplotlib)";
-    return last_line(result.output);
+    const std::string line = last_line(result.output);
+    return line.empty()
+               ? fmt::format("{} ended with the exit code {} and without a message", python(), result.code)
+               : line;
 }
 
 }  // namespace
@@ -136,11 +189,12 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     add("--format", options.formats);
     add("--integrator", options.integrators);
     add("--quantity", options.quantities);
-    const ProcessResult result = path.empty() ? ProcessResult{} : run(std::move(words));
+    const ProcessResult result = path.empty() ? ProcessResult{} : run(std::move(words), options.time_limit);
     constexpr int refused = 2;  // see studies/plots/options.py
     if (result.code == refused && !(options.integrators.empty() && options.quantities.empty()))
         throw io::UsageError("plot: " + last_line(result.output));
-    const std::string why = path.empty() ? "the script " + script + " was not found" : failure_reason(result);
+    const std::string why =
+        path.empty() ? "the script " + script + " was not found" : failure_reason(result, options.time_limit);
     if (!why.empty()) {
         io::warning("no figures: " + why);
         return std::nullopt;
@@ -150,6 +204,11 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     std::error_code error;
     for (std::string line; std::getline(lines, line);)
         if (!line.empty() && fs::is_regular_file(fs::path(directory) / line, error)) files.push_back(line);
+    if (files.empty()) {
+        io::warning("no figures: " + python() + " has written none" +
+                    (result.output.empty() ? "" : ": " + last_line(result.output)));
+        return std::nullopt;
+    }
     return files;
 }
 
@@ -200,8 +259,9 @@ std::string python_and_matplotlib()
         run({python(), "-c",
              // Without the current folder, in which there may be another matplotlib.py
              "import sys; sys.path = [p for p in sys.path if p]; import matplotlib; "
-             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
-    const std::string why = failure_reason(result);
+             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"},
+            FigureOptions{}.time_limit);
+    const std::string why = failure_reason(result, FigureOptions{}.time_limit);
     return why.empty() ? python() + " " + last_line(result.output) : why;
 }
 

@@ -2,6 +2,7 @@
 /// Formats and choice of figures: --figure-format, --integrator and --quantity. What a figure shows is tested by
 /// tests/studies/figures_test.py.
 
+#include "studies/running/plot.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/studies/refused.hpp"
 
@@ -108,4 +109,61 @@ TEST_CASE("an integrator or a quantity that the results do not have is refused w
     for (const auto& [options, expected] : all) check_refused(in, with({"plot", "a"}, options), 2, expected);
     CHECK(call(in, {"plot", "a", "--integrator", "rA-half-2"}).code == 0);
     CHECK(fs::exists(in / "a/energy-double_pendulum.png"));
+}
+
+namespace {
+
+/// A Python that does something else than to draw
+class OtherPython {
+public:
+    OtherPython(const Scratch& in, const std::string& script)
+    {
+        const std::string file = (in / "python").string();
+        write(file, "#!/bin/sh\n" + script + "\n");
+        fs::permissions(file, fs::perms::owner_all);
+        setenv("HILDA_PYTHON", file.c_str(), 1);
+    }
+    ~OtherPython() { unsetenv("HILDA_PYTHON"); }
+    OtherPython(const OtherPython&) = delete;
+    OtherPython& operator=(const OtherPython&) = delete;
+};
+
+}  // namespace
+
+TEST_CASE("a Python that fails without a message is reported, and no figure is listed", "[studies][figures]")
+{
+    const Scratch in;
+    const std::pair<std::string, std::string> all[] = {
+        {"exit 1", "ended with the exit code 1 and without a message"},
+        {"kill -9 $$", "was ended by signal 9 (Killed)"},
+        {"exit 0", "has written none"},
+        {"echo trajectory.png", "has written none: trajectory.png"},
+        {"echo trajectory.png; kill -11 $$", "was ended by signal 11"}};
+    for (const auto& [script, expected] : all) {
+        const OtherPython python(in, script);
+        const Ended ended =
+            call(in, {"run", "double_pendulum", "--end", "0.01", "--plot", "--output", "a", "--force"});
+        CAPTURE(script, ended.err);
+        CHECK(ended.code == 0);
+        CHECK_THAT(ended.err, Contains("hilda: warning: no figures: ") && Contains(expected));
+        CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+        CHECK_THAT(read(in / "a/summary.json"), !Contains("trajectory.png"));
+        CHECK(call(in, {"plot", "a"}).code == 7);
+    }
+}
+
+TEST_CASE("a Python that does not end is stopped at the time limit", "[studies][figures]")
+{
+    const Scratch in;
+    CHECK(studies::FigureOptions{}.time_limit == 60);
+    // one that is silent, one that writes without an end, and one that has closed its output
+    for (const char* script :
+         {"exec sleep 100", "while true; do echo trajectory.png; done", "exec >&- 2>&-; exec sleep 100"}) {
+        const OtherPython python(in, script);
+        const auto begin = std::chrono::steady_clock::now();
+        CHECK_FALSE(studies::plot("trajectory.py", in.path.string(), {.time_limit = 0.2}));
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        CHECK(taken.count() >= 0.2);
+        CHECK(taken.count() < 20);
+    }
 }

@@ -25,6 +25,7 @@ constexpr double blend_reach =
 
 constexpr int terms = 10;                 // of a cubic in two variables
 constexpr int min_vertices = 14;          // required to fit a cubic
+constexpr size_t max_vertices = 4000;     // in a fit: the time for all fits grows with its square
 constexpr double growth = 1.3;            // factor by which the fit radius grows if the fit is not determined
 constexpr int max_growths = 3;            // number of times
 constexpr double min_pivot_ratio = 1e-7;  // smallest to largest pivot of the normal equations
@@ -72,6 +73,16 @@ constexpr const char* where = "contact::MeshSurface: ";
     throw lie::InvalidInput(where + ("the mesh is too coarse for a smooth surface: " + what));
 }
 
+[[noreturn]] void refuse_narrow(int vertex, size_t known, double R)
+{
+    std::ostringstream what;
+    what.precision(3);
+    what << where << "the triangles near vertex " << vertex << " are too narrow: " << known
+         << " vertices are within " << R << " m, " << fit_reach << " times its longest edge; the limit is "
+         << max_vertices;
+    throw lie::InvalidInput(what.str());
+}
+
 void check_normals(const TriangleMesh& mesh, const std::vector<int>& near)
 {
     for (const int v : near) {
@@ -92,7 +103,8 @@ MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(give
 {
     Eigen::AlignedBox3d box;
     patches.resize(mesh.vertices.size());
-    std::vector<bool> seen(std::max(mesh.vertices.size(), mesh.triangles.size()), false);
+    std::vector<bool> seen(std::max(mesh.vertices.size(), mesh.triangles.size()), false),
+        expanded(mesh.vertices.size(), false);
     for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
         if (mesh.around[v].empty()) continue;
         box.extend(mesh.vertices[v]);
@@ -103,12 +115,16 @@ MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(give
     // For each vertex, find the triangles that its patch contributes to: search outward over adjacent
     // triangles whose distance from the vertex is below ρ plus half an edge
     std::vector<std::vector<int>> patches_at(mesh.triangles.size());
+    std::vector<int> corners;
     for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
         std::vector<int> reached = mesh.around[v], tested = reached;
         for (const int t : tested) seen[t] = true;
         for (size_t k = 0; k < reached.size(); ++k) {
             patches_at[reached[k]].push_back(v);  // ascending order makes the sums reproducible
-            for (const int corner : mesh.triangles[reached[k]])
+            for (const int corner : mesh.triangles[reached[k]]) {
+                if (expanded[corner]) continue;
+                expanded[corner] = true;
+                corners.push_back(corner);
                 for (const int t : mesh.around[corner]) {
                     if (seen[t]) continue;
                     seen[t] = true;
@@ -116,8 +132,11 @@ MeshSurface::MeshSurface(TriangleMesh given, bool concave) : mesh(std::move(give
                     if (mesh.distance(t, mesh.vertices[v]) < patches[v].rho + half_edge(t))
                         reached.push_back(t);
                 }
+            }
         }
         for (const int t : tested) seen[t] = false;
+        for (const int corner : corners) expanded[corner] = false;
+        corners.clear();
     }
     first_patch.push_back(0);
     for (const std::vector<int>& patches_of : patches_at) {
@@ -147,6 +166,7 @@ MeshSurface::Patch MeshSurface::fit_patch(int vertex, std::vector<bool>& seen) c
         const std::vector<int> near = neighbours(mesh, vertex, R, seen);
         known = near.size();
         if (known < min_vertices) continue;
+        if (known > max_vertices) refuse_narrow(vertex, known, R);
         check_normals(mesh, near);
 
         Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();

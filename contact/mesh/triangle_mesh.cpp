@@ -11,6 +11,7 @@
 #include <numeric>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 namespace hilda::contact {
 
@@ -94,15 +95,19 @@ int position_in(const Triangle& triangle, int vertex)
     return static_cast<int>(std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin());
 }
 
-/// True if the triangles at a vertex form a single closed ring
+/// True if the triangles at a vertex form a single closed ring. Each of their sides at the vertex belongs to two triangles
+/// of opposite direction (fault_of_edges). n log n for n triangles
 bool is_one_ring(int vertex, const std::vector<int>& around, const std::vector<Triangle>& triangles)
 {
     const auto after = [&](int t, int k) {
         return triangles[t][(position_in(triangles[t], vertex) + k) % 3];
     };
+    std::vector<std::pair<int, int>> by_side;  // the vertex at the end of the first side, and the triangle
+    for (const int t : around) by_side.emplace_back(after(t, 1), t);
+    std::sort(by_side.begin(), by_side.end());
     int t = around[0];
     for (size_t steps = 1; steps <= around.size(); ++steps) {
-        t = *std::find_if(around.begin(), around.end(), [&](int s) { return after(s, 1) == after(t, 2); });
+        t = std::lower_bound(by_side.begin(), by_side.end(), std::pair(after(t, 2), 0))->second;
         if (t == around[0]) return steps == around.size();
     }
     return false;

@@ -14,6 +14,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <sstream>
 
 using namespace hilda;
@@ -295,4 +296,65 @@ TEST_CASE("a mesh that is too coarse for a smooth surface is rejected with the v
     with_more.vertices.emplace_back(7, 7, 7);
     CHECK(refusal(with_more) == "accepted");
     CHECK(MeshSurface(TriangleMesh(with_more.vertices, with_more.triangles)).size() < 1.01);
+}
+
+namespace {
+
+/// A vertex with n triangles, in the middle of the upper side of a flat body that is rounded at its rim
+std::pair<std::vector<Vec3>, std::vector<Triangle>> body_with_fan(int n)
+{
+    constexpr int rings = 8;  // from the upper to the lower pole
+    std::vector<Vec3> vertices = {Vec3(0, 0, 1)};
+    for (int ring = 1; ring < rings; ++ring)
+        for (int k = 0; k < n; ++k) {
+            const double theta = M_PI * ring / rings, phi = 2 * M_PI * k / n;
+            vertices.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                  std::cos(theta));
+        }
+    vertices.emplace_back(0, 0, -1);
+    std::vector<Triangle> triangles;
+    const int last = static_cast<int>(vertices.size()) - 1;
+    for (int k = 0; k < n; ++k) {
+        const int next = (k + 1) % n;
+        triangles.push_back({0, 1 + k, 1 + next});
+        for (int ring = 0; ring + 2 < rings; ++ring) {
+            const int a = 1 + ring * n + k, b = 1 + ring * n + next;
+            triangles.push_back({a, a + n, b});
+            triangles.push_back({b, a + n, b + n});
+        }
+        triangles.push_back({last, last - n + next, last - n + k});
+    }
+    return {vertices, triangles};
+}
+
+}  // namespace
+
+TEST_CASE("a vertex with 14000 triangles is checked in a time proportional to their number",
+          "[contact][mesh]")
+{
+    const auto time = [](int n) {
+        const auto [vertices, triangles] = body_with_fan(n);
+        const auto begin = std::chrono::steady_clock::now();
+        CHECK_FALSE(TriangleMesh::fault(vertices, triangles));
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    time(100);
+    // 140 times as many triangles. A time proportional to the square would be 19600 times as long.
+    CHECK(time(14000) < 1000 * time(100));
+    const auto [vertices, triangles] = body_with_fan(14000);
+    CHECK_THROWS_WITH(
+        MeshSurface(TriangleMesh(vertices, triangles)),
+        Catch::StartsWith("contact::MeshSurface: the triangles near vertex 0 are too narrow: ") &&
+            Catch::EndsWith(" vertices are within 0.975 m, 2.5 times its longest edge; the limit is 4000"));
+}
+
+TEST_CASE("the surface of a mesh with a vertex of many triangles is that of its sphere", "[contact][mesh]")
+{
+    const auto [vertices, triangles] = body_with_fan(300);
+    const MeshSurface mesh{TriangleMesh(vertices, triangles)};
+    for (const Vec3& direction : {Vec3(0.01, 0, 1), Vec3(0.3, 0.2, 1), Vec3(1, 0, 0), Vec3(0, -1, -2)}) {
+        const Surface::Derivatives G = mesh.derivatives(direction.normalized());
+        CHECK(G.G == Approx(0).margin(1e-2));  // cubics on edges of 0.39: 0.39⁴ / 4 = 6e-3
+        CHECK((G.gradient.normalized() - direction.normalized()).norm() < 6e-2);
+    }
 }

@@ -25,10 +25,26 @@ std::string counted(long n, const std::string& one, const std::string& many)
     return std::to_string(n) + ' ' + (n == 1 ? one : many.empty() ? one + 's' : many);
 }
 
+namespace {
+
+/// The text of an error on one line, also if it quotes a name with line breaks or other control characters
+std::string on_one_line(std::string_view text)
+{
+    std::string line;
+    for (const char c : text)
+        if (c == '\n')
+            line += "\\n";
+        else
+            line += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    return line;
+}
+
+}  // namespace
+
 int report(const std::exception& error)
 {
     const auto say = [&](const std::string& head, int code) {
-        message("hilda: " + head + ": " + error.what() + '\n');
+        message("hilda: " + head + ": " + on_one_line(error.what()) + '\n');
         return code;
     };
     if (const auto* failure = dynamic_cast<const Failure*>(&error)) return say("error", failure->code);

@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <memory>
 
 namespace hilda::studies {
 
@@ -66,18 +67,22 @@ public:
         add_help();
     }
 
-    int parse_and_run(int argc, char** argv)
+    /// The action of the command
+    std::function<int()> parse(int argc, char** argv)
     {
         refuse_unknown_command(argc, argv);
         try {
             app.parse(argc, argv);
         } catch (const CLI::CallForHelp&) {
             for (const auto& [command, action] : actions)
-                if (command->parsed()) return help_of(command->get_name(), kind);
-            return help_of("", "");
+                if (command->parsed())
+                    return [this, name = command->get_name()] { return help_of(name, kind); };
+            return [this] { return help_of("", ""); };
         } catch (const CLI::CallForVersion&) {
-            std::cout << version_line() << '\n';
-            return io::exit_code::done;
+            return [] {
+                std::cout << version_line() << '\n';
+                return io::exit_code::done;
+            };
         } catch (const CLI::ExtrasError&) {
             refuse_extras();
         } catch (const CLI::ParseError& error) {
@@ -86,7 +91,7 @@ public:
                                  error.what());
         }
         for (const auto& [command, action] : actions)
-            if (command->parsed()) return action();
+            if (command->parsed()) return action;
         throw io::UsageError("no command given; hilda help lists them");
     }
 
@@ -289,14 +294,25 @@ private:
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
+/// The action refers to `commands`, and keeps it.
+std::function<int()> action_of(const std::shared_ptr<Commands>& commands, int argc, char** argv)
+{
+    return [commands, action = commands->parse(argc, argv)] { return action(); };
+}
+
 }  // namespace
+
+std::function<int()> read_command_line(int argc, char** argv)
+{
+    return action_of(std::make_shared<Commands>(io::shell_quoted(argc, argv)), argc, argv);
+}
 
 int command_line(int argc, char** argv)
 {
     std::vector<char*> words;
     const std::vector<std::string> plugins = load_plugins({argv, argv + argc}, words);
-    return Commands(io::shell_quoted(argc, argv), plugins)
-        .parse_and_run(static_cast<int>(words.size()), words.data());
+    const auto commands = std::make_shared<Commands>(io::shell_quoted(argc, argv), plugins);
+    return action_of(commands, static_cast<int>(words.size()), words.data())();
 }
 
 }  // namespace hilda::studies

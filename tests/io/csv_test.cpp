@@ -32,6 +32,8 @@ TEST_CASE("a table is read with its comments, blanks and line ends", "[io][csv]"
                 "a,b\n1,2\n") == std::vector<Cells>{{"a", "b"}, {"1", "2"}});  // byte order mark
     CHECK(table("a,b\n").empty());
     CHECK_THROWS_WITH(table("a,b\n1\n"), "a.csv:2: a row must have a field for each of the 2 columns, got 1");
+    CHECK_THROWS_WITH(table("a,b\n1,2\n1,2,3\n"),
+                      "a.csv:3: a row must have a field for each of the 2 columns, got 3");
     CHECK_THROWS_WITH(table("a,a\n"), "a.csv:1: two columns have the same name, got 'a'");
 }
 

@@ -5,8 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -73,6 +75,31 @@ TEST_CASE("a link with the name of the temporary file is not followed", "[io][fi
     io::write_file(in.file("a"), "newer");
     CHECK(io::read_file(in.file("a"), 10) == "newer");
     CHECK(names(in.path) == std::vector<std::string>{"a", "other"});
+}
+
+TEST_CASE("a file that cannot be written completely keeps its content, and nothing else remains",
+          "[io][files]")
+{
+    const Directory in;
+    io::write_file(in.file("a"), "old");
+    // With a limit of the file size, write() fails with EFBIG, as it fails with ENOSPC on a full disk.
+    rlimit unlimited{};
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &unlimited) == 0);
+    rlimit limited = unlimited;
+    limited.rlim_cur = 100;
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &limited) == 0);
+    bool failed = false;
+    try {
+        io::write_file(in.file("a"), std::string(1000, 'x'));
+    } catch (const io::IoError&) {
+        failed = true;
+    }
+    setrlimit(RLIMIT_FSIZE, &unlimited);
+    std::signal(SIGXFSZ, handler);
+    CHECK(failed);
+    CHECK(io::read_file(in.file("a"), 10) == "old");
+    CHECK(names(in.path) == std::vector<std::string>{"a"});
 }
 
 TEST_CASE("an error of a file names its path and the reason", "[io][files]")

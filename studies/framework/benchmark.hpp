@@ -22,7 +22,8 @@ struct Benchmark {
     Instants instants;
     lie::Trajectory reference_solution;
     std::string reference_name;
-    Errors size;  ///< norms of the reference solution itself
+    Errors size;         ///< norms of the reference solution itself
+    Errors uncertainty;  ///< estimated errors of the reference solution: see Reference::estimate_errors
 };
 
 /// Reads the model of a problem, with the changes of --set, and computes its consistent initial state.

@@ -19,7 +19,8 @@ Sweep<ErrorRun> ConvergenceStudy::runs(const StudyContext& study, const std::vec
         if (k % steps.size() == 0) continue;
         const ErrorRun& before = all[k - 1];
         for (size_t n = 0; n < norms.size(); ++n)
-            all[k].order[n] = order(before.h, before.error[n], all[k].h, all[k].error[n]);
+            if (before.at_floor[n] == 0 && all[k].at_floor[n] == 0)
+                all[k].order[n] = order(before.h, before.error[n], all[k].h, all[k].error[n]);
     }
     return all;
 }

@@ -11,8 +11,9 @@ namespace hilda::studies {
 
 /// A run with an error in each norm of the study
 struct ErrorRun : Run {
-    std::vector<double> error = {};   ///< NaN if the run failed
-    std::vector<double> order = {};   ///< between this step and the next larger one; NaN: unknown
+    std::vector<double> error = {};  ///< NaN if the run failed
+    std::vector<double> order =
+        {};  ///< to the next larger step; NaN: unknown, or one of the errors at the floor
     std::vector<char> at_floor = {};  ///< the error does not depend on the step any more: not in the fit
     int instants = 0;                 ///< number of compared instants
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes

@@ -36,6 +36,16 @@ void evaluate(EvaluatedRun& run, const lie::Settings& of_study)
     else
         run.errors =
             errors(model, nodes.run, nodes.at, run.c->reference_solution, run.c->instants, run.c->observable);
+    run.nodes = std::move(nodes.run);
+    run.at = std::move(nodes.at);
+}
+
+Errors difference(const EvaluatedRun& a, const EvaluatedRun& b)
+{
+    lie::Trajectory as_reference;
+    as_reference.row.resize(static_cast<size_t>(a.c->instants.count + 1));
+    for (size_t k = 0; k < b.at.size(); ++k) as_reference.row[b.at[k]] = b.nodes.row[k];
+    return errors(*a.c->started->model, a.nodes, a.at, as_reference, a.c->instants, a.c->observable);
 }
 
 }  // namespace hilda::studies

@@ -11,10 +11,15 @@ namespace hilda::studies {
 struct EvaluatedRun : Run {
     Errors errors = {};                             ///< NaN if the run failed
     double constraint_norm = 0, orthogonality = 0;  ///< largest at the compared nodes
+    lie::Trajectory nodes = {};                     ///< the compared nodes ...
+    std::vector<long> at = {};                      ///< ... and their rows in the reference solution
 };
 
 /// Integrates the run and stores its errors and invariants in it. `of_study`: settings of the study.
 void evaluate(EvaluatedRun& run, const lie::Settings& of_study);
+
+/// The norms of errors.hpp for the difference of two runs of the same benchmark at the same nodes
+Errors difference(const EvaluatedRun& a, const EvaluatedRun& b);
 
 /// Collects the nodes that are rows of the reference solution, and the largest constraint norm [m or rad] and
 /// ‖AᵀA - I‖ at these nodes. lie::NumericalFailure "constraint_drift" if a dropped constraint row is

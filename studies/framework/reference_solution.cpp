@@ -2,14 +2,18 @@
 #include "studies/framework/reference_solution.hpp"
 
 #include "contact/evolving/unilateral.hpp"
+#include "dae/kinematics.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "lie/settings.hpp"
+#include "reference/solvers/index1.hpp"
 #include "studies/framework/pool.hpp"
 #include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
+
+#include <limits>
 
 namespace hilda::studies {
 
@@ -111,6 +115,66 @@ void Reference::evaluate(Benchmark& c) const
     c.size = sizes(*c.started->model, c.reference_solution, c.instants, c.observable);
 }
 
+void Reference::estimate_errors(std::vector<Benchmark>& benchmarks) const
+{
+    context.pool(benchmarks.size(), ", error of the reference solution").run([&](long k) {
+        Benchmark& c = benchmarks[k];
+        std::vector<long> at;
+        for (long row = 0; row <= c.instants.count; ++row) at.push_back(row);
+        c.uncertainty =
+            errors(*c.started->model, less_accurate(c), at, c.reference_solution, c.instants, c.observable);
+    });
+}
+
+namespace {
+
+/// A state that differs from x by rounding errors
+lie::State disturbed(lie::State x)
+{
+    constexpr double eps = 2 * std::numeric_limits<double>::epsilon();
+    for (lie::Motion& body : x.body) {
+        body.A = body.A * lie::exp(lie::Vec3(eps, -eps, eps));
+        body.rdot *= 1 + eps;
+        body.omega_bar *= 1 - eps;
+    }
+    return x;
+}
+
+}  // namespace
+
+lie::Trajectory Reference::less_accurate(const Benchmark& c) const
+{
+    constexpr double larger_tolerance = 10, larger_step = 2;
+    if (const lie::Scheme* const reference = scheme_for(c); reference != nullptr)
+        return by_integrator(c, *reference, reference->adaptive ? larger_tolerance : larger_step);
+    const dae::Description d = read_and_start(c.problem, options);
+    if (6 * d.model->bodies() == d.model->rows()) {
+        constexpr double substep = 2e-3;  // [s]
+        dae::Kinematics kinematics(*d.model);
+        lie::Trajectory run;
+        lie::State x = d.x;
+        for (const lie::State& row : c.reference_solution.row) {
+            kinematics.move_to(x, row.t, substep);
+            run.row.push_back(x);
+        }
+        return run;
+    }
+    // With a further instant in each interval its steps and its projections differ, and so do its rounding errors.
+    constexpr double further = 0.6;  // of an interval
+    std::vector<double> times;
+    for (const lie::State& row : c.reference_solution.row) {
+        if (!times.empty()) times.push_back(times.back() + further * (row.t - times.back()));
+        times.push_back(row.t);
+    }
+    const reference::OdeTolerance tolerance;
+    const lie::Trajectory all =
+        reference::index1(*d.model, disturbed(d.x), times,
+                          {larger_tolerance * tolerance.relative, larger_tolerance * tolerance.absolute});
+    lie::Trajectory run;
+    for (size_t k = 0; k < all.row.size(); k += 2) run.row.push_back(all.row[k]);
+    return run;
+}
+
 /// The integrator of the reference solution; nullptr: the reference solution of the problem
 const lie::Scheme* Reference::scheme_for(const Benchmark& c) const
 {
@@ -131,17 +195,18 @@ double Reference::step(const Benchmark& c) const
     return c.instants.dt / std::max(1., std::ceil(nodes - 1e-6));
 }
 
-lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& reference) const
+lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& reference,
+                                         double coarser) const
 {
     lie::Settings settings = options.settings;
     settings.tolerance = std::min(settings.tolerance, 1e-12);  // not coarser than that of the runs
     lie::TimeGrid grid{.h = c.instants.dt, .steps = c.instants.count};
     if (reference.adaptive) {
-        settings.rtol = rtol;
+        settings.rtol = coarser * rtol;
         settings.atol = 0;  // as rtol
     } else {
-        grid.h = step(c);
-        grid.interval = std::lround(c.instants.dt / grid.h);
+        grid.interval = std::max(1L, std::lround(c.instants.dt / (coarser * step(c))));
+        grid.h = c.instants.dt / static_cast<double>(grid.interval);
         grid.steps = c.instants.count * grid.interval;
     }
     const auto integrator = contact::make_integrator(*c.started->model, reference, settings);

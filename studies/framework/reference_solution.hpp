@@ -31,10 +31,19 @@ public:
     /// io::UsageError for steps [s] that do not have these instants as nodes.
     void evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps = {}) const;
 
+    /// Estimates the errors of the reference solutions: Benchmark::uncertainty receives the norms of their difference
+    /// to second solutions, which are about ten times less accurate. These are the index-1 equations with ten times
+    /// the tolerance and other steps, kinematic analysis with other substeps for a model without degrees of freedom, and otherwise
+    /// the same integrator with ten times the rtol or twice the step. The second
+    /// solution of the equations of motion starts from a state that differs by rounding errors, which the motion
+    /// amplifies.
+    void estimate_errors(std::vector<Benchmark>& benchmarks) const;
+
 private:
     void evaluate(Benchmark& c) const;
+    lie::Trajectory less_accurate(const Benchmark& c) const;
     const lie::Scheme* scheme_for(const Benchmark& c) const;
-    lie::Trajectory by_integrator(const Benchmark& c, const lie::Scheme& reference) const;
+    lie::Trajectory by_integrator(const Benchmark& c, const lie::Scheme& reference, double coarser = 1) const;
     double step(const Benchmark& c) const;
 
     const StudyContext& context;

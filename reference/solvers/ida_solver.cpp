@@ -36,6 +36,10 @@ constexpr double step_fraction = 0.1, min_tolerance = 2e-14;
 // level.
 constexpr double newton_fraction = 0.01, rounding_level = 3e-15;
 
+// Rounding of coordinates beyond far_coordinate [m] disturbs Φ, and with it the orientations. The absolute
+// tolerances are at least this multiple of it.
+constexpr double far_coordinate = 1e3, rounding_multiple = 10;
+
 template <auto destroy>
 struct Destroy {
     template <class T>
@@ -234,7 +238,7 @@ private:
             const bool is_differential =
                 type == RpEquations::UnknownType::position || type == RpEquations::UnknownType::velocity;
             differential[k] = is_differential ? 1 : 0;
-            tolerances[k] = is_differential                            ? atol
+            tolerances[k] = is_differential ? std::max(atol, rounding_floor(consistent, k))
                             : type == RpEquations::UnknownType::lambda ? 1e-4 * weight
                                                                        : 1;
         }
@@ -250,6 +254,21 @@ private:
         constexpr int amd = 0;
         SUNLinSol_KLUGetCommon(linear.get())->btf = 0;
         if (SUNLinSol_KLUSetOrdering(linear.get(), amd) != 0) throw std::bad_alloc();
+    }
+
+    /// Smallest useful absolute tolerance of the position or velocity k. An error e of the coordinates of a
+    /// body turns it by at most e/(2ρ), with its radius of gyration ρ: the smallest change of pose in the
+    /// metric of the mass.
+    double rounding_floor(const lie::State& x, int k) const
+    {
+        double largest = 0;
+        for (const lie::Motion& body : x.body) largest = std::max(largest, body.r.cwiseAbs().maxCoeff());
+        if (largest < far_coordinate) return 0;
+        const double of_r = rounding_multiple * std::numeric_limits<double>::epsilon() * largest;
+        if (k % 7 < 3) return of_r;
+        const lie::Mass& mass = system.mass();
+        const auto b = static_cast<size_t>(k / 14);
+        return of_r / (2 * std::sqrt(mass.J_bar[b].diagonal().minCoeff() / mass.m[b]));
     }
 
     /// Size of the first step [s], for which the error of backward Euler is about the tolerance. IDA's own

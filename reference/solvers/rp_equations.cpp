@@ -33,14 +33,28 @@ Mat4 dT_transpose_dp(const Vec4& p, double p2, const Mat34& T, const Vec3& R)
 
 constexpr unsigned rotation_bits = 0b111000;
 
+/// The origin of the unknowns: zero, or the centre of the bodies in full metres if it is more than 1 km, and
+/// more than ten times the extent of the system, from the origin of the model
+Vec3 origin_near(const lie::State& x)
+{
+    constexpr double far = 1e3, extents = 10;  // [m], [1]
+    if (x.body.empty()) return Vec3::Zero();
+    Vec3 centre = Vec3::Zero();
+    for (const lie::Motion& body : x.body) centre += body.r / static_cast<double>(x.body.size());
+    double extent = 0;
+    for (const lie::Motion& body : x.body) extent = std::max(extent, (body.r - centre).norm());
+    if (!(centre.norm() > std::max(far, extents * extent))) return Vec3::Zero();
+    return centre.array().round();
+}
+
 }  // namespace
 
 RpEquations::RpEquations(const lie::System& system, const lie::State& start, RpForm form, double alpha)
-    : system(system), form(form), alpha(form == RpForm::baumgarte ? alpha : 0), bodies(system.bodies()),
-      m(system.rows()), first_lambda(14 * bodies), first_mu(first_lambda + m + bodies), body(bodies),
-      C(system.pattern()), load(bodies), force_lambda(6 * bodies), force_mu(6 * bodies), velocity(6 * bodies),
-      acceleration(6 * bodies), Phi(m), nu(m), gamma(m), H(C), d_nu(C), d_gamma(C),
-      d_load(system.load_pattern())
+    : system(system), form(form), alpha(form == RpForm::baumgarte ? alpha : 0), origin(origin_near(start)),
+      bodies(system.bodies()), m(system.rows()), first_lambda(14 * bodies),
+      first_mu(first_lambda + m + bodies), body(bodies), C(system.pattern()), load(bodies),
+      force_lambda(6 * bodies), force_mu(6 * bodies), velocity(6 * bodies), acceleration(6 * bodies), Phi(m),
+      nu(m), gamma(m), H(C), d_nu(C), d_gamma(C), d_load(system.load_pattern())
 {
     x = start;
     find_pairs();
@@ -88,7 +102,7 @@ void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
         const Vec4 pdot = 0.5 * G.transpose() * motion.omega_bar;
         const Vec4 pddot =
             0.5 * G.transpose() * motion.omegadot_bar - 0.25 * motion.omega_bar.squaredNorm() * p;
-        y.segment<14>(offset(b)) << motion.r, p, motion.rdot, pdot;
+        y.segment<14>(offset(b)) << motion.r - origin, p, motion.rdot, pdot;
         ydot.segment<14>(offset(b)) << motion.rdot, pdot, motion.rddot, pddot;
     }
     y.segment(first_lambda, m) = from.lambda;
@@ -120,7 +134,7 @@ void RpEquations::read(double t, const ConstVectorRef& y, lie::State& to) const
     for (int b = 0; b < bodies; ++b) {
         lie::Motion& motion = to.body[b];
         const Vec4 p = y.segment<4>(offset(b) + 3);
-        motion.r = y.segment<3>(offset(b));
+        motion.r = origin + y.segment<3>(offset(b));
         motion.A = lie::rotation(p.normalized());
         motion.rdot = y.segment<3>(offset(b) + 7);
         motion.omega_bar = (2 / p.squaredNorm()) * (lie::G(p) * y.segment<4>(offset(b) + 10));
@@ -136,7 +150,7 @@ void RpEquations::evaluate(double t, const ConstVectorRef& y, const ConstVectorR
     for (int b = 0; b < bodies; ++b) {
         Body& q = body[b];
         lie::Motion& motion = x.body[b];
-        motion.r = y.segment<3>(offset(b));
+        motion.r = origin + y.segment<3>(offset(b));
         q.p = y.segment<4>(offset(b) + 3);
         motion.rdot = y.segment<3>(offset(b) + 7);
         q.pdot = y.segment<4>(offset(b) + 10);

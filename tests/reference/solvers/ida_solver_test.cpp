@@ -304,3 +304,38 @@ TEST_CASE("exceptions propagate through IDA and leave the state unchanged", "[re
         check_unchanged(x, before);
     }
 }
+
+TEST_CASE("IDA integrates bodies far from the origin, and large ones", "[reference][ida]")
+{
+    // Two bars of the length L, hinged about x, that start horizontally at `offset`
+    const auto end = [](double offset, double L, RpForm form) {
+        dae::Model model;
+        lie::State x;
+        const Vec3 X = Vec3::UnitX(), o(offset, -offset, offset);
+        const Vec3 inertia = L * L / 12 * Vec3(1, 0.01, 1);
+        tests::add_body(model, x, "a", 1, inertia, o + Vec3(0, L / 2, 0), lie::Mat3::Identity());
+        tests::add_body(model, x, "b", 1, inertia, o + Vec3(0, 1.5 * L, 0), lie::Mat3::Identity());
+        model.constrain("A", dae::revolute(dae::ground, o, X, 0, {0, -L / 2, 0}, X));
+        model.constrain("B", dae::revolute(0, {0, L / 2, 0}, X, 1, {0, -L / 2, 0}, X));
+        dae::start(model, x);
+        IdaSolver solver(model, {.rtol = 1e-10}, form);
+        solver.advance(x, 2 * std::sqrt(L));
+        for (lie::Motion& body : x.body) body.r -= o;
+        return x;
+    };
+    const auto difference = [](const lie::State& x, const lie::State& y, double L) {
+        double most = 0;
+        for (size_t b = 0; b < 2; ++b)
+            most = std::max({most, (x.body[b].r / L - y.body[b].r).norm(), (x.body[b].A - y.body[b].A).norm(),
+                             (x.body[b].rdot / std::sqrt(L) - y.body[b].rdot).norm()});
+        return most;
+    };
+    for (const RpForm form : {RpForm::ggl, RpForm::baumgarte, RpForm::index1}) {
+        const lie::State at_origin = end(0, 1, form);
+        CAPTURE(static_cast<int>(form));
+        CHECK(difference(end(1e3, 1, form), at_origin, 1) < 1e-7);
+        CHECK(difference(end(1e5, 1, form), at_origin, 1) < 1e-7);
+        CHECK(difference(end(1e7, 1, form), at_origin, 1) < 1e-5);
+        if (form != RpForm::baumgarte) CHECK(difference(end(0, 1e6, form), at_origin, 1e6) < 1e-7);
+    }
+}

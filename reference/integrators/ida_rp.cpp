@@ -12,7 +12,7 @@ namespace hilda::reference {
 namespace {
 
 template <RpForm form>
-class Ida final : public lie::Integrator {
+class Ida final : public lie::Integrator, public RankMonitor {
 public:
     Ida(const lie::System& system, const lie::Settings& settings) : solver(system, settings, form) {}
 
@@ -20,6 +20,7 @@ public:
     bool chooses_internal_steps() const override { return true; }
     const lie::System& system() const override { return solver.system(); }
     lie::Statistics statistics() const override { return solver.statistics(); }
+    Smallest smallest_condition() const override { return solver.smallest_condition(); }
 
 private:
     IdaSolver solver;

@@ -164,6 +164,7 @@ public:
 
     RpEquations equations;
     const lie::System& system;
+    RankMonitor::Smallest smallest_condition;
 
 private:
     using Vector = Owned<N_Vector, N_VDestroy>;
@@ -293,6 +294,7 @@ private:
         if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
         if (code < 0 && !nonfinite.empty()) throw lie::NonFinite(nonfinite);
         check(code, "IDASolve");
+        if (equations.form != RpForm::ggl && system.rows() > 0) watch_rank();
         if (internal.discrete_state.empty() && internal.internal_state.empty()) return;
         equations.read(t, map(y.get()), internal);
         const lie::State& now = updated_internal_state(internal);
@@ -301,6 +303,24 @@ private:
         if (now.discrete_state == internal.discrete_state) return;
         internal = now;
         to_restart = !equations.set_discrete_state(internal.discrete_state, t, map(y.get()), map(ydot.get()));
+    }
+
+    void watch_rank()
+    {
+        if (passed_singularity) return;
+        equations.read(t, map(y.get()), updated = internal);
+        if (!watched) watched = std::make_unique<lie::Saddle>(system);
+        double condition = 0;
+        try {
+            watched->assemble(updated);
+            condition = watched->reciprocal_condition();
+        } catch (const lie::SingularMatrix&) {
+        }
+        if (condition_at_start == 0) condition_at_start = condition;
+        const double ratio = condition / condition_at_start;
+        if (ratio < smallest_condition.ratio) smallest_condition = {ratio, t};
+        passed_singularity = smallest_condition.ratio < RankMonitor::nearly_dependent &&
+                             ratio > 10 * RankMonitor::nearly_dependent;
     }
 
     [[noreturn]] void fail_without_progress(long steps) const
@@ -399,6 +419,10 @@ private:
         internal;  // state at the end of the last internal step; updated only if there are discrete states
     bool to_restart = false;  // restart from `internal` after the nodes before it have been interpolated
     lie::State updated;
+    // For watch_rank(). A matrix of its own, because the pivots of K affect the last digits of a run.
+    std::unique_ptr<lie::Saddle> watched;
+    double condition_at_start = 0;
+    bool passed_singularity = false;
     lie::Statistics earlier;  // counts up to the last restart
     std::exception_ptr failure;
     std::string nonfinite;    // message of the last residual that was not finite, within check_interval steps
@@ -418,6 +442,11 @@ int IdaSolver::advance(lie::State& x, double t_end)
 }
 
 lie::Statistics IdaSolver::statistics() const { return ida ? ida->statistics() : lie::Statistics{}; }
+
+RankMonitor::Smallest IdaSolver::smallest_condition() const
+{
+    return ida ? ida->smallest_condition : RankMonitor::Smallest{};
+}
 
 lie::Trajectory ida(const lie::System& system, const lie::State& start, const std::vector<double>& instants,
                     double rtol, double atol)

@@ -6,6 +6,7 @@
 #include "lie/integrator.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "reference/solvers/rank_monitor.hpp"
 #include "reference/solvers/rp_equations.hpp"
 
 namespace hilda::reference {
@@ -29,7 +30,7 @@ namespace hilda::reference {
 /// lie::NumericalFailure "ida_failed" with the message of IDA if IDA fails; lie::NonFinite with the name of
 /// the equation if a residual is not finite; lie::Interrupted if settings.stop() returns true. Exceptions of
 /// the system are rethrown. After an exception x is unchanged.
-class IdaSolver final : public lie::Integrator {
+class IdaSolver final : public lie::Integrator, public RankMonitor {
 public:
     /// Uses rtol, atol and stop of the settings; atol = 0 means atol = rtol. Units of atol: m, m/s and 1/s
     /// for r, ṙ and ṗ. The system must outlive the solver.
@@ -45,6 +46,9 @@ public:
     const lie::System& system() const override { return mechanism; }
     /// Counts of IDA: internal steps, Newton iterations, factorisations of the Jacobian
     lie::Statistics statistics() const override;
+    /// Of the forms of index 1, which pass a configuration where the rows lose rank without an error, and may
+    /// leave it on another branch. The form RpForm::ggl does not converge there.
+    Smallest smallest_condition() const override;
 
 private:
     class Ida;

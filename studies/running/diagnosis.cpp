@@ -5,6 +5,7 @@
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/trajectory.hpp"
+#include "reference/solvers/rank_monitor.hpp"
 
 #include <fmt/format.h>
 
@@ -107,6 +108,18 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
                     fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
                                 limit, force->label());
     return d;
+}
+
+std::string rank_warning(const lie::Integrator& integrator)
+{
+    const auto* monitor = dynamic_cast<const reference::RankMonitor*>(&integrator);
+    if (monitor == nullptr) return {};
+    const auto smallest = monitor->smallest_condition();
+    if (smallest.ratio > reference::RankMonitor::nearly_dependent) return {};
+    return fmt::format(
+        "the constraints nearly lose rank at t = {:.4g} s: the reciprocal condition of the equations falls "
+        "to {:.0e} of that at the start; the motion after it may be on another branch",
+        smallest.t, smallest.ratio);
 }
 
 }  // namespace hilda::studies

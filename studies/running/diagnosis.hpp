@@ -14,8 +14,9 @@ class NumericalFailure;
 }
 
 namespace hilda::lie {
+class Integrator;
 struct State;
-}
+}  // namespace hilda::lie
 
 namespace hilda::studies {
 
@@ -31,5 +32,8 @@ struct Diagnosis {
 /// at the node and at the node shifted in time by h.
 Diagnosis diagnose(const io::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
                    long number, double h, const std::string& scheme);
+
+/// Warning of a run with adaptive steps whose constraints nearly lost rank; empty if they did not
+std::string rank_warning(const lie::Integrator& integrator);
 
 }  // namespace hilda::studies

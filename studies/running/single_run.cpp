@@ -110,6 +110,7 @@ RunResult SingleRun::execute()
     result.watch = watch.json();
     for (const Finding& found : watch.findings())
         if (found.name != result.status) add_warning(found.text);
+    if (const std::string rank = rank_warning(*integrator); !rank.empty()) add_warning(rank);
     if (refined) result.error = refined->estimate(result.events.size());
     finish(recorder);
     return std::move(result);

@@ -56,3 +56,45 @@ TEST_CASE("an adaptive integrator rejects --step, --checkpoint and --resume", "[
         CHECK_THAT(call(in, {"integrators"}).out, Contains("adaptive"));
     }
 }
+
+namespace {
+
+/// A parallelogram of three bars of 1 m and 1 kg. It lies flat, with a further degree of freedom, at about 0.711 s,
+/// 1.218 s.
+const char* const parallelogram = R"({"hilda_model": 1, "name": "m", "end": 1.3, "gravity": [0, -9.81, 0],
+ "bodies": [
+  {"name": "a", "mass": 1, "inertia": [0.08, 0.001, 0.08], "r": [0, 0.5, 0], "r_dot": [0.5, 0, 0], "omega": [0, 0, -1]},
+  {"name": "b", "mass": 1, "inertia": [0.08, 0.001, 0.08], "r": [1, 0.5, 0], "r_dot": [0.5, 0, 0], "omega": [0, 0, -1]},
+  {"name": "bar", "mass": 1, "inertia": [0.001, 0.08, 0.08], "r": [0.5, 1, 0], "r_dot": [1, 0, 0]}],
+ "constraints": [
+  {"name": "A", "type": "revolute", "body_i": "ground", "body_j": "a", "s_bar_q_j": [0, -0.5, 0], "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]},
+  {"name": "B", "type": "revolute", "body_i": "ground", "body_j": "b", "s_bar_p_i": [1, 0, 0], "s_bar_q_j": [0, -0.5, 0], "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]},
+  {"name": "C", "type": "revolute", "body_i": "a", "body_j": "bar", "s_bar_p_i": [0, 0.5, 0], "s_bar_q_j": [-0.5, 0, 0], "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]},
+  {"name": "D", "type": "revolute", "body_i": "b", "body_j": "bar", "s_bar_p_i": [0, 0.5, 0], "s_bar_q_j": [0.5, 0, 0], "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]}]})";
+
+}  // namespace
+
+TEST_CASE("an adaptive run that passes a configuration of lower rank warns once", "[studies][run]")
+{
+    const Scratch in;
+    write(in / "m.json", parallelogram);
+    const auto warnings = [&](const std::string& model, const std::vector<std::string>& more) {
+        const Ended ended = call(in, with({"run", model, "--force", "--output", "a"}, more));
+        CAPTURE(ended.err);
+        CHECK(ended.code == 0);
+        std::string found;
+        for (const auto& w : nlohmann::json::parse(read(in / "a/summary.json"))["warnings"])
+            if (const std::string text = w; text.find("lose rank") != text.npos) found += text + '\n';
+        return found;
+    };
+    for (const char* scheme : {"ida-rp-index1", "ida-rp-baumgarte"}) {
+        CAPTURE(scheme);
+        const std::string flat = warnings("m.json", {"--integrator", scheme});
+        CHECK(std::count(flat.begin(), flat.end(), '\n') == 1);
+        CHECK_THAT(flat, Contains("the constraints nearly lose rank at t = 0.7") ||
+                             Contains("the constraints nearly lose rank at t = 1.2"));
+        CHECK(warnings("m.json", {"--integrator", scheme, "--end", "0.6"}).empty());
+        CHECK(warnings("slider_crank", {"--integrator", scheme, "--end", "1"}).empty());
+        CHECK(warnings("double_pendulum", {"--integrator", scheme, "--end", "1"}).empty());
+    }
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/diagnosis.hpp"
 
+#include "dae/constraints/dp1.hpp"
 #include "dae/model.hpp"
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
@@ -59,6 +60,31 @@ lie::LoadEvaluation loads_of(const std::string& name)
     return lie::LoadEvaluation::at_step;
 }
 
+/// A DP1 driver whose vectors become parallel, or whose value leaves its range, between the times t and t +
+/// h; empty if there is none. Drivers with a complement pass such a point.
+std::string singular_driver(const dae::Model& model, double t, double h)
+{
+    constexpr double nearly_parallel = 1 - 1e-4;  // of |f|/(|a_i| |a_j|)
+    for (const int k : model.active_rows()) {
+        const dae::Model::Row& row = model.all_rows()[k];
+        const auto* driver = dynamic_cast<const dae::DP1*>(row.block.get());
+        if (driver == nullptr || row.complement) continue;
+        double largest = 0, at = t;
+        for (const double instant : {t, t + h / 2, t + h})
+            if (const double value = driver->alignment(instant); value > largest)
+                largest = value, at = instant;
+        if (!(largest > nearly_parallel)) continue;
+        const std::string where =
+            fmt::format("{}: |f| is {:.9g} of |a_i||a_j| at t = {:.9g} s", model.name_of(row), largest, at);
+        return where +
+               (largest > 1
+                    ? ", and must not exceed it"
+                    : ": the two vectors become parallel, where a DP1 driver loses its rank; prescribe "
+                      "the angle with a hinge-driver, or write f as cos(g(t)) or sin(g(t))");
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string step_text(double h)
@@ -92,6 +118,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
             d.detail = "not finite: " + culprit;
             return d;
         }
+    if (d.detail = singular_driver(model, node.t, h); !d.detail.empty()) return d;
     if (model.rows() == 0 && model.all_rows().empty()) return d;
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
     const lie::LoadEvaluation loads = loads_of(scheme);

@@ -172,6 +172,28 @@ TEST_CASE("a Newton iteration that does not converge is reported with its step a
     CHECK(lines(in / "a/trajectory.csv").size() == 2);
 }
 
+TEST_CASE("a DP1 driver whose vectors become parallel is named as the cause of the failed step",
+          "[studies][run]")
+{
+    const Scratch in;
+    // f reaches 1 at t = 1 s and turns back: the angle acos(f) = 2 asin((1 - t)/2) passes through zero.
+    write(in / "m.json", R"({"hilda_model": 1, "name": "turn", "end": 2, "bodies": [
+  {"name": "bar", "mass": 2, "inertia": [0.2, 0.001, 0.2], "r": [0, 0.25, 0.43301270189221935], "axis_angle": [1, 0, 0, 1.0471975511965976]}],
+ "constraints": [{"name": "pivot", "type": "revolute", "body_i": "ground", "body_j": "bar",
+   "s_bar_q_j": [0, -0.5, 0], "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]},
+  {"name": "drive", "type": "DP1", "body_i": "ground", "body_j": "bar", "a_bar_i": [0, 1, 0], "a_bar_j": [0, 1, 0], "f": "1-(1-t)^2/2"}]})");
+    for (const char* scheme : {"rA-half-1", "rA-half-1-momentum", "rA-rattle", "rA-rkmk-4", "rA-genalpha",
+                               "rp-bdf2", "ida-rp", "ida-rp-index1"}) {
+        const Ended ended =
+            call(in, {"run", "m.json", "--fix-initial", "--integrator", scheme, "--output", "a", "--force"});
+        CAPTURE(scheme, ended.err);
+        CHECK(ended.code == 4);
+        CHECK_THAT(ended.err, Contains("  constraint 'drive' row 1; bodies 'ground', 'bar': |f| is ") &&
+                                  Contains(" of |a_i||a_j| at t = ") &&
+                                  Contains("prescribe the angle with a hinge-driver"));
+    }
+}
+
 TEST_CASE("a violated dropped row ends the run", "[studies][run]")
 {
     const Scratch in;

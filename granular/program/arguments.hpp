@@ -19,7 +19,7 @@ struct Options {
     std::string case_only_option;  ///< the first given option that is valid for cases only; empty if none
     bool full = false;             ///< full grid of a validation
     bool quiet = false, verbose = false, json = false, force = false, resume = false;
-    bool strict = false;  ///< a warning of the watch ends the run
+    bool strict = false;       ///< a warning of the watch ends the run
     bool allow_paths = false;  ///< the case may name files that are not below its folder
 };
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/body.hpp"
-#include "lie/bounded_rows.hpp"
+#include "lie/bounded_pair.hpp"
 #include "lie/rows.hpp"
 
 #include <optional>

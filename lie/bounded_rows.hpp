@@ -3,38 +3,17 @@
 
 #pragma once
 
-#include "lie/so3.hpp"
+#include "lie/bounded_pair.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace hilda::lie {
 
+class CoupledBounds;
 class Saddle;
 struct State;
 class System;
-
-/// A pair of regularised friction rows: the nonholonomic rows first and first + 1.
-///
-/// The two multipliers λ [N] model a spring and a dashpot at the end of the step h:
-///
-///     p λ = K (S + h C v) + D C v,     v = (ṙ, ω̄) at the end of the step,  C the two rows of (Φ_r, Π̄)
-///     |λ| ≤ μ N,                       N = max(0, n · (λ_normal_row, λ_normal_row+1, λ_normal_row+2))
-///
-/// p = 1 if the spring and dashpot do not exceed the bound. Otherwise p > 1 scales the compliance such that
-/// |λ| = μ N. λ is then parallel to the force of spring and dashpot for the velocity at the end of the step.
-struct BoundedPair {
-    // constant
-    int first = 0, normal_row = 0;
-    bool solved_first = false;  ///< p is determined before that of the pairs without this flag
-
-    // of a state, see System::update_pairs()
-    double K = 0, D = 0, mu = 0;                  ///< [N/m] (0: the pair is inactive), [N s/m], [1]
-    Eigen::Vector2d S = Eigen::Vector2d::Zero();  ///< elastic displacement at t_n [m]
-    Vec3 n = Vec3::Zero();                        ///< contact normal, global frame
-
-    /// 1/(D + h K), the ratio of C v to λ for S = 0 and p = 1 [m/(N s)]; 0 for an inactive pair
-    double mobility(double h) const { return K > 0 ? 1 / (D + h * K) : 0; }
-};
 
 /// The pairs of a step from t_n, and the search for the compliance scale p ≥ 1 of each pair. A step owns one
 /// such object.
@@ -65,12 +44,16 @@ struct BoundedPair {
 /// This holds for any inertia. The alternative is to scale λ(1) back to the bound (radial return). The
 /// result would keep the direction of λ(1), which differs if the effective mass depends on the direction.
 ///
-/// A bound below 1e-9 |λ(1)|, such as zero, is replaced by this value, so that f has a root. The caller
-/// limits the number of solutions.
+/// A bound below 1e-9 |λ(1)|, such as zero, is replaced by this value, so that f has a root.
+///
+/// This search changes the p of each pair by itself. If it has not ended after `patience` solutions, as for
+/// several bodies in contact with each other, the p of all pairs are computed together (CoupledBounds). The
+/// caller limits the number of solutions.
 class BoundedRows {
 public:
     /// The system must outlive the object.
     explicit BoundedRows(const System& system);
+    ~BoundedRows();
 
     /// Evaluates the pairs in the state x, for a step h from it. All pairs stick: p = 1.
     void start(const State& x, double h);
@@ -86,7 +69,30 @@ public:
     /// their bounds.
     ///
     /// z: solution of the step with the present K. Its multipliers may be scaled by a common positive factor.
-    bool within_bounds(Saddle& K, Eigen::VectorXd& z);
+    ///
+    /// Throws NumericalFailure if the forces and the normal forces that bound them cannot be made consistent:
+    /// "friction_has_no_solution" if a pair has μ ∂N/∂|λ| ≥ 1, so that Coulomb's law may have no solution, and
+    /// "friction_not_converged" otherwise.
+    ///
+    /// resolution: error of the multipliers in z to which the caller solves. A smaller error of a bound is ignored
+    /// after `patience` solutions.
+    bool within_bounds(Saddle& K, Eigen::VectorXd& z, double resolution = 0);
+    /// At a start: releases the pairs for which Coulomb's law has no solution, and returns whether there are any. The
+    /// caller then solves again.
+    ///
+    /// `slip` holds C v of the regularised rows. The start opposes it by γ = -C v/τ, so that a pair sticks within
+    /// `decay_time` τ [s] if its bound permits. If the normal force grows faster than the friction force that it
+    /// bounds, μ ∂N/∂|λ| ≥ 1, a sliding pair sticks with an acceleration C v/τ, which is no force of Coulomb's law
+    /// but an impulse (Painlevé). Such a pair starts without friction; the first step brings it to rest. K is
+    /// factored with the present compliances, and z is the solution.
+    bool release_impossible(Saddle& K, Eigen::VectorXd& z, const Eigen::VectorXd& slip, double decay_time);
+    /// At a start: lets all pairs slip without friction whose slip exceeds `most` [m/s], and begins the search again.
+    /// Returns false if there are none.
+    bool release_slipping(Saddle& K, const Eigen::VectorXd& slip, double most);
+    /// Number of solutions after which within_bounds() computes the p of all pairs together
+    static constexpr int patience = 30;
+    /// Throws the failure of within_bounds() for the largest excess of |λ| over its bound in z.
+    [[noreturn]] void fail(Saddle& K, Eigen::VectorXd& z);
 
 private:
     struct Search {
@@ -99,11 +105,16 @@ private:
     /// converged.
     static double next_scale(Search& s, double bound, double length);
     void set_compliance(size_t n);
+    void release(size_t n);
+    bool change_each(Saddle& K, Eigen::VectorXd& z);
+    bool change_all(Saddle& K, Eigen::VectorXd& z, double resolution);
 
     const System& system;
     std::vector<BoundedPair> pair;
     std::vector<Search> search;
-    std::vector<double> compliances;
+    std::vector<double> compliances, scales, floors;
+    std::unique_ptr<CoupledBounds> coupled;
+    int solved = 0;  ///< solutions of this step
     double h = 0;
 };
 

@@ -27,13 +27,13 @@ int HalfImplicitStep::step(State& x, double h)
     int corrections = 0;
     for (int solved = 0; solved <= most_solved; ++solved) {
         corrections += solve(x);
-        if (friction.within_bounds(K, z)) {
+        if (friction.within_bounds(K, z, w * settings.tolerance)) {
             accept(x, h);
             return done(attempt, corrections);
         }
         if (refreshed) C_n.regularise(friction.compliance());
     }
-    no_convergence(name, correction, x);
+    friction.fail(K, z);
 }
 
 void HalfImplicitStep::choose_pivots(const State& x, double h)

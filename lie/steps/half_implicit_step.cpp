@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/steps/half_implicit_step.hpp"
 
+#include "lie/check.hpp"
 #include "lie/system.hpp"
 
 #include <cmath>
@@ -10,7 +11,8 @@ namespace hilda::lie {
 
 HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
                                    double q)
-    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()), friction(model)
+    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()), friction(model),
+      Phi(model.rows())
 {}
 
 int HalfImplicitStep::step(State& x, double h)
@@ -77,6 +79,20 @@ void HalfImplicitStep::correct(int k, const State& x)
 /// Newton's method from the present z. Returns the number of corrections.
 int HalfImplicitStep::solve(State& x)
 {
+    if (K.algebraic_part(z).size() == 0) return newton(x);
+    z_start = z;
+    try {
+        return newton(x);
+    } catch (const NumericalFailure&) {
+        z = z_start;
+        const int corrections = newton_with_contact_points(x);
+        if (corrections == 0) throw;
+        return settings.max_iterations + corrections;
+    }
+}
+
+int HalfImplicitStep::newton(State& x)
+{
     for (int k = 1; k <= settings.max_iterations; ++k) {
         place(x);
         place_algebraic(x, 1 / q);
@@ -85,6 +101,59 @@ int HalfImplicitStep::solve(State& x)
         if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
     }
     no_convergence(name, correction, x);
+}
+
+/// Newton's method with K of t_n in which the algebraic variables follow from the poses after each correction. They
+/// need no initial guess then: contact points that move far over a body in a step, as those of a ball that rolls
+/// by half a radian, are found. A correction that increases |Φ| is halved.
+///
+/// Returns 0 if the iteration fails. It also fails if it converges slowly: the force acts along the normal of
+/// t_n, and the normal turns too far in the step then, as where a contact point jumps across a flat face, and the solution would gain energy.
+int HalfImplicitStep::newton_with_contact_points(State& x)
+try {
+    place(x);
+    place_algebraic(x, 1 / q);
+    if (!find_contact_points(x)) return 0;
+    if (refreshed) {
+        refreshed = false;
+        K.assemble(x_n, friction.compliance());
+    }
+    for (int k = 1; k <= settings.max_iterations; ++k) {
+        model.phi(x, Phi);
+        const double before = Phi.norm();
+        z_before = z;
+        correct(1, x);
+        double fraction = 1;
+        for (int half = 0;; ++half, fraction *= 0.5) {
+            if (half > max_halvings) return 0;
+            z = z_before + fraction * e;
+            place(x);
+            place_algebraic(x, 1 / q);
+            if (!find_contact_points(x)) continue;
+            model.phi(x, Phi);
+            if (k == 1 || Phi.norm() < before || fraction * length() < settings.tolerance) break;
+        }
+        e *= fraction;
+        K.algebraic_part(e) = K.algebraic_part(z) - K.algebraic_part(z_before);
+        const double last = correction;
+        if (converged(k, length(), K.constraint_part(e), 1 / w) && fraction == 1) return k;
+        if (k == 3 && correction > slow * last) return 0;
+    }
+    return 0;
+} catch (const NumericalFailure&) {
+    return 0;
+}
+
+/// Computes the algebraic variables of x from its poses, and sets their part of z. Returns false if there are none.
+bool HalfImplicitStep::find_contact_points(State& x)
+{
+    try {
+        model.update_alpha(x);
+    } catch (const NumericalFailure&) {
+        return false;
+    }
+    take_algebraic(x, q);
+    return true;
 }
 
 void HalfImplicitStep::set_known_part(double h)

@@ -55,6 +55,9 @@ protected:
 
 private:
     int solve(State& x);
+    int newton(State& x);
+    int newton_with_contact_points(State& x);
+    bool find_contact_points(State& x);
     void set_known_part(double h);
     void set_nonholonomic_part(double h);
     void predict(double h);
@@ -65,8 +68,11 @@ private:
     static constexpr int patience = 10;     ///< corrections with K of t_n before it is refreshed
     static constexpr int most_solved = 50;  ///< solutions of the step in the search for the compliance scales
     bool refreshed = false;  ///< whether K is that of an iterate; the rows of t_n are then in C_n
+    static constexpr int max_halvings = 6;  ///< of a correction
+    static constexpr double slow = 0.01;    ///< ratio of two corrections with contact points from the poses
     Rows C_n;
     BoundedRows friction;
+    Eigen::VectorXd z_start, z_before, Phi;
 };
 
 }  // namespace hilda::lie

@@ -60,6 +60,16 @@ void NewtonStep::place_algebraic(State& x, double factor) const
     move_algebraic(C, x, z.tail(C.algebraic_variables()), factor);
 }
 
+void NewtonStep::take_algebraic(const State& x, double factor)
+{
+    Eigen::Index at = z.size() - algebraic_part(z).size();
+    for (const Rows::AlgebraicGroup& group : model.pattern().algebraic) {
+        z.segment(at, group.count) = factor * (x.alpha.segment(group.first_alpha, group.count) -
+                                               x_n.alpha.segment(group.first_alpha, group.count));
+        at += group.count;
+    }
+}
+
 void NewtonStep::set_motion_residual(const State& x, Rows& C)
 {
     model.loads(x, loads);

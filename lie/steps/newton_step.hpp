@@ -47,6 +47,8 @@ protected:
     void place_increments(State& x) const;
     /// x.alpha = α_n + factor · (algebraic part of z)
     void place_algebraic(State& x, double factor) const;
+    /// algebraic part of z = factor · (x.alpha - α_n)
+    void take_algebraic(const State& x, double factor);
     /// The residual of the equations of motion in the state x: M r̈ + Φ_rᵀ λ - F, J̄ ω̄̇ + Π̄ᵀ λ - τ̄ and Φ_αᵀ λ in
     /// the components of e for the bodies and the algebraic variables. Sets `loads`, and the rows C, in x.
     void set_motion_residual(const State& x, Rows& C);

@@ -440,7 +440,7 @@ TEST_CASE("a contact that separates or approaches at the start starts inactive",
 
 TEST_CASE("a step with unilateral contacts that fails does not change the state", "[contact][unilateral]")
 {
-    // two iterations cannot reach the tolerance, so the step fails
+    // one iteration cannot reach the tolerance, so the step fails
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     dae::Model model;
     model.add({"ball", 1, 0.1 * Mat3::Identity()});
@@ -453,7 +453,7 @@ TEST_CASE("a step with unilateral contacts that fails does not change the state"
     x.body[0].r = Vec3(0, 1.3203946979732251, -1.2654225449401855);
     dae::start(model, x);
     contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"),
-                                 {.tolerance = 1e-300, .max_iterations = 2});
+                                 {.tolerance = 1e-300, .max_iterations = 1});
     const State before = x;
     CHECK_THROWS_AS(step.step(x, 1e-2), lie::NumericalFailure);
     CHECK(x.body[0].r == before.body[0].r);

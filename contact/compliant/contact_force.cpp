@@ -27,7 +27,11 @@ ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& h
                               : contact.evaluate(bi, bj, history);
 }
 
-int ContactForce::internal_states() const { return TrackedForce::internal_states() + reals<NodePoint>(); }
+int ContactForce::internal_states() const
+{
+    return TrackedForce::internal_states() + reals<NodePoint>() +
+           (contact.other_points ? reals<OtherPoints::Pose>() : 0);
+}
 
 void ContactForce::save(const Instant& now, lie::State& x) const
 {
@@ -40,6 +44,16 @@ void ContactForce::save(const Instant& now, lie::State& x) const
                             .A_j = bj.A,
                             .contact_point = now.contact_state.contact_point},
                   x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
+    if (!contact.other_points || !(now.contact_state.N > 0)) return;
+    double* saved =
+        x.internal_state.data() + first_internal_state + TrackedForce::internal_states() + reals<NodePoint>();
+    auto last = restored<OtherPoints::Pose>(saved);
+    try {
+        contact.other_points->check(name, bi, bj, now.contact_state.contact_point, last);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e, x);
+    }
+    contact::save(last, saved);
 }
 
 bool ContactForce::is_active(const lie::State& x) const

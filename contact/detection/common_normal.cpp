@@ -188,6 +188,36 @@ ContactPoint CommonNormal::detect(const Motion& bi, const Motion& bj, const Prev
     throw lie::NumericalFailure("contact_not_converged", what.str());
 }
 
+bool CommonNormal::is_nearest(const Pair& p) const
+{
+    const LocalGeometry at_i(*i.surface, p.i, p.a_i), at_j(*j.surface, p.j, p.a_j);
+    ContactPoint at;
+    at.n = at_j.n;
+    at.gap = at.n.dot(at_i.x - at_j.x);
+    at.K_i = at_i.shape_operator(), at.K_j = at_j.shape_operator();
+    return positive_definite(relative_curvature(at));
+}
+
+std::optional<ContactPoint> CommonNormal::find_overlap_besides(const ContactPoint& known, const Motion& bi,
+                                                               const Motion& bj, double least) const
+{
+    constexpr double same_point = 1e-3;  // relative to the smaller size
+    const Vec3 origin = bj.r + bj.A * j.position;
+    std::optional<ContactPoint> deepest;
+    for (int start = 0; start < 9; ++start) {
+        const auto sign = [&](int bit) { return (start & bit) != 0 ? -1 : 1; };
+        const Vec3 corner = start == 8 ? Vec3(0, 0, 0) : Vec3(sign(1) * 0.48, sign(2) * 0.6, sign(4) * 0.64);
+        Pair p = placed(bi, bj);
+        if (!set_start_points(p, 2, corner)) continue;
+        const SearchResult end = solve(p, origin);
+        if (end.failure != nullptr || is_false_overlap(p, end.contact_point.gap)) continue;
+        const ContactPoint& at = end.contact_point;
+        if (!(at.gap < -least) || (at.C() - known.C()).norm() < same_point * smaller_size) continue;
+        if (!deepest || at.gap < deepest->gap) deepest = at;
+    }
+    return deepest;
+}
+
 /// The message of the first projection if it fails
 std::string CommonNormal::start_failure(const Motion& bi, const Motion& bj) const
 {

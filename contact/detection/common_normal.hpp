@@ -5,6 +5,8 @@
 
 #include "contact/detection/detectors.hpp"
 
+#include <optional>
+
 namespace hilda::contact {
 
 /// Finds points x_i and x_j on the two surfaces with the common normal n = n_j = -n_i:
@@ -47,6 +49,14 @@ public:
     /// a point by more than twice the larger size. Returns the larger displacement of the two points [m]; it
     /// is not finite if the equations are singular.
     double newton_step(Pair& p) const;
+
+    /// Whether the relative curvature at converged points p is positive definite
+    bool is_nearest(const Pair& p) const;
+
+    /// The point with the largest overlap, at least `least` [m], of those that are not `known`; empty if there is
+    /// none. Searches from nine starting points.
+    std::optional<ContactPoint> find_overlap_besides(const ContactPoint& known, const Motion& bi,
+                                                     const Motion& bj, double least) const;
 
     /// If one surface is convex and the other concave, compares their widths along the axes of both frames.
     /// Returns a message if the convex body is wider than the concave surface, otherwise an empty text.

@@ -106,6 +106,8 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
       friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
       common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j))
 {
+    if (OtherPoints::possible(shape_i, shape_j))
+        other_points = std::make_unique<const OtherPoints>(shape_i, shape_j);
     if (is_regularised()) law.validate();
     if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
         lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",
@@ -301,6 +303,9 @@ void EvolvingContact::update_alpha(const Arguments& x, bool global_search, doubl
             if (!std::isfinite(correction)) break;
             found = correction < 1e-12 * L;
         }
+        // Points of a saddle or a maximum of the distance, such as those across the hole of a torus, satisfy the
+        // same equations.
+        if (found && other_points && x.mode == inactive) found = common_normal.is_nearest(p);
         a_i = shape_i.to_body(p.a_i), a_j = shape_j.to_body(p.a_j);
     }
     if (!found) {
@@ -345,6 +350,11 @@ int EvolvingContact::update_internal_state(const Arguments& x, bool start, doubl
     }
     if (is_regularised()) update_friction(x, start, state);
     save(state, internal_state);
+    if (other_points) {
+        auto last = restored<OtherPoints::Pose>(internal_state + reals<NodeState>());
+        other_points->check(name, x.bi, x.bj, at, last);
+        save(last, internal_state + reals<NodeState>());
+    }
     return x.mode;
 }
 

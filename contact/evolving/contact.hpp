@@ -6,6 +6,7 @@
 
 #include "contact/detection/common_normal.hpp"
 #include "contact/detection/detector.hpp"
+#include "contact/detection/other_points.hpp"
 #include "contact/evolving/implicit_friction.hpp"
 #include "contact/internal_state.hpp"
 #include "contact/shape.hpp"
@@ -48,6 +49,9 @@ struct Unilateral {
 ///
 /// with the normal force F_N, positive in compression. The force on body i is -λ_Ψ. λ_N = 0 holds because n̄
 /// is parallel to ∇G.
+///
+/// A pair that may have several contact points is watched by OtherPoints in all modes but fallback_active. Its
+/// failure "contact_not_unique" ends the run also with a fallback, which has the force of one point as well.
 ///
 /// For an active contact update_internal_state() throws lie::NumericalFailure: "contact_lost" if
 /// n_i · n_j ≥ -½, and "contact_singular" if the smaller eigenvalue of K_i + K_j in the tangent plane, times
@@ -98,7 +102,10 @@ public:
         } sliding, rolling;
     };
     static_assert(reals<NodeState>() == 6 + 2 + 2 * 3, "NodeState must not have padding");
-    int internal_states() const override { return reals<NodeState>(); }
+    int internal_states() const override
+    {
+        return reals<NodeState>() + (other_points ? reals<OtherPoints::Pose>() : 0);
+    }
 
     /// Modes of the contact. `active` and `inactive` alternate in a unilateral contact.
     enum Mode {
@@ -176,6 +183,7 @@ private:
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;
+    std::unique_ptr<const OtherPoints> other_points;  ///< nullptr for a pair with one contact point
 };
 
 }  // namespace hilda::contact

@@ -68,6 +68,8 @@ Inertia TrackedForce::inertia(const dae::Model& model, int b)
     return {.m = model.mass().m[b], .J_bar = model.mass().J_bar[b]};
 }
 
+const FrictionModel& TrackedForce::law() const { return *pair().friction; }
+
 int TrackedForce::internal_states() const { return reals<SavedValues>(); }
 
 ContactHistory TrackedForce::saved_history(const lie::State& x) const

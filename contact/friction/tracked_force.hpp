@@ -56,6 +56,8 @@ public:
     /// fallback; nullptr if there is none
     virtual const dae::Constraint* normal_constraint() const { return nullptr; }
 
+    const FrictionModel& law() const;  ///< the friction law
+
     const int i, j;
 
 protected:

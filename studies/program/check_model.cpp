@@ -2,6 +2,7 @@
 #include "studies/program/check_model.hpp"
 
 #include "contact/compliant/contact_force.hpp"
+#include "contact/soft_friction.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
@@ -254,6 +255,7 @@ int check_model(const CheckOptions& options)
     dae::Description d = named_model(options.model, options.set, options.normal_rows);
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
+    for (std::string& w : contact::soft_friction_warnings(*d.model, d.x)) d.warnings.push_back(std::move(w));
     if (!options.write.empty()) write_projected(d, options.model, options.write);
     const dae::Model& model = *d.model;
     const Recommendation recommended = recommended_integrator(model, d.x, start.degrees_of_freedom);

@@ -2,6 +2,7 @@
 #include "studies/running/single_run.hpp"
 
 #include "contact/evolving/unilateral.hpp"
+#include "contact/soft_friction.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -132,6 +133,8 @@ void SingleRun::read()
     if (options.interval && *options.interval > 0 && spacing > *options.interval * (1 + 1e-9))
         warn(fmt::format("--interval {} is not a multiple of the step: rows are {:.12g} s apart",
                          *options.interval, spacing));
+    for (std::string& w : contact::soft_friction_warnings(*description.model, description.x))
+        description.warnings.push_back(std::move(w));
     for (const std::string& w : description.warnings) warn(w);
     for (const std::string& row : result.start.dropped)
         warn(row + ": redundant with the constraints before it, dropped from the equations");

@@ -53,6 +53,8 @@ public:
         return 0.5 * (a + b);
     }
 
+    const FrictionParameters p;
+
 protected:
     explicit SlidingFriction(const FrictionParameters& p) : p(p) { p.validate(); }
 
@@ -78,8 +80,6 @@ protected:
     {
         return p.D_slide.value_or(2 * p.zeta * std::sqrt(now.m * p.K_E));
     }
-
-    const FrictionParameters p;
 };
 
 }  // namespace hilda::contact

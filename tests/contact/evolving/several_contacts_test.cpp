@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit friction where contacts act on each other, and where Coulomb's law has no solution.
 #include "contact/evolving/unilateral.hpp"
+#include "contact/soft_friction.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "dae/start.hpp"
@@ -167,4 +168,32 @@ TEST_CASE("a bilateral contact under tension has no implicit friction", "[contac
     const auto& c = dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
     CHECK(c.multipliers(model.arguments(c, end), end.lambda).F_N == Approx(-g));
     CHECK(end.body[0].rdot.x() == Approx(2).epsilon(1e-5));
+}
+
+TEST_CASE("the softness of a friction spring is named for a sliding contact that spins",
+          "[contact][friction]")
+{
+    CHECK(softness(-150, 0.06, 200, 0.5) == Approx(150 * 0.06 / 200 / 0.5));
+    CHECK(softness(150, 0.06, 200, 0) == 0);
+    // the start of a tippe top that turns over in 0.6 s with the soft spring, and after 3.5 s with stiffer ones
+    constexpr double m = 0.006, R = 0.015;
+    for (const double K_E : {200., 2e3}) {
+        dae::Model model;
+        model.add({.name = "top", .m = m, .J_bar = 0.4 * m * R * R * Mat3::Identity()});
+        model.constrain("top-table", std::make_unique<EvolvingContact>(
+                                         0, Shape{.surface = std::make_shared<Sphere>(R)}, dae::ground,
+                                         Shape{.surface = std::make_shared<Plane>()},
+                                         ImplicitFriction{.mu_s = 0.3, .mu_k = 0.3, .K_E = K_E}));
+        State x;
+        x.body.resize(1);
+        x.body[0].r.z() = R;
+        x.body[0].rdot.x() = 0.045;
+        x.body[0].omega_bar.z() = 150;
+        dae::start(model, x);
+        const std::vector<std::string> found = soft_friction_warnings(model, x);
+        REQUIRE(found.size() == (K_E < 1e3 ? 1 : 0));
+        if (!found.empty())
+            CHECK(found[0].find(
+                      "contact 'top-table': the friction spring is too soft for a spin of 150 rad/s") == 0);
+    }
 }

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/soft_friction.hpp"
+
+#include "contact/evolving/contact.hpp"
+#include "contact/friction/laws/spring.hpp"
+#include "contact/friction/tracked_force.hpp"
+#include "dae/model.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace hilda::contact {
+
+namespace {
+
+constexpr double largest_softness = 0.05;  // [rad]
+constexpr double smallest_slip = 1e-6;     // [m/s]; a slower contact sticks
+
+/// The warning, or an empty text if the spring is stiff enough
+std::string warning(const std::string& name, const ContactPoint& at, const Motion& bi, const Motion& bj,
+                    double bound, double K_E)
+{
+    const Vec3 C = at.C(), v = dae::velocity_at(bi, C - bi.r) - dae::velocity_at(bj, C - bj.r);
+    const double slip = (v - at.n * at.n.dot(v)).norm(),
+                 omega_n = at.n.dot(bi.A * bi.omega_bar - bj.A * bj.omega_bar),
+                 soft = softness(omega_n, bound, K_E, slip);
+    if (!(soft > largest_softness)) return {};
+    std::ostringstream what;
+    what.precision(3);
+    what << "contact '" << name << "': the friction spring is too soft for a spin of " << std::abs(omega_n)
+         << " rad/s: its deflection mu N/K_E = " << bound / K_E << " m turns with "
+         << std::abs(omega_n) * bound / K_E << " m/s, " << soft
+         << " of the slip velocity; K_E should be above " << K_E * soft / largest_softness << " N/m";
+    return what.str();
+}
+
+}  // namespace
+
+double softness(double omega_n, double bound, double K_E, double slip)
+{
+    return slip > smallest_slip ? std::abs(omega_n) * bound / (K_E * slip) : 0;
+}
+
+std::vector<std::string> soft_friction_warnings(const dae::Model& model, const lie::State& x)
+{
+    std::vector<std::string> all;
+    const auto add = [&](std::string what) {
+        if (!what.empty()) all.push_back(std::move(what));
+    };
+    for (const auto& force : model.forces()) {
+        const auto* f = dynamic_cast<const TrackedForce*>(force.get());
+        if (f == nullptr || !f->is_active(x)) continue;
+        const auto* law = dynamic_cast<const SlidingFriction*>(&f->law());
+        const ContactState now = f->at(x).contact_state;
+        if (law == nullptr || !(now.N > 0)) continue;
+        add(warning(f->name, now.contact_point, dae::motion(x, f->i), dae::motion(x, f->j),
+                    law->p.mu_k * now.N, law->springs(now).K_slide));
+    }
+    for (const auto& constraint : model.general_constraints()) {
+        const auto* c = dynamic_cast<const EvolvingContact*>(constraint.get());
+        if (c == nullptr || !c->is_regularised() || dae::Model::inactive(*c, x)) continue;
+        const auto at = model.arguments(*c, x);
+        add(warning(c->name, c->contact_point(at), at.bi, at.bj,
+                    c->law.mu_k * std::max(0., c->multipliers(at, x.lambda).F_N), c->law.K_E));
+    }
+    return all;
+}
+
+}  // namespace hilda::contact

@@ -172,6 +172,30 @@ TEST_CASE("couplings count revolutions in both directions", "[dae][constraints]"
     }
 }
 
+TEST_CASE("a point on a curve follows it over several turns from node to node", "[dae][constraints]")
+{
+    // A flat helix: the point of the next turn is nearer than half a turn along the curve.
+    const double pitch = 0.05;
+    const auto coordinate = [](const char* text) { return io::Expression(text, {"s"}); };
+    const PointOnCurve constraint(
+        0, O, 1, {coordinate("cos(s)"), coordinate("sin(s)"), coordinate("0.05*s/(2*pi)")}, 0);
+    Motion bead, wire;
+    double saved[4] = {};
+    constexpr int steps_of_turn = 40;
+    for (int n = 0; n <= 5 * steps_of_turn; ++n) {
+        const double s = 2 * pi * n / steps_of_turn;
+        bead.r = {std::cos(s), std::sin(s), pitch * n / steps_of_turn};
+        const Constraint::Arguments at{.bi = bead, .bj = wire, .internal_state = saved};
+        if (n > 0) {
+            double Phi[2];
+            constraint.phi(at, Phi);
+            CHECK(std::hypot(Phi[0], Phi[1]) < 1e-12);
+        }
+        constraint.update_internal_state(at, n == 0, saved);
+        CHECK(saved[0] == Approx(s).margin(1e-12));
+    }
+}
+
 TEST_CASE("couplings reject axes, radii and positions that do not fit", "[dae][constraints]")
 {
     State x;

@@ -99,6 +99,41 @@ TEST_CASE("a ball bounces at the times of the closed form", "[contact][unilatera
         }
 }
 
+TEST_CASE("the impact of one body without friction is the same by Newton's and by Poisson's law",
+          "[contact][unilateral]")
+{
+    // The normal does not point to the centre of mass, and the body frame differs from the global one.
+    using Impact = Unilateral::Impact;
+    const auto after = [](Impact impact, size_t& events) {
+        dae::Model model;
+        const double m = 2;
+        model.add({"stone", m, m * Vec3(0.017, 0.0225, 0.0305).asDiagonal()});
+        const Shape stone{std::make_shared<contact::Ellipsoid>(Vec3(0.3, 0.25, 0.15))};
+        model.constrain("contact", std::make_unique<EvolvingContact>(
+                                       0, stone, dae::ground, plane, EvolvingContact::Friction::none,
+                                       EvolvingContact::NormalRows::tangent, Unilateral{true, 0.6, impact}));
+        State x;
+        x.body.resize(1);
+        x.body[0].r = {0, 0, 0.5}, x.body[0].A = lie::exp(Vec3(0.7, -0.4, 0.9));
+        x.body[0].omega_bar = {0.5, -1, 0.3};
+        dae::start(model, x);
+        contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-13});
+        const State end = lie::march(x, step, lie::TimeGrid::over(0.4, 1e-2)).row.back();
+        events = step.events().size();
+        return end;
+    };
+    size_t of_newton = 0, of_poisson = 0;
+    const lie::Motion a = after(Impact::newton, of_newton).body[0],
+                      b = after(Impact::poisson, of_poisson).body[0];
+    CHECK(of_newton >= 1);
+    CHECK(of_newton == of_poisson);
+    CHECK((a.omega_bar - Vec3(0.5, -1, 0.3)).norm() > 1);  // the impact turns the body
+    CHECK((a.rdot - b.rdot).norm() < 1e-9);
+    CHECK((a.omega_bar - b.omega_bar).norm() < 1e-9);
+    CHECK((a.r - b.r).norm() < 1e-9);
+    CHECK((a.A - b.A).norm() < 1e-9);
+}
+
 TEST_CASE("a ball leaves a sphere at the angle of the closed form with second order (long)",
           "[contact][unilateral]")
 {

@@ -215,10 +215,24 @@ void check_general_constraints(const Model& model, const State& x, const StartOp
     }
 }
 
+/// Throws lie::InvalidInput if the velocities of a body are so large that their squares overflow.
+void check_velocities(const Model& model, const State& x)
+{
+    for (int b = 0; b < model.bodies(); ++b) {
+        const lie::Motion& body = x.body[b];
+        const double twice_energy = model.mass().m[b] * body.rdot.squaredNorm() +
+                                    body.omega_bar.dot(model.mass().J_bar[b] * body.omega_bar);
+        if (!std::isfinite(twice_energy))
+            throw lie::InvalidInput("the initial velocity of body '" + model.body_name(b) +
+                                    "' is too large: its kinetic energy overflows");
+    }
+}
+
 }  // namespace
 
 StartReport start(Model& model, State& x, const StartOptions& options)
 {
+    check_velocities(model, x);
     model.prepare(x);
     StartReport report;
     report.rows = static_cast<int>(model.all_rows().size());

@@ -13,6 +13,30 @@
 
 namespace hilda::lie {
 
+namespace {
+
+/// Throws if the state of a body is not finite, or so large that its energy would overflow.
+void refuse_overflow(const System& system, const State& to)
+{
+    const Mass& mass = system.mass();
+    for (size_t b = 0; b < to.body.size(); ++b) {
+        const Motion& body = to.body[b];
+        const double squares = mass.m[b] * (body.r.squaredNorm() + body.rdot.squaredNorm()) +
+                               body.omega_bar.dot(mass.J_bar[b] * body.omega_bar);
+        if (std::isfinite(squares + body.A.sum() + body.rddot.sum() + body.omegadot_bar.sum())) continue;
+        const auto fault = [](const Vec3& x) { return !std::isfinite(x.squaredNorm()); };
+        const char* const what = fault(body.r)           ? "position"
+                                 : fault(body.rdot)      ? "velocity"
+                                 : fault(body.omega_bar) ? "angular velocity"
+                                 : !body.A.allFinite()   ? "orientation"
+                                                         : "acceleration or energy";
+        throw NonFinite(system.body_name(static_cast<int>(b)) + ": the " + what +
+                        " after the step is not finite or overflows");
+    }
+}
+
+}  // namespace
+
 TimeGrid TimeGrid::over(double t_end, double h, double dt)
 {
     if (!(h > 0) || !std::isfinite(h))
@@ -66,9 +90,7 @@ int March::try_step(State& to)
     to = x;
     const int k = integrator.step(to, h);
     to.t = t_0 + time(n + 1);
-    for (const Motion& body : to.body)
-        if (!std::isfinite(body.r.sum() + body.rdot.sum() + body.omega_bar.sum() + body.A.sum()))
-            throw NonFinite("the state after the step is not finite");
+    refuse_overflow(integrator.system(), to);
     if (!integrator.chooses_internal_steps()) refuse_half_turns(x, to);
     return k;
 }

@@ -37,6 +37,25 @@ std::string not_finite(const dae::Model& model, const lie::State& x)
     return {};
 }
 
+/// The largest load of a force in the state x, for a step that overflows although all loads are finite
+std::string largest_load(const dae::Model& model, const lie::State& x)
+{
+    std::string name;
+    double largest = 0;
+    for (const auto& force : model.forces()) {
+        lie::Loads loads(model.bodies());
+        force->add(x, loads);
+        for (int b = 0; b < model.bodies(); ++b)
+            for (const auto& [load, unit] : {std::pair{&loads.F[b], "N"}, {&loads.n_bar[b], "N m"}})
+                if (const double size = load->stableNorm(); size > largest) {
+                    largest = size;
+                    name = fmt::format("largest load: {} on body '{}', {:.3g} {}", force->label(),
+                                       model.body_name(b), size, unit);
+                }
+    }
+    return name;
+}
+
 /// Estimate of the reciprocal condition number of the saddle matrix at x; NaN if the matrix cannot be
 /// evaluated
 double reciprocal_condition(const dae::Model& model, const lie::State& x)
@@ -119,15 +138,17 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
             return d;
         }
     if (d.detail = singular_driver(model, node.t, h); !d.detail.empty()) return d;
+    if (failure.status == "nonfinite") d.detail = largest_load(model, node);
     if (model.rows() == 0 && model.all_rows().empty()) return d;
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
     const lie::LoadEvaluation loads = loads_of(scheme);
     const dae::Model::Residual worst = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
-    d.detail = fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
-                           newton != nullptr ? newton->largest : model.name_of(worst),
-                           newton != nullptr ? newton->residual : worst.value, rcond,
-                           rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+    if (!d.detail.empty()) d.detail += "; ";
+    d.detail += fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
+                            newton != nullptr ? newton->largest : model.name_of(worst),
+                            newton != nullptr ? newton->residual : worst.value, rcond,
+                            rcond < 1e-12 ? ": redundant or singular constraints?" : "");
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
             if (const double limit = force->stable_step(node, loads); h > limit)

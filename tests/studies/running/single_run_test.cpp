@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/schemes.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/support/paths.hpp"
 
@@ -154,6 +155,61 @@ TEST_CASE("a load that becomes NaN ends the run with exit code 4 and the rows be
     CHECK_THAT(rows[50], StartsWith("0.49,"));
     CHECK(summary_in(in / "a")["status"] == "nonfinite");
     CHECK(summary_in(in / "a")["exit_code"] == 4);
+}
+
+TEST_CASE("a load that overflows ends the run with the name of the body, and no infinite value is written",
+          "[studies][run]")
+{
+    const Scratch in;
+    const auto model = [&](const std::string& type, const std::string& load) {
+        write(in / "spin.json",
+              R"json({"hilda_model": 1, "name": "spin", "gravity": [0, 0, 0], "end": 0.02, "bodies": [
+            {"name": "still", "mass": 1, "inertia": [1, 1, 1], "r": [5, 0, 0], "euler_angles": {"sequence": "zxz", "angles": [0.1, 1, 0.1]}},
+            {"name": "spinner", "mass": 1, "inertia": [1, 2, 3], "r": [0, 0, 0], "euler_angles": {"sequence": "zxz", "angles": [0.1, 1, 0.1]}}],
+            "forces": [{"name": "push", "type": ")json" +
+                  type + R"json(", "body": "spinner", "frame": "global", "components": [0, 0, )json" + load +
+                  "]}]}");
+    };
+    const std::pair<const char*, const char*> loads[] = {{"force", "\"exp(1e5*(t-0.01))\""},
+                                                         {"force", "1e300"},
+                                                         {"torque", "1e200"},
+                                                         {"torque", "\"exp(1e5*(t-0.01))\""}};
+    for (const auto& [type, load] : loads) {
+        model(type, load);
+        for (const hilda::lie::Scheme& scheme : hilda::lie::schemes()) {
+            const Ended ended = call(in, {"run", "spin.json", "--integrator", scheme.name, "--interval",
+                                          "1e-3", "--quiet", "--output", "a", "--force"});
+            CAPTURE(type, load, scheme.name, ended.err);
+            CHECK(ended.code == 4);
+            if (ended.err.find("[nonfinite]") != std::string::npos ||
+                ended.err.find("[step_too_large]") != std::string::npos)
+                CHECK_THAT(ended.err, Contains("spinner"));
+            const std::string rows = read(in / "a/trajectory.csv");
+            const std::string values = rows.substr(rows.find('\n'));
+            CHECK(values.find("inf") == std::string::npos);
+            CHECK(values.find("nan") == std::string::npos);
+            CHECK(values.size() > 20);
+        }
+    }
+}
+
+TEST_CASE("initial velocities whose kinetic energy overflows are refused with the name of the body",
+          "[studies][run]")
+{
+    const Scratch in;
+    for (const char* velocity : {R"("r_dot": [1e200, 0, 0])", R"("omega": [0, 0, 1e200])"}) {
+        write(in / "fast.json",
+              std::string(R"({"hilda_model": 1, "name": "fast", "end": 1, "bodies": [{"name": "ball",
+            "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0], )") +
+                  velocity + "}]}");
+        const Ended ended = call(in, {"run", "fast.json", "--output", "a"});
+        CAPTURE(ended.err);
+        CHECK(ended.code == 3);
+        CHECK_THAT(
+            ended.err,
+            Contains("the initial velocity of body 'ball' is too large: its kinetic energy overflows"));
+        CHECK_FALSE(fs::exists(in / "a"));
+    }
 }
 
 TEST_CASE("a Newton iteration that does not converge is reported with its step and constraint",

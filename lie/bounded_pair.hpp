@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A pair of regularised rows with a Coulomb bound, as friction with springs and dashpots at the end of a step.
+/// A pair of regularised rows with a Coulomb bound, as friction with springs and dashpots at the end of a
+/// step.
 
 #pragma once
 

@@ -71,23 +71,23 @@ public:
     /// z: solution of the step with the present K. Its multipliers may be scaled by a common positive factor.
     ///
     /// Throws NumericalFailure if the forces and the normal forces that bound them cannot be made consistent:
-    /// "friction_has_no_solution" if a pair has μ ∂N/∂|λ| ≥ 1, so that Coulomb's law may have no solution, and
-    /// "friction_not_converged" otherwise.
+    /// "friction_has_no_solution" if a pair has μ ∂N/∂|λ| ≥ 1, so that Coulomb's law may have no solution,
+    /// and "friction_not_converged" otherwise.
     ///
-    /// resolution: error of the multipliers in z to which the caller solves. A smaller error of a bound is ignored
-    /// after `patience` solutions.
+    /// resolution: error of the multipliers in z to which the caller solves. A smaller error of a bound is
+    /// ignored after `patience` solutions.
     bool within_bounds(Saddle& K, Eigen::VectorXd& z, double resolution = 0);
-    /// At a start: releases the pairs for which Coulomb's law has no solution, and returns whether there are any. The
-    /// caller then solves again.
+    /// At a start: releases the pairs for which Coulomb's law has no solution, and returns whether there are
+    /// any. The caller then solves again.
     ///
-    /// `slip` holds C v of the regularised rows. The start opposes it by γ = -C v/τ, so that a pair sticks within
-    /// `decay_time` τ [s] if its bound permits. If the normal force grows faster than the friction force that it
-    /// bounds, μ ∂N/∂|λ| ≥ 1, a sliding pair sticks with an acceleration C v/τ, which is no force of Coulomb's law
-    /// but an impulse (Painlevé). Such a pair starts without friction; the first step brings it to rest. K is
-    /// factored with the present compliances, and z is the solution.
+    /// `slip` holds C v of the regularised rows. The start opposes it by γ = -C v/τ, so that a pair sticks
+    /// within `decay_time` τ [s] if its bound permits. If the normal force grows faster than the friction
+    /// force that it bounds, μ ∂N/∂|λ| ≥ 1, a sliding pair sticks with an acceleration C v/τ, which is no
+    /// force of Coulomb's law but an impulse (Painlevé). Such a pair starts without friction; the first step
+    /// brings it to rest. K is factored with the present compliances, and z is the solution.
     bool release_impossible(Saddle& K, Eigen::VectorXd& z, const Eigen::VectorXd& slip, double decay_time);
-    /// At a start: lets all pairs slip without friction whose slip exceeds `most` [m/s], and begins the search again.
-    /// Returns false if there are none.
+    /// At a start: lets all pairs slip without friction whose slip exceeds `most` [m/s], and begins the
+    /// search again. Returns false if there are none.
     bool release_slipping(Saddle& K, const Eigen::VectorXd& slip, double most);
     /// Number of solutions after which within_bounds() computes the p of all pairs together
     static constexpr int patience = 30;

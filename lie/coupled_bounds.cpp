@@ -65,8 +65,8 @@ void CoupledBounds::evaluate()
     }
 }
 
-/// A damped step of Newton's method for min(q, s) = 0. Returns false, with q unchanged, if it does not reduce the
-/// residual.
+/// A damped step of Newton's method for min(q, s) = 0. Returns false, with q unchanged, if it does not reduce
+/// the residual.
 bool CoupledBounds::newton_step()
 {
     const Eigen::Index a = q.size();
@@ -136,7 +136,8 @@ bool CoupledBounds::solve(Saddle& K, Eigen::VectorXd& z, const std::vector<Bound
         q = (q - s).cwiseMax(0);
         evaluate();
     }
-    // The rounding errors of S grow with the distance from p on entry. The caller repeats the search from there.
+    // The rounding errors of S grow with the distance from p on entry. The caller repeats the search from
+    // there.
     if (!(largest_residual() < accepted)) return false;
     for (Eigen::Index k = 0; k < a; ++k) p[active[static_cast<size_t>(k)].number] = std::exp(q[k]);
     return true;

@@ -17,17 +17,17 @@ class Saddle;
 /// Solves for the compliance scales p of all pairs together (see BoundedRows).
 ///
 /// Changing the compliance of the pairs by Δ adds Δ λ to the right sides of their rows. With the responses
-/// S = ∂λ/∂g and Q = ∂N/∂g to the right sides g of the rows, and the multipliers λ₀ and normal forces N₀ of the
-/// present solution,
+/// S = ∂λ/∂g and Q = ∂N/∂g to the right sides g of the rows, and the multipliers λ₀ and normal forces N₀ of
+/// the present solution,
 ///
 ///     λ(p) = (I - S Δ(p))⁻¹ λ₀,     N(p) = N₀ + Q Δ(p) λ(p)
 ///
 /// exactly for the linear equations of the step. S and Q take two solutions with K for each active pair. With
-/// q = ln p and s = ln(μ N/|λ|) the law is min(q, s) = 0 for each pair: a pair sticks with q = 0, or slips with
-/// s = 0. It is solved by a semismooth Newton method. If Newton's step does not reduce the residual, the step
-/// q ← max(0, q - s) of all pairs is taken instead. For constant N this iteration decreases the convex function
-/// whose minimum is the solution (iteratively reweighted least squares), so it converges for any number of
-/// pairs.
+/// q = ln p and s = ln(μ N/|λ|) the law is min(q, s) = 0 for each pair: a pair sticks with q = 0, or slips
+/// with s = 0. It is solved by a semismooth Newton method. If Newton's step does not reduce the residual, the
+/// step q ← max(0, q - s) of all pairs is taken instead. For constant N this iteration decreases the convex
+/// function whose minimum is the solution (iteratively reweighted least squares), so it converges for any
+/// number of pairs.
 ///
 /// p is at most largest_scale: a larger compliance makes K singular to working precision.
 ///

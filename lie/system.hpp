@@ -11,8 +11,8 @@
 /// - Algebraic variables α. The position constraints are then Φ(r, A, α, t) = 0 with Φ_αᵀ λ = 0 (Eq. 5.33).
 ///   The variables form groups, and each group occurs in its own rows only. Evolving contacts use them.
 /// - Nonholonomic rows Φ_r ṙ + Π̄ ω̄ = ν, which have no Φ. They are the last rows. Example: ideal rolling.
-/// - Regularised rows: pairs of nonholonomic rows with a compliance and a bound (BoundedPair). Implicit friction
-///   uses them.
+/// - Regularised rows: pairs of nonholonomic rows with a compliance and a bound (BoundedPair). Implicit
+///   friction uses them.
 /// - Unilateral rows, which are inactive in some states. Φ, Φ_r and Π̄ of an inactive row are zero.
 
 #pragma once

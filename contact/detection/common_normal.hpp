@@ -53,8 +53,8 @@ public:
     /// Whether the relative curvature at converged points p is positive definite
     bool is_nearest(const Pair& p) const;
 
-    /// The point with the largest overlap, at least `least` [m], of those that are not `known`; empty if there is
-    /// none. Searches from nine starting points.
+    /// The point with the largest overlap, at least `least` [m], of those that are not `known`; empty if
+    /// there is none. Searches from nine starting points.
     std::optional<ContactPoint> find_overlap_besides(const ContactPoint& known, const Motion& bi,
                                                      const Motion& bj, double least) const;
 

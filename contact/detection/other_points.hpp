@@ -9,10 +9,10 @@ namespace hilda::contact {
 
 /// A search for overlap at other points of a pair, repeated whenever the bodies have moved.
 ///
-/// Two convex bodies have one contact point. In a bowl that is narrower than the ball, or on a torus, there may
-/// be several, and a contact has the force of one. The search runs Newton's method on the common normal from
-/// nine starting points. It is repeated when a body has moved by 2 % of the smaller size relative to the other
-/// since the last search, so that an overlap is found before it is much larger. A search takes 20 to 100 µs.
+/// Two convex bodies have one contact point. In a bowl that is narrower than the ball, or on a torus, there
+/// may be several, and a contact has the force of one. The search runs Newton's method on the common normal
+/// from nine starting points. It is repeated when a body has moved by 2 % of the smaller size relative to the
+/// other since the last search, so that an overlap is found before it is much larger.
 class OtherPoints {
 public:
     OtherPoints(const Shape& i, const Shape& j);
@@ -27,8 +27,9 @@ public:
         Mat3 A;
     };
     /// Throws lie::NumericalFailure "contact_not_unique" if the surfaces overlap at another point than
-    /// `followed`, or if they overlap at `followed` where the sum of their curvatures is negative beyond the effect
-    /// of a small overlap: one surface does not fit into the other there. `contact` is the name of the contact.
+    /// `followed`, or if they overlap at `followed` where the sum of their curvatures is negative beyond the
+    /// effect of a small overlap: one surface does not fit into the other there. `contact` is the name of the
+    /// contact.
     void check(const std::string& contact, const Motion& bi, const Motion& bj, const ContactPoint& followed,
                Pose& last) const;
 

@@ -303,8 +303,8 @@ void EvolvingContact::update_alpha(const Arguments& x, bool global_search, doubl
             if (!std::isfinite(correction)) break;
             found = correction < 1e-12 * L;
         }
-        // Points of a saddle or a maximum of the distance, such as those across the hole of a torus, satisfy the
-        // same equations.
+        // Points of a saddle or a maximum of the distance, such as those across the hole of a torus, satisfy
+        // the same equations.
         if (found && other_points && x.mode == inactive) found = common_normal.is_nearest(p);
         a_i = shape_i.to_body(p.a_i), a_j = shape_j.to_body(p.a_j);
     }

@@ -50,8 +50,9 @@ struct Unilateral {
 /// with the normal force F_N, positive in compression. The force on body i is -λ_Ψ. λ_N = 0 holds because n̄
 /// is parallel to ∇G.
 ///
-/// A pair that may have several contact points is watched by OtherPoints in all modes but fallback_active. Its
-/// failure "contact_not_unique" ends the run also with a fallback, which has the force of one point as well.
+/// A pair that may have several contact points is watched by OtherPoints in all modes but fallback_active.
+/// Its failure "contact_not_unique" ends the run also with a fallback, which has the force of one point as
+/// well.
 ///
 /// For an active contact update_internal_state() throws lie::NumericalFailure: "contact_lost" if
 /// n_i · n_j ≥ -½, and "contact_singular" if the smaller eigenvalue of K_i + K_j in the tangent plane, times

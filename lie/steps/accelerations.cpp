@@ -76,8 +76,8 @@ void solve_accelerations(const System& system, Saddle& K, State& x)
     try {
         find();
     } catch (const NumericalFailure&) {
-        // The impulses that would stop the slip of several contacts at once may press their bodies together or
-        // apart without limit. These contacts start without friction; the first step has it.
+        // The impulses that would stop the slip of several contacts at once may press their bodies together
+        // or apart without limit. These contacts start without friction; the first step has it.
         if (!friction.release_slipping(K, slip, slow_slip)) throw;
         find();
     }

@@ -103,12 +103,13 @@ int HalfImplicitStep::newton(State& x)
     no_convergence(name, correction, x);
 }
 
-/// Newton's method with K of t_n in which the algebraic variables follow from the poses after each correction. They
-/// need no initial guess then: contact points that move far over a body in a step, as those of a ball that rolls
-/// by half a radian, are found. A correction that increases |Φ| is halved.
+/// Newton's method with K of t_n in which the algebraic variables follow from the poses after each
+/// correction. They need no initial guess then: contact points that move far over a body in a step, as those
+/// of a ball that rolls by half a radian, are found. A correction that increases |Φ| is halved.
 ///
 /// Returns 0 if the iteration fails. It also fails if it converges slowly: the force acts along the normal of
-/// t_n, and the normal turns too far in the step then, as where a contact point jumps across a flat face, and the solution would gain energy.
+/// t_n, and the normal turns too far in the step then, as where a contact point jumps across a flat face, and
+/// the solution would gain energy.
 int HalfImplicitStep::newton_with_contact_points(State& x)
 try {
     place(x);
@@ -144,7 +145,8 @@ try {
     return 0;
 }
 
-/// Computes the algebraic variables of x from its poses, and sets their part of z. Returns false if there are none.
+/// Computes the algebraic variables of x from its poses, and sets their part of z. Returns false if there are
+/// none.
 bool HalfImplicitStep::find_contact_points(State& x)
 {
     try {

@@ -175,7 +175,8 @@ TEST_CASE("the softness of a friction spring is named for a sliding contact that
 {
     CHECK(softness(-150, 0.06, 200, 0.5) == Approx(150 * 0.06 / 200 / 0.5));
     CHECK(softness(150, 0.06, 200, 0) == 0);
-    // the start of a tippe top that turns over in 0.6 s with the soft spring, and after 3.5 s with stiffer ones
+    // the start of a tippe top that turns over in 0.6 s with the soft spring, and after 3.5 s with stiffer
+    // ones
     constexpr double m = 0.006, R = 0.015;
     for (const double K_E : {200., 2e3}) {
         dae::Model model;

@@ -172,6 +172,20 @@ TEST_CASE("couplings count revolutions in both directions", "[dae][constraints]"
     }
 }
 
+TEST_CASE("a screw advances by its pitch in a turn", "[dae][constraints]")
+{
+    State x;
+    x.body.resize(2);
+    const double pitch = 0.04;
+    const Blocks rows = screw(0, O, Z, 1, O, Z, pitch, x);
+    for (const double angle : {-1., 0.5, 2.}) {
+        Motion b = x.body[1];
+        b.A = lie::exp(angle * Z), b.r = pitch * angle / (2 * pi) * Z;
+        const Constraint::Arguments at{.bi = x.body[0], .bj = b};
+        for (const auto& row : rows) CHECK(std::abs(row->phi(at)) < 1e-15);
+    }
+}
+
 TEST_CASE("a point on a curve follows it over several turns from node to node", "[dae][constraints]")
 {
     // A flat helix: the point of the next turn is nearer than half a turn along the curve.

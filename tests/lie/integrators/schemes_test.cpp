@@ -275,6 +275,19 @@ TEST_CASE("the stopping criterion does not depend on other bodies or on the dist
     }
 }
 
+TEST_CASE("implicit schemes reject a solution with half a turn or more in a step", "[lie][newton]")
+{
+    const tests::SpinningTop top(true);
+    for (const char* name : {"rA-full-1", "rA-full-1-exact", "rA-genalpha"}) {
+        lie::State x = top.start();
+        const auto integrator = lie::scheme(name).make(top, {});
+        x.body[0].omega_bar = Vec3(0, 0, 700);
+        CHECK_THROWS_AS(integrator->step(x, 5e-3), lie::NumericalFailure);  // 3.5 rad
+        CHECK(x.body[0].omega_bar == Vec3(0, 0, 700));
+        CHECK_NOTHROW(integrator->step(x, 1e-3));
+    }
+}
+
 TEST_CASE("generalised-alpha is of second order for every spectral radius below 1 (long)", "[lie]")
 {
     const tests::SpinningTop top;

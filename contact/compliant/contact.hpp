@@ -70,7 +70,7 @@ public:
 
     const std::shared_ptr<const NormalLaw> law;
     /// The watch over other contact points; nullptr for a pair with one contact point
-    const std::unique_ptr<const OtherPoints> other_points;
+    std::unique_ptr<const OtherPoints> other_points;
 
 private:
     NormalInput normal_input(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;

@@ -35,9 +35,9 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
     if (contacts.force >= 0)
         return {
             default_integrator,
-            fmt::format("compliant contacts: second order between their events; steps up to {:.2g} s, half "
-                        "of the limit of {}",
-                        contacts.h / 2, name(contacts))};
+            fmt::format("compliant contacts: second order between their events; steps up to {:.2g} s, the "
+                        "limit of {}",
+                        all.h, name(all))};
     return {
         default_integrator,
         "smooth motion: second order in positions, velocities and constraint forces, no drift of the energy"};

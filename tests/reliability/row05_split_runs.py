@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Row 5: a run that is continued every tenth step writes the same tables as a run in one go: 5 integrators, and grains."""
+import json
+
+import matrix
+
+INTEGRATORS = ("rA-half-1", "rA-half-1-momentum", "rA-full-1", "rA-rattle", "rA-rkmk-4")
+STEPS, PART = 200, 10
+
+
+def main():
+    row = matrix.Row("5 split runs")
+    with matrix.scratch() as folder:
+        for model in ("double_pendulum", "ball_in_bowl"):
+            for integrator in INTEGRATORS:
+                if model == "ball_in_bowl" and integrator == "rA-full-1-exact":
+                    continue
+                command = [row.hilda, "run", model, "--integrator", integrator, "--step", 1e-3, "--interval", 2e-3, "--quiet"]
+                row.run(command + ["--end", STEPS * 1e-3, "--output", "whole", "--force"], cwd=folder)
+                codes = []
+                for k in range(PART, STEPS + 1, PART):
+                    codes.append(row.run(command + ["--end", f"{k * 1e-3:.3f}", "--output", "parts", "--force" if k == PART else "--resume"], cwd=folder).code)
+                same = matrix.tables(folder / "parts") == matrix.tables(folder / "whole") and "trajectory.csv" in matrix.tables(folder / "whole")
+                a, b = (json.loads((folder / name / "summary.json").read_text()) for name in ("whole", "parts"))
+                row.case(f"{model} {integrator}", same and set(codes) == {0} and a["counters"] == b["counters"] and a["invariants"] == b["invariants"],
+                         f"codes {codes}, tables {same}, {a['counters']}, {b['counters']}")
+        case = json.loads((matrix.SOURCE / "granular/cases/bed.json").read_text())
+        case["fill"][0]["high"] = [0.03, 0.02, 0.01]
+        interval = 50 * case["step"]
+        case.update(checkpoint_interval=interval, interval=interval, frame_interval=4 * interval)
+        (folder / "bed.json").write_text(json.dumps(case))
+        command = [row.granular, "bed.json", "--quiet", "--interval", interval]
+        parts = 12
+        row.run(command + ["--end", repr(parts * interval), "--output", "grains", "--force"], cwd=folder)
+        codes = [row.run(command + ["--end", repr(k * interval), "--output", "grain-parts", "--force" if k == 1 else "--resume"], cwd=folder).code
+                 for k in range(1, parts + 1)]
+        same = matrix.tables(folder / "grain-parts") == matrix.tables(folder / "grains") and "run.csv" in matrix.tables(folder / "grains")
+        row.case("grains", same and set(codes) == {0}, f"codes {codes}, tables {same}")
+    row.end()
+
+
+main()

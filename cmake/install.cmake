@@ -91,8 +91,8 @@ hilda_install_headers(
         granular/backend/any_of.hpp granular/backend/engine.hpp granular/backend/par.hpp granular/backend/real.hpp
         granular/core/boundary.hpp granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
         granular/core/material.hpp granular/core/neighbours.hpp granular/core/orientation.hpp granular/core/pair_law.hpp
-        granular/core/particles.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
-        granular/world/output.hpp granular/world/world.hpp
+        granular/core/particles.hpp granular/core/watch.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
+        granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL
     EXCEPT studies/running/tables/hdf5_file.hpp studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
 install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"

@@ -6,6 +6,7 @@
 #include "contact/friction/tracked_force.hpp"
 #include "dae/model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double largest_softness = 0.05;  // [rad]
 constexpr double smallest_slip = 1e-6;     // [m/s]; a slower contact sticks
+constexpr double rolls = 5e-3;  // a contact with less slip, relative to the velocities of its surfaces, rolls
 
 /// The warning, or an empty text if the spring is stiff enough
 std::string warning(const std::string& name, const ContactPoint& at, const Motion& bi, const Motion& bj,
@@ -24,7 +26,9 @@ std::string warning(const std::string& name, const ContactPoint& at, const Motio
     const double slip = (v - at.n * at.n.dot(v)).norm(),
                  omega_n = at.n.dot(bi.A * bi.omega_bar - bj.A * bj.omega_bar),
                  soft = softness(omega_n, bound, K_E, slip);
-    if (!(soft > largest_softness)) return {};
+    const double surfaces =
+        std::max(bi.omega_bar.norm() * (C - bi.r).norm(), bj.omega_bar.norm() * (C - bj.r).norm());
+    if (!(soft > largest_softness) || slip < rolls * surfaces) return {};
     std::ostringstream what;
     what.precision(3);
     what << "contact '" << name << "': the friction spring is too soft for a spin of " << std::abs(omega_n)

@@ -28,7 +28,7 @@ namespace hilda::contact {
 double softness(double omega_n, double bound, double K_E, double slip);
 
 /// A warning for each contact of the model with friction springs whose softness in the state x, after
-/// dae::start(), is above 0.05
+/// dae::start(), is above 0.05. A contact that rolls, with a slip below 0.5 % of the velocities of its surfaces, has none.
 std::vector<std::string> soft_friction_warnings(const dae::Model& model, const lie::State& x);
 
 }  // namespace hilda::contact

@@ -3,6 +3,7 @@
 
 #include "dae/constraints/dp1.hpp"
 #include "dae/model.hpp"
+#include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/trajectory.hpp"

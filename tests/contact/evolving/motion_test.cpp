@@ -313,11 +313,13 @@ TEST_CASE("a ball loops inside an ellipsoid through normals in the xy-plane", "[
     CHECK(worst_condition < 36);
     CHECK(residual < 1e-12);
 
-    double last = 0;
-    CHECK_THROWS_AS(loop(NormalRows::fixed_xy,
-                         [&](const ContactModel&, const lie::State& x, long) { last = x.body[0].r.z(); }),
-                    lie::NumericalFailure);
-    CHECK(last == Approx(0).margin(0.05));  // the run ends where the normal is horizontal
+    // The rows along x and y are singular where the normal is horizontal. Newton's method passes these positions with
+    // contact points that follow from the poses.
+    lie::Vec3 end, end_fixed;
+    loop(NormalRows::tangent, [&](const ContactModel&, const lie::State& x, long) { end = x.body[0].r; });
+    loop(NormalRows::fixed_xy,
+         [&](const ContactModel&, const lie::State& x, long) { end_fixed = x.body[0].r; });
+    CHECK((end - end_fixed).norm() < 1e-10);
 }
 
 TEST_CASE("a ball in a V-groove has equal normal forces on both walls", "[contact][evolving]")

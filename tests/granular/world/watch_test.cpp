@@ -86,6 +86,19 @@ std::unique_ptr<World> bed(Scheme scheme, Vec3 gravity = {0, 0, -9.81}, bool per
 
 }  // namespace
 
+TEST_CASE("the kinetic energy of a sphere has the part of its rotation", "[granular][watch]")
+{
+    World world(space(1e-4), {soft()});
+    world.set_law(0, 0, spring(1e5f));
+    Particle p = soft_sphere();
+    p.v = {3, 0, 0}, p.omega = {0, 4, 0};
+    world.add(p);
+    world.step(1);
+    const Particle after = world.particles()[0];
+    CHECK(world.kinetic_energy() ==
+          Approx(0.5 * after.mass * 9 + 0.5 * (0.4 * after.mass * 0.25) * 16).epsilon(1e-6));
+}
+
 TEST_CASE("the energy of an elastic collision is balanced to second order in the step", "[granular][watch]")
 {
     const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet);

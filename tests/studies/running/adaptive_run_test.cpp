@@ -83,7 +83,8 @@ TEST_CASE("an adaptive run that passes a configuration of lower rank warns once"
         CAPTURE(ended.err);
         CHECK(ended.code == 0);
         std::string found;
-        for (const auto& w : nlohmann::json::parse(read(in / "a/summary.json"))["warnings"])
+        const auto summary = nlohmann::json::parse(read(in / "a/summary.json"));
+        for (const auto& w : summary["model"]["warnings"])
             if (const std::string text = w; text.find("lose rank") != text.npos) found += text + '\n';
         return found;
     };

@@ -7,7 +7,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <cstring>
 #include <random>
 
 using namespace hilda;
@@ -76,8 +75,9 @@ std::unique_ptr<World> bed(Scheme scheme, Vec3 gravity = {0, 0, -9.81}, bool per
     for (int k = 0; k < 240; ++k) {
         Particle p;
         p.radius = R * (0.9 + 0.09 * in(random));
-        p.r = {R * (1.2 + 2.1 * (k % 6) + 0.05 * in(random)),
-               R * (1.2 + 2.1 * (k / 6 % 6) + 0.05 * in(random)), R * (1.5 + 2.2 * (k / 36))};
+        const int column = k % 6, row = k / 6 % 6, layer = k / 36;
+        p.r = {R * (1.2 + 2.1 * column + 0.05 * in(random)), R * (1.2 + 2.1 * row + 0.05 * in(random)),
+               R * (1.5 + 2.2 * layer)};
         p.v = {0.1 * in(random), 0.1 * in(random), 0.1 * in(random)};
         world->add(p);
     }
@@ -345,6 +345,7 @@ TEST_CASE("the watch does not change the results and survives a checkpoint", "[g
     CHECK(same);
     resumed->from_bytes(with->to_bytes("run"), "run", "checkpoint");
     with->step(3000), resumed->step(3000);
-    CHECK(std::memcmp(&with->watch(), &resumed->watch(), sizeof(WatchRecord)) == 0);
+    const bool same_bytes = with->to_bytes("run") == resumed->to_bytes("run");  // the record is part of them
+    CHECK(same_bytes);
     CHECK(with->watch().samples == 7000 / 64 + 1);
 }

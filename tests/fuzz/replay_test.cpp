@@ -36,11 +36,18 @@ fs::path corpus(const std::string& target)
     return fs::path(tests::source_dir) / "tests/fuzz/corpus" / target;
 }
 
-/// The inputs of a target, in the order of their names
+/// The inputs of a target, in the order of their names. Those of `model` are also the models of the examples and tests.
 std::vector<std::string> inputs(const std::string& target)
 {
+    std::vector<fs::path> folders = {corpus(target)};
+    if (target == "model")
+        for (const char* models : {"examples/models", "tests/data/models"})
+            folders.push_back(fs::path(tests::source_dir) / models);
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(corpus(target))) files.push_back(entry.path());
+    for (const fs::path& folder : folders)
+        if (fs::exists(folder))
+            for (const auto& entry : fs::directory_iterator(folder))
+                if (entry.is_regular_file()) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::vector<std::string> all;
     for (const fs::path& file : files) all.push_back(io::read_file(file.string(), std::size_t{1} << 20));
@@ -102,7 +109,7 @@ TEST_CASE("random changes of the kept inputs are accepted or refused", "[fuzz]")
     }
 }
 
-// hilda_test_fuzz "[.seeds]" writes them anew after a change of the format.
+// hilda_test_fuzz "[.seeds]" writes them again after a change of the format.
 TEST_CASE("the seeds of the checkpoints are written", "[.seeds]")
 {
     io::write_file((corpus("checkpoint") / "seed").string(), fuzz::checkpoint_seed());

@@ -20,6 +20,14 @@ def options(parser):
     parser.add_argument("--no-build", action="store_true", help="use the targets that are built")
 
 
+def seeds_of(target):
+    """Folders with the first inputs of a target: its corpus, for `model` also the models of the examples and tests"""
+    folders = [matrix.SOURCE / "tests/fuzz/corpus" / target]
+    if target == "model":
+        folders += [matrix.SOURCE / "examples/models", matrix.SOURCE / "tests/data/models"]
+    return [folder for folder in folders if folder.is_dir()]
+
+
 def target_names():
     text = (matrix.SOURCE / "tests/fuzz/CMakeLists.txt").read_text()
     return re.search(r"set\(targets ([^)]*)\)", text).group(1).split()
@@ -62,7 +70,7 @@ def main():
         grown.mkdir(parents=True, exist_ok=True)
         ended = row.run(["nice", pathlib.Path(build / f"tests/fuzz/hilda_fuzz_{name}"), f"-max_total_time={row.options.seconds}", "-timeout=5", "-rss_limit_mb=1024",
                          "-max_len=8192", "-close_fd_mask=3", f"-artifact_prefix={build}/failures/{name}-", "-print_final_stats=1", grown,
-                         matrix.SOURCE / "tests/fuzz/corpus" / name], limit=row.options.seconds + 600, cwd=build)
+                         *seeds_of(name)], limit=row.options.seconds + 600, cwd=build)
         runs = re.search(r"number_of_executed_units: (\d+)", ended.err)
         print(f"{name}: {runs.group(1) if runs else 'no'} runs")
         row.case(name, ended.code == 0 and runs, f"exit {ended.code}: {ended.err[-1500:]}")

@@ -245,6 +245,9 @@ void Saddle::factor_rows(const State& x)
 
 void Saddle::choose_pivots(const State& x, std::span<const double> compliance)
 {
+    const auto rows = static_cast<Eigen::Index>(C.regularised.size());
+    if (!compliance.empty() && x.history.size() == rows)
+        compliance = {x.history.data(), static_cast<size_t>(rows)};
     set_rows(x, compliance);
     by_condensed = false;
     factor(x);
@@ -256,6 +259,8 @@ void Saddle::factor(const State& x)
     fill();
     klu.factor("the saddle matrix");
     pivot_state = x;
+    pivot_state.history =
+        Eigen::VectorXd::Map(C.compliance.data(), static_cast<Eigen::Index>(C.compliance.size()));
 }
 
 void Saddle::solve_solved(Eigen::VectorXd& b, bool only_constraints)

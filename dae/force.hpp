@@ -13,6 +13,10 @@
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+struct Scheme;
+}
+
 namespace hilda::dae {
 
 using lie::LoadEvaluation;
@@ -61,12 +65,23 @@ public:
     /// A direction in which the force acts as a linear spring and damper. Its deflection has the rate
     /// r_i · ṙ_i + pi_i · ω̄_i + r_j · ṙ_j + pi_j · ω̄_j, with i and j from bodies() [m/s or rad/s].
     struct SpringRow {
-        Vec3 r_i, pi_i, r_j, pi_j;          ///< global frame, body frame
+        Vec3 r_i = Vec3::Zero(), pi_i = Vec3::Zero(), r_j = Vec3::Zero(),
+             pi_j = Vec3::Zero();           ///< global frame, body frame
         double stiffness = 0, damping = 0;  ///< [N/m], [N s/m] or [N m/rad], [N m s/rad]
     };
-    /// The springs and dampers of the force in the state x
-    virtual std::vector<SpringRow> spring_rows(const State& /*x*/) const { return {}; }
-    /// Stability limits of the steps for the spring rows, with the effective masses of the constrained bodies
+    static constexpr int most_spring_rows = 6;
+    /// Largest number of spring rows, at most most_spring_rows
+    virtual int max_spring_rows() const { return 0; }
+    /// Writes the springs and dampers of the force in the state x, at most max_spring_rows(), and returns their
+    /// number. The function must not allocate memory.
+    virtual int spring_rows(const State& /*x*/, SpringRow* /*out*/) const { return 0; }
+    /// Whether the spring rows describe the force in every state, so that `implicit` may be set. The bodies of
+    /// the rows are those of bodies().
+    virtual bool may_be_implicit() const { return false; }
+    /// Whether integrators evaluate the spring rows implicitly if they can (lie::Scheme::implicit_springs). The
+    /// force then has no stability limit with them.
+    bool implicit = false;
+    /// Stability limits of the steps for an explicit evaluation of the spring rows, with the effective masses of the constrained bodies
     /// at the start [s]; set by dae::start(), see dae/forces/spring_limits.hpp
     struct SpringLimits {
         double at_step = std::numeric_limits<double>::infinity();
@@ -83,6 +98,9 @@ public:
                : evaluation == LoadEvaluation::extrapolated ? spring_limits.extrapolated
                                                             : std::numeric_limits<double>::infinity();
     }
+    /// stable_step() for the loads of a scheme. Infinite if it evaluates this force implicitly.
+    double stable_step_in(const lie::Scheme& scheme, const State& x) const;
+    bool is_implicit_in(const lie::Scheme& scheme) const;
     /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for each
     /// accepted step; the function must not allocate memory.
     virtual bool is_stable(const State& x, double h, LoadEvaluation evaluation) const

@@ -204,6 +204,15 @@ Model::StableStep Model::stable_step(const State& x, LoadEvaluation evaluation) 
     return smallest;
 }
 
+Model::StableStep Model::stable_step(const State& x, const lie::Scheme& scheme) const
+{
+    StableStep smallest;
+    for (size_t k = 0; k < force.size(); ++k)
+        if (const double h = force[k]->stable_step_in(scheme, x); h < smallest.h)
+            smallest = {h, static_cast<int>(k)};
+    return smallest;
+}
+
 void Model::drop(int k)
 {
     std::erase(active, k);

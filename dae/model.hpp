@@ -123,6 +123,8 @@ public:
         int force = -1;  ///< index of the force, -1 if no force has a limit
     };
     StableStep stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const;
+    /// The same for a scheme, which may evaluate springs implicitly
+    StableStep stable_step(const State& x, const lie::Scheme& scheme) const;
 
     /// A scalar row of a constraint. It is part of the equations, or removed from them as redundant.
     struct Row {
@@ -179,6 +181,9 @@ public:
     void update_alpha(State& x) const override;
     std::vector<lie::BoundedPair> bounded_pairs() const override;
     void update_pairs(const State& x, std::vector<lie::BoundedPair>& pair) const override;
+    /// The spring rows of the forces with Force::implicit
+    lie::Springs spring_pattern() const override;
+    void update_springs(const State& x, lie::Springs& out) const override;
     /// The largest residual of the rows in the equations; see largest_residual()
     PositionError position_error(const State& x) const override;
     void second_variation(const State& x, lie::SecondVariation& out) const override;

@@ -229,6 +229,44 @@ void Model::load_variation(const State& x, lie::LoadVariation& out) const
     }
 }
 
+lie::Springs Model::spring_pattern() const
+{
+    lie::Springs out;
+    for (const auto& f : force) {
+        if (!f->implicit) continue;
+        for (int n = 0; n < f->max_spring_rows(); ++n) {
+            for (const int b : f->bodies())
+                if (b != ground)
+                    out.rows.entry.push_back(
+                        {.body = b, .nonzero = 0b111111, .r = Vec3::Zero(), .pi = Vec3::Zero()});
+            out.rows.start.push_back(static_cast<int>(out.rows.entry.size()));
+        }
+    }
+    out.stiffness.resize(static_cast<size_t>(out.rows.rows()));
+    out.damping.resize(out.stiffness.size());
+    return out;
+}
+
+void Model::update_springs(const State& x, lie::Springs& out) const
+{
+    std::array<Force::SpringRow, Force::most_spring_rows> rows;
+    lie::Rows::Entry* entry = out.rows.entry.data();
+    size_t at = 0;
+    for (const auto& f : force) {
+        if (!f->implicit) continue;
+        rows.fill({});
+        f->spring_rows(x, rows.data());
+        for (int n = 0; n < f->max_spring_rows(); ++n, ++at) {
+            const Force::SpringRow& row = rows[static_cast<size_t>(n)];
+            const auto [i, j] = f->bodies();
+            if (i != ground) entry->r = row.r_i, entry->pi = row.pi_i, ++entry;
+            if (j != ground) entry->r = row.r_j, entry->pi = row.pi_j, ++entry;
+            out.stiffness[at] = row.stiffness;
+            out.damping[at] = row.damping;
+        }
+    }
+}
+
 double Model::potential_energy(const State& x) const
 {
     double e = 0;

@@ -7,11 +7,36 @@ namespace hilda::lie {
 
 void Rows::regularise(std::span<const double> compliances)
 {
-    compliance.assign(compliances.begin(), compliances.end());
-    if (!compliances.empty()) return;
     compliance.resize(regularised.size(), 0);
-    for (const int k : regularised)
+    std::copy(compliances.begin(), compliances.end(), compliance.begin());
+    if (!compliances.empty()) return;
+    for (size_t r = 0; r + springs < regularised.size(); ++r) {
+        compliance[r] = 0;
+        const int k = regularised[r];
         for (int n = start[k]; n < start[k + 1]; ++n) entry[n].r.setZero(), entry[n].pi.setZero();
+    }
+}
+
+void Rows::append_springs(const Rows& pattern)
+{
+    const int offset = start.back();
+    for (int k = 0; k < pattern.rows(); ++k) {
+        regularised.push_back(rows());
+        start.push_back(offset + pattern.start[k + 1]);
+    }
+    entry.insert(entry.end(), pattern.entry.begin(), pattern.entry.end());
+    velocity_rows += pattern.rows();
+    springs += pattern.rows();
+    compliance.resize(regularised.size(), 0);
+}
+
+void Rows::set_springs(const Rows& values, std::span<const double> compliances)
+{
+    std::copy(values.entry.begin(), values.entry.end(),
+              entry.end() - static_cast<std::ptrdiff_t>(values.entry.size()));
+    compliance.resize(regularised.size(), 0);
+    std::copy(compliances.begin(), compliances.end(),
+              compliance.end() - static_cast<std::ptrdiff_t>(compliances.size()));
 }
 
 bool Rows::is_regularised(int k) const

@@ -35,17 +35,23 @@ struct Rows {
     std::vector<Entry> entry;
     std::vector<AlgebraicGroup> algebraic;
     /// The regularised rows, ascending. Row regularised[n] has the diagonal entry -compliance[n] in the saddle
-    /// matrix. They are nonholonomic rows, and unilateral.
+    /// matrix. They are nonholonomic rows. Those of friction come first and are unilateral; those of implicit
+    /// springs are the last `springs` rows.
     std::vector<int> regularised;
     std::vector<double> compliance;  ///< [1/kg]
-    int velocity_rows = 0;           ///< number of nonholonomic rows, the last ones
+    int springs = 0;
+    int velocity_rows = 0;  ///< number of nonholonomic rows, the last ones
     /// The rows that are inactive in some states, ascending. The saddle system gives an inactive row the
     /// correction zero. The multiplier of a row must be set to zero when the row becomes inactive.
     std::vector<int> unilateral;
 
-    /// Sets the compliances, one for each regularised row. Without compliances the regularised rows are made
+    /// Sets the compliances, one for each regularised row of friction. Without compliances these rows are made
     /// inactive: their derivatives are set to zero.
     void regularise(std::span<const double> compliances);
+    /// Adds the rows of springs to the pattern, as regularised nonholonomic rows.
+    void append_springs(const Rows& pattern);
+    /// Sets the derivatives and the compliances of the rows of springs.
+    void set_springs(const Rows& values, std::span<const double> compliances);
     bool is_regularised(int k) const;
     /// Whether row k is inactive, i.e. all its derivatives are zero. The last row of an algebraic group
     /// represents the whole group; Φ_α is checked for this row only.

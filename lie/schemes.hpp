@@ -33,6 +33,8 @@ struct Scheme {
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
+    bool implicit_springs =
+        false;  ///< evaluates System::spring_pattern() implicitly, see lie::ImplicitSprings
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of the scheme.
     /// Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;

@@ -20,6 +20,7 @@
 #include "lie/bounded_pair.hpp"
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
+#include "lie/springs.hpp"
 #include "lie/state.hpp"
 
 #include <string>
@@ -63,6 +64,13 @@ public:
     virtual std::vector<BoundedPair> bounded_pairs() const { return {}; }
     /// Sets K, D, mu, S and n of the pairs in the state x; `pair` is a copy of bounded_pairs().
     virtual void update_pairs(const State& /*x*/, std::vector<BoundedPair>& /*pair*/) const {}
+
+    /// The springs and dampers that half-implicit schemes evaluate implicitly. Their values are not used. The
+    /// default is none.
+    virtual Springs spring_pattern() const { return {}; }
+    /// Sets the rows, the stiffness and the damping of the springs in the state x; `out` is a copy of
+    /// spring_pattern(). The function must not allocate memory.
+    virtual void update_springs(const State& /*x*/, Springs& /*out*/) const {}
 
     /// The row with the largest error of the positions
     struct PositionError {

@@ -51,30 +51,30 @@ void Bushing::add(const State& x, lie::Loads& out) const
     if (i != ground) out.n_bar[i] -= A_ji.transpose() * n_j;
 }
 
-std::vector<Force::SpringRow> Bushing::spring_rows(const State& x) const
+int Bushing::spring_rows(const State& x, SpringRow* out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Vec3 s_bar_q = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);
-    std::vector<SpringRow> rows;
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 e_i = Vec3::Unit(axis), e = bi.A * e_i;
-        rows.push_back({.r_i = -e,
-                        .pi_i = -s_bar_q.cross(e_i),
-                        .r_j = e,
-                        .pi_j = s_bar_j.cross(bj.A.transpose() * e),
-                        .stiffness = coefficients.stiffness[axis],
-                        .damping = coefficients.damping[axis]});
+        out[axis] = {.r_i = -e,
+                     .pi_i = -s_bar_q.cross(e_i),
+                     .r_j = e,
+                     .pi_j = s_bar_j.cross(bj.A.transpose() * e),
+                     .stiffness = coefficients.stiffness[axis],
+                     .damping = coefficients.damping[axis]};
     }
+    const Mat3 J_inverse = lie::right_jacobian_inverse(deflection(x).psi);
     for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 e_j = Vec3::Unit(axis);
-        rows.push_back({.r_i = Vec3::Zero(),
-                        .pi_i = -(bi.A.transpose() * (bj.A * e_j)),
-                        .r_j = Vec3::Zero(),
-                        .pi_j = e_j,
-                        .stiffness = coefficients.rotational_stiffness[axis],
-                        .damping = coefficients.rotational_damping[axis]});
+        const Vec3 of_j = J_inverse.row(axis);
+        out[3 + axis] = {.r_i = Vec3::Zero(),
+                         .pi_i = -(bi.A.transpose() * (bj.A * of_j)),
+                         .r_j = Vec3::Zero(),
+                         .pi_j = of_j,
+                         .stiffness = coefficients.rotational_stiffness[axis],
+                         .damping = coefficients.rotational_damping[axis]};
     }
-    return rows;
+    return 6;
 }
 
 double Bushing::potential_energy(const State& x) const
@@ -109,7 +109,7 @@ const TypeSchema schema = {
         "deflection is the vector from P to Q and the rotation vector of body j relative to body i since "
         "the start, in the frame of body i and of body j at the start. The run stops with an error at a "
         "relative rotation of 3 rad.",
-    .parts = {"points"},
+    .parts = {"points", "implicit_spring"},
     .keys = {{"stiffness", "Stiffness along the axes of body i [N/m].",
               R"("$ref": "#/$defs/coefficients", "examples": [[1e5, 1e5, 1e4]])", true},
              {"damping", "Damping coefficients along the axes of body i [N s/m].",

@@ -30,9 +30,11 @@ public:
 
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
+    bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return true; }
-    /// The three translations in the frame of body i, then the three rotations, for small relative rotations
-    std::vector<SpringRow> spring_rows(const State& x) const override;
+    /// The three translations in the frame of body i, then the three components of psi
+    int max_spring_rows() const override { return 6; }
+    int spring_rows(const State& x, SpringRow* out) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }

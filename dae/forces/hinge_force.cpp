@@ -74,16 +74,17 @@ void HingeForce::check_step(const State& before, const State& after) const
     throw lie::NumericalFailure("step_too_large", what.str());
 }
 
-std::vector<Force::SpringRow> HingeForce::spring_rows(const State& x) const
+int HingeForce::spring_rows(const State& x, SpringRow* out) const
 {
     const auto [stiffness, damping] = coefficients();
     const Vec3 axis = motion(x, i).A * axis_bar_i;
-    return {{.r_i = Vec3::Zero(),
-             .pi_i = -axis_bar_i,
-             .r_j = Vec3::Zero(),
-             .pi_j = motion(x, j).A.transpose() * axis,
-             .stiffness = stiffness,
-             .damping = damping}};
+    out[0] = {.r_i = Vec3::Zero(),
+              .pi_i = -axis_bar_i,
+              .r_j = Vec3::Zero(),
+              .pi_j = motion(x, j).A.transpose() * axis,
+              .stiffness = stiffness,
+              .damping = damping};
+    return 1;
 }
 
 void HingeForce::add(const State& x, lie::Loads& out) const

@@ -44,7 +44,8 @@ public:
     int discrete_states() const override { return 1; }
     void update_internal_state(State& x) const override;
     void check_step(const State& before, const State& after) const override;
-    std::vector<SpringRow> spring_rows(const State& x) const override;
+    int max_spring_rows() const override { return 1; }
+    int spring_rows(const State& x, SpringRow* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     int last_body() const override { return std::max(i, j); }
 

@@ -32,17 +32,18 @@ void DistanceLimit::add(const State& x, lie::Loads& out) const
     apply_force(j, -F, s_bar_j, x, out);
 }
 
-std::vector<Force::SpringRow> DistanceLimit::spring_rows(const State& x) const
+int DistanceLimit::spring_rows(const State& x, SpringRow* out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Vec3 d = d_ij(x);
-    if (!(d.norm() > 0)) return {};
+    if (!(d.norm() > 0)) return 0;
     const Vec3 along = d.normalized();
-    return {{.r_i = -along,
-             .pi_i = -s_bar_i.cross(bi.A.transpose() * along),
-             .r_j = along,
-             .pi_j = s_bar_j.cross(bj.A.transpose() * along),
-             .stiffness = stop.stiffness}};
+    out[0] = {.r_i = -along,
+              .pi_i = -s_bar_i.cross(bi.A.transpose() * along),
+              .r_j = along,
+              .pi_j = s_bar_j.cross(bj.A.transpose() * along),
+              .stiffness = stop.stiffness};
+    return 1;
 }
 
 double DistanceLimit::stable_step(const State& x, LoadEvaluation evaluation) const

@@ -44,7 +44,8 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
     bool is_passive() const override { return true; }
-    std::vector<SpringRow> spring_rows(const State& x) const override;
+    int max_spring_rows() const override { return 1; }
+    int spring_rows(const State& x, SpringRow* out) const override;
     /// Infinite within the limits
     double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
     std::vector<Quantity> quantities() const override;

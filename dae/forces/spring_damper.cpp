@@ -9,17 +9,18 @@
 
 namespace hilda::dae {
 
-std::vector<Force::SpringRow> SpringDamper::spring_rows(const State& x) const
+int SpringDamper::spring_rows(const State& x, SpringRow* out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    if (!((bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() > 0)) return {};
+    if (!((bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() > 0)) return 0;
     const Stretch at = stretch(x);
-    SpringRow row{.r_i = -at.along,
-                  .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
-                  .r_j = at.along,
-                  .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
-                  .stiffness = stiffness,
-                  .damping = damping};
+    SpringRow& row = out[0];
+    row = {.r_i = -at.along,
+           .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
+           .r_j = at.along,
+           .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
+           .stiffness = stiffness,
+           .damping = damping};
     if (law) {
         const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
         const auto F = [&](double l, double ldot) {
@@ -29,7 +30,7 @@ std::vector<Force::SpringRow> SpringDamper::spring_rows(const State& x) const
         row.stiffness += (F(at.l + step_l, at.ldot) - F(at.l - step_l, at.ldot)) / (2 * step_l);
         row.damping += (F(at.l, at.ldot + step_ldot) - F(at.l, at.ldot - step_ldot)) / (2 * step_ldot);
     }
-    return {row};
+    return 1;
 }
 
 namespace {
@@ -39,7 +40,7 @@ const TypeSchema schema = {
         "Spring, damper and actuator between points P and Q. The force k (l - l_0) + c ldot + F acts "
         "along the line from P to Q; l is the distance of the points. A positive force pulls the "
         "bodies together. The run stops with an error if the points coincide.",
-    .parts = {"points"},
+    .parts = {"points", "implicit_spring"},
     .keys = {{"stiffness", "Stiffness k [N/m].", R"("type": "number", "minimum": 0, "examples": [1000])",
               true},
              {"damping", "Damping coefficient c [N s/m].",

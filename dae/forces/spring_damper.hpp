@@ -46,6 +46,7 @@ public:
         const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
         return 0.5 * stiffness * stretch * stretch;
     }
+    bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0 && !law; }
 
     std::vector<Quantity> quantities() const override
@@ -62,7 +63,8 @@ public:
     }
 
     /// Along the line from P to Q, with the derivatives of F in the state x. None while the points coincide.
-    std::vector<SpringRow> spring_rows(const State& x) const override;
+    int max_spring_rows() const override { return 1; }
+    int spring_rows(const State& x, SpringRow* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
     int last_body() const override { return std::max(i, j); }

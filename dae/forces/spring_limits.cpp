@@ -44,7 +44,8 @@ void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
     VectorXd b(K.size());
     for (const auto& force : model.forces()) {
         force->spring_limits = {};
-        const std::vector<Force::SpringRow> rows = force->spring_rows(x);
+        std::vector<Force::SpringRow> rows(static_cast<size_t>(force->max_spring_rows()));
+        rows.resize(static_cast<size_t>(force->spring_rows(x, rows.data())));
         const auto n = static_cast<Eigen::Index>(rows.size());
         if (n == 0) continue;
         const auto [i, j] = force->bodies();

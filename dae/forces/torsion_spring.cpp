@@ -14,7 +14,7 @@ const TypeSchema schema = {
         "theta_0) + c thetadot acts on body i about the axis, the opposite torque on body j. theta "
         "is the rotation of body j relative to body i since the start, counted through whole turns. "
         "One step must rotate the bodies by less than three eighths of a turn.",
-    .parts = {"axes"},
+    .parts = {"axes", "implicit_spring"},
     .keys = {{"stiffness", "Stiffness k [N m/rad].", R"("type": "number", "minimum": 0, "examples": [5])",
               true},
              {"damping", "Damping coefficient c [N m s/rad].",

@@ -28,7 +28,7 @@ namespace {
 class HalfImplicit1 final : public HalfImplicitStep {
 public:
     HalfImplicit1(const System& model, const Settings& settings)
-        : HalfImplicitStep(model, settings, "rA-half-1", 1, 1)
+        : HalfImplicitStep(model, settings, "rA-half-1", 1, 1, ImplicitSprings::Rule::euler)
     {}
 };
 
@@ -43,6 +43,7 @@ const bool registered = register_scheme<HalfImplicit1>(
      .algebraic = true,
      .nonholonomic = true,
      .regularised = true,
+     .implicit_springs = true,
      .energy_drifts = true});
 
 }  // namespace

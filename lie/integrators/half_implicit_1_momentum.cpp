@@ -124,7 +124,8 @@ const bool registered = register_scheme<HalfImplicit1Momentum>(
      .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
      .nonholonomic = true,
-     .regularised = true});
+     .regularised = true,
+     .implicit_springs = true});
 
 }  // namespace
 }  // namespace hilda::lie

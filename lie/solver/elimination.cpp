@@ -75,6 +75,7 @@ Elimination::Elimination(const Rows& pattern, const std::vector<char>& inactive)
                 remaining.regularised.push_back(g.reduced_first + k);
             }
     remaining.compliance.resize(regularised.size());
+    remaining.springs = pattern.springs;
 }
 
 void Elimination::reflect(const Group& g, Few& v, bool transpose)

@@ -12,11 +12,12 @@
 
 namespace hilda::lie {
 
-Saddle::Saddle(const System& system, Metric metric, LinearSolver solver)
-    : system(system), metric(metric), solver(solver), bodies(system.bodies()), m(system.rows()),
-      unknowns(system.pattern().algebraic_variables()), C(system.pattern()), inactive(m, 0), work(size()),
-      residual(size()), right_side(size())
+Saddle::Saddle(const System& system, Metric metric, LinearSolver solver, const Rows& springs)
+    : system(system), metric(metric), solver(solver), bodies(system.bodies()),
+      m(system.rows() + springs.rows()), unknowns(system.pattern().algebraic_variables()),
+      C(system.pattern()), inactive(m, 0), work(size()), residual(size()), right_side(size())
 {
+    if (springs.rows() > 0) C.append_springs(springs);
     // Otherwise the inactive rows are known only with the first state.
     if (solver == LinearSolver::klu || unknowns == 0 || C.unilateral.empty()) choose_solver();
 }
@@ -153,6 +154,10 @@ void Saddle::scale_rows()
         }
         scale[6 * bodies + k] = sum > 0 ? 1 / std::sqrt(sum) : std::numeric_limits<double>::infinity();
     }
+    // The compliance of a weak spring may be larger than the inverse effective mass by many orders.
+    for (size_t n = R.regularised.size() - static_cast<size_t>(R.springs); n < R.regularised.size(); ++n)
+        if (double& of_row = scale[6 * bodies + R.regularised[n]]; std::isfinite(of_row))
+            of_row = 1 / std::sqrt(1 / (of_row * of_row) + R.compliance[n]);
     int alpha = 6 * bodies + R.rows();
     for (const Rows::AlgebraicGroup& group : R.algebraic) {
         auto of_rows = scale.segment(6 * bodies + group.first, group.rows);
@@ -198,10 +203,9 @@ void Saddle::fill()
             for (int k = 0; k < group.rows; ++k, ++s)
                 klu.value[s->upper] = klu.value[s->lower] = s->factor * group.D(k, c);
     const Rows& R = solved();
+    for (const int at : regularised_slot) klu.value[at] = 0;
     for (size_t n = 0; n < unilateral_slot.size(); ++n)  // an inactive row does not change its multiplier
         klu.value[unilateral_slot[n]] = C.is_inactive(C.unilateral[n]) ? -1 : 0;
-    if (R.unilateral.empty())  // the loop above has not reset the diagonal entries of the regularised rows
-        for (const int at : regularised_slot) klu.value[at] = 0;
     for (size_t n = 0; n < regularised_slot.size(); ++n) {
         const double of_row = scale[6 * bodies + R.regularised[n]];
         klu.value[regularised_slot[n]] -= of_row * of_row * R.compliance[n];
@@ -247,7 +251,7 @@ void Saddle::choose_pivots(const State& x, std::span<const double> compliance)
 {
     const auto rows = static_cast<Eigen::Index>(C.regularised.size());
     if (!compliance.empty() && x.history.size() == rows)
-        compliance = {x.history.data(), static_cast<size_t>(rows)};
+        compliance = {x.history.data(), static_cast<size_t>(rows - C.springs)};
     set_rows(x, compliance);
     by_condensed = false;
     factor(x);

@@ -44,12 +44,20 @@ class Saddle {
 public:
     /// Analyses the sparsity pattern. If algebraic variables are eliminated, the analysis is repeated when
     /// the set of inactive rows changes. The system must outlive the saddle matrix.
+    ///
+    /// `springs` is the pattern of the rows of implicit springs, which follow the rows of the system.
     explicit Saddle(const System& system, Metric metric = Metric::mass,
-                    LinearSolver solver = LinearSolver::klu);
+                    LinearSolver solver = LinearSolver::klu, const Rows& springs = {});
     ~Saddle();
 
-    /// Evaluates the rows in the state x and factors K. `compliance` has a number for each regularised row;
-    /// without it these rows are inactive.
+    /// Sets the rows of the springs and their compliances for the next assemble(). They have the pattern given
+    /// to the constructor.
+    void set_springs(const Rows& rows, std::span<const double> compliance)
+    {
+        C.set_springs(rows, compliance);
+    }
+    /// Evaluates the rows in the state x and factors K. `compliance` has a number for each regularised row of
+    /// friction; without it these rows are inactive.
     ///
     /// The condensed solver factors the Schur complement. If the rows are nearly dependent, KLU replaces it
     /// for this matrix. KLU reuses the pivot order of the last full factorisation (klu_refactor) and chooses
@@ -62,8 +70,8 @@ public:
     /// The state at which the present KLU pivots were chosen, with the compliances of the regularised rows in the
     /// place of State::history. It has no bodies if there are no pivots.
     const State& pivots() const { return pivot_state; }
-    /// Chooses new KLU pivots in the state x. A state of pivots() gives the same pivots: its compliances replace
-    /// `compliance`.
+    /// Chooses new KLU pivots in the state x. A state of pivots() gives the same pivots: its compliances of friction
+    /// rows replace `compliance`.
     void choose_pivots(const State& x, std::span<const double> compliance = {});
 
     /// Solves K z = b in place. b has size() components.
@@ -80,7 +88,7 @@ public:
 
     const Rows& rows() const { return C; }  ///< Φ_r, Π̄ and Φ_α of the last assemble()
     int size() const { return 6 * bodies + m + unknowns; }
-    /// The components of the constraint rows
+    /// The components of the constraint rows, those of springs last
     Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const
     {
         return z.segment(6 * bodies, m);

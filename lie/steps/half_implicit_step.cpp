@@ -10,9 +10,15 @@
 namespace hilda::lie {
 
 HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
-                                   double q)
-    : SaddleStep(model, settings), name(std::move(name)), w(w), q(q), C_n(model.pattern()), friction(model),
-      Phi(model.rows())
+                                   double q, ImplicitSprings::Rule rule)
+    : HalfImplicitStep(model, settings, std::move(name), w, q, ImplicitSprings(model, rule))
+{}
+
+HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
+                                   double q, ImplicitSprings implicit_springs)
+    : SaddleStep(model, settings, implicit_springs.rows()), name(std::move(name)), w(w), q(q),
+      springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), Phi(model.rows()),
+      lambda(K.rows().rows())
 {}
 
 int HalfImplicitStep::step(State& x, double h)
@@ -21,6 +27,7 @@ int HalfImplicitStep::step(State& x, double h)
     Attempt attempt(x, x_n);
     begin(h);
     friction.start(x_n, h);
+    start_springs(x_n, h);
     K.assemble(x_n, friction.compliance());  // the Newton matrix of t_n (Eqs. 3.32, 3.51)
     set_known_part(h);
     predict(h);
@@ -41,7 +48,15 @@ int HalfImplicitStep::step(State& x, double h)
 void HalfImplicitStep::choose_pivots(const State& x, double h)
 {
     friction.start(x, h);
+    start_springs(x, h);
     K.choose_pivots(x, friction.compliance());
+}
+
+void HalfImplicitStep::start_springs(const State& x, double h)
+{
+    if (springs.empty()) return;
+    springs.start(x, h);
+    K.set_springs(springs.rows(), springs.compliance());
 }
 
 HalfImplicitStep::Vec6 HalfImplicitStep::velocity(int i) const
@@ -98,7 +113,7 @@ int HalfImplicitStep::newton(State& x)
         place_algebraic(x, 1 / q);
         if (k > patience) refresh(x);
         correct(refreshed ? 1 : k, x);
-        if (converged(k, length(), K.constraint_part(e), 1 / w)) return k;
+        if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w)) return k;
     }
     no_convergence(name, correction, x);
 }
@@ -137,7 +152,7 @@ try {
         e *= fraction;
         K.algebraic_part(e) = K.algebraic_part(z) - K.algebraic_part(z_before);
         const double last = correction;
-        if (converged(k, length(), K.constraint_part(e), 1 / w) && fraction == 1) return k;
+        if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w) && fraction == 1) return k;
         if (k == 3 && correction > slow * last) return 0;
     }
     return 0;
@@ -170,6 +185,17 @@ void HalfImplicitStep::set_known_part(double h)
     K.algebraic_part(b).setZero();
     if (K.rows().velocity_rows > 0) set_nonholonomic_part(h);
     friction.set_right_side(K.constraint_part(b));
+    if (!springs.empty()) set_spring_part(h);
+}
+
+void HalfImplicitStep::set_spring_part(double h)
+{
+    for (int i = 0; i < bodies; ++i) {
+        z.segment<6>(6 * i) = h * velocity(i);
+        const Motion& body = node().body[i];
+        e.segment<6>(6 * i) << h * body.rdot, h * body.omega_bar;
+    }
+    springs.set_right_side(z, e, K.constraint_part(b).tail(K.rows().springs));
 }
 
 /// The nonholonomic rows require C_n (v + v_{n+1}) = 2 ν. This is of second order if v and v_{n+1} are the
@@ -177,9 +203,9 @@ void HalfImplicitStep::set_known_part(double h)
 void HalfImplicitStep::set_nonholonomic_part(double h)
 {
     for (int i = 0; i < bodies; ++i) z.segment<6>(6 * i) = h * velocity(i);
-    model.nu(x_n, K.constraint_part(e));
+    model.nu(x_n, K.constraint_part(e).head(model.rows()));
     const Rows& C = K.rows();
-    for (int k = C.position_rows(); k < C.rows(); ++k)
+    for (int k = C.position_rows(); k < model.rows(); ++k)
         K.constraint_part(b)[k] = 2 * h * K.constraint_part(e)[k] - C.dot(k, z);
 }
 
@@ -192,7 +218,8 @@ void HalfImplicitStep::predict(double h)
         z.segment<3>(6 * i) += h * h * body.rddot;
         z.segment<3>(6 * i + 3) += h * h * body.omegadot_bar;
     }
-    K.constraint_part(z) = w * h * h * x_n.lambda;
+    K.constraint_part(z).head(model.rows()) = w * h * h * x_n.lambda;
+    K.constraint_part(z).tail(K.rows().springs).setZero();
     K.algebraic_part(z).setZero();
 }
 
@@ -217,9 +244,10 @@ void HalfImplicitStep::accept(State& x, double h)
 {
     place(x);
     place_algebraic(x, 1 / q);
-    x.lambda = K.constraint_part(z) / (w * h * h);
+    lambda = K.constraint_part(z) / (w * h * h);
+    x.lambda = lambda.head(model.rows());
     b.setZero();
-    rows_of_node().add_transpose(1, x.lambda, b);
+    rows_of_node().add_transpose(1, lambda, b);
     for (int i = 0; i < bodies; ++i) {
         Motion& body = x.body[i];
         body.A = orthonormalised(body.A);

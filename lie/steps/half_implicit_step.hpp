@@ -5,6 +5,7 @@
 #pragma once
 
 #include "lie/bounded_rows.hpp"
+#include "lie/steps/implicit_springs.hpp"
 #include "lie/steps/saddle_step.hpp"
 
 #include <string>
@@ -28,7 +29,8 @@ public:
 protected:
     using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-    HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q);
+    HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q,
+                     ImplicitSprings::Rule rule = ImplicitSprings::Rule::none);
 
     /// Prepares the data that the scheme carries from step to step, from x_n.history or, at a start, from
     /// x_n.
@@ -46,20 +48,26 @@ protected:
     /// Correction k of z. The rows of the bodies, of the algebraic variables and the nonholonomic rows are linear
     /// in z: from the second correction on their residual is zero. k = 1 solves for the residual of all equations.
     virtual void correct(int k, const State& x);
+    /// Evaluates the implicit springs in the state x, for the next assembly of K.
+    void start_springs(const State& x, double h);
     /// The rows of t_n, in whose directions the multipliers act. They differ from the rows of K after a
     /// refresh.
     const Rows& rows_of_node() const { return refreshed ? C_n : K.rows(); }
 
     const std::string name;
     const double w, q;
+    ImplicitSprings springs;
 
 private:
+    HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w, double q,
+                     ImplicitSprings implicit_springs);
     int solve(State& x);
     int newton(State& x);
     int newton_with_contact_points(State& x);
     bool find_contact_points(State& x);
     void set_known_part(double h);
     void set_nonholonomic_part(double h);
+    void set_spring_part(double h);
     void predict(double h);
     double length();
     void refresh(const State& x);
@@ -72,7 +80,7 @@ private:
     static constexpr double slow = 0.01;    ///< ratio of two corrections with contact points from the poses
     Rows C_n;
     BoundedRows friction;
-    Eigen::VectorXd z_start, z_before, Phi;
+    Eigen::VectorXd z_start, z_before, Phi, lambda;
 };
 
 }  // namespace hilda::lie

@@ -8,7 +8,7 @@
 namespace hilda::lie {
 
 LeapfrogStep::LeapfrogStep(const System& model, const Settings& settings, std::string name)
-    : HalfImplicitStep(model, settings, std::move(name), 1, 1)
+    : HalfImplicitStep(model, settings, std::move(name), 1, 1, ImplicitSprings::Rule::midpoint)
 {}
 
 void LeapfrogStep::fill_node(State& node, const State& after) const
@@ -19,6 +19,7 @@ void LeapfrogStep::fill_node(State& node, const State& after) const
         node.body[i].rdot = 0.5 * (before + behind).head<3>();
         node.body[i].omega_bar = between(i, before.tail<3>(), behind.tail<3>(), after.t - node.t);
     }
+    if (!springs.empty()) springs.restore_velocities(node, after.t - node.t);
 }
 
 Vec3 LeapfrogStep::half_kick_back(int i, double h) const
@@ -34,7 +35,7 @@ Vec3 LeapfrogStep::between(int /*i*/, const Vec3& before, const Vec3& after, dou
 void LeapfrogStep::begin(double h)
 {
     if (x_n.history.size() == 0)
-        half_kick(h);
+        start(h);
     else
         half_steps = x_n.history;
     extrapolate(at_node = x_n);
@@ -57,6 +58,16 @@ LeapfrogStep::Vec6 LeapfrogStep::later(const Eigen::VectorXd& half_steps, int i)
 LeapfrogStep::Vec6 LeapfrogStep::earlier(const Eigen::VectorXd& half_steps, int i) const
 {
     return half_steps.segment<6>(6 * (bodies + i));
+}
+
+void LeapfrogStep::start(double h)
+{
+    if (springs.empty()) return half_kick(h);
+    const std::vector<Motion> at_start = x_n.body;
+    springs.start(x_n, h);
+    springs.smooth_start(x_n);
+    half_kick(h);
+    x_n.body = at_start;
 }
 
 /// The history at a start

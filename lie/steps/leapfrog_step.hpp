@@ -33,6 +33,7 @@ private:
     Vec6 later(const Eigen::VectorXd& half_steps, int i) const;
     /// (ṙ, ω̄) of body i one and a half steps before the node
     Vec6 earlier(const Eigen::VectorXd& half_steps, int i) const;
+    void start(double h);
     void half_kick(double h);
     void extrapolate(State& x) const;
 

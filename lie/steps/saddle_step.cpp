@@ -5,9 +5,9 @@
 
 namespace hilda::lie {
 
-SaddleStep::SaddleStep(const System& model, const Settings& settings)
-    : NewtonStep(model, settings), K(model, Metric::mass, settings.linear_solver), b(K.size()),
-      nonholonomic_residual(model.pattern().velocity_rows)
+SaddleStep::SaddleStep(const System& model, const Settings& settings, const Rows& springs)
+    : NewtonStep(model, settings), K(model, Metric::mass, settings.linear_solver, springs), b(K.size()),
+      nonholonomic_residual(K.rows().velocity_rows)
 {
     z.resize(K.size());
     e.resize(K.size());
@@ -25,9 +25,13 @@ void SaddleStep::set_linear_residual(const Rows& C)
 
 void SaddleStep::set_constraint_residual(int k, const State& x, double factor)
 {
-    model.phi(x, K.constraint_part(e));
-    K.constraint_part(e) *= -factor;
-    if (k == 1) velocity_part(e) = nonholonomic_residual;
+    auto rows = K.constraint_part(e);
+    model.phi(x, rows.head(model.rows()));
+    rows *= -factor;
+    if (k == 1)
+        velocity_part(e) = nonholonomic_residual;
+    else
+        rows.tail(K.rows().springs).setZero();
 }
 
 Vec3 SaddleStep::momentum(int i, const Vec3& theta) const
@@ -46,7 +50,7 @@ void SaddleStep::balance_momentum()
 Eigen::VectorBlock<Eigen::VectorXd> SaddleStep::velocity_part(Eigen::VectorXd& z) const
 {
     const Eigen::Index rows = nonholonomic_residual.size();
-    return z.segment(6 * bodies + model.rows() - rows, rows);
+    return z.segment(6 * bodies + K.rows().rows() - rows, rows);
 }
 
 }  // namespace hilda::lie

@@ -13,7 +13,8 @@ namespace hilda::lie {
 ///     K e = (b - K z, -factor Φ),    z ← z + e                             Fang (2022), Eqs. 3.30, 3.31
 class SaddleStep : public NewtonStep {
 public:
-    SaddleStep(const System& model, const Settings& settings);
+    /// `springs` is the pattern of the rows of implicit springs, see Saddle.
+    SaddleStep(const System& model, const Settings& settings, const Rows& springs = {});
 
     Statistics statistics() const override;
     const State* pivots() const override { return &K.pivots(); }
@@ -22,8 +23,8 @@ public:
 protected:
     /// e = b - K z, with the rows C in K
     void set_linear_residual(const Rows& C);
-    /// Sets the constraint part of e to -factor Φ(x). For k = 1 the nonholonomic rows receive the residual
-    /// that set_linear_residual() has computed, for k > 1 zero.
+    /// Sets the constraint part of e to -factor Φ(x). For k = 1 the nonholonomic rows and those of springs
+    /// receive the residual that set_linear_residual() has computed, for k > 1 zero.
     void set_constraint_residual(int k, const State& x, double factor);
 
     /// J_r(θ)⁻¹ J̄ θ of body i: h times its angular momentum at the beginning of a step with θ = h ω̄, in the body
@@ -37,7 +38,7 @@ protected:
     Eigen::VectorXd b;
 
 private:
-    /// The components of the nonholonomic rows, the last rows of the constraints
+    /// The components of the nonholonomic rows and of the springs, the last rows of the constraints
     Eigen::VectorBlock<Eigen::VectorXd> velocity_part(Eigen::VectorXd& z) const;
 
     Eigen::VectorXd nonholonomic_residual;

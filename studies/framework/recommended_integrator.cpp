@@ -2,6 +2,7 @@
 #include "studies/framework/recommended_integrator.hpp"
 
 #include "dae/model.hpp"
+#include "lie/schemes.hpp"
 #include "studies/running/run_settings.hpp"
 
 #include <fmt/format.h>
@@ -25,13 +26,17 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
     const auto name = [&](const dae::Model::StableStep& limit) {
         return model.forces()[static_cast<size_t>(limit.force)]->label();
     };
-    const dae::Model::StableStep all = model.stable_step(x, LoadEvaluation::extrapolated),
+    const dae::Model::StableStep all = model.stable_step(x, lie::scheme(default_integrator)),
                                  contacts = model.stable_step(x, LoadEvaluation::implicit);
     if (all.h < default_step && all.h < contacts.h)
         return {"rp-bdf2",
                 fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rp-bdf2 "
-                            "and ida-rp are implicit",
-                            name(all), all.h)};
+                            "and ida-rp are implicit{}",
+                            name(all), all.h,
+                            model.forces()[static_cast<size_t>(all.force)]->may_be_implicit()
+                                ? fmt::format(", and {} has no limit for a force with \"implicit\": true",
+                                              default_integrator)
+                                : "")};
     if (contacts.force >= 0)
         return {
             default_integrator,

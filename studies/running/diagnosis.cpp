@@ -72,12 +72,12 @@ double reciprocal_condition(const dae::Model& model, const lie::State& x)
     }
 }
 
-/// Evaluation of the loads of a scheme of the list
-lie::LoadEvaluation loads_of(const std::string& name)
+/// The scheme with this name, or one with the default properties
+const lie::Scheme& scheme_or_default(const std::string& name)
 {
-    for (const lie::Scheme& scheme : lie::schemes())
-        if (scheme.name == name) return scheme.loads;
-    return lie::LoadEvaluation::at_step;
+    static const lie::Scheme other;
+    const lie::Scheme* found = io::Registry<lie::Scheme>::find(name);
+    return found != nullptr ? *found : other;
 }
 
 /// A DP1 driver whose vectors become parallel, or whose value leaves its range, between the times t and t +
@@ -142,7 +142,6 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     if (failure.status == "nonfinite") d.detail = largest_load(model, node);
     if (model.rows() == 0 && model.all_rows().empty()) return d;
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
-    const lie::LoadEvaluation loads = loads_of(scheme);
     const dae::Model::Residual worst = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
     if (!d.detail.empty()) d.detail += "; ";
@@ -152,7 +151,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
                             rcond < 1e-12 ? ": redundant or singular constraints?" : "");
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
-            if (const double limit = force->stable_step(node, loads); h > limit)
+            if (const double limit = force->stable_step_in(scheme_or_default(scheme), node); h > limit)
                 d.detail =
                     fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
                                 limit, force->label());

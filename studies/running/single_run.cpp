@@ -201,12 +201,18 @@ void SingleRun::check_step(bool resumed) const
                                 scheme.name, force->label()));
         return;
     }
-    const dae::Model::StableStep stable = model.stable_step(description.x, scheme.loads);
+    const dae::Model::StableStep stable = model.stable_step(description.x, scheme);
     if (!(grid.h > stable.h)) return;
+    const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];
     const std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
-                    rounded_down(stable.h), model.forces()[static_cast<size_t>(stable.force)]->label());
-    if (!options.force && !resumed) throw io::UsageError("run: " + what + "; --force accepts it");
+                    rounded_down(stable.h), force.label());
+    if (!options.force && !resumed)
+        throw io::UsageError("run: " + what +
+                             (force.may_be_implicit() && scheme.implicit_springs
+                                  ? "; \"implicit\": true in this force removes the limit"
+                                  : "") +
+                             "; --force accepts it");
     warn(what);
 }
 

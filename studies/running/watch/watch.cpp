@@ -32,8 +32,9 @@ Watch::Watch(const dae::Model& model, const lie::State& x, const lie::Integrator
         const dae::Force* force = model.forces()[static_cast<size_t>(k)].get();
         if (const auto* contact = dynamic_cast<const contact::ContactForce*>(force))
             compliant.emplace_back(contact, k);
-        else if (force->internal_states() > 0 || std::isfinite(force->spring_limits.at_step) ||
-                 std::isfinite(force->stable_step(x, scheme.loads)))
+        else if (!force->is_implicit_in(scheme) &&
+                 (force->internal_states() > 0 || std::isfinite(force->spring_limits.at_step) ||
+                  std::isfinite(force->stable_step(x, scheme.loads))))
             with_limit.push_back(k);
     }
     values.deepest.resize(compliant.size());

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dae/force.hpp"
+
+#include "lie/schemes.hpp"
+
+namespace hilda::dae {
+
+bool Force::is_implicit_in(const lie::Scheme& scheme) const { return implicit && scheme.implicit_springs; }
+
+double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const
+{
+    return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity() : stable_step(x, scheme.loads);
+}
+
+}  // namespace hilda::dae

@@ -44,24 +44,26 @@ struct BoundaryLoad {
 
 /// Load of a pair on its boundary
 struct ComputeBoundaryLoad {
-    CellGrid grid;
-    const Position* position;
-    const std::uint32_t *i, *j;
-    const Load* load;
-    const Float4* torque;
+    ParticleView particles;
+    PairView pairs;
     const Boundary* boundary;
     const std::uint32_t* which;
     BoundaryLoad* out;
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const std::uint32_t n = which[k], b = j[n] & ~PairView::boundary_bit;
-        const Float4 f = load[n].F;
-        const Vec3 F{-f.x, -f.y, -f.z}, r = global_position(grid, position[i[n]]);
-        const Nearest near = nearest(boundary[b], r);
-        Vec3 T = (r - near.distance * near.n - boundary[b].r).cross(F);
-        if (torque != nullptr) T -= {torque[n].x, torque[n].y, torque[n].z};
+        const std::uint32_t n = which[k], b = pairs.j[n] & ~PairView::boundary_bit;
+        const Vec3 F = -to_double(pairs.load[n].F),
+                   r = global_position(particles.grid, particles.position[pairs.i[n]]);
+        Vec3 T = contact_lever(boundary[b], r).cross(F);
+        if (pairs.torque != nullptr) T -= to_double(pairs.torque[n]);
         out[k] = {F, T, b};
     }
+};
+
+/// 1 for a fixed particle, for par::largest
+struct IsFixed {
+    const Float4* omega;
+    HILDA_HD float operator()(std::uint32_t k) const { return omega[k].w > 0 ? 0 : 1; }
 };
 
 /// Displacement of a particle since the last neighbour search [units]
@@ -183,10 +185,8 @@ public:
         wrenches.assign(last_boundaries.size(), Wrench{});
         boundary_loads.resize(free_pairs);
         par::for_each(on, free_pairs,
-                      detail::ComputeBoundaryLoad{
-                          domain.grid, own.particle.position.data(), own.pairs.i.data(), own.pairs.j.data(),
-                          own.pairs.load.data(), rotation_laws ? own.pairs.torque.data() : nullptr,
-                          boundaries.data(), counts.data(), boundary_loads.data()});
+                      detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(),
+                                                  boundaries.data(), counts.data(), boundary_loads.data()});
         host_boundary_loads.resize(free_pairs);
         par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
                           free_pairs * sizeof(detail::BoundaryLoad));
@@ -212,26 +212,28 @@ public:
     ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
                                const std::vector<BoundaryVelocity>& after) override
     {
-        if (external_pairs == 0) return {};
-        if (!before.empty()) send(velocities_before, before), send(velocities_after, after);
+        if (external_blocks.size() == 0) return {};
         const bool moves = !before.empty();
-        par::for_each(on, external_blocks.size(),
-                      AddExternal{.grid = domain.grid,
-                                  .position = own.particle.position.data(),
-                                  .velocity = own.particle.velocity.data(),
-                                  .omega = own.particle.omega.data(),
-                                  .i = own.pairs.i.data(),
-                                  .j = own.pairs.j.data(),
-                                  .load = own.pairs.load.data(),
-                                  .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
-                                  .in_contact = own.pairs.in_contact.data(),
-                                  .boundary = boundaries.data(),
-                                  .before = moves ? velocities_before.data() : nullptr,
-                                  .after = moves ? velocities_after.data() : nullptr,
-                                  .which = external.data(),
-                                  .count = external_pairs,
-                                  .out = external_blocks.data()},
-                      serial_blocks);
+        if (moves) send(velocities_before, before), send(velocities_after, after);
+        const ParticleView particles = particle_view(domain, own.particle);
+        const PairView pairs = pair_view();
+        const std::uint32_t blocks = watch_blocks(boundary_pairs);
+        if (boundary_pairs > 0)
+            par::for_each(on, blocks,
+                          AddBoundaryLoads{.particles = particles,
+                                           .pairs = pairs,
+                                           .boundary = boundaries.data(),
+                                           .before = moves ? velocities_before.data() : nullptr,
+                                           .after = moves ? velocities_after.data() : nullptr,
+                                           .which = with_boundary.data(),
+                                           .count = boundary_pairs,
+                                           .out = external_blocks.data()},
+                          serial_blocks);
+        if (fixed_pairs > 0)
+            par::for_each(on, watch_blocks(fixed_pairs),
+                          AddFixedLoads{particles, pairs, with_fixed.data(), fixed_pairs,
+                                        external_blocks.data() + blocks},
+                          serial_blocks);
         return total(external_blocks, host_external_blocks);
     }
 
@@ -239,10 +241,7 @@ public:
     {
         const Particles<Backend>& p = own.particle;
         par::for_each(on, particle_blocks.size(),
-                      AddParticles{.grid = domain.grid,
-                                   .position = p.position.data(),
-                                   .velocity = p.velocity.data(),
-                                   .omega = p.omega.data(),
+                      AddParticles{.particles = particle_view(domain, p),
                                    .velocity_copy = only_forces ? nullptr : velocity_copy.data(),
                                    .omega_copy = only_forces ? nullptr : omega_copy.data(),
                                    .force = force.size() > 0 ? force.data() : nullptr,
@@ -336,22 +335,28 @@ private:
     void prepare_watch()
     {
         earlier_overlap = take_largest_overlap();
-        external_pairs = list_pairs(
-            FlagExternalPair{own.pairs.i.data(), own.pairs.j.data(), own.particle.omega.data(), nullptr},
-            external);
         const std::uint32_t n = own.particle.count, pairs = own.pairs.count;
+        const Float4* const omega = own.particle.omega.data();
+        boundary_pairs = fixed_pairs = 0;
+        if (boundaries.size() > 0)
+            boundary_pairs = list_pairs(FlagBoundaryPair{own.pairs.j.data(), nullptr}, with_boundary);
+        if (par::largest(on, n, detail::IsFixed{omega}) > 0)
+            fixed_pairs =
+                list_pairs(FlagFixedPair{own.pairs.i.data(), own.pairs.j.data(), omega, nullptr}, with_fixed);
         velocity_copy.resize(n), omega_copy.resize(n);
         particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
-        contact_blocks.resize(watch_blocks(pairs)), external_blocks.resize(watch_blocks(external_pairs));
+        contact_blocks.resize(watch_blocks(pairs));
+        external_blocks.resize(watch_blocks(boundary_pairs) + watch_blocks(fixed_pairs));
         overlaps.resize(is_cpu ? (pairs + loop_chunk - 1) / loop_chunk : 1);
         par::fill(on, overlaps.data(), overlaps.size(), 0.f);
     }
 
     std::size_t watch_bytes() const
     {
-        return external.bytes() + velocity_copy.bytes() + omega_copy.bytes() + particle_blocks.bytes() +
-               kinetic_blocks.bytes() + contact_blocks.bytes() + external_blocks.bytes() + overlaps.bytes() +
-               velocities_before.bytes() + velocities_after.bytes();
+        return with_boundary.bytes() + with_fixed.bytes() + velocity_copy.bytes() + omega_copy.bytes() +
+               particle_blocks.bytes() + kinetic_blocks.bytes() + contact_blocks.bytes() +
+               external_blocks.bytes() + overlaps.bytes() + velocities_before.bytes() +
+               velocities_after.bytes();
     }
 
     /// The elements of an array in the memory of the host
@@ -426,13 +431,13 @@ private:
     // the watch
     static constexpr std::size_t serial_blocks = 16;
     bool watched = false;
-    std::uint32_t external_pairs = 0;
-    par::Array<Backend, std::uint32_t> external;  ///< numbers of the pairs with external loads
+    std::uint32_t boundary_pairs = 0, fixed_pairs = 0;
+    par::Array<Backend, std::uint32_t> with_boundary, with_fixed;  ///< numbers of these pairs
     par::Array<Backend, Float4> velocity_copy, omega_copy;
     par::Array<Backend, BoundaryVelocity> velocities_before, velocities_after;
     par::Array<Backend, float> overlaps;
-    float earlier_overlap =
-        0;  ///< largest overlap since the last call of take_largest_overlap(), before `overlaps`
+    /// Largest overlap since the last call of take_largest_overlap() and before the last neighbour search
+    float earlier_overlap = 0;
     par::Array<Backend, ParticleSums> particle_blocks;
     par::Array<Backend, KineticSums> kinetic_blocks;
     par::Array<Backend, ContactSums> contact_blocks;

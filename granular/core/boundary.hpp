@@ -102,4 +102,12 @@ HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
     return b.v + b.omega.cross(point - b.r);
 }
 
+/// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is closest to the
+/// centre of the particle
+HILDA_HD inline Vec3 contact_lever(const Boundary& b, const Vec3& centre)
+{
+    const Nearest near = nearest(b, centre);
+    return centre - near.distance * near.n - b.r;
+}
+
 }  // namespace hilda::granular

@@ -23,6 +23,8 @@ struct alignas(16) Position {
 struct alignas(16) Float4 {
     float x = 0, y = 0, z = 0, w = 0;
 };
+/// The vector
+HILDA_HD inline Vec<double> to_double(const Float4& f) { return {f.x, f.y, f.z}; }
 
 /// Species of a particle: its material and its replica. Particles of different replicas do not interact.
 struct Species {

@@ -80,9 +80,7 @@ struct BoundaryVelocity {
 
 /// Particle sums of a block; copies the velocities for AddKinetic.
 struct AddParticles {
-    CellGrid grid;
-    const Position* position;
-    const Float4 *velocity, *omega;
+    ParticleView particles;
     Float4 *velocity_copy, *omega_copy;  ///< nullptr: only the applied forces are summed
     const Float4* force;                 ///< by particle id [N]; nullptr if there are none
     const std::uint32_t* id;
@@ -94,19 +92,18 @@ struct AddParticles {
         ParticleSums sum;
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
-            const Float4 v = velocity[k], w = omega[k];
+            const Float4 v = particles.velocity[k], w = particles.omega[k];
             if (velocity_copy != nullptr) velocity_copy[k] = v, omega_copy[k] = w;
             if (!(w.w > 0)) continue;
-            const Vec3 v_k{v.x, v.y, v.z};
+            const Vec3 v_k = to_double(v);
             if (force != nullptr) {
-                const Float4 F = force[id[k]];
-                const Vec3 F_k{F.x, F.y, F.z};
-                sum.force += F_k, sum.force_power += F_k.dot(v_k);
+                const Vec3 F = to_double(force[id[k]]);
+                sum.force += F, sum.force_power += F.dot(v_k);
             }
             if (velocity_copy == nullptr) continue;
             const double m = 1 / static_cast<double>(w.w), speed = v_k.norm();
             sum.mass += m, sum.momentum += m * v_k, sum.momentum_size += m * speed;
-            sum.moment += m * global_position(grid, position[k]);
+            sum.moment += m * global_position(particles.grid, particles.position[k]);
             sum.rate = larger(sum.rate, speed / v.w);
         }
         out[block] = sum;
@@ -144,30 +141,75 @@ struct AddKinetic {
     }
 };
 
-/// flag[n] = 1 for a pair with a boundary or a fixed particle
-struct FlagExternalPair {
+/// flag[n] = 1 for a pair with a boundary
+struct FlagBoundaryPair {
+    const std::uint32_t* j;
+    std::uint32_t* flag;
+    HILDA_HD void operator()(std::uint32_t n) const
+    {
+        flag[n] = (j[n] & PairView::boundary_bit) != 0 ? 1 : 0;
+    }
+};
+
+/// flag[n] = 1 for a pair with a fixed particle
+struct FlagFixedPair {
     const std::uint32_t *i, *j;
     const Float4* omega;
     std::uint32_t* flag;
     HILDA_HD void operator()(std::uint32_t n) const
     {
-        const bool boundary = (j[n] & PairView::boundary_bit) != 0;
-        flag[n] = boundary || !(omega[i[n]].w > 0) || !(omega[j[n]].w > 0) ? 1 : 0;
+        const bool particles = (j[n] & PairView::boundary_bit) == 0;
+        flag[n] = particles && !(omega[i[n]].w > 0 && omega[j[n]].w > 0) ? 1 : 0;
     }
 };
 
-/// Loads of a block of the flagged pairs
-struct AddExternal {
-    CellGrid grid;
-    const Position* position;
-    const Float4 *velocity, *omega;
-    const std::uint32_t *i, *j;
-    const Load* load;
-    const Float4* torque;  ///< nullptr without laws of rolling and spin
-    const std::uint8_t* in_contact;
+/// Loads of a block of the pairs with boundaries
+struct AddBoundaryLoads {
+    ParticleView particles;
+    PairView pairs;
     const Boundary* boundary;
     const BoundaryVelocity *before, *after;  ///< by boundary number; nullptr if none moves
-    const std::uint32_t* which;              ///< the flagged pairs
+    const std::uint32_t* which;              ///< numbers of these pairs
+    std::uint32_t count;
+    ExternalSums* out;
+
+    HILDA_HD void operator()(std::uint32_t block) const
+    {
+        ExternalSums sum;
+        const std::uint32_t end = end_of_block(block, count);
+        // The load of a pair without contact is zero. There are two partial sums, because an addition waits for
+        // the one before it.
+        Vec3 even{0, 0, 0}, odd{0, 0, 0};
+        for (std::uint32_t k = block * watch_block; k < end; k += 2) {
+            even += to_double(pairs.load[which[k]].F);
+            if (k + 1 < end) odd += to_double(pairs.load[which[k + 1]].F);
+        }
+        sum.F = even + odd;
+        if (before != nullptr)
+            for (std::uint32_t k = block * watch_block; k < end; ++k)
+                if (pairs.in_contact[which[k]] != 0) add_power(sum, which[k]);
+        out[block] = sum;
+    }
+    HILDA_HD void add_power(ExternalSums& sum, std::uint32_t n) const
+    {
+        const std::uint32_t b = pairs.j[n] & ~PairView::boundary_bit;
+        const BoundaryVelocity u = before[b], next = after[b];
+        const Vec3 F = to_double(pairs.load[n].F);
+        Vec3 T{0, 0, 0};
+        if (pairs.torque != nullptr) T = to_double(pairs.torque[n]);
+        if (u.omega.dot(u.omega) + next.omega.dot(next.omega) > 0)
+            T += contact_lever(boundary[b], global_position(particles.grid, particles.position[pairs.i[n]]))
+                     .cross(F);
+        sum.before += F.dot(u.v) + T.dot(u.omega), sum.after += F.dot(next.v) + T.dot(next.omega);
+    }
+};
+
+/// Loads of a block of the pairs with fixed particles. The centre of a fixed particle is at rest; its surface
+/// moves with its angular velocity.
+struct AddFixedLoads {
+    ParticleView particles;
+    PairView pairs;
+    const std::uint32_t* which;  ///< numbers of these pairs
     std::uint32_t count;
     ExternalSums* out;
 
@@ -177,38 +219,19 @@ struct AddExternal {
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const std::uint32_t n = which[k];
-            if (in_contact[n] == 0) continue;
-            const Float4 f = load[n].F, m = load[n].M;
-            const Vec3 F{f.x, f.y, f.z}, M{m.x, m.y, m.z};
+            if (pairs.in_contact[n] == 0) continue;
+            const Vec3 F = to_double(pairs.load[n].F), M = to_double(pairs.load[n].M);
             Vec3 T{0, 0, 0};
-            if (torque != nullptr) T = {torque[n].x, torque[n].y, torque[n].z};
-            if ((j[n] & PairView::boundary_bit) != 0) {
-                sum.F += F;
-                if (before != nullptr) add_work(sum, n, F, T);
-                continue;
-            }
-            // The centre of a fixed particle is at rest; its surface moves with its angular velocity.
-            const bool i_fixed = !(omega[i[n]].w > 0);
-            const std::uint32_t fixed = i_fixed ? i[n] : j[n];
-            const Float4 w = omega[fixed];
-            const double R = velocity[fixed].w;
+            if (pairs.torque != nullptr) T = to_double(pairs.torque[n]);
+            const bool i_fixed = !(particles.omega[pairs.i[n]].w > 0);
+            const std::uint32_t fixed = i_fixed ? pairs.i[n] : pairs.j[n];
+            const double R = particles.velocity[fixed].w;
             const Vec3 on_fixed = i_fixed ? R * M + T : R * M - T;
             sum.F += i_fixed ? -F : F;
-            const double power = -on_fixed.dot({w.x, w.y, w.z});
+            const double power = -on_fixed.dot(to_double(particles.omega[fixed]));
             sum.before += power, sum.after += power;
         }
         out[block] = sum;
-    }
-    HILDA_HD void add_work(ExternalSums& sum, std::uint32_t n, const Vec3& F, const Vec3& T) const
-    {
-        const std::uint32_t b = j[n] & ~PairView::boundary_bit;
-        const BoundaryVelocity u = before[b], next = after[b];
-        sum.before += F.dot(u.v) + T.dot(u.omega), sum.after += F.dot(next.v) + T.dot(next.omega);
-        if (!(u.omega.dot(u.omega) + next.omega.dot(next.omega) > 0)) return;
-        const Vec3 r = global_position(grid, position[i[n]]);
-        const Nearest near = nearest(boundary[b], r);
-        const Vec3 lever = (r - near.distance * near.n - boundary[b].r).cross(F);
-        sum.before += lever.dot(u.omega), sum.after += lever.dot(next.omega);
     }
 };
 

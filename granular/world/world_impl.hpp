@@ -33,7 +33,6 @@ inline double sphere_mass(double radius, double density)
     return 4.0 / 3 * M_PI * radius * radius * radius * density;
 }
 
-inline Vec3 to_double(const Float4& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 /// From the centre of j to that of i [m]
 inline Vec3 separation(const CellGrid& g, const Position& i, const Position& j)

@@ -124,32 +124,30 @@ double cpu_time()
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Prints the CPU time of a step of the bed at rest with and without the watch, and the median of the ratios.
-/// Blocks of steps of two equal worlds alternate, so that the load of the machine affects both.
-void report_watch(std::size_t n)
+/// Prints the CPU time of a step of the bed with and without the watch, and the median of the ratios. Blocks of
+/// steps of one world alternate, so that the load of the machine affects both.
+void report_watch(const char* phase, World& world, long first)
 {
-    omp_set_num_threads(1);
-    World worlds[] = {bed(n, {}), bed(n, {})};
-    worlds[0].set_watch(false);
-    for (World& w : worlds) w.step(std::lround(0.25 / h));
+    world.step(first);
     constexpr int rounds = 31;
-    constexpr long steps = 192;  // three samples
+    constexpr long steps = 3 * watch_limit::interval;
     std::vector<double> ratios;
     double total[2] = {0, 0};
     for (int round = 0; round < rounds; ++round) {
         double seconds[2];
-        for (const int k : {round % 2, 1 - round % 2}) {
+        for (const int on : {round % 2, 1 - round % 2}) {
+            world.set_watch(on == 1);
+            world.step(1);  // the watch begins with a sample
             const double begin = cpu_time();
-            worlds[k].step(steps);
-            total[k] += seconds[k] = cpu_time() - begin;
+            world.step(steps);
+            total[on] += seconds[on] = cpu_time() - begin;
         }
         ratios.push_back(seconds[1] / seconds[0]);
     }
     std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
-    std::printf(
-        "%zu particles, bed at rest, one thread, CPU time of a step: %.2f us without, %.2f us with the "
-        "watch; median of %d ratios: %.4f\n",
-        n, 1e6 * total[0] / (rounds * steps), 1e6 * total[1] / (rounds * steps), rounds, ratios[rounds / 2]);
+    std::printf("%9zu %-8s %10.2f %10.2f %10.4f\n", world.count(), phase, 1e6 * total[0] / (rounds * steps),
+                1e6 * total[1] / (rounds * steps), ratios[rounds / 2]);
+    std::fflush(stdout);
 }
 
 }  // namespace
@@ -157,7 +155,13 @@ void report_watch(std::size_t n)
 int main(int argc, char** argv)
 try {
     if (argc == 3 && std::strcmp(argv[1], "watch") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
-        report_watch(std::strtoul(argv[2], nullptr, 10));
+        omp_set_num_threads(1);
+        World world = bed(std::strtoul(argv[2], nullptr, 10), {});
+        std::printf(
+            "          CPU time of a step [us], watch    median of\n"
+            "particles phase       without       with     ratios\n");
+        report_watch("falling", world, 20);
+        report_watch("at rest", world, std::lround(0.25 / h));
         return 0;
     }
     const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;

@@ -169,7 +169,8 @@ TEST_CASE("gravity along a periodic axis does work", "[granular][watch]")
     const auto world = bed(Scheme::symplectic_euler, {4, 0, -9}, true);
     world->step(1);
     const double start = energy(world->watch());
-    world->step(64 * 300);  // the last step is a sample; the work is that until the next step
+    // the last step is a sample; the work is that until the next step
+    world->step(150 * granular::watch_limit::interval);
     const WatchRecord& w = world->watch();
     CHECK(w.work > 0.1 * w.largest_kinetic);
     CHECK(w.dissipated == Approx(start + w.work - energy(w)).epsilon(1e-3).margin(1e-3 * w.largest_kinetic));
@@ -347,5 +348,5 @@ TEST_CASE("the watch does not change the results and survives a checkpoint", "[g
     with->step(3000), resumed->step(3000);
     const bool same_bytes = with->to_bytes("run") == resumed->to_bytes("run");  // the record is part of them
     CHECK(same_bytes);
-    CHECK(with->watch().samples == 7000 / 64 + 1);
+    CHECK(with->watch().samples == 7000 / granular::watch_limit::interval + 1);
 }

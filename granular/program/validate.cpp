@@ -72,15 +72,15 @@ int validate(const Validation& v, ValidationOptions options, bool quiet, bool st
         if (line.is_due()) line.show(v.name + ' ' + std::to_string(std::lround(100 * share)) + " %");
     };
     ValidationResult result;
-    WatchRecord worst;
-    options.watch = &worst;
+    ValidationWarnings warnings;
+    options.warnings = &warnings;
     try {
         result = v.run(options);
         line.clear();
-        std::int64_t known = 0;
-        report_watch(worst, known, strict, [&](const std::string& text) {
-            if (!quiet) io::warning(v.name + ": " + text);
-        });
+        for (const ValidationWarning& w : warnings.largest()) {
+            if (strict) throw StrictWarning(w.name, w.text + strict_suffix);
+            if (!quiet) io::warning(v.name + ": " + w.text);
+        }
     } catch (const io::NumericalFailure& e) {
         line.clear();
         io::message("hilda: error[" + e.status + "]: " + v.name + ": " + e.what() + '\n');

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/watch_report.hpp"
 
-#include <array>
-#include <utility>
 #include <vector>
 
 namespace hilda::granular {
 
 namespace {
-
-constexpr std::pair<WatchRecord::Warning, const char*> warnings[] = {{WatchRecord::deep, "overlap_large"},
-                                                                     {WatchRecord::fast, "step_coarse"}};
 
 std::vector<double> components(const Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -19,7 +14,7 @@ std::vector<double> components(const Vec3& v) { return {v.x, v.y, v.z}; }
 io::Json watch_summary(const WatchRecord& w)
 {
     std::vector<std::string> given;
-    for (const auto& [which, status] : warnings)
+    for (const auto& [which, status] : watch_warnings)
         if ((w.warnings & which) != 0) given.emplace_back(status);
     // w.work is that until the next step; the balance gives that at the last sample
     const double energy = w.kinetic + w.potential + w.normal + w.tangential,
@@ -50,11 +45,11 @@ io::Json watch_summary(const WatchRecord& w)
 void report_watch(const WatchRecord& record, std::int64_t& known, bool strict,
                   const std::function<void(const std::string&)>& warn)
 {
-    for (const auto& [which, status] : warnings) {
+    for (const auto& [which, status] : watch_warnings) {
         if ((record.warnings & ~known & which) == 0) continue;
         known |= which;
         const std::string text = watch_warning(record, which);
-        if (strict) throw StrictWarning(status, text + " (a warning, with --strict)");
+        if (strict) throw StrictWarning(status, text + strict_suffix);
         warn(text);
     }
 }

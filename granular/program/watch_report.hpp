@@ -16,6 +16,8 @@ public:
     StrictWarning(const std::string& status, const std::string& what) : NumericalFailure(status, what) {}
 };
 
+constexpr const char* strict_suffix = " (a warning, with --strict)";  ///< of the message of StrictWarning
+
 /// The block `watch` of summary.json
 io::Json watch_summary(const WatchRecord& record);
 

@@ -13,6 +13,7 @@
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
 #include "granular/world/double_world.hpp"
+#include "io/message.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -105,7 +106,7 @@ Slide slide(double mu, bool incremental, const ValidationOptions& options, Valid
             out.friction_ratio =
                 max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
-    options.include(world);
+    options.include(io::formatted("%s, mu = %g", incremental ? "mindlin-incremental" : "mindlin", mu), world);
     return out;
 }
 

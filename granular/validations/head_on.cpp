@@ -9,6 +9,7 @@
 #include "granular/validations/soft_sphere.hpp"
 #include "granular/validations/validation.hpp"
 #include "granular/world/double_world.hpp"
+#include "io/message.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,15 @@ World world_of(const std::vector<Collision>& all, Scheme scheme, double h, const
     return world;
 }
 
+/// Name of a run with this collision
+std::string name_of(const Collision& m, Scheme scheme, double h)
+{
+    std::string name = io::formatted("%s, h = %g s, restitution %g", scheme_names[static_cast<int>(scheme)],
+                                     h, m.restitution);
+    if (m.drift != 0) name += io::formatted(", drift %g m/s", m.drift);
+    return name;
+}
+
 /// |v_end/v_i| of each collision, computed by World
 std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, double h,
                              const ValidationOptions& options)
@@ -116,7 +126,7 @@ std::vector<double> rebounds(const std::vector<Collision>& all, Scheme scheme, d
         separated =
             world.contacts().empty() && std::all_of(out.begin(), out.end(), [](double v) { return v > 0; });
     }
-    options.include(world);
+    options.include(name_of(all[0], scheme, h), world);
     return out;
 }
 
@@ -142,7 +152,8 @@ MomentumChange momentum_change(double drift, const ValidationOptions& options)
             momentum_change.of_all = max_or_nan(momentum_change.of_all, std::abs(now - start) / ulp);
             last = now;
         }
-        options.include(world);
+        options.include(name_of({.restitution = e, .drift = drift}, Scheme::symplectic_euler, step_of_text),
+                        world);
     }
     return momentum_change;
 }

@@ -151,7 +151,7 @@ std::vector<LatticeResponse> run_lattices(const std::vector<LoadCase>& all, cons
         if (part < 1 + run.h / run.ramp) lattices.apply_load(std::min(part, 1.));
     });
     step_to(end);
-    if (run.watched_by != nullptr) run.watched_by->include(world.watch());
+    run.ended(world);
     const std::vector<LatticeResponse::BoundaryForces> after = lattices.boundary_forces();
     const std::vector<double> low = lattices.heights();
     std::vector<LatticeResponse> pressed(all.size());

@@ -32,7 +32,7 @@ struct LatticeRun {
     double h = 1e-5;                        ///< [s]
     double settle = 2, ramp = 2, hold = 2;  ///< times without load, of increasing load and of full load [s]
     Device device = {};
-    WatchRecord* watched_by = nullptr;  ///< receives the warnings and extremes
+    std::function<void(const World&)> ended = [](const World&) {};  ///< called at the end of a run
 };
 
 /// Forces on the boundaries of one lattice before the load is applied and at the end, over the weight of a

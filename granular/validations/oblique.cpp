@@ -82,7 +82,7 @@ std::vector<Rebound> in_world(const std::vector<double>& angles, int law_index,
         world.add(p);
     }
     world.step(std::lround(end / step));
-    options.include(world);
+    options.include(laws[law_index], world);
     const std::vector<Particle> after = world.particles();
     std::vector<Rebound> out;
     for (std::size_t k = 0; k < angles.size(); ++k) out.emplace_back(after[k], angles[k]);

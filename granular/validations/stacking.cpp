@@ -91,7 +91,10 @@ public:
     explicit Stacking(const ValidationOptions& options)
         : options(options), mu_r(all_mu_r(options.full)), models(rolling_models)
     {
-        for (RollingModel& m : models) m.run.device = options.device, m.run.watched_by = options.watch;
+        for (RollingModel& m : models) {
+            m.run.device = options.device;
+            m.run.ended = [&options, name = m.name](const World& world) { options.include(name, world); };
+        }
     }
 
     ValidationResult run()

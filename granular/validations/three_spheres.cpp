@@ -84,7 +84,7 @@ std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<
         world.add(p);
     }
     world.step(std::lround(run.watch / run.h));
-    if (run.watched_by != nullptr) run.watched_by->include(world.watch());
+    run.ended(world);
 
     const std::vector<Particle> now = world.particles();
     std::vector<double> z(n);

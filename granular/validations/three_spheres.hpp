@@ -29,7 +29,7 @@ struct StackRun {
     double h = 1e-5;                 ///< [s]
     double settle = 0.5, watch = 2;  ///< time before and after the insertion of the third sphere [s]
     Device device = {};
-    WatchRecord* watched_by = nullptr;  ///< receives the warnings and extremes
+    std::function<void(const World&)> ended = [](const World&) {};  ///< called at the end of a run
 };
 
 /// Final height of the centre of the upper sphere over the radius, for each stack and its upper mass [kg].

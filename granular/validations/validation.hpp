@@ -17,16 +17,42 @@
 
 namespace hilda::granular {
 
+/// A warning of the watch over a run of a validation
+struct ValidationWarning {
+    std::string name;  ///< of the warning; see watch_warnings
+    std::string text;  ///< "RUN: WARNING"
+};
+
+/// The warnings of the watch over all runs of a validation
+class ValidationWarnings {
+public:
+    /// Adds those of a run. Runs with equal names count as one.
+    void include(const std::string& run, const WatchRecord& record);
+
+    /// All warnings of all runs
+    std::vector<ValidationWarning> all() const;
+    /// Of each kind of warning that with the largest value, with the number of other runs that have it
+    std::vector<ValidationWarning> largest() const;
+
+private:
+    struct WarnedRun {
+        std::string name;
+        WatchRecord record;
+    };
+    std::vector<WarnedRun> runs;
+};
+
 struct ValidationOptions {
     /// All parameter values of the dissertation; otherwise a selection that takes less time
     bool full = false;
-    Device device = {};            ///< device of all worlds
-    WatchRecord* watch = nullptr;  ///< receives the warnings and extremes of all worlds
+    Device device = {};                                    ///< device of all worlds
+    ValidationWarnings* warnings = nullptr;                ///< receives the warnings of all worlds
     std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
 
-    void include(const World& world) const
+    /// Adds the warnings of a run at its end.
+    void include(const std::string& run, const World& world) const
     {
-        if (watch != nullptr) watch->include(world.watch());
+        if (warnings != nullptr) warnings->include(run, world.watch());
     }
 };
 

@@ -78,11 +78,21 @@ struct WatchRecord {
 
     enum Warning : std::int64_t { deep = 1, fast = 2 };
 
+    /// The value that is above the limit of a warning
+    double extreme(Warning of) const { return of == deep ? largest_overlap : largest_displacement; }
     /// Adds the warnings and the extremes of overlap and displacement of another record.
     void include(const WatchRecord& other);
 };
 
-/// One line for each warning of the record that is in `bits`, without the prefix "warning"
+/// A warning and its name, which is the status of a run that it ends with --strict
+struct NamedWarning {
+    WatchRecord::Warning which;
+    const char* name;
+};
+constexpr NamedWarning watch_warnings[] = {{WatchRecord::deep, "overlap_large"},
+                                           {WatchRecord::fast, "step_coarse"}};
+
+/// Text of a warning in one line, without the prefix "warning"
 std::string watch_warning(const WatchRecord& record, WatchRecord::Warning which);
 
 }  // namespace hilda::granular

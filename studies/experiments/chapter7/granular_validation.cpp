@@ -4,6 +4,7 @@
 /// The tables of a validation become files, its checks become acceptance criteria.
 
 #include "io/error.hpp"
+#include "io/message.hpp"
 #include "io/progress.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/framework/table.hpp"
@@ -36,10 +37,12 @@ Table as_table(const ValidationTable& validation_table)
     return table;
 }
 
-granular::ValidationResult result_of(const Validation& validation, const StudyContext& study)
+granular::ValidationResult result_of(const Validation& validation, const StudyContext& study,
+                                     granular::ValidationWarnings& warnings)
 {
     granular::ValidationOptions options;
     options.full = study.options.grid == "full";
+    options.warnings = &warnings;
     io::ProgressLine line(study.options.quiet);
     options.progress = [&](double share) {
         if (line.is_due())
@@ -52,11 +55,23 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
     }
 }
 
+/// Prints the largest warning of each kind on stderr and adds the warnings of all runs to study.json.
+void report(const granular::ValidationWarnings& warnings, StudyContext& s)
+{
+    if (!s.options.quiet)
+        for (const granular::ValidationWarning& w : warnings.largest())
+            io::warning("study " + s.name + ": " + w.text);
+    for (const granular::ValidationWarning& w : warnings.all())
+        s.json["warnings"].push_back(w.name + ": " + w.text);
+}
+
 void validate(const Validation& validation, StudyContext& s)
 {
     if (!s.options.grid.empty()) io::one_of("--grid", s.options.grid, std::vector<std::string>{"full"});
-    const granular::ValidationResult result = result_of(validation, s);
+    granular::ValidationWarnings warnings;
+    const granular::ValidationResult result = result_of(validation, s, warnings);
     s.json["grid"] = s.options.grid.empty() ? "quick" : s.options.grid;
+    report(warnings, s);
     s.text << validation.description << '\n';
     for (const ValidationTable& t : result.tables) {
         const Table table = as_table(t);

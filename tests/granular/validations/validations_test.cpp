@@ -45,6 +45,32 @@ TEST_CASE("validation: head-on (long)", "[granular][validation]") { check_valida
 TEST_CASE("validation: brick (long)", "[granular][validation]") { check_validation("brick"); }
 TEST_CASE("validation: oblique", "[granular][validation]") { check_validation("oblique"); }
 
+TEST_CASE("the warnings of a validation are those of the watch over each of its runs",
+          "[granular][validation]")
+{
+    ValidationWarnings warnings;
+    WatchRecord quiet, deep, fast, deeper;
+    deep.warnings = WatchRecord::deep, deep.largest_overlap = 0.06;
+    fast.warnings = WatchRecord::fast, fast.largest_displacement = 0.2;
+    deeper.warnings = WatchRecord::deep | WatchRecord::fast;
+    deeper.largest_overlap = 0.08, deeper.largest_displacement = 0.15;
+    warnings.include("first", quiet);
+    CHECK(warnings.all().empty());
+    CHECK(warnings.largest().empty());
+    warnings.include("first", deep);
+    warnings.include("second", deeper);
+    warnings.include("first", fast);  // a second world of this run
+    REQUIRE(warnings.all().size() == 4);
+    const auto largest = warnings.largest();
+    REQUIRE(largest.size() == 2);
+    CHECK(largest[0].name == "overlap_large");
+    CHECK_THAT(largest[0].text,
+               Catch::StartsWith("second: an overlap of 0.08 ") && Catch::EndsWith(" (less in 1 other run)"));
+    CHECK(largest[1].name == "step_coarse");
+    CHECK_THAT(largest[1].text, Catch::StartsWith("first: a grain moves by 0.2 ") &&
+                                    Catch::EndsWith(" (less in 1 other run)"));
+}
+
 TEST_CASE("validations are listed by name, each with a description of one line", "[granular][validation]")
 {
     // The functions of stacking and waves have separate tests. The validations take half a minute and more

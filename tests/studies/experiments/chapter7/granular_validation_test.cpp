@@ -8,6 +8,7 @@
 
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 TEST_CASE("a granular validation is a study that writes its tables as files", "[studies][granular]")
 {
@@ -34,6 +35,17 @@ TEST_CASE("a granular validation is a study that writes its tables as files", "[
     CHECK(json["grid"] == "quick");
     CHECK(json["checks"].size() == 16);
     for (const auto& check : json["checks"]) CHECK(check["passed"] == true);
+
+    // both laws have overlaps of 5.4 % of the radius
+    CHECK_THAT(ended.err, Contains("warning: study granular-oblique: mindlin") &&
+                              Contains(": an overlap of 0.0537 of the smaller radius is above 0.05") &&
+                              Contains("(less in 1 other run)"));
+    CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+    REQUIRE(json["warnings"].size() == 2);
+    CHECK_THAT(json["warnings"][0].get<std::string>(),
+               StartsWith("overlap_large: mindlin: an overlap of 0.0537"));
+    CHECK_THAT(json["warnings"][1].get<std::string>(),
+               StartsWith("overlap_large: mindlin-incremental: an overlap of 0.0537"));
 }
 
 TEST_CASE("a granular study rejects options that it does not have", "[studies][granular]")

@@ -26,8 +26,7 @@ std::string watch_warning(const WatchRecord& w, WatchRecord::Warning which)
             w.largest_overlap, watch_limit::overlap);
     return io::formatted(
         "a grain moves by %.3g of its radius in one step, more than %g: contacts may be missed; a smaller "
-        "step "
-        "is needed",
+        "step is needed",
         w.largest_displacement, watch_limit::displacement);
 }
 
@@ -204,8 +203,7 @@ void World::check_watch()
     if (gain <= w.gain_tolerance) return;
     throw EnergyCreated(io::formatted(
         "the grains have gained %.3g J until t = %.9g s, %.3g of their largest kinetic energy, although "
-        "nothing "
-        "drives them; the error of the integrator explains %.3g J at most; a smaller step is needed",
+        "nothing drives them; the error of the integrator explains %.3g J at most; a smaller step is needed",
         gain, time, gain / w.largest_kinetic, w.gain_tolerance));
 }
 

@@ -102,29 +102,9 @@ void FrictionPair::advance(const ContactState& now, const Motion& bi, const Moti
     history.touching = touching;
 }
 
-/// M⁻¹, K and D of the relative motions of a contact: sliding along u and w, approach along n, rolling about u and
-/// w, spinning about n
-struct FrictionPair::Linearised {
-    using Mat6 = Eigen::Matrix<double, 6, 6>;
-    using Vec6 = Eigen::Matrix<double, 6, 1>;
-    Mat6 W = Mat6::Zero();
-    Vec6 K, D;
-
-    /// Whether the largest eigenvalue of √P W √P with P = 2 d h D + h² K is below 4; d: damping_factor
-    bool is_stable(double h, double damping_factor) const
-    {
-        const Vec6 P = 2 * damping_factor * h * D + h * h * K;
-        if (P.dot(W.diagonal()) < 4) return true;  // the trace is an upper limit
-        const Vec6 root = P.cwiseSqrt();
-        const Mat6 scaled = root.asDiagonal() * W * root.asDiagonal();
-        return Eigen::SelfAdjointEigenSolver<Mat6>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() <
-               4;
-    }
-};
-
-FrictionPair::Linearised FrictionPair::linearised(const ContactState& now, const Springs& springs,
-                                                  const NormalSupport& normal, const Motion& bi,
-                                                  const Motion& bj, ContactCounts contacts) const
+lie::LinearSprings<6> FrictionPair::linear_springs(const ContactState& now, const Springs& springs,
+                                                   const NormalSupport& normal, const Motion& bi,
+                                                   const Motion& bj, ContactCounts contacts) const
 {
     using Rows = Eigen::Matrix<double, 6, 3>;
     const Vec3 n = now.contact_point.n, u = n.unitOrthogonal(), w = n.cross(u);
@@ -132,7 +112,8 @@ FrictionPair::Linearised FrictionPair::linearised(const ContactState& now, const
     constexpr int normal_row = 2;
     Rows linear = Rows::Zero();
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
-    Linearised of;
+    lie::LinearSprings<6> of;
+    of.W.setZero();
     const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int number) {
         if (!body.moves()) return;
         const Vec3 s = C - motion.r;
@@ -147,7 +128,7 @@ FrictionPair::Linearised FrictionPair::linearised(const ContactState& now, const
     add(inertia_j, bj, now.contact_point.C_j, contacts.of_j);
     if (normal.rigid && of.W(normal_row, normal_row) > 0) {
         // eliminate the constrained normal motion: Schur complement
-        const Linearised::Vec6 normal_column = of.W.col(normal_row);
+        const lie::LinearSprings<6>::Vector normal_column = of.W.col(normal_row);
         of.W -= normal_column * normal_column.transpose() / normal_column[normal_row];
     }
     of.K << springs.K_slide, springs.K_slide, normal.K, springs.K_roll, springs.K_roll, springs.K_spin;
@@ -175,7 +156,7 @@ bool FrictionPair::is_stable(double h, double damping_factor, const ContactState
             (2 * P(springs.K_roll, springs.D_roll) + P(springs.K_spin, springs.D_spin)) * rotations <
         4)
         return true;
-    return linearised(now, springs, normal, bi, bj, contacts).is_stable(h, damping_factor);
+    return linear_springs(now, springs, normal, bi, bj, contacts).is_stable(h, damping_factor);
 }
 
 double FrictionPair::elastic_energy(const ContactState& now, const Wrench& load,
@@ -193,14 +174,7 @@ double FrictionPair::elastic_energy(const ContactState& now, const Wrench& load,
 double FrictionPair::stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
                                  const Motion& bj, ContactCounts contacts, double damping_factor) const
 {
-    const Linearised of = linearised(now, friction->springs(now), normal, bi, bj, contacts);
-    double lower = 1e-15, upper = 1e6;  // [s]
-    if (of.is_stable(upper, damping_factor)) return infinite;
-    while (upper > lower * (1 + 1e-12)) {
-        const double middle = std::sqrt(lower * upper);
-        (of.is_stable(middle, damping_factor) ? lower : upper) = middle;
-    }
-    return lower;
+    return linear_springs(now, friction->springs(now), normal, bi, bj, contacts).stable_step(damping_factor);
 }
 
 }  // namespace hilda::contact

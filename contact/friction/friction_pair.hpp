@@ -5,6 +5,7 @@
 
 #include "contact/friction/friction.hpp"
 #include "lie/check.hpp"
+#include "lie/linear_springs.hpp"
 
 namespace hilda::contact {
 
@@ -61,9 +62,9 @@ public:
 
     /// The largest step [s] for which symplectic Euler is stable with the springs and dampers of this
     /// contact, all in the stick regime, for the curvatures and the normal force of `now`. It is the smallest
-    /// h for which 4 M - 2 h D - h² K is singular. M⁻¹ is the 6 × 6 matrix of inverse effective masses of the
-    /// relative motions: sliding along u and w, approach along n, rolling about u and w, spinning about n.
-    /// For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
+    /// h for which 4 M - 2 h D - h² K is singular (see lie::LinearSprings). M⁻¹ is the 6 × 6 matrix of inverse
+    /// effective masses of the relative motions: sliding along u and w, approach along n, rolling about u and
+    /// w, spinning about n. For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
     ///
     /// The mass of a body with several contacts is divided equally among them. If each contact is stable with
     /// its share, the whole system is. Infinite if no finite step is unstable. damping_factor: see
@@ -91,9 +92,10 @@ protected:
     /// Sets m, I_roll, I_spin and max_lever of `now`
     void set_fictitious_inertia(ContactState& now, const Motion& bi, const Motion& bj) const;
 
-    struct Linearised;
-    Linearised linearised(const ContactState& now, const Springs& springs, const NormalSupport& normal,
-                          const Motion& bi, const Motion& bj, ContactCounts contacts) const;
+    /// Springs of sliding along u and w, approach along n, rolling about u and w, and spinning about n
+    lie::LinearSprings<6> linear_springs(const ContactState& now, const Springs& springs,
+                                         const NormalSupport& normal, const Motion& bi, const Motion& bj,
+                                         ContactCounts contacts) const;
 
     double smaller_size;  ///< smaller size of the two surfaces [m]; infinite if neither has one
 

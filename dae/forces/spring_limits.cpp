@@ -2,46 +2,21 @@
 #include "dae/forces/spring_limits.hpp"
 
 #include "dae/model.hpp"
+#include "lie/linear_springs.hpp"
 #include "lie/solver/saddle.hpp"
-
-#include <Eigen/Eigenvalues>
-
-#include <cmath>
 
 namespace hilda::dae {
 
 namespace {
 
-using Eigen::MatrixXd, Eigen::VectorXd;
-
-constexpr double symplectic_euler = 2, leapfrog = 4;  // β
 constexpr double rounding = 1e-10;  // of W, relative to that of free bodies: the constraints permit no motion
-
-/// The largest h for which the eigenvalues of W (h² k + β h c) are below 4
-double limit(const MatrixXd& W, const VectorXd& k, const VectorXd& c, double beta)
-{
-    const auto stable = [&](double h) {
-        const VectorXd root = (h * h * k + beta * h * c).cwiseMax(0).cwiseSqrt();
-        const MatrixXd scaled = root.asDiagonal() * W * root.asDiagonal();
-        return Eigen::SelfAdjointEigenSolver<MatrixXd>(scaled, Eigen::EigenvaluesOnly)
-                   .eigenvalues()
-                   .maxCoeff() < 4;
-    };
-    double lower = 1e-15, upper = 1e6;  // [s]
-    if (stable(upper)) return std::numeric_limits<double>::infinity();
-    while (upper > lower * (1 + 1e-12)) {
-        const double middle = std::sqrt(lower * upper);
-        (stable(middle) ? lower : upper) = middle;
-    }
-    return lower;
-}
 
 }  // namespace
 
 void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
 {
     const lie::Mass& mass = model.mass();
-    VectorXd b(K.size());
+    Eigen::VectorXd b(K.size());
     for (const auto& force : model.forces()) {
         force->spring_limits = {};
         std::vector<Force::SpringRow> rows(static_cast<size_t>(force->max_spring_rows()));
@@ -49,11 +24,12 @@ void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
         const auto n = static_cast<Eigen::Index>(rows.size());
         if (n == 0) continue;
         const auto [i, j] = force->bodies();
-        MatrixXd W(n, n);
-        VectorXd k(n), c(n);
+        lie::LinearSprings<Eigen::Dynamic> springs;
+        springs.W.resize(n, n), springs.K.resize(n), springs.D.resize(n);
+        auto& W = springs.W;
         for (Eigen::Index column = 0; column < n; ++column) {
             const Force::SpringRow& row = rows[static_cast<size_t>(column)];
-            k[column] = row.stiffness, c[column] = row.damping;
+            springs.K[column] = row.stiffness, springs.D[column] = row.damping;
             double free = 0;  // inverse effective mass of the bodies without constraints
             b.setZero();
             const auto set = [&](int body, const Vec3& r, const Vec3& pi) {
@@ -75,7 +51,8 @@ void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
             if (!(W(column, column) > rounding * free)) W(column, column) = 0;
         }
         W = (0.5 * (W + W.transpose())).eval();
-        force->spring_limits = {limit(W, k, c, symplectic_euler), limit(W, k, c, leapfrog)};
+        force->spring_limits = {springs.stable_step(lie::damping_factor(LoadEvaluation::at_step)),
+                                springs.stable_step(lie::damping_factor(LoadEvaluation::extrapolated))};
     }
 }
 

@@ -21,10 +21,7 @@ using lie::State;
 ///     P b = v,    | M  Cᵀ | | v |   | b |
 ///                 | C  0  | | λ | = | 0 |
 ///
-/// a step h is stable as long as the eigenvalues of W (h² k + β h c) are below 4, with the diagonal matrices
-/// k and c of the stiffness and damping. β = 2 for symplectic Euler, whose loads use the velocities of the
-/// last half step, and β = 4 for leapfrog with extrapolated velocities: the limit is the root -1 of both
-/// schemes.
+/// the limits are those of lie::LinearSprings with this W and the stiffness and damping of the rows.
 ///
 /// Each force is treated alone, with the constraints at the start. A step above the limit is unstable;
 /// parallel springs may have a smaller limit. Forces in directions in which the constraints permit no motion

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/linear_springs.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+
+namespace hilda::lie {
+
+template <int n>
+bool LinearSprings<n>::is_stable(double h, double damping_factor) const
+{
+    const Vector P = (2 * damping_factor * h * D + h * h * K).cwiseMax(0);
+    if (P.dot(W.diagonal()) < 4) return true;  // the trace of W P is an upper limit
+    const Vector root = P.cwiseSqrt();
+    const Matrix scaled = root.asDiagonal() * W * root.asDiagonal();  // has the eigenvalues of W P
+    return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() < 4;
+}
+
+template <int n>
+double LinearSprings<n>::stable_step(double damping_factor) const
+{
+    double lower = 1e-15, upper = 1e6;  // [s]
+    if (is_stable(upper, damping_factor)) return std::numeric_limits<double>::infinity();
+    while (upper > lower * (1 + 1e-12)) {
+        const double middle = std::sqrt(lower * upper);
+        (is_stable(middle, damping_factor) ? lower : upper) = middle;
+    }
+    return lower;
+}
+
+template struct LinearSprings<6>;
+template struct LinearSprings<Eigen::Dynamic>;
+
+}  // namespace hilda::lie

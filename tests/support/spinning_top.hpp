@@ -11,6 +11,22 @@ namespace hilda::tests {
 using lie::Mat3;
 using lie::Vec3;
 
+/// State of a tilted, spinning and precessing top, consistent in position, velocity and acceleration. Its point s_bar
+/// [m, body frame] is at the origin with the velocity v [m/s].
+inline lie::State tilted_top(const lie::System& top, const Vec3& s_bar, const Vec3& v = Vec3::Zero())
+{
+    lie::State x;
+    x.body.resize(1);
+    lie::Motion& body = x.body[0];
+    body.A = lie::exp(Vec3(0.7, -0.4, 0.2));
+    body.omega_bar = Vec3(1.0, -2.0, 6.0);
+    body.r = -body.A * s_bar;
+    body.rdot = v - body.A * body.omega_bar.cross(s_bar);
+    lie::Saddle K(top);
+    lie::solve_accelerations(top, K, x);
+    return x;
+}
+
 /// The point s_bar of the body is fixed at the origin. With free = true the body is torque-free instead.
 class SpinningTop final : public lie::System {
 public:
@@ -61,22 +77,8 @@ public:
         return free ? 0 : 2.0 * 9.81 * x.body[0].r.z();
     }
 
-    /// A tilted, spinning and precessing top, consistent in position, velocity and acceleration
-    lie::State start() const
-    {
-        lie::State x;
-        x.body.resize(1);
-        lie::Motion& body = x.body[0];
-        body.A = lie::exp(Vec3(0.7, -0.4, 0.2));
-        body.omega_bar = Vec3(1.0, -2.0, 6.0);
-        if (!free) {
-            body.r = -body.A * s_bar;
-            body.rdot = -body.A * body.omega_bar.cross(s_bar);
-        }
-        lie::Saddle K(*this);
-        lie::solve_accelerations(*this, K, x);
-        return x;
-    }
+    /// See tilted_top()
+    lie::State start() const { return tilted_top(*this, free ? Vec3(0, 0, 0) : s_bar); }
 
     const bool free;
     const Vec3 s_bar = Vec3(0.05, -0.1, -0.25);

@@ -4,10 +4,9 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
-#include "lie/solver/saddle.hpp"
-#include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/spinning_top.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -74,19 +73,7 @@ public:
         d.block<3, 3>(3, 9) = lie::Mat3(Vec3(-0.1, -0.2, -0.15).asDiagonal());
     }
 
-    lie::State start() const
-    {
-        lie::State x;
-        x.body.resize(1);
-        lie::Motion& body = x.body[0];
-        body.A = lie::exp(Vec3(0.7, -0.4, 0.2));
-        body.omega_bar = Vec3(1.0, -2.0, 6.0);
-        body.r = -body.A * s_bar;
-        body.rdot = Vec3(0.4, 0, 0) - body.A * body.omega_bar.cross(s_bar);
-        lie::Saddle K(*this);
-        lie::solve_accelerations(*this, K, x);
-        return x;
-    }
+    lie::State start() const { return tests::tilted_top(*this, s_bar, Vec3(0.4, 0, 0)); }
 
 private:
     const Vec3 s_bar = Vec3(0.05, -0.1, -0.25);

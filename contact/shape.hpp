@@ -5,6 +5,8 @@
 
 #include "contact/surface.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 namespace hilda::contact {
@@ -19,5 +21,15 @@ struct Shape {
     Vec3 to_surface(const Vec3& s_bar) const { return orientation.transpose() * (s_bar - position); }
     Vec3 to_body(const Vec3& a) const { return position + orientation * a; }
 };
+
+/// The smaller size of two surfaces [m]. A surface without a size, such as a plane, does not count; infinite if
+/// neither has one.
+inline double smaller_size(const Shape& i, const Shape& j)
+{
+    double smaller = std::numeric_limits<double>::infinity();
+    for (const Shape* s : {&i, &j})
+        if (s->surface->size() > 0) smaller = std::min(smaller, s->surface->size());
+    return smaller;
+}
 
 }  // namespace hilda::contact

@@ -50,10 +50,8 @@ CompliantContact::CompliantContact(std::string name, Shape i, Shape j, Inertia i
                                    std::shared_ptr<const FrictionModel> friction)
     : FrictionPair(std::move(name), std::move(i), std::move(j), std::move(inertia_i), std::move(inertia_j),
                    std::move(friction)),
-      law(std::move(law)), other_points(OtherPoints::possible(this->i, this->j)
-                                            ? std::make_unique<const OtherPoints>(this->i, this->j)
-                                            : nullptr),
-      detector(make_detector(this->i, this->j)), m_normal(reduced(this->inertia_i.m, this->inertia_j.m))
+      law(std::move(law)), detector(make_detector(this->i, this->j)),
+      m_normal(reduced(this->inertia_i.m, this->inertia_j.m))
 {}
 
 NormalInput CompliantContact::normal_input(const ContactPoint& contact_point, const Motion& bi,

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "contact/detection/other_points.hpp"
+#include "contact/detection/detector.hpp"
 #include "contact/friction/friction_pair.hpp"
 #include "contact/normal/normal_law.hpp"
 
@@ -69,8 +69,6 @@ public:
     }
 
     const std::shared_ptr<const NormalLaw> law;
-    /// The watch over other contact points; nullptr for a pair with one contact point
-    std::unique_ptr<const OtherPoints> other_points;
 
 private:
     NormalInput normal_input(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;

@@ -7,7 +7,6 @@
 #include "dae/model.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
 namespace hilda::contact {
 
@@ -15,14 +14,14 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
                            int j, const Shape& shape_j, std::shared_ptr<const NormalLaw> law,
                            std::shared_ptr<const FrictionModel> friction)
     : TrackedForce(name, model, i, j), contact(name, shape_i, shape_j, inertia(model, i), inertia(model, j),
-                                               std::move(law), std::move(friction))
+                                               std::move(law), std::move(friction)),
+      other_points(OtherPoints::of(shape_i, shape_j))
 {}
 
 ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& history) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const auto last =
-        restored<NodePoint>(x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
+    const NodePoint last = node_point(x);
     return last.is_at(bi, bj) ? contact.evaluate_at(last.contact_point, bi, bj, history)
                               : contact.evaluate(bi, bj, history);
 }
@@ -30,7 +29,7 @@ ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& h
 int ContactForce::internal_states() const
 {
     return TrackedForce::internal_states() + reals<NodePoint>() +
-           (contact.other_points ? reals<OtherPoints::Pose>() : 0);
+           (other_points ? reals<OtherPoints::Pose>() : 0);
 }
 
 void ContactForce::save(const Instant& now, lie::State& x) const
@@ -38,22 +37,21 @@ void ContactForce::save(const Instant& now, lie::State& x) const
     static_assert(reals<NodePoint>() == 2 * (3 + 9) + 5 * 3 + 1 + 2 * 9, "NodePoint must not have padding");
     TrackedForce::save(now, x);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
+    double* const saved = x.internal_state.data() + first_of_node_point();
     contact::save(NodePoint{.r_i = bi.r,
                             .r_j = bj.r,
                             .A_i = bi.A,
                             .A_j = bj.A,
                             .contact_point = now.contact_state.contact_point},
-                  x.internal_state.data() + first_internal_state + TrackedForce::internal_states());
-    if (!contact.other_points || !(now.contact_state.N > 0)) return;
-    double* saved =
-        x.internal_state.data() + first_internal_state + TrackedForce::internal_states() + reals<NodePoint>();
-    auto last = restored<OtherPoints::Pose>(saved);
+                  saved);
+    if (!other_points || !(now.contact_state.N > 0)) return;
+    auto last = restored<OtherPoints::Pose>(saved + reals<NodePoint>());
     try {
-        contact.other_points->check(name, bi, bj, now.contact_state.contact_point, last);
+        other_points->check(name, bi, bj, now.contact_state.contact_point, last);
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
-    contact::save(last, saved);
+    contact::save(last, saved + reals<NodePoint>());
 }
 
 bool ContactForce::is_active(const lie::State& x) const
@@ -91,33 +89,27 @@ double ContactForce::stable_step(const lie::State& x, lie::LoadEvaluation evalua
     }
 }
 
-ContactPoint ContactForce::contact_point_of_node(const lie::State& x) const
+ContactForce::NodePoint ContactForce::node_point(const lie::State& x) const
 {
-    return restored<NodePoint>(x.internal_state.data() + first_internal_state +
-                               TrackedForce::internal_states())
-        .contact_point;
+    return restored<NodePoint>(x.internal_state.data() + first_of_node_point());
 }
 
 bool ContactForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const
 {
     if (!is_active(x) || !is_touching(x)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const ContactState now = contact.state_without_history(contact_point_of_node(x), bi, bj);
+    const ContactState now = contact.state_without_history(node_point(x).contact_point, bi, bj);
     return contact.is_stable(h, lie::damping_factor(evaluation), now, bi, bj, touching_contacts(x));
 }
 
 double ContactForce::overlap(const lie::State& x) const
 {
-    static_assert(offsetof(NodePoint, contact_point.gap) % sizeof(double) == 0);
-    if (!is_active(x) || !is_touching(x)) return 0;
-    const double gap = x.internal_state[first_internal_state + TrackedForce::internal_states() +
-                                        offsetof(NodePoint, contact_point.gap) / sizeof(double)];
-    return std::max(0., -gap);
+    return is_active(x) && is_touching(x) ? std::max(0., -node_point(x).contact_point.gap) : 0;
 }
 
 double ContactForce::relative_overlap(const lie::State& x) const
 {
-    return is_active(x) && is_touching(x) ? contact.relative_overlap(contact_point_of_node(x)) : 0;
+    return is_active(x) && is_touching(x) ? contact.relative_overlap(node_point(x).contact_point) : 0;
 }
 
 }  // namespace hilda::contact

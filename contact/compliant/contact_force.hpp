@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/compliant/contact.hpp"
+#include "contact/detection/other_points.hpp"
 #include "contact/friction/tracked_force.hpp"
 
 namespace hilda::contact {
@@ -45,11 +46,11 @@ private:
     bool applies_normal_force() const override { return true; }
     bool is_near_contact(const lie::State& x) const override;
     void save(const Instant& now, lie::State& x) const override;
-    ContactPoint contact_point_of_node(const lie::State& x) const;
 
     /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and the
     /// poses of the bodies there. Loads, energy and output at these poses do not detect the contact again. The
-    /// poses are compared bit by bit, so the result depends on x only.
+    /// poses are compared bit by bit, so the result depends on x only. For a pair with other_points their
+    /// OtherPoints::Pose follows.
     struct NodePoint {
         Vec3 r_i, r_j;
         Mat3 A_i, A_j;
@@ -60,7 +61,11 @@ private:
             return r_i == bi.r && r_j == bj.r && A_i == bi.A && A_j == bj.A;
         }
     };
+    NodePoint node_point(const lie::State& x) const;
+    /// Index of NodePoint in State::internal_state
+    int first_of_node_point() const { return first_internal_state + TrackedForce::internal_states(); }
 
+    const std::unique_ptr<const OtherPoints> other_points;  ///< nullptr for a pair with one contact point
     const dae::Constraint* constraint = nullptr;
 };
 

@@ -6,7 +6,6 @@
 #include "contact/surfaces/torus.hpp"
 #include "lie/check.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -18,12 +17,6 @@ constexpr double largest_motion = 0.02;  // between two searches, relative to th
 constexpr double rounding = 1e-6;        // overlap that is counted as zero, relative to the smaller size
 // A negative sum of curvatures that an overlap of the same order makes positive, relative to the curvatures
 constexpr double flat = 0.05;
-
-double smaller_size(const Shape& i, const Shape& j)
-{
-    const double a = i.surface->size(), b = j.surface->size();
-    return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b);
-}
 
 bool is_sphere(const Shape& s) { return surface_as<Sphere>(s) != nullptr; }
 
@@ -48,25 +41,30 @@ bool OtherPoints::possible(const Shape& i, const Shape& j)
     return (torus && both_curved) || may_touch_twice(i, j) || may_touch_twice(j, i);
 }
 
+std::unique_ptr<const OtherPoints> OtherPoints::of(const Shape& i, const Shape& j)
+{
+    return possible(i, j) ? std::make_unique<const OtherPoints>(i, j) : nullptr;
+}
+
 void OtherPoints::check(const std::string& contact, const Motion& bi, const Motion& bj,
                         const ContactPoint& followed, Pose& last) const
 {
-    const auto fail = [&](const std::string& what) {
-        throw lie::NumericalFailure("contact_not_unique", "contact '" + contact + "': " + what);
+    const auto fail = [&](const auto&... parts) {
+        std::ostringstream what;
+        what.precision(3);
+        what << "contact '" << contact << "': ";
+        (what << ... << parts);
+        throw lie::NumericalFailure("contact_not_unique", what.str());
     };
-    std::ostringstream what;
-    what.precision(3);
     if (followed.gap < -rounding * size) {
         const double of_i = principal_curvatures(followed.K_i, followed.n).least,
                      of_j = principal_curvatures(followed.K_j, followed.n).least,
                      least = least_curvature(followed);
-        if (!(least > -flat * (std::abs(of_i) + std::abs(of_j)))) {
-            what << "the surfaces overlap where one does not fit into the other, and touch at other points "
-                    "too: the sum "
-                    "of their curvatures must be positive, got "
-                 << least << " 1/m (least curvatures " << of_i << " and " << of_j << " 1/m)";
-            fail(what.str());
-        }
+        if (!(least > -flat * (std::abs(of_i) + std::abs(of_j))))
+            fail(
+                "the surfaces overlap where one does not fit into the other, and touch at other points too: "
+                "the sum of their curvatures must be positive, got ",
+                least, " 1/m (least curvatures ", of_i, " and ", of_j, " 1/m)");
     }
     const PlacedShape at_i(i, bi), at_j(j, bj);
     // A sphere does not change if it turns.
@@ -77,10 +75,9 @@ void OtherPoints::check(const std::string& contact, const Motion& bi, const Moti
     last = now;
     const auto other = common_normal.find_overlap_besides(followed, bi, bj, rounding * size);
     if (!other) return;
-    what << "the surfaces overlap by " << -other->gap << " m at another point, "
-         << (other->C() - followed.C()).norm() << " m from the one that the contact follows (gap "
-         << followed.gap << " m); a contact has one contact point";
-    fail(what.str());
+    fail("the surfaces overlap by ", -other->gap, " m at another point, ", (other->C() - followed.C()).norm(),
+         " m from the one that the contact follows (gap ", followed.gap,
+         " m); a contact has one contact point");
 }
 
 }  // namespace hilda::contact

@@ -20,6 +20,8 @@ public:
     /// Whether the pair may have several contact points: a torus, or a concave surface other than a sphere or
     /// cylinder around a sphere. Height maps and triangle meshes are not searched.
     static bool possible(const Shape& i, const Shape& j);
+    /// The search for a pair that may have several contact points, otherwise nullptr
+    static std::unique_ptr<const OtherPoints> of(const Shape& i, const Shape& j);
 
     /// The pose of surface i in the frame of surface j at the last search; A is zero before the first one
     struct Pose {

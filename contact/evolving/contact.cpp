@@ -18,14 +18,14 @@ namespace {
 constexpr double min_relative_curvature = 1e-6;
 constexpr int max_iterations = 50;
 
-double smaller_size(const Shape& i, const Shape& j)
+/// Throws lie::InvalidInput if neither surface has a size.
+double characteristic_length(const Shape& i, const Shape& j)
 {
-    const double a = i.surface->size(), b = j.surface->size();
-    if (a > 0 && b > 0) return std::min(a, b);
-    if (!(a + b > 0))
+    const double L = smaller_size(i, j);
+    if (!std::isfinite(L))
         lie::reject("contact::EvolvingContact", "at least one of the two surfaces must be curved",
                     i.surface->name() + " and " + j.surface->name());
-    return a + b;
+    return L;
 }
 
 /// |∇G|. `a` is the point in the surface frame [m], for the message. Throws lie::NumericalFailure
@@ -102,12 +102,11 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
 EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
                                  const ImplicitFriction& law, NormalRows normal_rows,
                                  const Unilateral& unilateral)
-    : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(smaller_size(shape_i, shape_j)),
+    : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(characteristic_length(shape_i, shape_j)),
       friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
-      common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j))
+      common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j)),
+      other_points(OtherPoints::of(shape_i, shape_j))
 {
-    if (OtherPoints::possible(shape_i, shape_j))
-        other_points = std::make_unique<const OtherPoints>(shape_i, shape_j);
     if (is_regularised()) law.validate();
     if (!(unilateral.restitution >= 0 && unilateral.restitution <= 1))
         lie::reject("contact::EvolvingContact", "the restitution must be from 0 to 1",

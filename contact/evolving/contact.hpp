@@ -184,7 +184,7 @@ private:
 
     CommonNormal common_normal;
     std::unique_ptr<Detector> detector;
-    std::unique_ptr<const OtherPoints> other_points;  ///< nullptr for a pair with one contact point
+    const std::unique_ptr<const OtherPoints> other_points;  ///< nullptr for a pair with one contact point
 };
 
 }  // namespace hilda::contact

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include <algorithm>
 
 namespace hilda::contact {
 
@@ -12,15 +11,6 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double longest_lever = 10;  // upper limit of the lever arm of rolling, relative to the smaller size
-
-/// The smaller size of two surfaces [m]; a plane has no size
-double smaller_size_of(const Shape& i, const Shape& j)
-{
-    double smaller = infinite;
-    for (const Shape* s : {&i, &j})
-        if (s->surface->size() > 0) smaller = std::min(smaller, s->surface->size());
-    return smaller;
-}
 
 /// Moment of inertia about n, nᵀ J n, and the mean over the tangent directions [kg m²]
 struct Moments {
@@ -49,7 +39,7 @@ FrictionPair::FrictionPair(std::string name, Shape i, Shape j, Inertia inertia_i
                            std::shared_ptr<const FrictionModel> friction)
     : name(std::move(name)), i(std::move(i)), j(std::move(j)), inertia_i(std::move(inertia_i)),
       inertia_j(std::move(inertia_j)), friction(std::move(friction)),
-      smaller_size(smaller_size_of(this->i, this->j)), j_i(largest_inverse(this->inertia_i)),
+      smaller_size(contact::smaller_size(this->i, this->j)), j_i(largest_inverse(this->inertia_i)),
       j_j(largest_inverse(this->inertia_j)),
       m(this->friction->fictitious(this->inertia_i.m, this->inertia_j.m))
 {}

@@ -27,8 +27,9 @@ struct LinearSprings {
     Vector K;  ///< stiffness [N/m or N m/rad]
     Vector D;  ///< damping [N s/m or N m s/rad]
 
-    /// Whether a step h [s] is below the limit. A negative element of P, as of a negative stiffness, counts as
-    /// zero. Does not allocate memory for a fixed n.
+    /// Whether a step h [s] is below the limit. For a negative stiffness an element of P decreases beyond
+    /// h = -d D/K. Its largest value up to h is used, so that all steps above the limit are unstable. Negative elements
+    /// count as zero. Does not allocate memory for a fixed n.
     bool is_stable(double h, double damping_factor) const;
     /// The limit [s], by bisection to a relative error of 1e-12. Infinite if a step of 1e6 s is stable. Not below
     /// 1e-15 s.

@@ -77,3 +77,13 @@ TEST_CASE(
     CHECK(Springs{mass, -one, zero}.stable_step(1) == infinite);
     CHECK(Springs{fixed, one, one}.stable_step(1) == infinite);
 }
+
+TEST_CASE("a damper has its stability limit also beside a spring of negative stiffness", "[lie][stable]")
+{
+    const double m = 2, c = 30, k = GENERATE(0., -1e-3, -50.);
+    const Springs springs{
+        .W = MatrixXd::Constant(1, 1, 1 / m), .K = VectorXd::Constant(1, k), .D = VectorXd::Constant(1, c)};
+    for (const double d : {d_euler, d_leapfrog})
+        CHECK(springs.stable_step(d) ==
+              Approx(4 * m / (d * c + std::sqrt(d * d * c * c + 4 * m * k))).epsilon(2e-12));
+}

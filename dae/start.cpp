@@ -218,6 +218,7 @@ void check_general_constraints(const Model& model, const State& x, const StartOp
 /// Throws lie::InvalidInput if the velocities of a body are so large that their squares overflow.
 void check_velocities(const Model& model, const State& x)
 {
+    if (x.body.size() != model.mass().m.size()) return;  // rejected by Model::prepare()
     for (int b = 0; b < model.bodies(); ++b) {
         const lie::Motion& body = x.body[b];
         const double twice_energy = model.mass().m[b] * body.rdot.squaredNorm() +

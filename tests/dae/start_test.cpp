@@ -313,6 +313,16 @@ TEST_CASE("the published data of the four-link are projected on request", "[dae]
     CHECK((velocities(x) - velocities(y)).norm() < 1e-11);
 }
 
+TEST_CASE("a state with another number of bodies than the model is rejected", "[dae][start]")
+{
+    const int bodies = GENERATE(0, 2, 100);
+    Model model;
+    model.add({.name = "body", .m = 1, .J_bar = Mat3::Identity()});
+    State x;
+    x.body.resize(bodies);
+    CHECK_THROWS_WITH(start(model, x), Contains("the state must have one motion for each of the 1 bodies"));
+}
+
 TEST_CASE("inconsistent velocities are rejected", "[dae][start]")
 {
     Model model;

@@ -14,8 +14,8 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double largest_softness = 0.05;  // [rad]
-constexpr double smallest_slip = 1e-6;     // [m/s]; a slower contact sticks
+constexpr double largest_lag = 0.05;    // [rad]
+constexpr double smallest_slip = 1e-6;  // [m/s]; a slower contact sticks
 constexpr double rolls = 5e-3;  // a contact with less slip, relative to the velocities of its surfaces, rolls
 
 /// The warning, or an empty text if the spring is stiff enough
@@ -25,22 +25,22 @@ std::string warning(const std::string& name, const ContactPoint& at, const Motio
     const Vec3 C = at.C(), v = dae::velocity_at(bi, C - bi.r) - dae::velocity_at(bj, C - bj.r);
     const double slip = (v - at.n * at.n.dot(v)).norm(),
                  omega_n = at.n.dot(bi.A * bi.omega_bar - bj.A * bj.omega_bar),
-                 soft = softness(omega_n, bound, K_E, slip);
+                 lag = friction_lag(omega_n, bound, K_E, slip);
     const double surfaces =
         std::max(bi.omega_bar.norm() * (C - bi.r).norm(), bj.omega_bar.norm() * (C - bj.r).norm());
-    if (!(soft > largest_softness) || slip < rolls * surfaces) return {};
+    if (!(lag > largest_lag) || slip < rolls * surfaces) return {};
     std::ostringstream what;
     what.precision(3);
     what << "contact '" << name << "': the friction spring is too soft for a spin of " << std::abs(omega_n)
          << " rad/s: its deflection mu N/K_E = " << bound / K_E << " m turns with "
-         << std::abs(omega_n) * bound / K_E << " m/s, " << soft
-         << " of the slip velocity; K_E should be above " << K_E * soft / largest_softness << " N/m";
+         << std::abs(omega_n) * bound / K_E << " m/s, " << lag
+         << " of the slip velocity; K_E should be above " << K_E * lag / largest_lag << " N/m";
     return what.str();
 }
 
 }  // namespace
 
-double softness(double omega_n, double bound, double K_E, double slip)
+double friction_lag(double omega_n, double bound, double K_E, double slip)
 {
     return slip > smallest_slip ? std::abs(omega_n) * bound / (K_E * slip) : 0;
 }

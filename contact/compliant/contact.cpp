@@ -26,8 +26,8 @@ std::string got(const std::string& what, double value, const std::string& unit)
     return text.str();
 }
 
-/// The length [m] to which the overlap of a surface is compared: the radius of curvature, or the size where the
-/// surface is flatter
+/// The length [m] to which the overlap of a surface is compared: the radius of curvature, or the size where
+/// the surface is flatter
 struct ReferenceLength {
     double length;
     bool round;  ///< the length is the radius of curvature

@@ -40,7 +40,8 @@ public:
     /// surface, whichever is smaller. Throws lie::NumericalFailure if the search for the contact point fails.
     std::string start_error(const Motion& bi, const Motion& bj) const;
 
-    /// Overlap relative to the smaller of the radii of curvature and sizes of both surfaces; negative for a gap
+    /// Overlap relative to the smaller of the radii of curvature and sizes of both surfaces; negative for a
+    /// gap
     double relative_overlap(const ContactPoint& contact_point) const;
 
     /// The largest step [s] for which symplectic Euler is stable: FrictionPair::stable_step() with the

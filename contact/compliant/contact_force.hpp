@@ -47,10 +47,10 @@ private:
     bool is_near_contact(const lie::State& x) const override;
     void save(const Instant& now, lie::State& x) const override;
 
-    /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and the
-    /// poses of the bodies there. Loads, energy and output at these poses do not detect the contact again. The
-    /// poses are compared bit by bit, so the result depends on x only. For a pair with other_points their
-    /// OtherPoints::Pose follows.
+    /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and
+    /// the poses of the bodies there. Loads, energy and output at these poses do not detect the contact
+    /// again. The poses are compared bit by bit, so the result depends on x only. For a pair with
+    /// other_points their OtherPoints::Pose follows.
     struct NodePoint {
         Vec3 r_i, r_j;
         Mat3 A_i, A_j;

@@ -62,9 +62,9 @@ public:
 
     /// The largest step [s] for which symplectic Euler is stable with the springs and dampers of this
     /// contact, all in the stick regime, for the curvatures and the normal force of `now`. It is the smallest
-    /// h for which 4 M - 2 h D - h² K is singular (see lie::LinearSprings). M⁻¹ is the 6 × 6 matrix of inverse
-    /// effective masses of the relative motions: sliding along u and w, approach along n, rolling about u and
-    /// w, spinning about n. For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
+    /// h for which 4 M - 2 h D - h² K is singular (see lie::LinearSprings). M⁻¹ is the 6 × 6 matrix of
+    /// inverse effective masses of the relative motions: sliding along u and w, approach along n, rolling
+    /// about u and w, spinning about n. For one damped mode h ω = 2 (√(1 + ζ²) - ζ).
     ///
     /// The mass of a body with several contacts is divided equally among them. If each contact is stable with
     /// its share, the whole system is. Infinite if no finite step is unstable. damping_factor: see
@@ -77,8 +77,8 @@ public:
     /// Whether a step h [s] is below stable_step(); much cheaper for a single h
     bool is_stable(double h, double damping_factor, const ContactState& now, const NormalSupport& normal,
                    const Motion& bi, const Motion& bj, ContactCounts contacts = {}) const;
-    /// Energy of the springs of friction [J]: half the product of force and deflection of each. `load` is that of
-    /// `now` and `history`.
+    /// Energy of the springs of friction [J]: half the product of force and deflection of each. `load` is
+    /// that of `now` and `history`.
     double elastic_energy(const ContactState& now, const Wrench& load, const ContactHistory& history) const;
 
     const std::string name;

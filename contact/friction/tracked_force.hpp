@@ -74,8 +74,8 @@ protected:
     /// True if the bodies are in contact or close to it; used to count the contacts of a body
     virtual bool is_near_contact(const lie::State& x) const = 0;
 
-    /// Numbers of contacts of both bodies that are near contact at x (is_near_contact()), with this one. The ground
-    /// counts as a body with one contact.
+    /// Numbers of contacts of both bodies that are near contact at x (is_near_contact()), with this one. The
+    /// ground counts as a body with one contact.
     ContactCounts near_contacts(const lie::State& x) const;
     /// The same for the contacts that are in contact according to their histories in x, without detection
     ContactCounts touching_contacts(const lie::State& x) const;

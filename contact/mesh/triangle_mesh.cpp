@@ -95,8 +95,8 @@ int position_in(const Triangle& triangle, int vertex)
     return static_cast<int>(std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin());
 }
 
-/// True if the triangles at a vertex form a single closed ring. Each of their sides at the vertex belongs to two triangles
-/// of opposite direction (fault_of_edges). n log n for n triangles
+/// True if the triangles at a vertex form a single closed ring. Each of their sides at the vertex belongs to
+/// two triangles of opposite direction (fault_of_edges). n log n for n triangles
 bool is_one_ring(int vertex, const std::vector<int>& around, const std::vector<Triangle>& triangles)
 {
     const auto after = [&](int t, int k) {

@@ -170,11 +170,10 @@ TEST_CASE("a bilateral contact under tension has no implicit friction", "[contac
     CHECK(end.body[0].rdot.x() == Approx(2).epsilon(1e-5));
 }
 
-TEST_CASE("the softness of a friction spring is named for a sliding contact that spins",
-          "[contact][friction]")
+TEST_CASE("the lag of the friction force is named for a sliding contact that spins", "[contact][friction]")
 {
-    CHECK(softness(-150, 0.06, 200, 0.5) == Approx(150 * 0.06 / 200 / 0.5));
-    CHECK(softness(150, 0.06, 200, 0) == 0);
+    CHECK(friction_lag(-150, 0.06, 200, 0.5) == Approx(150 * 0.06 / 200 / 0.5));
+    CHECK(friction_lag(150, 0.06, 200, 0) == 0);
     // the start of a tippe top that turns over in 0.6 s with the soft spring, and after 3.5 s with stiffer
     // ones
     constexpr double m = 0.006, R = 0.015;

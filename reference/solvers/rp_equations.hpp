@@ -21,17 +21,18 @@ enum class RpForm {
 
 /// Residual and Jacobian of the equations of motion.
 ///
-/// The unknowns y are r - r_0, p, ṙ, ṗ of each body (14 numbers), then λ and λ_P, and with RpForm::ggl also μ
-/// and
-/// μ_P. λ_P and μ_P belong to the normalisation ½(pᵀp - 1) = 0 of each body. With
-///
-///     A = A(p/|p|),   T = 2 G(p)/|p|²,   ω̄ = T ṗ,   ω̄̇ = T p̈,   Φ_p = Π̄ T
+/// The unknowns y are r - r_0, p, ṙ, ṗ of each body (14 numbers), then λ and λ_P, and with RpForm::ggl also
+/// μ and μ_P. λ_P and μ_P belong to the normalisation ½(pᵀp - 1) = 0 of each body.
 ///
 /// r_0 is the origin of the unknowns. It is zero unless all bodies are far from the origin of the model at
 /// the start compared with their distances from each other; it is then near them. The predictions and
 /// differences of y would otherwise lose the digits of r_0.
 ///
-/// The equations are
+/// With
+///
+///     A = A(p/|p|),   T = 2 G(p)/|p|²,   ω̄ = T ṗ,   ω̄̇ = T p̈,   Φ_p = Π̄ T
+///
+/// the equations are
 ///
 ///     ṙ - v + Φ_rᵀ μ = 0,   ṗ - u + Φ_pᵀ μ + p μ_P = 0          (v, u for ṙ, ṗ as unknowns; μ only with GGL)
 ///     M v̇ + Φ_rᵀ λ - F = 0,   Tᵀ (J̄ T u̇ + Π̄ᵀ λ - n̄ + ω̄ × J̄ ω̄) + p λ_P = 0

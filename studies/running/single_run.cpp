@@ -110,7 +110,7 @@ RunResult SingleRun::execute()
                      event_name(e.type), e.speed});
     result.watch = watch.json();
     for (const Finding& found : watch.findings())
-        if (found.name != result.status) add_warning(found.text);
+        if (!result.message.ends_with(found.text)) add_warning(found.text);  // not the one that ended the run
     if (const std::string rank = rank_warning(*integrator); !rank.empty()) add_warning(rank);
     if (refined) result.error = refined->estimate(result.events.size());
     finish(recorder);
@@ -292,14 +292,14 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
     check_contacts();
 }
 
-// Warnings: λ_N ≠ 0 if a surface returns normals that are not those of its points; F_N < 0 in a bilateral
-// contact means that bodies free to separate would have separated.
 void SingleRun::add_warning(const std::string& what)
 {
     warn(what);
     result.warnings.push_back(what);
 }
 
+// Warnings: λ_N ≠ 0 if a surface returns normals that are not those of its points; F_N < 0 in a bilateral
+// contact means that bodies free to separate would have separated.
 void SingleRun::check_contacts()
 {
     const auto contacts = evolving_contacts(*description.model);
@@ -362,8 +362,13 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         count(march, recorder);
         line.clear();
         failed(failure, march);
-        // The start node of the failed step is the last valid node, and may be an output row.
-        if (recorder.last_node() != march.number()) march.finish(observers);
+        if (recorder.last_node() == march.number()) return;
+        // The start node of the failed step is the last valid node, and may be an output row. The status
+        // stays that of the step if a check of this node fails as well.
+        try {
+            march.finish(observers);
+        } catch (const lie::NodeFailure&) {
+        }
     }
 }
 

@@ -150,6 +150,21 @@ TEST_CASE("a large rotation in one step is a warning, with --strict a failure", 
     CHECK(strict.summary["counters"]["rows"] == 1);  // the start, at which it is found
 }
 
+TEST_CASE("a failed step after a node that --strict refuses ends with the status of the step and a summary",
+          "[studies][watch]")
+{
+    const Scratch in;
+    // At t = 0.2 s, ω h = 0.47 rad. The next step turns by 26 rad.
+    const std::string accelerated = R"({"hilda_model": 1, "name": "m", "end": 1, "gravity": [0, 0, 0],
+ "bodies": [{"name": "wheel", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0]}],
+ "forces": [{"type": "torque", "body": "wheel", "frame": "global", "components": [0, 0, "exp(40*t)*0.06"]}]})";
+    const Result r = run(in, accelerated, {"--integrator", "rA-rkmk-4", "--step", "0.1", "--strict"});
+    CHECK(r.ended.code == 4);
+    CHECK(r.summary["status"] == "step_too_large");
+    CHECK(r.summary["counters"]["rows"] == 3);
+    CHECK_THAT(r.ended.err, Contains("body 'wheel' turns by 0.473 rad in one step at t = 0.2 s"));
+}
+
 TEST_CASE("a contact that becomes stiffer than at the start ends the run before energy is created",
           "[studies][watch]")
 {
@@ -191,6 +206,7 @@ TEST_CASE("balls that would pass through each other end the run", "[studies][wat
     CHECK(soft.ended.code == 4);
     CHECK(soft.summary["status"] == "overlap_too_large");
     CHECK_THAT(soft.ended.err, Contains("contact 'ab': the surfaces overlap by 0.5"));
+    CHECK(soft.summary["model"]["warnings"].empty());  // the message of the failure is not repeated
 
     // the largest overlap follows from the energy: 8/15 E* sqrt(R/2) d^(5/2) = m v²
     const double E = 1e10, d = std::pow(2500 / (8. / 15 * E * std::sqrt(0.025)), 0.4);

@@ -22,11 +22,11 @@ void WorkBalance::add(const lie::State& x)
         ForceWork& work = force[k];
         own.set_zero();
         f.add(x, own);
-        const double power = power_of(own, x);
-        work.power.add(power, h);
+        const double power_of_force = power(own, x);
+        work.power.add(power_of_force, h);
         work.potential = f.potential_energy(x);
         if (first) work.potential_start = work.potential;
-        work.conservative = work.conservative && is_conservative(f, power, x);
+        work.conservative = work.conservative && is_conservative(f, power_of_force, x);
     }
     driver_work.add(power_of_drivers(x), h);
     first = false;
@@ -53,9 +53,9 @@ std::vector<std::string> WorkBalance::sources() const
     return all;
 }
 
-/// Whether the loads of the force, computed in `own`, are the same at other velocities and at another time, and its power
-/// is that of its potential. A force with internal states depends on the history.
-bool WorkBalance::is_conservative(const dae::Force& f, double power, const lie::State& x)
+/// Whether the loads of the force, computed in `own`, are the same at other velocities and at another time,
+/// and its power is that of its potential. A force with internal states depends on the history.
+bool WorkBalance::is_conservative(const dae::Force& f, double power_of_force, const lie::State& x)
 {
     if (f.internal_states() > 0) return false;
     other = x;
@@ -78,15 +78,8 @@ bool WorkBalance::is_conservative(const dae::Force& f, double power, const lie::
         }
         rate += sign * f.potential_energy(other) / (2 * dt);
     }
-    return std::abs(power + rate) <= 1e-5 * std::abs(power) + 1e-8 * std::abs(f.potential_energy(x)) + 1e-12;
-}
-
-double WorkBalance::power_of(const lie::Loads& loads, const lie::State& x) const
-{
-    double sum = 0;
-    for (size_t b = 0; b < x.body.size(); ++b)
-        sum += loads.F[b].dot(x.body[b].rdot) + loads.n_bar[b].dot(x.body[b].omega_bar);
-    return sum;
+    return std::abs(power_of_force + rate) <=
+           1e-5 * std::abs(power_of_force) + 1e-8 * std::abs(f.potential_energy(x)) + 1e-12;
 }
 
 /// -λ · ν; marks the constraints with ν ≠ 0.

@@ -17,7 +17,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "studies/running/watch/node_integral.hpp"
+#include "studies/running/watch/energy_balance.hpp"
 
 #include <string>
 #include <vector>
@@ -46,8 +46,7 @@ private:
         double potential_start = 0, potential = 0;  ///< V_f at the first and at the last node [J]
         NodeIntegral power;
     };
-    bool is_conservative(const dae::Force& force, double power, const lie::State& x);
-    double power_of(const lie::Loads& loads, const lie::State& x) const;
+    bool is_conservative(const dae::Force& force, double power_of_force, const lie::State& x);
     double power_of_drivers(const lie::State& x);
 
     const dae::Model& model;

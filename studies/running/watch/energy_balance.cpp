@@ -27,6 +27,14 @@ bool moves_with_time(const dae::Model& model, lie::State x, Eigen::VectorXd& nu)
 
 }  // namespace
 
+double power(const lie::Loads& loads, const lie::State& x)
+{
+    double sum = 0;
+    for (size_t b = 0; b < x.body.size(); ++b)
+        sum += loads.F[b].dot(x.body[b].rdot) + loads.n_bar[b].dot(x.body[b].omega_bar);
+    return sum;
+}
+
 EnergyBalance::EnergyBalance(const dae::Model& model, const lie::State& x, double h)
     : model(model), h(h), loads(model.bodies()), nu(Eigen::VectorXd::Zero(model.rows())),
       pairs(model.bounded_pairs())
@@ -35,7 +43,7 @@ EnergyBalance::EnergyBalance(const dae::Model& model, const lie::State& x, doubl
         if (!force->is_passive()) not_passive.push_back(force.get());
         if (force->internal_states() > 0) with_internal_energy.push_back(force.get());
     }
-    has_drivers = moves_with_time(model, x, nu);
+    moves_early = moves_with_time(model, x, nu);
     for (const double m : model.mass().m) weight += m * std::max(1., model.gravity.norm());
 }
 
@@ -47,10 +55,7 @@ double EnergyBalance::power_of_loads(const lie::State& x)
         force->add(x, loads);
         record.potential += force->potential_energy(x);
     }
-    double power = 0;
-    for (size_t b = 0; b < x.body.size(); ++b)
-        power += loads.F[b].dot(x.body[b].rdot) + loads.n_bar[b].dot(x.body[b].omega_bar);
-    return power;
+    return power(loads, x);
 }
 
 void EnergyBalance::add_work(const lie::State& x)
@@ -58,14 +63,21 @@ void EnergyBalance::add_work(const lie::State& x)
     const double dt = x.t - record.t;
     record.t = x.t;
     if (!not_passive.empty()) {
-        const double power = power_of_loads(x);
+        record.loads.add(power_of_loads(x), dt);
         if (record.evaluations == 0) record.potential_start = record.potential;
-        record.loads.add(power, dt);
     }
-    if (has_drivers) {
-        model.nu(x, nu);
-        record.drivers.add(-x.lambda.dot(nu), dt);
+    if (nu.size() > 0) add_power_of_drivers(x, dt);
+}
+
+/// A driver may be at rest for a part of the run. The integral begins at the node before its first motion.
+void EnergyBalance::add_power_of_drivers(const lie::State& x, double dt)
+{
+    model.nu(x, nu);
+    if (!has_drivers()) {
+        if ((nu.array() == 0).all()) return;
+        record.drivers.add(0, dt);
     }
+    record.drivers.add(-x.lambda.dot(nu), dt);
 }
 
 double EnergyBalance::internal_energy(const lie::State& x)

@@ -66,8 +66,9 @@ public:
         double overlap = 0.1;  ///< warning, relative to a radius; the run ends at `overlap_end`
         double overlap_end = 0.5;
         double condition = 1e-12;  ///< warning; the schemes refuse 1e-14
-        /// Rise of the energy relative to the largest kinetic energy: warning. The run ends if the rise exceeds this
-        /// plus the error estimate of the step (EnergyBalance), of which at most `step_error` counts.
+        /// Rise of the energy relative to the largest kinetic energy: warning. The run ends if the rise
+        /// exceeds this plus the error estimate of the step (EnergyBalance), of which at most `step_error`
+        /// counts.
         double energy = 0.01, step_error = 0.25;
     };
     /// Consequences of a finding

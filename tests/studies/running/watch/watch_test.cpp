@@ -165,6 +165,33 @@ TEST_CASE("a failed step after a node that --strict refuses ends with the status
     CHECK_THAT(r.ended.err, Contains("body 'wheel' turns by 0.473 rad in one step at t = 0.2 s"));
 }
 
+TEST_CASE("the work of a driver that is at rest at first is part of the balance of energy",
+          "[studies][watch]")
+{
+    const Scratch in;
+    // An arm of 1 kg with the angle (t - 3 s)³ about its end. It has no degree of freedom: D = 0.
+    write(in / "m.json", R"({"hilda_model": 1, "name": "m", "end": 4.5,
+ "bodies": [{"name": "arm", "mass": 1, "inertia": [0.1, 0.1, 0.1], "r": [0.5, 0, 0]}],
+ "constraints": [
+  {"name": "hinge", "type": "revolute", "body_i": "ground", "body_j": "arm", "s_bar_q_j": [-0.5, 0, 0],
+   "axis_bar_i": [0, 1, 0], "axis_bar_j": [0, 1, 0]},
+  {"name": "motor", "type": "hinge-driver", "body_i": "ground", "body_j": "arm", "axis_bar_i": [0, 1, 0],
+   "axis_bar_j": [0, 1, 0], "angle": "max(0, t - 3)^3"}]})");
+    REQUIRE(call(in, {"run", "m.json", "--output", "whole"}).code == 0);
+    const ordered_json whole = summary(in / "whole");
+    CHECK(whole["model"]["warnings"].empty());
+    const ordered_json& energy = whole["watch"]["energy"];
+    CHECK(energy["passive"] == false);
+    const double W = energy["work_of_drivers"];
+    const double rate = 3 * 1.5 * 1.5, angle = 1.5 * 1.5 * 1.5;
+    CHECK(W == Approx(0.5 * (0.1 + 0.25) * rate * rate - 9.81 * 0.5 * std::sin(angle)).epsilon(1e-4));
+    CHECK(std::abs(energy["dissipated"].get<double>()) < 1e-4 * W);
+
+    REQUIRE(call(in, {"run", "m.json", "--output", "part", "--end", "3.5"}).code == 0);
+    REQUIRE(call(in, {"run", "m.json", "--output", "part", "--resume", "--end", "4.5"}).code == 0);
+    CHECK(summary(in / "part")["watch"] == whole["watch"]);
+}
+
 TEST_CASE("a contact that becomes stiffer than at the start ends the run before energy is created",
           "[studies][watch]")
 {

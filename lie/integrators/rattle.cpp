@@ -66,9 +66,9 @@ public:
     }
 
 private:
-    /// Assembles K(t_n). The step before has assembled it already, except before the first step of a run, where its time
-    /// differs by rounding, and for contacts, whose tangent vectors have changed when the node was accepted. Not counted,
-    /// so that a resumed run has the counts of an uninterrupted one.
+    /// Assembles K(t_n). The step before has assembled it already, except before the first step of a run,
+    /// where its time differs by rounding, and for contacts, whose tangent vectors have changed when the node
+    /// was accepted. Not counted, so that a resumed run has the counts of an uninterrupted one.
     void assemble_at_start()
     {
         const long before = NodeStep::statistics().refactorizations;

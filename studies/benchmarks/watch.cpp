@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Cost of the checks of every node (Watch): runs of the N-bar pendulum and of a ball on a floor, without and with it.
+/// Cost of the checks of every node (Watch): runs of the N-bar pendulum and of a ball on a floor, without and
+/// with it.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter='^march/'

@@ -159,7 +159,8 @@ lie::Trajectory Reference::less_accurate(const Benchmark& c) const
         }
         return run;
     }
-    // With a further instant in each interval its steps and its projections differ, and so do its rounding errors.
+    // With a further instant in each interval its steps and its projections differ, and so do its rounding
+    // errors.
     constexpr double further = 0.6;  // of an interval
     std::vector<double> times;
     for (const lie::State& row : c.reference_solution.row) {

@@ -25,18 +25,18 @@ public:
     Reference(const StudyContext& context, const Evaluated& evaluated);
 
     /// Computes the reference solution of each benchmark at its instants, with a row for each from t = 0 on.
-    /// The benchmarks are computed concurrently. A model file with internal states (compliant contacts, friction) has no
-    /// reference solution with adaptive steps: without --reference its reference is rA-half-1-momentum, or rA-rkmk-4 for
-    /// runs of a higher order, with a tenth of the smallest step, after a warning.
-    /// io::UsageError for steps [s] that do not have these instants as nodes.
+    /// The benchmarks are computed concurrently. A model file with internal states (compliant contacts,
+    /// friction) has no reference solution with adaptive steps: without --reference its reference is
+    /// rA-half-1-momentum, or rA-rkmk-4 for runs of a higher order, with a tenth of the smallest step, after
+    /// a warning. io::UsageError for steps [s] that do not have these instants as nodes.
     void evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps = {}) const;
 
-    /// Estimates the errors of the reference solutions: Benchmark::uncertainty receives the norms of their difference
-    /// to second solutions, which are about ten times less accurate. These are the index-1 equations with ten times
-    /// the tolerance and other steps, kinematic analysis with other substeps for a model without degrees of freedom, and otherwise
-    /// the same integrator with ten times the rtol or twice the step. The second
-    /// solution of the equations of motion starts from a state that differs by rounding errors, which the motion
-    /// amplifies.
+    /// Estimates the errors of the reference solutions: Benchmark::uncertainty receives the norms of their
+    /// difference to second solutions, which are about ten times less accurate. These are the index-1
+    /// equations with ten times the tolerance and other steps, kinematic analysis with other substeps for a
+    /// model without degrees of freedom, and otherwise the same integrator with ten times the rtol or twice
+    /// the step. The second solution of the equations of motion starts from a state that differs by rounding
+    /// errors, which the motion amplifies.
     void estimate_errors(std::vector<Benchmark>& benchmarks) const;
 
 private:

@@ -64,8 +64,8 @@ std::vector<const Run*> run_pointers(const std::vector<AnyRun>& runs)
     return pointers<const Run*>(runs);
 }
 
-/// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles; one
-/// line with the number of runs for each kind of finding
+/// One line for each failed run with its reason; one line for all runs that stopped at singular Euler angles;
+/// one line with the number of runs for each kind of finding
 std::string failures(const std::vector<const Run*>& run_pointers);
 
 /// problem, integrator, h or rtol, status and message of a run, for study.json

@@ -72,11 +72,8 @@ std::string file_in(const std::string& folder, const std::string& name)
     return (std::filesystem::path(folder) / (name + ".json")).string();
 }
 
-}  // namespace
-
-namespace {
-
-/// Throws io::UsageError for a file in a folder with another text, which may be a model that a user has changed.
+/// Throws io::UsageError for a file in a folder with another text, which may be a model that a user has
+/// changed.
 void check_replaceable(const std::string& file, const std::string& text)
 {
     std::error_code error;
@@ -152,8 +149,7 @@ int list_integrators(bool json)
     std::cout
         << "\ncontacts: supported contact constraints. constraint: without friction, or with friction as a "
            "force; rolling: also rolling without slip.\nThe default is rA-half-1-momentum; hilda check names "
-           "the "
-           "integrator that suits a model.\n";
+           "the integrator that suits a model.\n";
     return io::exit_code::done;
 }
 

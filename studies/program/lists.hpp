@@ -9,8 +9,8 @@
 namespace hilda::studies {
 
 int list_models(bool json);
-/// Writes the JSON of a built-in model to a file, to NAME.json in an existing folder, or to stdout if `to` is "".
-/// lie::InvalidInput for an unknown name.
+/// Writes the JSON of a built-in model to a file, to NAME.json in an existing folder, or to stdout if `to` is
+/// "". lie::InvalidInput for an unknown name.
 int write_model(const std::string& name, const std::string& to);
 /// Writes each built-in model to NAME.json in a folder, which is made if it does not exist. io::UsageError
 /// for the name of a JSON file.

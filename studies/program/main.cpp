@@ -25,9 +25,9 @@ bool keeps_denormals()
 
 /// Restarts the program with OpenBLAS limited to one thread, if this library is the BLAS of the system.
 ///
-/// OpenBLAS starts its threads when it is loaded, before main(), and reads their number from the environment only then.
-/// Where the memory is limited (ulimit -v) they cannot start, and the process would wait for them for ever at its
-/// end. The factorisations of this program are too small for threads.
+/// OpenBLAS starts its threads when it is loaded, before main(), and reads their number from the environment
+/// only then. Where the memory is limited (ulimit -v) they cannot start, and the process would wait for them
+/// for ever at its end. The factorisations of this program are too small for threads.
 void limit_blas_threads(char** argv)
 {
     constexpr const char* variable = "OPENBLAS_NUM_THREADS";

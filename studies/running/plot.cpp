@@ -104,8 +104,8 @@ bool wait_until(pid_t child, Clock::time_point end, int& status)
     }
 }
 
-/// Runs a program without a shell and waits for it, at most `limit` seconds. At most about 1 MiB of its output is
-/// stored.
+/// Runs a program without a shell and waits for it, at most `limit` seconds. At most about 1 MiB of its
+/// output is stored.
 ProcessResult run(std::vector<std::string> words, double limit)
 {
     const Clock::time_point end =

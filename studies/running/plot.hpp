@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Figures. A Python script for each kind of result reads the CSV files of a directory and writes figures to it, in one
-/// or more formats.
+/// Figures. A Python script for each kind of result reads the CSV files of a directory and writes figures to
+/// it, in one or more formats.
 
 #pragma once
 
@@ -22,23 +22,25 @@ struct FigureOptions {
     double time_limit = 60;                    ///< of the script, which is stopped then [s]
 };
 
-/// Runs a script, for example "convergence.py", on a directory, and returns the names of the files that it has written.
-/// Returns nothing after a one-line warning on stderr if Python, matplotlib or the script is missing, or if the script
-/// fails, exceeds the time limit or writes no figure. io::UsageError if the results do not have an integrator or a quantity of the options.
+/// Runs a script, for example "convergence.py", on a directory, and returns the names of the files that it
+/// has written. Returns nothing after a one-line warning on stderr if Python, matplotlib or the script is
+/// missing, or if the script fails, exceeds the time limit or writes no figure. io::UsageError if the results
+/// do not have an integrator or a quantity of the options.
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options = {});
 
 /// Removes the figure with this name, NAME.png, in all formats.
 void remove_figure(const std::string& directory, const std::string& name);
-/// The names of the figure NAME.png in these formats, of those that exist in the directory. Without formats: png
+/// The names of the figure NAME.png in these formats, of those that exist in the directory. Without formats:
+/// png
 std::vector<std::string> existing_figures(const std::string& directory, const std::string& name,
                                           const std::vector<std::string>& formats);
 
 /// Adds a directory in which plot() looks for scripts, after those of the program.
 void add_script_directory(const std::string& directory);
 
-/// The script for the results in a directory: trajectory.py for trajectory.csv, granular-run.py for run.csv, KIND.py for
-/// study.csv, where study.json states KIND. lie::InvalidInput if there is none of these files.
+/// The script for the results in a directory: trajectory.py for trajectory.csv, granular-run.py for run.csv,
+/// KIND.py for study.csv, where study.json states KIND. lie::InvalidInput if there is none of these files.
 std::string script_for(const std::string& directory);
 
 /// Versions of Python and matplotlib, or the missing component; for hilda info

@@ -39,15 +39,16 @@ private:
     long last_count = 0;
 };
 
-/// Passes the nodes of a run to its sinks, with their energy and residual; collects extreme values and the contents
-/// of checkpoints.
+/// Passes the nodes of a run to its sinks, with their energy and residual; collects extreme values and the
+/// contents of checkpoints.
 class Recorder final : public lie::Observer {
 public:
-    /// Makes the sinks that the options of the run request. io::UsageError. The objects must outlive this one.
+    /// Makes the sinks that the options of the run request. io::UsageError. The objects must outlive this
+    /// one.
     Recorder(const RunSetup& run, lie::Integrator& integrator, Watch& watch);
 
-    /// Opens the sinks and starts to measure times. With a checkpoint, continues the sinks and restores the counters
-    /// and the pivots of the integrator. io::IoError.
+    /// Opens the sinks and starts to measure times. With a checkpoint, continues the sinks and restores the
+    /// counters and the pivots of the integrator. io::IoError.
     void open(const std::optional<Checkpoint>& from);
     /// lie::NodeFailure "constraint_drift" at the first node where a constraint row that was dropped as
     /// redundant is violated.
@@ -79,8 +80,8 @@ private:
     std::vector<const contact::EvolvingContact*> contacts;
     PivotNode pivots;
     lie::Statistics earlier_statistics;  ///< of the part of the run before the checkpoint
-    /// Cost of the step that ends at the current node. The node is passed on after the following step, because
-    /// schemes with staggered velocities fill the node only then.
+    /// Cost of the step that ends at the current node. The node is passed on after the following step,
+    /// because schemes with staggered velocities fill the node only then.
     StepCost last;
     long factorizations = 0, recorded = -1;
     Clock::time_point since;

@@ -4,7 +4,8 @@
 /// For each problem, scheme and step the study computes the errors of errors.hpp against a reference
 /// solution, the order between neighbouring steps, the Newton iterations and the factorizations. The order of
 /// a scheme is the slope of a least-squares line through log(error) over log(h). Errors at the floor are left
-/// out of this line, and not printed: their digits are those of rounding errors. An error is at the floor if it is
+/// out of this line, and not printed: their digits are those of rounding errors. An error is at the floor if
+/// it is
 ///
 /// - less than 10 times the estimated error of the reference solution, see Reference::estimate_errors,
 /// - less than 20 times the difference to a second run with a hundredth of the Newton tolerance and the other linear
@@ -31,8 +32,9 @@ namespace {
 
 // Rounding level of an error, relative to the size of the quantity; reference solutions are accurate to 1e-13
 constexpr double rounding = 2e-12;
-// An error must exceed the estimated error of the reference solution, and that of the run, by these factors. The error
-// of the run by Newton's method adds to the error that is measured: 5 % of it change the order of a pair by 0.07.
+// An error must exceed the estimated error of the reference solution, and that of the run, by these factors.
+// The error of the run by Newton's method adds to the error that is measured: 5 % of it change the order of a
+// pair by 0.07.
 constexpr double margin_of_reference = 10, margin_of_run = 20;
 
 const ConvergenceStudy study{.norms = {norm::names.begin(), norm::names.end()},
@@ -40,8 +42,8 @@ const ConvergenceStudy study{.norms = {norm::names.begin(), norm::names.end()},
                              .least_points = 3,
                              .prefix_of_errors = ""};
 
-/// The same run with other errors of Newton's method and other rounding errors; nullopt if it fails. A hundredth of
-/// the Newton tolerance may be below rounding; then a tenth is used, or ten times the tolerance.
+/// The same run with other errors of Newton's method and other rounding errors; nullopt if it fails. A
+/// hundredth of the Newton tolerance may be below rounding; then a tenth is used, or ten times the tolerance.
 std::optional<EvaluatedRun> second_run(const Run& run, const lie::Settings& of_study)
 {
     lie::Settings settings = of_study;

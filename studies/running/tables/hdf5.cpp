@@ -26,8 +26,8 @@ hsize_t rows_of_chunk(size_t columns)
     return rows;
 }
 
-/// Names of the datasets of columns: / is the separator of groups, and "." the group itself. A name that is changed for
-/// this reason ends with more underscores if it is the name of another column.
+/// Names of the datasets of columns: / is the separator of groups, and "." the group itself. A name that is
+/// changed for this reason ends with more underscores if it is the name of another column.
 std::vector<std::string> dataset_names(const std::vector<TableColumn>& columns)
 {
     const auto allowed = [](std::string name) {

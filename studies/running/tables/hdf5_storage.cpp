@@ -127,8 +127,8 @@ hid_t driver()
     return id;
 }
 
-/// Calls use(bytes, offset, length) for each part of the held bytes within the `count` bytes from the address `at`. offset:
-/// from `at`
+/// Calls use(bytes, offset, length) for each part of the held bytes within the `count` bytes from the address
+/// `at`. `offset` is the distance of the part from `at`.
 template <class Use>
 void for_overlaps(std::map<std::uint64_t, std::string>& held, std::uint64_t at, size_t count, const Use& use)
 {

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-
 namespace hilda::contact {
 
 namespace {

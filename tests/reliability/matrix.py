@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the rows of the reliability matrix have in common.
 
-A row is a script. It prints one line for each case that fails, and at its end one line `NUMBER NAME, CASES, PASSED`. Its exit
-code is 0 if all cases have passed. --build is the folder of the programs under test, by default build/release.
+A row is a script. It prints one line for each case that fails, and at its end one line `NUMBER NAME, CASES, PASSED`.
+Its exit code is 0 if all cases have passed. --build is the folder of the programs under test, by default build/release.
 """
 import argparse
 import contextlib
@@ -31,8 +31,10 @@ class Row:
     """The cases of one row. `options`: function that adds options to the parser of the command line"""
 
     def __init__(self, name, options=None):
-        parser = argparse.ArgumentParser(description=sys.modules["__main__"].__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-        parser.add_argument("--build", default=str(SOURCE / "build/release"), help="folder of the programs; default: build/release")
+        parser = argparse.ArgumentParser(description=sys.modules["__main__"].__doc__,
+                                         formatter_class=argparse.RawDescriptionHelpFormatter)
+        parser.add_argument("--build", default=str(SOURCE / "build/release"),
+                            help="folder of the programs; default: build/release")
         if options:
             options(parser)
         self.options = parser.parse_args()
@@ -54,10 +56,10 @@ class Row:
         sys.exit(0 if self.cases == self.passed and self.cases > 0 else 1)
 
     def run(self, command, *, cwd=None, limit=120, text=True, **options):
-        """Runs a command with a time limit [s]. The exit code is -N after signal N. Seconds are those of the processor."""
+        """Runs a command with a time limit [s]. The exit code is -N after signal N. Its seconds are processor time."""
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        with subprocess.Popen([str(word) for word in command], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=text,
-                              env=options.pop("env", self.environment), **options) as process:
+        with subprocess.Popen([str(word) for word in command], cwd=cwd, env=options.pop("env", self.environment),
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=text, **options) as process:
             try:
                 out, err = process.communicate(timeout=limit)
             except subprocess.TimeoutExpired:
@@ -70,8 +72,8 @@ class Row:
 
     def killed_after(self, command, seconds, cwd=None):
         """Runs a command and kills it after a time. True if it was killed before its end"""
-        process = subprocess.Popen([str(word) for word in command], cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                   env=self.environment)
+        process = subprocess.Popen([str(word) for word in command], cwd=cwd, env=self.environment,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             process.wait(seconds)
             return False
@@ -88,9 +90,12 @@ def scratch(where=None):
         yield pathlib.Path(folder)
 
 
-def tables(folder, names=("trajectory.csv", "reactions.csv", "contacts.csv", "run.csv", "particles.csv", "outputs.csv", "forces.csv")):
+TABLES = ("trajectory.csv", "reactions.csv", "contacts.csv", "run.csv", "particles.csv", "outputs.csv", "forces.csv")
+
+
+def tables(folder):
     """The bytes of the tables of a run, by name"""
-    return {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
+    return {name: (folder / name).read_bytes() for name in TABLES if (folder / name).exists()}
 
 
 def bad_values(file):

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 4: runs that are killed at random times and resumed write the same tables as an uninterrupted run.
 
-5 models x 5 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (100 kills); 20
-for a release (500 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the final tables are equal.
+5 models x 5 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (100
+kills); 20 for a release (500 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the
+final tables are equal.
 """
 import random
 
@@ -25,7 +26,8 @@ def main():
         for model, end in MODELS.items():
             for integrator, step in INTEGRATORS.items():
                 step = 1e-5 if model == "andrews_squeezer" else step
-                command = [row.hilda, "run", model, "--integrator", integrator, "--step", step, "--end", end, "--interval", 5 * step, "--quiet"]
+                command = [row.hilda, "run", model, "--integrator", integrator, "--step", step, "--end", end,
+                           "--interval", 5 * step, "--quiet"]
                 begin = matrix.now()
                 whole = row.run(command + ["--output", "whole", "--force"], cwd=folder, limit=600)
                 taken = matrix.now() - begin
@@ -35,17 +37,19 @@ def main():
                     starts += 1
                     # After the start without a checkpoint, a run must be resumed or started again.
                     again = ["--resume"] if (folder / "parts/model.json").exists() else []
-                    complete = not row.killed_after(command + ["--output", "parts", "--checkpoint", 1e-3, *again, *([] if again else ["--force"])],
-                                                    rng.uniform(0.01, 0.9 * taken), cwd=folder)
+                    part = ["--output", "parts", "--checkpoint", 1e-3, *(again or ["--force"])]
+                    complete = not row.killed_after(command + part, rng.uniform(0.01, 0.9 * taken), cwd=folder)
                     killed += not complete
                     if complete:  # more kills of a new run
                         torn = torn or matrix.tables(folder / "parts") != matrix.tables(folder / "whole")
                         row.run(["rm", "-rf", "parts"], cwd=folder)
                 last = row.run(command + ["--output", "parts", "--resume"] if (folder / "parts/model.json").exists()
                                else command + ["--output", "parts", "--force"], cwd=folder, limit=600)
-                same = not torn and len(matrix.tables(folder / "whole")) > 0 and matrix.tables(folder / "parts") == matrix.tables(folder / "whole")
+                expected = matrix.tables(folder / "whole")
+                same = not torn and len(expected) > 0 and matrix.tables(folder / "parts") == expected
                 for kill in range(row.options.kills):
-                    row.case(f"{model} {integrator} kill {kill}", whole.code == 0 and last.code == 0 and same and kill < killed,
+                    row.case(f"{model} {integrator} kill {kill}",
+                             whole.code == 0 and last.code == 0 and same and kill < killed,
                              f"{killed} kills, exit {whole.code}, {last.code}: {last.err}")
     row.end()
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 7: each damaged checkpoint is detected: exit code 5, and the memory does not grow with a wrong length.
 
-Bits of the first 512 bytes, random flips of bits, truncations, another model, versions, byte order. By default every tenth of
-5306 damages is tried, with both programs; --full tries all.
+Bits of the first 512 bytes, random flips of bits, truncations, another model, versions, byte order. By default every
+tenth of 5306 damages is tried, with both programs; --full tries all.
 """
 import json
 import random
@@ -46,8 +46,10 @@ def main():
         (folder / "bed.json").write_text(json.dumps(case))
         end = repr(100 * case["step"])
         row.run([row.granular, "bed.json", "--quiet", "--end", end, "--output", "grains"], cwd=folder)
-        longer = {"model": [row.hilda, "run", "double_pendulum", "--end", 0.1, "--output", "model", "--resume", "--quiet"],
-                  "grains": [row.granular, "bed.json", "--quiet", "--end", repr(200 * case["step"]), "--output", "grains", "--resume"]}
+        longer = {"model": [row.hilda, "run", "double_pendulum", "--end", 0.1,
+                            "--output", "model", "--resume", "--quiet"],
+                  "grains": [row.granular, "bed.json", "--end", repr(200 * case["step"]),
+                             "--output", "grains", "--resume", "--quiet"]}
         for number, (name, command) in enumerate(longer.items()):
             file = folder / name / "checkpoint.end"
             good = file.read_bytes()
@@ -59,13 +61,15 @@ def main():
                     continue
                 file.write_bytes(wrong)
                 ended = row.run(command, cwd=folder)
-                row.case(f"{name} {what}", ended.code == 5 and matrix.is_one_line(ended.err) and ended.bytes < max(most, 256 << 20),
+                refused = ended.code == 5 and matrix.is_one_line(ended.err)
+                row.case(f"{name} {what}", refused and ended.bytes < max(most, 256 << 20),
                          f"exit {ended.code}, {ended.bytes >> 20} MB: {ended.err}")
             shutil.rmtree(folder / name)
             shutil.move(folder / "kept", folder / name)
             other = (["--set", "/bodies/0/mass=7"] if name == "model" else ["--set", "/laws/0/mu=0.123"])
             ended = row.run(command + other, cwd=folder)
-            row.case(f"{name} of another model", ended.code in (2, 5) and matrix.is_one_line(ended.err), f"exit {ended.code}: {ended.err}")
+            row.case(f"{name} of another model", ended.code in (2, 5) and matrix.is_one_line(ended.err),
+                     f"exit {ended.code}: {ended.err}")
             row.case(f"{name} undamaged", row.run(command, cwd=folder).code == 0)
     row.end()
 

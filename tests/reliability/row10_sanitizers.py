@@ -5,7 +5,8 @@
 Parts (--parts, by default valgrind,thread):
   valgrind  memcheck on 30 tests of the build under test (--build)
   thread    ThreadSanitizer (preset tsan, clang) over grains with 2 to 4 threads and studies with --jobs 2
-  address   the tests of the preset debug: address and undefined-behaviour sanitizers, assertions, matrices of NaN (an hour)
+  address   the tests of the preset debug: address and undefined-behaviour sanitizers, assertions, matrices of NaN
+            (an hour)
 The presets are built first.
 """
 import json
@@ -16,7 +17,13 @@ import matrix
 
 # Of libgomp and libomp, which are not instrumented, nothing is checked.
 TSAN = "halt_on_error=0 exitcode=66 ignore_noninstrumented_modules=1"
-VALGRIND = ["valgrind", "--error-exitcode=99", "--leak-check=full", "--show-leak-kinds=definite", "--errors-for-leak-kinds=definite", "--quiet"]
+VALGRIND = ["valgrind", "--error-exitcode=99", "--leak-check=full", "--show-leak-kinds=definite",
+            "--errors-for-leak-kinds=definite", "--quiet"]
+NOT_WITH_VALGRIND = ("(long)", "allocat", "order")  # in names of tests
+STUDIES = (["convergence", "--problem", "double_pendulum,slider_crank", "--integrator", "rA-half-1,rA-rattle",
+            "--steps", "4e-3,2e-3", "--end", "0.05"],
+           ["energy", "--problem", "double_pendulum,four_link", "--end", "0.05"],
+           ["sweep", "double_pendulum", "--sweep", "/bodies/0/mass=1,2,3,4", "--end", "0.05"])
 
 
 def options(parser):
@@ -28,31 +35,35 @@ def valgrind(row, folder):
     for room, most in (("io", 10), ("lie", 6), ("contact", 7), ("granular", 7)):
         program = row.build / f"tests/hilda_test_{room}"
         listed = row.run([program, "--list-test-names-only"]).out.split("\n")
-        names = [name.strip() for name in listed if name.strip() and "(long)" not in name and "allocat" not in name and "order" not in name]
+        names = [name.strip() for name in listed if name.strip()]
+        names = [name for name in names if not any(word in name for word in NOT_WITH_VALGRIND)]
         tests += [(program, name) for name in names[:: max(1, len(names) // most)][:most]]
     environment = dict(row.environment, OMP_NUM_THREADS="1")
     for program, name in tests:
-        ended = row.run([*VALGRIND, program, name.replace("\\", "\\\\").replace(",", "\\,").replace("[", "\\[")], env=environment, limit=1200)
-        row.case(f"memcheck {program.name} {name}", ended.code == 0, f"exit {ended.code}: {ended.err[-300:]}{ended.out[-200:] if ended.code != 99 else ''}")
+        escaped = name.replace("\\", "\\\\").replace(",", "\\,").replace("[", "\\[")
+        ended = row.run([*VALGRIND, program, escaped], env=environment, limit=1200)
+        row.case(f"memcheck {program.name} {name}", ended.code == 0,
+                 f"exit {ended.code}: {ended.err[-300:]}{ended.out[-200:] if ended.code != 99 else ''}")
 
 
 def thread(row, folder):
     build = matrix.SOURCE / "build/tsan"
     subprocess.run(["cmake", "--preset", "tsan"], cwd=matrix.SOURCE, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", build, "--target", "hilda_program", "hilda_granular_program"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build, "--target", "hilda_program", "hilda_granular_program"],
+                   check=True, stdout=subprocess.DEVNULL)
     environment = dict(row.environment, TSAN_OPTIONS=TSAN)
     for name, steps in (("bed", 40), ("shaken_box", 40)):
         case = json.loads((matrix.SOURCE / f"granular/cases/{name}.json").read_text())
         if name == "bed":
             case["fill"][0]["high"] = [0.03, 0.02, 0.01]
         (folder / f"{name}.json").write_text(json.dumps(case))
+        command = [build / "hilda-granular", f"{name}.json", "--end", repr(steps * case["step"]), "--quiet", "--force",
+                   "--output", "out", "--threads"]
         for threads in (2, 3, 4):
-            report(row, f"{name} with {threads} threads", [build / "hilda-granular", f"{name}.json", "--end", repr(steps * case["step"]), "--threads", threads,
-                                                         "--quiet", "--force", "--output", "out"], folder, environment)
-    for arguments in (["convergence", "--problem", "double_pendulum,slider_crank", "--integrator", "rA-half-1,rA-rattle", "--steps", "4e-3,2e-3", "--end", "0.05"],
-                      ["energy", "--problem", "double_pendulum,four_link", "--end", "0.05"],
-                      ["sweep", "double_pendulum", "--sweep", "/bodies/0/mass=1,2,3,4", "--end", "0.05"]):
-        report(row, f"study {arguments[0]} --jobs 2", [build / "hilda", "study", *arguments, "--jobs", 2, "--no-plot", "--force", "--output", "out"], folder, environment)
+            report(row, f"{name} with {threads} threads", [*command, threads], folder, environment)
+    for study in STUDIES:
+        command = [build / "hilda", "study", *study, "--jobs", 2, "--no-plot", "--force", "--output", "out"]
+        report(row, f"study {study[0]} --jobs 2", command, folder, environment)
 
 
 def report(row, what, command, folder, environment):

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Row 14: half-implicit and fully implicit schemes and IDA agree on 6 models: the difference to IDA falls with the order of the scheme."""
+"""Row 14: half-implicit and fully implicit schemes and IDA agree on 6 models: the difference to IDA falls with the
+order of the scheme."""
 import csv
 import math
 
 import matrix
 
-MODELS = {"single_pendulum": 1, "double_pendulum": 1, "four_link": 0.5, "slider_crank": 0.5, "n_pendulum_2_spin": 0.5, "heavy_top": 0.2}
+MODELS = {"single_pendulum": 1, "double_pendulum": 1, "four_link": 0.5, "slider_crank": 0.5, "n_pendulum_2_spin": 0.5,
+          "heavy_top": 0.2}
 ORDERS = {"rA-half-1": 1, "rA-half-1-momentum": 2, "rA-full-1": 1}
 
 
@@ -21,8 +23,8 @@ def main():
     with matrix.scratch() as folder:
         for model, end in MODELS.items():
             def positions(integrator, *options, model=model, end=end):
-                ended = row.run([row.hilda, "run", model, "--integrator", integrator, "--end", end, "--interval", end, "--quiet", "--force", "--output", "out", *options],
-                                cwd=folder, limit=600)
+                ended = row.run([row.hilda, "run", model, "--integrator", integrator, "--end", end, "--interval", end,
+                                 "--quiet", "--force", "--output", "out", *options], cwd=folder, limit=600)
                 return last_positions(folder / "out/trajectory.csv") if ended.code == 0 else [math.nan]
             exact = positions("ida-rp", "--rtol", "1e-10")
             found, passed = [], len(exact) > 0

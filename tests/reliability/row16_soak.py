@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 16: the memory of long runs does not grow.
 
-Two models and a bed of grains, by default 20 s each; --seconds 86400 for the soak of a release. The resident memory grows by less
-than 1 MB after the first fifth of the time.
+Two models and a bed of grains, by default 20 s each; --seconds 86400 for the soak of a release. The resident memory
+grows by less than 1 MB after the first fifth of the time.
 """
 import json
 import pathlib
@@ -32,9 +32,12 @@ def main():
         bed.update(end=1000, interval=0.1, frame_interval=1000, checkpoint_interval=0.01)
         (folder / "bed.json").write_text(json.dumps(bed))
         run = ["--end", "1e6", "--interval", "10", "--quiet", "--checkpoint", "1", "--output"]
-        for name, command in (("double_pendulum", [row.hilda, "run", "double_pendulum", *run, "a"]), ("four_link", [row.hilda, "run", "four_link", *run, "b"]),
-                              ("grains", [row.granular, "bed.json", "--quiet", "--checkpoint", "1", "--output", "c"])):
-            with subprocess.Popen(command, cwd=folder, env=row.environment, stderr=subprocess.PIPE, text=True) as process:
+        commands = {"double_pendulum": [row.hilda, "run", "double_pendulum", *run, "a"],
+                    "four_link": [row.hilda, "run", "four_link", *run, "b"],
+                    "grains": [row.granular, "bed.json", "--quiet", "--checkpoint", "1", "--output", "c"]}
+        for name, command in commands.items():
+            with subprocess.Popen(command, cwd=folder, env=row.environment, stderr=subprocess.PIPE,
+                                  text=True) as process:
                 time.sleep(row.options.seconds / 5)
                 ended = process.poll()
                 first = resident(process.pid) if ended is None else 0
@@ -45,7 +48,8 @@ def main():
                     most = max(most, resident(process.pid) if process.poll() is None else 0)
                 alive = process.poll() is None
                 process.kill()
-                row.case(name, alive and most - first < 1 << 20, f"{'ended: ' + process.stderr.read() if not alive else ''} {first >> 10} to {most >> 10} KiB")
+                why = "" if alive else f"ended: {process.stderr.read()} "
+                row.case(name, alive and most - first < 1 << 20, f"{why}{first >> 10} to {most >> 10} KiB")
     row.end()
 
 

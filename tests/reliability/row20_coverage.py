@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Row 20: lines and branches that the tests execute, by gcov: at least 90 % of the lines and 75 % of the branches of each room,
-and 97 % of the lines of the parsers.
+"""Row 20: lines and branches that the tests execute, by gcov: at least 90 % of the lines and 75 % of the branches of
+each room, and 97 % of the lines of the parsers.
 
-Builds the programs and tests with --coverage in build/coverage (an hour), and runs the tests of --rooms, by default io and
-granular; all rooms with --rooms io,lie,dae,contact,granular,reference,studies.
+Builds the programs and tests with --coverage in build/coverage (an hour), and runs the tests of --rooms, by default io
+and granular; all rooms with --rooms io,lie,dae,contact,granular,reference,studies.
 """
 import collections
 import json
@@ -25,17 +25,21 @@ def main():
     row = matrix.Row("20 coverage", options)
     build = matrix.SOURCE / "build/coverage"
     rooms = row.options.rooms.split(",")
-    subprocess.run(["cmake", "-S", matrix.SOURCE, "-B", build, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Debug", "-D", "CMAKE_CXX_FLAGS=--coverage -fprofile-abs-path",
-                    "-D", "HILDA_PCH=OFF", "-D", "HILDA_CCACHE=OFF", "-D", "HILDA_CUDA=OFF"], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", build, "--target", *(f"hilda_test_{room}" for room in rooms)], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "-S", matrix.SOURCE, "-B", build, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Debug",
+                    "-D", "CMAKE_CXX_FLAGS=--coverage -fprofile-abs-path", "-D", "HILDA_PCH=OFF",
+                    "-D", "HILDA_CCACHE=OFF", "-D", "HILDA_CUDA=OFF"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build, "--target", *(f"hilda_test_{room}" for room in rooms)],
+                   check=True, stdout=subprocess.DEVNULL)
     for counts in build.rglob("*.gcda"):
         counts.unlink()
     for room in rooms:
-        subprocess.run([build / f"tests/hilda_test_{room}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, OMP_NUM_THREADS="1"), check=False)
+        subprocess.run([build / f"tests/hilda_test_{room}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                       env=dict(os.environ, OMP_NUM_THREADS="1"), check=False)
     lines, branches = collections.defaultdict(dict), collections.defaultdict(dict)
     for counts in build.rglob("*.gcda"):
-        report = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", counts], capture_output=True, text=True, cwd=build, check=False).stdout
-        for text in filter(None, report.split("\n")):
+        report = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", counts],
+                                capture_output=True, text=True, cwd=build, check=False)
+        for text in filter(None, report.stdout.split("\n")):
             for file in json.loads(text)["files"]:
                 name = pathlib.Path(file["file"])
                 if not name.is_relative_to(matrix.SOURCE):

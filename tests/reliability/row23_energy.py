@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 23: no run of a random passive model that ends with exit code 0 gains energy beyond the error of its scheme.
 
-60 models, from the seeds 0 to 59: trees of bodies with joints, springs and dampers; bodies thrown on a floor with Hertz and Hooke
-contacts and every friction law; balls in a bowl with the contact as a constraint. Each runs with every integrator of fixed step and
-with ida-rp; the number of steps is between 200 and 20000. The energy of a passive model never rises. From trajectory.csv, with a row
-for each step, the script computes independently of the program
+60 models, from the seeds 0 to 59: trees of bodies with joints, springs and dampers; bodies thrown on a floor with Hertz
+and Hooke contacts and every friction law; balls in a bowl with the contact as a constraint. Each runs with every
+integrator of fixed step and with ida-rp; the number of steps is between 200 and 20000. The energy of a passive model
+never rises. From trajectory.csv, with a row for each step, the script computes independently of the program
 
     rise  the largest rise of the energy above its lowest value so far
     T     the largest kinetic energy
     B     the largest kinetic energy of the velocity change of a step, h²/2 v̇ᵀ M v̇
 
-and requires rise <= T/100 + the smaller of B and T/4 + rounding, unless the energy of the scheme is known to drift. A run with
-another exit code gave no answer and passes; a combination that is refused is no case. The energy in the rows does not contain the
-springs of friction; their largest energy, (mu N)²/(2 K), is added to the limit.
+and requires rise <= T/100 + the smaller of B and T/4 + rounding, unless the energy of the scheme is known to drift. A
+run with another exit code gave no answer and passes; a combination that is refused is no case. The energy in the rows
+does not contain the springs of friction; their largest energy, (mu N)²/(2 K), is added to the limit.
 """
 import concurrent.futures
 import csv
@@ -69,12 +69,16 @@ def tree(rng):
             k_r = mass * 9.81 * length * rng.uniform(0.1, 3)
             if joint == "revolute":
                 forces.append({"type": "torsion-spring", "name": f"t{k}", "body_i": c["body_i"], "body_j": f"b{k}",
-                               "axis_bar_i": c["axis_bar_i"], "axis_bar_j": c["axis_bar_j"], "stiffness": k_r, "free_angle": 0})
+                               "axis_bar_i": c["axis_bar_i"], "axis_bar_j": c["axis_bar_j"],
+                               "stiffness": k_r, "free_angle": 0})
     return {"bodies": bodies, "constraints": constraints, "forces": forces}, 3
 
 
-FRICTION = [None, {"mu_s": 0.3, "mu_k": 0.25, "zeta": 0.5}, {"mu_s": 0.5, "zeta": 1, "eta_r": 0.05, "eta_psi": 0.05},
-            {"law": "epsd", "mu_s": 0.4, "zeta": 0.5, "mu_r": 0.02}, {"law": "constant-torque", "mu_s": 0.4, "mu_r": 0.02}]
+FRICTION = [None,
+            {"mu_s": 0.3, "mu_k": 0.25, "zeta": 0.5},
+            {"mu_s": 0.5, "zeta": 1, "eta_r": 0.05, "eta_psi": 0.05},
+            {"law": "epsd", "mu_s": 0.4, "zeta": 0.5, "mu_r": 0.02},
+            {"law": "constant-torque", "mu_s": 0.4, "mu_r": 0.02}]
 
 
 def thrown(rng):
@@ -167,21 +171,25 @@ def check(row, seed, scheme):
     with matrix.scratch() as folder:
         (folder / "m.json").write_text(json.dumps(text))
         step = ["--interval", repr(h)] if scheme == "ida-rp" else ["--step", repr(h), "--interval", "0"]
-        ended = row.run([row.hilda, "run", "m.json", "--integrator", scheme, "--output", "out", "--fix-initial", "--quiet"] + step, cwd=folder)
+        ended = row.run([row.hilda, "run", "m.json", "--integrator", scheme, "--output", "out", "--fix-initial",
+                         "--quiet"] + step, cwd=folder)
         if ended.code in (2, 3):
             return False, True, ""
         if ended.code != 0:
             return True, ended.code == 4, f"exit code {ended.code}: {ended.last_error()}"
         rise, T, B, rounding, friction = gains(folder / "out", text, h)
         limit = 0.01 * T + min(B, T / 4) + friction + rounding
-        return True, scheme in DRIFTS or rise <= limit, f"rise {rise:.3g} J, limit {limit:.3g} J, T {T:.3g} J, B {B:.3g} J, h {h:g} s"
+        why = f"rise {rise:.3g} J, limit {limit:.3g} J, T {T:.3g} J, B {B:.3g} J, h {h:g} s"
+        return True, scheme in DRIFTS or rise <= limit, why
 
 
 def main():
-    row = matrix.Row("23 energy of random passive models", lambda parser: parser.add_argument("--models", type=int, default=60))
+    row = matrix.Row("23 energy of random passive models",
+                     lambda parser: parser.add_argument("--models", type=int, default=60))
     lines = row.run([row.hilda, "integrators"]).out.split("\n")[1:]
-    schemes = [line.split()[0] for line in lines if any(f" {formulation} " in line for formulation in ("rA", "rp", "reps"))]
-    tasks = [(seed, scheme) for seed in range(row.options.models) for scheme in schemes if not scheme.startswith("ida-rp-")]
+    schemes = [line.split()[0] for line in lines if any(f" {name} " in line for name in ("rA", "rp", "reps"))]
+    schemes = [scheme for scheme in schemes if not scheme.startswith("ida-rp-")]
+    tasks = [(seed, scheme) for seed in range(row.options.models) for scheme in schemes]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for (seed, scheme), (is_case, passed, why) in zip(tasks, pool.map(lambda task: check(row, *task), tasks)):
             if is_case:

@@ -28,7 +28,8 @@ def main():
         if (wanted and number not in wanted) or (options.quick and number in LONG):
             continue
         begin = time.monotonic()
-        ended = subprocess.run([sys.executable, script, "--build", options.build], stdout=subprocess.PIPE, text=True, check=False)
+        ended = subprocess.run([sys.executable, script, "--build", options.build], stdout=subprocess.PIPE, text=True,
+                               check=False)
         lines = ended.stdout.strip().split("\n")
         for line in lines[:-1]:
             print(f"      {line}", flush=True)

@@ -23,18 +23,34 @@ using namespace hilda::granular;
 
 namespace {
 
+/// Whether a file of this name can be found; false also for names that the file system does not accept
+bool is_file(const std::string& name)
+{
+    std::error_code error;
+    return std::filesystem::exists(name, error);
+}
+
+/// Path of the folder of a case. Throws io::InvalidInput if there can be no such file.
+std::string folder_of(const std::string& file)
+{
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::absolute(file, error);
+    if (error) throw io::InvalidInput("'" + file + "': is not the name of a file: " + error.message());
+    return path.parent_path().string();
+}
+
 int run_case(const Options& o)
 {
     Environment here{
         .memory = available_memory(), .device = o.device, .settings = o.settings, .seed = o.seed};
     make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
-    if (!o.allow_paths) here.folder = std::filesystem::absolute(o.file).parent_path().string();
+    if (!o.allow_paths) here.folder = folder_of(o.file);
     std::string text;
     try {
         text = io::read_file(o.file, std::size_t{64} << 20);
     } catch (const io::IoError& e) {
-        throw io::InvalidInput(e.what() + (std::filesystem::exists(o.file) ? "" : known_validations()));
+        throw io::InvalidInput(e.what() + (is_file(o.file) ? "" : known_validations()));
     }
     const std::optional<io::JsonSource> earlier =
         o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
@@ -48,11 +64,11 @@ int run_program(int argc, char** argv)
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
     const Validation* const validation = find_validation(o.file);
-    const bool command = (o.file == "schema" || o.file == "laws") && !std::filesystem::exists(o.file);
+    const bool command = (o.file == "schema" || o.file == "laws") && !is_file(o.file);
     if ((validation != nullptr || command) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
                              (command ? " is a command" : " is a validation"));
-    if (o.full && validation == nullptr && std::filesystem::exists(o.file))
+    if (o.full && validation == nullptr && is_file(o.file))
         throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
     if (command) {
         std::puts((o.file == "laws" ? list_of_laws() : io::written(case_schema())).c_str());

@@ -16,7 +16,8 @@ Problem problem_or_file(const std::string& name_or_path)
     if (!is_model_path(name_or_path)) {
         p = problem(name_or_path);
     } else {
-        if (!std::filesystem::exists(name_or_path))
+        std::error_code error;  // of names that the file system does not accept
+        if (!std::filesystem::exists(name_or_path, error))
             throw lie::InvalidInput(name_or_path + ": there is no such file");
         p.name = std::filesystem::path(name_or_path).stem().string();
         p.what = "model file " + name_or_path;

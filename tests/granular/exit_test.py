@@ -54,6 +54,11 @@ def main():
         refused(3, place.format("/end") + r"end must be at least one step, got 1e-08", "--end", "1e-8")
         refused(7, "--device cuda:99: ", "--device", "cuda:99")
         refused(3, "none.json: does not exist", case="none")
+        long = "a" * 300 + ".json"
+        for name, message in ("", "'': is not the name of a file: "), (long, f"{long}: cannot be read: File name too long"):
+            process = subprocess.run([sys.argv[1], name], cwd=here, capture_output=True, text=True)
+            expect(process.returncode == 3 and process.stderr.startswith(f"hilda: error: {message}"),
+                   f"{process.returncode}: {process.stderr}")
         expect(sorted(file.name for file in here.iterdir()) == ["short.json"], "rejected runs write no files")
 
         expect(runs.finish(short, "--quiet") == "", "a valid case with --quiet prints nothing")

@@ -36,9 +36,12 @@ def main():
             row.case(what, ended.code in codes and matrix.is_one_line(ended.err) and fast and kept,
                      f"exit {ended.code}, {ended.seconds:.2f} s: {ended.err}")
 
-        for path in ("pipe", "pipe.json", "/dev/zero", "/dev/random", "loop.json", "nowhere.json", "folder.json",
+        for path in ("", "pipe", "pipe.json", "/dev/zero", "/dev/random", "loop.json", "nowhere.json", "folder.json",
                      "a" * 300 + ".json", "../" * 40 + "nowhere.json", "a\nb.json"):
             refused(f"model {path!r}", [row.hilda, "check", path], (2, 3, 5))
+            if path != "a\nb.json":
+                refused(f"case {path!r}", [row.granular, path, "--output", "out"], (3,))
+                refused(f"problem {path!r}", [row.hilda, "study", "energy", "--problem", path, "--output", "out"])
         for path in ("../table.csv", str(folder / "table.csv"), "cases/link.csv", "/etc/passwd", "/dev/zero",
                      "cases/../../secret"):
             (folder / "cases/bad.json").write_text(models.text(case_with(path)))

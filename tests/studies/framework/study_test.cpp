@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/studies/program.hpp"
+#include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -47,6 +48,13 @@ TEST_CASE("a study that cannot start leaves no directory", "[studies][study]")
     const Scratch in;
     CHECK(call(in, {"study", "convergence", "--problem", "none", "--output", "a"}).code == 3);
     CHECK_FALSE(fs::exists(in / "a"));
+}
+
+TEST_CASE("a study refuses a model file with a name that the file system does not accept", "[studies][study]")
+{
+    const Scratch in;
+    const std::string name = std::string(300, 'a') + ".json";
+    check_refused(in, {"study", "convergence", "--problem", name}, 3, name + ": there is no such file");
 }
 
 TEST_CASE("an error in a model file is placed with the path of the file", "[studies][study]")

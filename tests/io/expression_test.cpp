@@ -304,6 +304,30 @@ TEST_CASE("variables have the order of their list", "[io][expression]")
     CHECK_THROWS_WITH(Expression("lbot", {"l", "ldot", "t"}), Catch::Contains("did you mean 'ldot'?"));
 }
 
+TEST_CASE("a variable with other characters in its name is written in braces", "[io][expression]")
+{
+    const std::vector<std::string> names = {"t", "ball-floor.F_N", ""};
+    const Expression force("2*{ball-floor.F_N} \t+ {t}^2 - {}", names);
+    const std::array x{2., 0.5, 7.};
+    CHECK(force.value(x) == 1 + 4 - 7);
+    CHECK_THROWS_WITH(Expression("1 + {ball-flor.F_N}", names),
+                      Catch::Contains("unknown name") && Catch::Contains("at column 5") &&
+                          Catch::Contains("did you mean 'ball-floor.F_N'?"));
+    CHECK_THROWS_WITH(Expression("t*{ball", names), Catch::StartsWith("'{' is never closed in"));
+}
+
+TEST_CASE("the variables and the outermost function of an expression are known", "[io][expression]")
+{
+    const Expression f("cos(2*a) + 0*b", {"a", "b", "c"});
+    CHECK(f.uses(0));
+    CHECK(f.uses(1));
+    CHECK_FALSE(f.uses(2));
+    CHECK(f.outermost().empty());
+    CHECK(Expression("cos(2*t)").outermost() == "cos");
+    CHECK(Expression("if(t, 1, 2)").outermost() == "if");
+    CHECK(Expression("3").outermost().empty());
+}
+
 TEST_CASE("named constants are evaluated when the text is read", "[io][expression]")
 {
     const Expression::Constants constants = {{"n", 3}, {"l", 0.5}, {"zero", 0}};

@@ -130,6 +130,27 @@ TEST_CASE("a text is one JSON value and nothing else", "[io][json]")
     CHECK_FALSE(is_valid(std::string(65, '[') + std::string(65, ']')));
 }
 
+TEST_CASE("a text has a largest size, number of values and length of its strings", "[io][json]")
+{
+    const std::string bytes = std::to_string(JsonSource::max_bytes);
+    CHECK(is_valid(std::string(JsonSource::max_bytes - 1, ' ') + '1'));
+    CHECK(outcome(std::string(JsonSource::max_bytes, ' ') + '1') ==
+          "f:1:1 (/): the text has " + std::to_string(JsonSource::max_bytes + 1) + " bytes; at most " +
+              bytes + " are allowed");
+
+    std::string values = "[1";
+    for (std::size_t k = 2; k < JsonSource::max_values; ++k) values += ",1";
+    CHECK(is_valid(values + "]"));
+    CHECK_THAT(outcome(values + ",1]"), Catch::EndsWith("the text has more than 2000000 values"));
+
+    const auto read = [](std::size_t length) {
+        return JsonSource("[\"" + std::string(length, 'a') + "\"]", "f", 100).root;
+    };
+    CHECK(read(100).at(0).string()->size() == 100);
+    CHECK_THROWS_WITH(read(101), "f:1:2 (/0): a string of 101 bytes, got \"" + std::string(60, 'a') +
+                                     "...\"; at most 100 are allowed");
+}
+
 TEST_CASE("a byte order mark is skipped and not counted as a column", "[io][json]")
 {
     CHECK(outcome("\xEF\xBB\xBF{\"a\": 1}") == outcome("{\"a\": 1}"));
@@ -189,6 +210,10 @@ TEST_CASE("a change replaces a value or adds a key, and its errors name the opti
                       Catch::StartsWith("f:1:29 (/c): --set \"/c={\\\"k\\\": 1, \\\"k\\\": 2}\": VALUE:1:10 "
                                         "(/k): the key \"k\" is given twice"));
     CHECK_THROWS_WITH(changed("/c=\xFF"), Catch::Contains("must be UTF-8"));
+    for (const char* pointer : {"/a/1/b~", "/a/1/b~2"})
+        CHECK_THROWS_WITH(changed(std::string(pointer) + "=1"),
+                          Catch::Contains("'~' is written ~0 in a pointer, and '/' in a key is ~1"));
+    CHECK_THROWS_WITH(changed("c=1"), Catch::Contains("must be /json/pointer=VALUE"));
 
     JsonSource source(R"({"a": 1})", "f");
     CHECK(source.current_text() == R"({"a": 1})");

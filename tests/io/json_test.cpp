@@ -98,3 +98,18 @@ TEST_CASE("io::Json refuses operations of another kind of value")
     CHECK_THROWS_AS(array.at(0), std::out_of_range);
     CHECK(array.size() == 0);
 }
+
+TEST_CASE("messages describe a value in one line")
+{
+    CHECK(described(Json(0.5)) == "0.5");
+    CHECK(described(Json(true)) == "true");
+    CHECK(described(Json(std::nan(""))) == "nan");
+    CHECK(described(Json(std::string(58, 'a') + "\u00fc\u00fc")) ==
+          "\"" + std::string(58, 'a') + "\u00fc...\"");
+    CHECK(described(Json{{"a", 1}}) == "an object of 1 key");
+    CHECK(described(Json{{"a", 1}, {"b", 2}}) == "an object of 2 keys");
+    CHECK(described(Json{0.5, 1.5, 2.5, 3.5}) == "[0.5, 1.5, 2.5, 3.5]");
+    CHECK(described(Json{0.5, 1.5, 2.5, 3.5, 4.5}) == "a list of 5");
+    CHECK(described(Json{"a", "b"}) == "a list of 2");
+    CHECK(io::pointer_to("/a", "b/c~d") == "/a/b~1c~0d");
+}

@@ -14,7 +14,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <ctime>
+#include <limits>
 #include <sstream>
 
 using namespace hilda;
@@ -332,14 +334,19 @@ std::pair<std::vector<Vec3>, std::vector<Triangle>> body_with_fan(int n)
 TEST_CASE("a vertex with 14000 triangles is checked in a time proportional to their number",
           "[contact][mesh]")
 {
+    // Processor time, the shortest of three: other programs on the machine do not change it by much.
     const auto time = [](int n) {
         const auto [vertices, triangles] = body_with_fan(n);
-        const std::clock_t begin = std::clock();  // of the processor, so that other programs do not count
-        for (int k = 0; k < 14000 / n; ++k) CHECK_FALSE(TriangleMesh::fault(vertices, triangles));
-        return static_cast<double>(std::clock() - begin) / (14000 / n);
+        std::clock_t shortest = std::numeric_limits<std::clock_t>::max();
+        for (int k = 0; k < 3; ++k) {
+            const std::clock_t begin = std::clock();
+            CHECK_FALSE(TriangleMesh::fault(vertices, triangles));
+            shortest = std::min(shortest, std::clock() - begin);
+        }
+        return static_cast<double>(shortest);
     };
-    // 140 times as many triangles. A time proportional to the square would be 19600 times as long.
-    CHECK(time(14000) < 1000 * time(100));
+    // 14 times as many triangles. A time proportional to the square would be 196 times as long.
+    CHECK(time(14000) < 70 * time(1000));
     const auto [vertices, triangles] = body_with_fan(14000);
     CHECK_THROWS_WITH(
         MeshSurface(TriangleMesh(vertices, triangles)),

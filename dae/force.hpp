@@ -62,12 +62,13 @@ public:
     virtual bool internal_state_uses_multipliers() const { return false; }
     int first_discrete_state = 0, first_internal_state = 0;  ///< indices into the state, set by the model
 
-    /// A direction in which the force acts as a linear spring and damper. Its deflection has the rate
-    /// r_i · ṙ_i + pi_i · ω̄_i + r_j · ṙ_j + pi_j · ω̄_j, with i and j from bodies() [m/s or rad/s].
+    /// A direction in which the force acts as a linear spring and damper. Its deflection S has the rate
+    /// Ṡ = r_i · ṙ_i + pi_i · ω̄_i + r_j · ṙ_j + pi_j · ω̄_j, with i and j from bodies() [m/s or rad/s].
     struct SpringRow {
-        Vec3 r_i = Vec3::Zero(), pi_i = Vec3::Zero(), r_j = Vec3::Zero(),
-             pi_j = Vec3::Zero();           ///< global frame, body frame
+        Vec3 r_i = Vec3::Zero(), pi_i = Vec3::Zero();  ///< global frame, body frame
+        Vec3 r_j = Vec3::Zero(), pi_j = Vec3::Zero();
         double stiffness = 0, damping = 0;  ///< [N/m], [N s/m] or [N m/rad], [N m s/rad]
+        double gamma = 0;                   ///< S̈ for constant ṙ and ω̄ [m/s² or rad/s²]
     };
     static constexpr int most_spring_rows = 6;
     /// Largest number of spring rows, at most most_spring_rows

@@ -94,6 +94,8 @@ void Model::load(std::unique_ptr<Force> f)
 {
     if (f->last_body() >= static_cast<int>(body.size()))
         lie::reject(f->label(), "no body has this number", f->last_body());
+    if (f->implicit && !f->may_be_implicit())
+        lie::reject(f->label(), "this type of force cannot be evaluated implicitly; implicit must be", false);
     const auto number = static_cast<int>(force.size());
     const std::array<int, 2> on = f->bodies();
     forces_on_body.resize(body.size());

@@ -244,6 +244,7 @@ lie::Springs Model::spring_pattern() const
     }
     out.stiffness.resize(static_cast<size_t>(out.rows.rows()));
     out.damping.resize(out.stiffness.size());
+    out.gamma.resize(out.stiffness.size());
     return out;
 }
 
@@ -263,6 +264,7 @@ void Model::update_springs(const State& x, lie::Springs& out) const
             if (j != ground) entry->r = row.r_j, entry->pi = row.pi_j, ++entry;
             out.stiffness[at] = row.stiffness;
             out.damping[at] = row.damping;
+            out.gamma[at] = row.gamma;
         }
     }
 }

@@ -261,9 +261,7 @@ private:
         const auto [name, type] = heading<ForceType>(o, force_names);
         std::unique_ptr<Force> force = o.located([&, type = type] { return type->read(o, *this, out.x); });
         force->name = name;
-        if (std::count(type->schema.parts.begin(), type->schema.parts.end(), "implicit_spring") > 0 &&
-            o.has("implicit"))
-            force->implicit = o.flag("implicit");
+        if (force->may_be_implicit() && o.has("implicit")) force->implicit = o.flag("implicit");
         Json recorded = o.finish();
         model.load(std::move(force));
         out.force_place.push_back(o.place());

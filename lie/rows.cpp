@@ -12,8 +12,7 @@ void Rows::regularise(std::span<const double> compliances)
     if (!compliances.empty()) return;
     for (size_t r = 0; r + springs < regularised.size(); ++r) {
         compliance[r] = 0;
-        const int k = regularised[r];
-        for (int n = start[k]; n < start[k + 1]; ++n) entry[n].r.setZero(), entry[n].pi.setZero();
+        clear(regularised[r]);
     }
 }
 

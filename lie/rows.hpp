@@ -48,6 +48,11 @@ struct Rows {
     /// Sets the compliances, one for each regularised row of friction. Without compliances these rows are made
     /// inactive: their derivatives are set to zero.
     void regularise(std::span<const double> compliances);
+    /// Sets the derivatives of a row to zero.
+    void clear(int k)
+    {
+        for (int n = start[k]; n < start[k + 1]; ++n) entry[n].r.setZero(), entry[n].pi.setZero();
+    }
     /// Adds the rows of springs to the pattern, as regularised nonholonomic rows.
     void append_springs(const Rows& pattern);
     /// Sets the derivatives and the compliances of the rows of springs.

@@ -54,17 +54,30 @@ void Bushing::add(const State& x, lie::Loads& out) const
 int Bushing::spring_rows(const State& x, SpringRow* out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const Vec3 s_bar_q = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);
+    const Vec3 y = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r);  // Q in the frame of body i
+    const Vec3 v = bi.A.transpose() * (velocity_at(bj, bj.A * s_bar_j) - bi.rdot);
+    const Vec3 ydot = v - bi.omega_bar.cross(y);
+    const Vec3 yddot = bi.A.transpose() * (bj.A * bj.omega_bar.cross(bj.omega_bar.cross(s_bar_j))) -
+                       bi.omega_bar.cross(v + ydot);
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 e_i = Vec3::Unit(axis), e = bi.A * e_i;
         out[axis] = {.r_i = -e,
-                     .pi_i = -s_bar_q.cross(e_i),
+                     .pi_i = -y.cross(e_i),
                      .r_j = e,
                      .pi_j = s_bar_j.cross(bj.A.transpose() * e),
                      .stiffness = coefficients.stiffness[axis],
-                     .damping = coefficients.damping[axis]};
+                     .damping = coefficients.damping[axis],
+                     .gamma = yddot[axis]};
     }
-    const Mat3 J_inverse = lie::right_jacobian_inverse(deflection(x).psi);
+    const Vec3 psi = deflection(x).psi, omega_i = bj.A.transpose() * (bi.A * bi.omega_bar);
+    const Mat3 J_inverse = lie::right_jacobian_inverse(psi);
+    const Vec3 w = bj.omega_bar - omega_i, psidot = J_inverse * w;
+    // The derivative of J_r(psi)^-1 along psidot, by central differences
+    const double step = 1e-5 / std::max(1e-3, psidot.norm());
+    const Vec3 of_J = (lie::right_jacobian_inverse(psi + step * psidot) * w -
+                       lie::right_jacobian_inverse(psi - step * psidot) * w) /
+                      (2 * step);
+    const Vec3 psiddot = of_J + J_inverse * bj.omega_bar.cross(omega_i);
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 of_j = J_inverse.row(axis);
         out[3 + axis] = {.r_i = Vec3::Zero(),
@@ -72,7 +85,8 @@ int Bushing::spring_rows(const State& x, SpringRow* out) const
                          .r_j = Vec3::Zero(),
                          .pi_j = of_j,
                          .stiffness = coefficients.rotational_stiffness[axis],
-                         .damping = coefficients.rotational_damping[axis]};
+                         .damping = coefficients.rotational_damping[axis],
+                         .gamma = psiddot[axis]};
     }
     return 6;
 }

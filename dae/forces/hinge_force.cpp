@@ -77,13 +77,14 @@ void HingeForce::check_step(const State& before, const State& after) const
 int HingeForce::spring_rows(const State& x, SpringRow* out) const
 {
     const auto [stiffness, damping] = coefficients();
-    const Vec3 axis = motion(x, i).A * axis_bar_i;
+    const Vec3 axis = motion(x, i).A * axis_bar_i, omega_i = motion(x, i).A * motion(x, i).omega_bar;
     out[0] = {.r_i = Vec3::Zero(),
               .pi_i = -axis_bar_i,
               .r_j = Vec3::Zero(),
               .pi_j = motion(x, j).A.transpose() * axis,
               .stiffness = stiffness,
-              .damping = damping};
+              .damping = damping,
+              .gamma = omega_i.cross(axis).dot(motion(x, j).A * motion(x, j).omega_bar)};
     return 1;
 }
 

@@ -14,13 +14,18 @@ int SpringDamper::spring_rows(const State& x, SpringRow* out) const
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     if (!((bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() > 0)) return 0;
     const Stretch at = stretch(x);
+    const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j, omega_i = bi.A * bi.omega_bar,
+               omega_j = bj.A * bj.omega_bar;
+    const Vec3 ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i),
+               dddot = omega_j.cross(omega_j.cross(s_j)) - omega_i.cross(omega_i.cross(s_i));
     SpringRow& row = out[0];
     row = {.r_i = -at.along,
            .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
            .r_j = at.along,
            .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
            .stiffness = stiffness,
-           .damping = damping};
+           .damping = damping,
+           .gamma = at.along.dot(dddot) + (ddot.squaredNorm() - at.ldot * at.ldot) / at.l};
     if (law) {
         const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
         const auto F = [&](double l, double ldot) {

@@ -19,7 +19,7 @@ void LeapfrogStep::fill_node(State& node, const State& after) const
         node.body[i].rdot = 0.5 * (before + behind).head<3>();
         node.body[i].omega_bar = between(i, before.tail<3>(), behind.tail<3>(), after.t - node.t);
     }
-    if (!springs.empty()) springs.restore_velocities(node, after.t - node.t);
+    if (!springs.empty()) springs.restore_velocities(node, after.history, after.t - node.t);
 }
 
 Vec3 LeapfrogStep::half_kick_back(int i, double h) const

@@ -210,7 +210,7 @@ void SingleRun::check_step(bool resumed) const
     if (!options.force && !resumed)
         throw io::UsageError("run: " + what +
                              (force.may_be_implicit() && scheme.implicit_springs
-                                  ? "; \"implicit\": true in this force removes the limit"
+                                  ? "; \"implicit\": true in this force removes this limit"
                                   : "") +
                              "; --force accepts it");
     warn(what);

@@ -150,7 +150,7 @@ TEST_CASE("a step above the stability limit of a damper is rejected for explicit
         const bool has_rule = scheme != std::string("rA-rattle");
         CHECK(refused.err == std::string("hilda: error: run: the step 0.001 s is above ") + limit +
                                  ", the stability limit of force 'damper' in an explicit step" +
-                                 (has_rule ? R"(; "implicit": true in this force removes the limit)" : "") +
+                                 (has_rule ? R"(; "implicit": true in this force removes this limit)" : "") +
                                  "; --force accepts it\n");
         CHECK(run(scheme, {"--step", "4.99e-5", "--quiet"}).code == 0);
     }

@@ -3,6 +3,7 @@
 /// the schemes, stability at any step, and the same motion with both linear solvers.
 
 #include "dae/forces/bushing.hpp"
+#include "dae/forces/limits.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
 #include "dae/joints.hpp"
@@ -23,13 +24,6 @@ using namespace hilda::dae;
 namespace {
 
 const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ();
-
-template <class F>
-F made_implicit(F force)
-{
-    force.implicit = true;
-    return force;
-}
 
 /// A body of mass 2 kg on a spring-damper along x, without gravity
 struct Oscillator {
@@ -254,4 +248,112 @@ TEST_CASE("a step with implicit springs does not allocate memory", "[dae][forces
     };
     steps(3);
     CHECK(tests::allocations_during([&] { steps(50); }) == 0);
+}
+
+TEST_CASE("the rate of a spring row and its change at constant velocities are those of the deflection",
+          "[dae][forces][implicit]")
+{
+    Spatial s(true);
+    s.x.body[1].rdot += Vec3(0.3, -0.2, 0.5);
+    s.x.body[1].omega_bar += Vec3(-0.4, 0.9, 0.2);
+    s.x.body[0].omega_bar += Vec3(0.7, 0.1, -0.3);
+    const auto moved = [&](double time) {
+        State x = s.x;
+        for (auto& body : x.body) {
+            body.r += time * body.rdot;
+            body.A = body.A * lie::exp(time * body.omega_bar);
+        }
+        return x;
+    };
+    const auto rates = [&](const State& x) {
+        lie::Springs springs = s.model.spring_pattern();
+        s.model.update_springs(x, springs);
+        Eigen::VectorXd v(12), rate(springs.rows.rows());
+        for (int i = 0; i < 2; ++i) v.segment<6>(6 * i) << x.body[i].rdot, x.body[i].omega_bar;
+        for (int n = 0; n < rate.size(); ++n) rate[n] = springs.rows.dot(n, v);
+        return rate;
+    };
+    lie::Springs springs = s.model.spring_pattern();
+    s.model.update_springs(s.x, springs);
+    constexpr double dt = 1e-5;
+    const Eigen::VectorXd differences = (rates(moved(dt)) - rates(moved(-dt))) / (2 * dt), now = rates(s.x);
+    REQUIRE(differences.size() == 8);
+    for (int n = 0; n < differences.size(); ++n) {
+        CAPTURE(n);
+        // the axes of the torsion spring are no longer parallel, so that only its own definition is tested
+        CHECK(springs.gamma[static_cast<size_t>(n)] == Approx(differences[n]).margin(1e-7));
+    }
+    const auto value = [&](const State& x, size_t force, int quantity) {
+        double out[6];
+        s.model.forces()[force]->values(x, out);
+        return out[quantity];
+    };
+    CHECK(now[0] == Approx((value(moved(dt), 0, 0) - value(moved(-dt), 0, 0)) / (2 * dt)).margin(1e-8));
+    for (int q = 0; q < 6; ++q)
+        CHECK(now[2 + q] ==
+              Approx((value(moved(dt), 2, q) - value(moved(-dt), 2, q)) / (2 * dt)).margin(1e-8));
+}
+
+TEST_CASE("the mean force of a stiff implicit spring that turns is the centripetal force",
+          "[dae][forces][implicit]")
+{
+    const auto [scheme, k] = GENERATE(table<std::string, double>({{"rA-half-1", 1e6},
+                                                                  {"rA-half-1", 1e8},
+                                                                  {"rA-half-1-kick", 1e6},
+                                                                  {"rA-half-1-kick", 1e8},
+                                                                  {"rA-half-1-kick", 1e9},
+                                                                  {"rA-half-1-momentum", 1e8},
+                                                                  {"rA-half-1-momentum", 1e9}}));
+    constexpr double omega = 10, h = 1e-3;
+    Oscillator o(k, 0, Oscillator::m * omega * omega / k, 0);  // l = 1 m + F/k, F = m omega^2 to first order
+    o.x.body[0].rdot = omega * o.x.body[0].r.x() * Y;
+    start(o.model, o.x);
+    const double energy = o.energy(), force = Oscillator::m * omega * omega;
+    const auto integrator = lie::scheme(scheme).make(o.model, {});
+    double sum = 0, largest_rise = 0;
+    int nodes = 0;
+    for (int n = 0; n < 500; ++n) {
+        State node = o.x;
+        integrator->step(o.x, h);
+        if (n == 0) continue;
+        integrator->fill_node(node, o.x);
+        double spring[3];
+        o.model.forces()[0]->values(node, spring);
+        sum += spring[2], ++nodes;
+        largest_rise = std::max(largest_rise, lie::energy(o.model, node) / energy - 1);
+    }
+    CAPTURE(scheme, k, largest_rise);
+    CHECK(sum / nodes == Approx(force).epsilon(0.02));
+    CHECK(largest_rise < 0.01);
+}
+
+TEST_CASE("implicit springs without stiffness or damping do not act on a step", "[dae][forces][implicit]")
+{
+    const std::string scheme =
+        GENERATE(std::string("rA-half-1"), std::string("rA-half-1-kick"), std::string("rA-half-1-momentum"));
+    const auto solver = GENERATE(lie::LinearSolver::klu, lie::LinearSolver::condensed);
+    const std::optional<std::string> law =
+        GENERATE(std::optional<std::string>(), "-300*(l-1)", "1e4*max(l-1.2,0)", "10*sqrt(l-1)");
+    Oscillator o(0, 0, 0.01, 0.1, false);
+    SpringDamper spring(ground, 0.3 * Y, 0, O, 0, 0, 1);
+    if (law) spring.law.emplace(*law, std::vector<std::string>{"l", "ldot", "t"});
+    Oscillator with(0, 0, 0.01, 0.1, false);
+    o.model.load(spring);
+    spring.implicit = true;
+    with.model.load(spring);
+    start(o.model, o.x), start(with.model, with.x);
+    const auto a = lie::scheme(scheme).make(o.model, {.linear_solver = solver});
+    const auto b = lie::scheme(scheme).make(with.model, {.linear_solver = solver});
+    for (int n = 0; n < 20; ++n) a->step(o.x, 1e-3), b->step(with.x, 1e-3);
+    CAPTURE(scheme, law.value_or(""));
+    CHECK((o.x.body[0].r - with.x.body[0].r).norm() < 1e-6);
+}
+
+TEST_CASE("a force that is not a spring in all states cannot be implicit", "[dae][forces][implicit]")
+{
+    Oscillator o(1, 0, 0, 0);
+    DistanceLimit limit(ground, O, 0, O, {.maximum = 2, .stiffness = 10});
+    limit.implicit = true;
+    limit.name = "stop";
+    CHECK_THROWS_WITH(o.model.load(limit), Catch::Contains("force 'stop'") && Catch::Contains("implicit"));
 }

@@ -121,7 +121,10 @@ void ImplicitSprings::smooth_start(State& x) const
 
 void ImplicitSprings::restore_velocities(State& node, const Eigen::VectorXd& history, double step) const
 {
-    auto& [K, at, v, b, gamma] = *at_node;
+    Saddle& K = at_node->K;
+    Springs& at = at_node->springs;
+    Eigen::VectorXd &v = at_node->v, &b = at_node->b;
+    std::vector<double>& gamma = at_node->gamma;
     const int bodies = static_cast<int>(node.body.size());
     v.setZero();
     for (int i = 0; i < bodies; ++i) v.segment<6>(6 * i) << node.body[i].rdot, node.body[i].omega_bar;

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs, any threads and any back end.
+"""The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs, any threads, any back end.
 
-    persistence_test.py WHAT PROGRAM [PROGRAM]      WHAT is kills, ends, longer or threads; a second PROGRAM has another back end
+    persistence_test.py WHAT PROGRAM [PROGRAM]
+
+WHAT is kills, ends, longer or threads; a second PROGRAM has another back end.
 """
-import hashlib
 import json
-import os
-import pathlib
 import random
 import re
 import shutil
@@ -17,70 +16,7 @@ import sys
 import tempfile
 import time
 
-# Polydisperse particles in a shaken cup under a free lid, with all laws that have a history.
-CASE = {
-    "hilda_case": 1, "name": "cup",
-    "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
-    "step": 5e-6, "end": 0.2, "interval": 1e-2, "frame_interval": 1.5e-2, "checkpoint_interval": 1e-3, "orientation": True,
-    "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
-                  {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],
-    "laws": [{"between": ["glass", "glass"], "restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"},
-              "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}, "spin": {"law": "torsional-spring"}},
-             {"between": ["glass", "steel"], "restitution": 0.5, "mu": 0.4, "tangential": {"law": "mindlin"},
-              "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}}],
-    "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "r": [0, 0, "1e-4*sin(2*pi*40*t)"], "material": "steel"},
-                   {"name": "wall", "type": "cylinder", "r": [0.01, 0.01, 0], "axis": [0, 0, 1], "radius": 0.01,
-                    "inside": True, "omega": [0, 0, "5*t"], "material": "steel"},
-                   {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": [0, 0, 0.04], "mass": 2e-3, "F": [0, 0, "-0.1*t"],
-                    "free": [False, False, True], "material": "steel"}],
-    "fill": [{"type": "lattice", "low": [0.003, 0.003, 0], "high": [0.017, 0.017, 0.03], "radius": 1e-3,
-              "least_radius": 6e-4, "spacing": 1.02, "jitter": 1, "random_v": 0.2, "material": "glass"}]}
-
-
-class Runs:
-    def __init__(self, program, folder):
-        self.program, self.folder = program, pathlib.Path(folder)
-        self.environment = dict(os.environ, OMP_WAIT_POLICY="passive")
-
-    def case(self, name, **changes):
-        (self.folder / f"{name}.json").write_text(json.dumps(dict(CASE, **changes)))
-        return name
-
-    def start(self, name, *arguments, program=None):
-        threads = () if "--threads" in arguments else ("--threads", "1")
-        return subprocess.Popen([program or self.program, f"{name}.json", *threads, *arguments], cwd=self.folder,
-                                env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-    def finish(self, name, *arguments, code=0, **options):
-        process = self.start(name, *arguments, **options)
-        _, err = process.communicate()
-        if process.returncode != code:
-            sys.exit(f"{' '.join(process.args)}: ended with {process.returncode}, not {code}: {err}")
-        return err
-
-    def sha(self, output):
-        """SHA-256 of all output that does not depend on wall time"""
-        out = self.folder / output
-        files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
-        if (out / "vtk").exists():
-            files += [out / "run.pvd"] + sorted((out / "vtk").iterdir())
-        whole = hashlib.sha256()
-        for file in files:
-            whole.update(file.name.encode() + b"\0" + file.read_bytes())
-        summary = self.summary(output)
-        whole.update(json.dumps({key: summary[key] for key in summary if key not in ("timing", "provenance")}).encode())
-        return whole.hexdigest()
-
-    def summary(self, output):
-        return json.loads((self.folder / output / "summary.json").read_text())
-
-    def remove(self, output):
-        shutil.rmtree(self.folder / output, ignore_errors=True)
-
-
-def expect(condition, what):
-    if not condition:
-        sys.exit(f"failed: {what}")
+from case_runs import CASE, Runs, expect
 
 
 def kills(runs, wanted=20, legs=20):

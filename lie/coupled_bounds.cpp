@@ -51,8 +51,8 @@ void CoupledBounds::evaluate()
     }
     matrix.noalias() = -S * delta.asDiagonal();
     matrix.diagonal().array() += 1;
-    softened.compute(matrix);
-    lambda.noalias() = softened.solve(lambda_0);
+    regularised.compute(matrix);
+    lambda.noalias() = regularised.solve(lambda_0);
     change = delta.cwiseProduct(lambda);
     N = N_0;
     N.noalias() += Q * change;
@@ -75,7 +75,7 @@ bool CoupledBounds::newton_step()
     for (Eigen::Index k = 0; k < a; ++k)
         by_q.col(k) = active[static_cast<size_t>(k)].mobility * std::exp(q[k]) *
                       (S.middleCols<2>(2 * k) * lambda.segment<2>(2 * k));
-    lambda_by_q.noalias() = softened.solve(by_q);
+    lambda_by_q.noalias() = regularised.solve(by_q);
     for (Eigen::Index k = 0; k < a; ++k) {
         const Active& at = active[static_cast<size_t>(k)];
         if (q[k] < s[k]) {

@@ -63,7 +63,7 @@ private:
     std::vector<Active> active;
     Eigen::MatrixXd S, Q;  ///< 2a × 2a and a × 2a for a active pairs
     Eigen::MatrixXd matrix, by_q, lambda_by_q, J;
-    Eigen::PartialPivLU<Eigen::MatrixXd> softened, newton;  ///< of I - S Δ and of J
+    Eigen::PartialPivLU<Eigen::MatrixXd> regularised, newton;  ///< of I - S Δ and of J
     Eigen::VectorXd lambda_0, N_0, lambda, N, q, s, bound, delta, change, residual, q_before, step, b;
 };
 

@@ -11,9 +11,9 @@ namespace hilda::dae {
 
 int SpringDamper::spring_rows(const State& x, SpringRow* out) const
 {
-    const Motion &bi = motion(x, i), &bj = motion(x, j);
-    if (!((bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() > 0)) return 0;
+    if (!(distance(x).squaredNorm() > 0)) return 0;
     const Stretch at = stretch(x);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j, omega_i = bi.A * bi.omega_bar,
                omega_j = bj.A * bj.omega_bar;
     const Vec3 ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i),

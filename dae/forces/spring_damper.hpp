@@ -42,9 +42,8 @@ public:
     /// k (l - l_0)²/2: the linear spring only
     double potential_energy(const State& x) const override
     {
-        const Motion &bi = motion(x, i), &bj = motion(x, j);
-        const double stretch = (bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i).norm() - free_length;
-        return 0.5 * stiffness * stretch * stretch;
+        const double extension = distance(x).norm() - free_length;
+        return 0.5 * stiffness * extension * extension;
     }
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0 && !law; }
@@ -70,6 +69,12 @@ public:
     int last_body() const override { return std::max(i, j); }
 
 private:
+    /// d_ij from P to Q, global frame [m]
+    Vec3 distance(const State& x) const
+    {
+        const Motion &bi = motion(x, i), &bj = motion(x, j);
+        return bj.r + bj.A * s_bar_j - bi.r - bi.A * s_bar_i;
+    }
     struct Stretch {
         Vec3 along;         ///< unit vector from P to Q, global frame
         double l, ldot, f;  ///< [m], [m/s], [N]
@@ -77,8 +82,7 @@ private:
     Stretch stretch(const State& x) const
     {
         const Motion &bi = motion(x, i), &bj = motion(x, j);
-        const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j;
-        const Vec3 d = bj.r + s_j - bi.r - s_i, ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i);
+        const Vec3 d = distance(x), ddot = velocity_at(bj, bj.A * s_bar_j) - velocity_at(bi, bi.A * s_bar_i);
         const double l = d.norm();
         if (!(l > 0))
             throw lie::NonFinite(

@@ -260,6 +260,8 @@ const std::vector<InvalidModel> forces = {
     {"\"stiffness\": 10", "\"stiffness\": \"stiff\"", "/forces/0/stiffness", "must be a number or an expression: unknown name 'stiff'"},
     {"\"stiffness\": 10", "\"stiffness\": 10, \"damping\": -1", "/forces/0/damping", "must not be negative, got -1"},
     {"\"free_length\": 1", "\"free_length\": -1", "/forces/0/free_length", "must not be negative, got -1"},
+    {"\"free_length\": 1", "\"free_length\": 1, \"implicit\": 1", "/forces/0/implicit", "implicit must be true or false, got 1"},
+    {"\"frame\": \"body\"", "\"frame\": \"body\", \"implicit\": true", "/forces/3/implicit", "unknown key \"implicit\""},
     {"\"free_length\": 1", "\"free_lenght\": 1", "/forces/0/free_lenght", "did you mean 'free_length'?"},
     {"\"stiffness\": 1, ", "", "/forces/1", "missing key 'stiffness'"},
     {", \"free_angle\": 0", "", "/forces/1", "missing key 'free_angle'"},

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::studies {
 
@@ -23,17 +24,18 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
         return {"rA-rkmk-4",
                 "no degrees of freedom: positions, velocities and constraint forces are exact at every step"};
 
-    const auto name = [&](const dae::Model::StableStep& limit) {
-        return model.forces()[static_cast<size_t>(limit.force)]->label();
+    const auto force_of = [&](const dae::Model::StableStep& limit) -> const dae::Force& {
+        return *model.forces()[static_cast<size_t>(limit.force)];
     };
-    const dae::Model::StableStep all = model.stable_step(x, lie::scheme(default_integrator)),
+    const dae::Model::StableStep limit = model.stable_step(x, lie::scheme(default_integrator)),
                                  contacts = model.stable_step(x, LoadEvaluation::implicit);
-    if (all.h < default_step && all.h < contacts.h)
+    // Implicit integrators remove the limits of springs, and not those of contacts.
+    if (limit.h < default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit)))
         return {"rp-bdf2",
                 fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rp-bdf2 "
                             "and ida-rp are implicit{}",
-                            name(all), all.h,
-                            model.forces()[static_cast<size_t>(all.force)]->may_be_implicit()
+                            force_of(limit).label(), limit.h,
+                            force_of(limit).may_be_implicit()
                                 ? fmt::format(", and {} has no limit for a force with \"implicit\": true",
                                               default_integrator)
                                 : "")};
@@ -42,7 +44,7 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
             default_integrator,
             fmt::format("compliant contacts: second order between their events; steps up to {:.2g} s, the "
                         "limit of {}",
-                        all.h, name(all))};
+                        limit.h, force_of(limit).label())};
     return {
         default_integrator,
         "smooth motion: second order in positions, velocities and constraint forces, no drift of the energy"};

@@ -8,11 +8,13 @@
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
+#include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
 #include "studies/framework/recommended_integrator.hpp"
 #include "studies/running/contact_outputs.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
+#include "studies/running/run_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -68,6 +70,12 @@ Reactions largest_reactions(const dae::Model& model, const lie::State& x)
     return largest;
 }
 
+/// The stability limit of the force with the default integrator [s]
+double stable_step(const dae::Force& force, const lie::State& x)
+{
+    return force.stable_step(x, lie::scheme(default_integrator).loads);
+}
+
 /// Initial state of a compliant contact
 struct CompliantContactInfo {
     std::string name;
@@ -87,7 +95,7 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
                        .gap = m.contact_point.gap,
                        .N = std::max(0., m.N),
                        .curvature = 0.5 * (m.contact_point.K_i + m.contact_point.K_j).trace(),
-                       .stable_step = contact->stable_step(x)});
+                       .stable_step = stable_step(*contact, x)});
     }
     return all;
 }
@@ -171,8 +179,8 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
              .of_j = contact::principal_curvatures(contact_point.K_j, contact_point.n),
              .least_curvature = contact::least_curvature(contact_point) * c->L,
              .F_f = loads.F.norm()});
-        if (contact.friction != nullptr) all.back().stable_step = contact.friction->stable_step(x);
-        if (contact.compliant != nullptr) all.back().stable_fallback = contact.compliant->stable_step(x);
+        if (contact.friction != nullptr) all.back().stable_step = stable_step(*contact.friction, x);
+        if (contact.compliant != nullptr) all.back().stable_fallback = stable_step(*contact.compliant, x);
     }
     return all;
 }

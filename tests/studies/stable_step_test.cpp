@@ -249,4 +249,23 @@ TEST_CASE("check names an integrator that suits the model, and the reason", "[st
     CHECK_THAT(recommended("ball_in_bowl"), Catch::StartsWith("rA-half-1-momentum: contact constraints"));
     CHECK_THAT(recommended("rolling_ball"), Catch::StartsWith("rA-half-1-momentum: compliant contacts"));
     CHECK_THAT(recommended("m.json"), Catch::StartsWith("rp-bdf2: stiff: force 'damper' limits the step"));
+
+    // A contact whose limit is below the default step; run refuses the step with the number that check prints.
+    tests::write(in / "ball.json", R"({"hilda_model": 1, "name": "ball", "end": 1,
+        "bodies": [{"name": "ball", "mass": 5, "inertia": [0.08, 0.08, 0.08], "r": [0, 0, 0.2]}],
+        "contacts": [{"name": "floor", "body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.2},
+                      "surface_j": {"type": "plane", "normal": [0, 0, 1]}, "normal": {"type": "hertz", "E_star": 1e7},
+                      "friction": {"mu_s": 0.25, "mu_k": 0.2, "K_E": 2e5}}]})");
+    CHECK_THAT(recommended("ball.json"), Catch::StartsWith("rA-half-1-momentum: compliant contacts"));
+    const auto facts = nlohmann::json::parse(tests::call(in, {"check", "ball.json", "--json"}).out);
+    const double limit = facts["contacts"][0]["stable_step"];
+    CHECK(limit < 1e-3);
+    const auto refuses = [&](double part_of_limit) {
+        return tests::call(
+                   in, {"run", "ball.json", "--end", std::to_string(100 * part_of_limit * limit), "--step",
+                        std::to_string(part_of_limit * limit), "--output", std::to_string(part_of_limit)})
+                   .code == 2;
+    };
+    CHECK(refuses(1.02));
+    CHECK_FALSE(refuses(0.98));
 }

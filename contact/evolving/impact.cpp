@@ -6,6 +6,7 @@
 #include "lie/steps/projection.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::contact {
 
@@ -28,7 +29,8 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
     before_impact = x;
     const size_t events_before = event_log.size();
     solve_velocity_jump(x, nullptr, 0);  // compression: all active constraints hold
-    const double compression = force(c, x, x.lambda);
+    const EvolvingContact::Multipliers compressed = impulse(c, x);
+    const double compression = compressed.F_N;
     lie::solve_accelerations(model, K, x);
     const double F_N = force(c, x, x.lambda);
 
@@ -40,13 +42,21 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
         c.stays_active || x.t - state.last_rebound < h ? 0 : unilateral.restitution * approach;
     const bool separates = rebound > 0 && 2 * rebound * compression > h * approach * F_N;
     if (separates) {
-        if (unilateral.impact == Unilateral::Impact::newton) {
+        const bool newton = unilateral.impact == Unilateral::Impact::newton;
+        const auto rebound_with = [&](double speed) {
             x = before_impact;
             event_log.resize(events_before);
-            solve_velocity_jump(x, &c, rebound);
+            solve_velocity_jump(x, &c, speed);
+        };
+        if (c.contact->friction == EvolvingContact::Friction::rolling) {
+            rebound_with(rebound);
+            const double speed = rolling_rebound(c, compressed, impulse(c, x), rebound);
+            if (speed != rebound) rebound_with(speed);
+        } else if (newton) {
+            rebound_with(rebound);
         }
         dae::Model::set_mode(*c.contact, x, EvolvingContact::inactive);
-        if (unilateral.impact == Unilateral::Impact::poisson) {
+        if (!newton && c.contact->friction != EvolvingContact::Friction::rolling) {
             before_impact = x;
             add_impulse(c, unilateral.restitution * compression, before_impact);
             solve_velocity_jump(x, nullptr, 0);
@@ -63,6 +73,37 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
         save(state, node_state());
     }
     restart(x);
+}
+
+/// Impulses of contact c in the last velocity jump [N s]
+EvolvingContact::Multipliers UnilateralStep::impulse(const TrackedContact& c, const State& x) const
+{
+    return c.contact->multipliers(model.arguments(*c.contact, x), x.lambda);
+}
+
+/// Speed of separation [m/s] after an impact of a contact with ideal rolling. `compressed` and `rebounded`
+/// are its impulses without rebound and with the speed `rebound`.
+///
+/// The slip is zero after the impact, so that the normal impulse is P_c + q s for the speed s. The impulses
+/// P_c and P_t do the work
+///
+///     ½ (q s² - P_c a + P_t · v_t)        a: approach speed, v_t: slip before the impact
+///
+/// Poisson's law has q s = e P_c and loses energy for e ≤ 1. Newton's law, s = e a, supplies energy if the
+/// slip reduces P_c enough; s is then limited to the value without work.
+double UnilateralStep::rolling_rebound(const TrackedContact& c,
+                                       const EvolvingContact::Multipliers& compressed,
+                                       const EvolvingContact::Multipliers& rebounded, double rebound) const
+{
+    const double q = (rebounded.F_N - compressed.F_N) / rebound;
+    if (!(q > 0)) return rebound;
+    if (c.contact->unilateral.impact == Unilateral::Impact::poisson)
+        return c.contact->unilateral.restitution * compressed.F_N / q;
+    const dae::Constraint::Arguments at = model.arguments(*c.contact, before_impact);
+    const Vec3 C = c.contact->contact_point(at).C(),
+               v = dae::velocity_at(at.bi, C - at.bi.r) - dae::velocity_at(at.bj, C - at.bj.r);
+    const double lost = compressed.F_N * -separation_speed(c, before_impact) - compressed.friction.dot(v);
+    return q * rebound * rebound > (1 + rounding) * lost ? std::sqrt(std::max(0., lost) / q) : rebound;
 }
 
 /// Whether the multiplier of c is determined together with those of all active constraints: the scaled K of x

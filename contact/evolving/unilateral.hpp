@@ -53,7 +53,9 @@ struct ContactEvent {
 ///   contact remains active if its normal impulse is not negative; otherwise it becomes inactive.
 /// - Friction in impacts: a contact with ideal rolling has a tangential impulse that removes the slip,
 ///   because its rolling rows are satisfied after the impact. For example, a solid sphere that lands
-///   without spin keeps 5/7 of its tangential velocity. The regularised rows of implicit friction and
+///   without spin keeps 5/7 of its tangential velocity. It rolls in compression and restitution. By Newton's
+///   law such an impact can supply energy (Kane 1984) if the normal does not point to the centre of mass;
+///   v⁺ is then reduced to the value that conserves the energy. The regularised rows of implicit friction and
 ///   tracked friction forces have no impulse.
 /// - Closing: the contact becomes active if e = 0, if the time of flight after the rebound would be shorter
 ///   than a step, or if its last rebound was less than a step ago.
@@ -148,6 +150,9 @@ private:
     double find_closing(const lie::State& from, lie::State& to, double h, TrackedContact*& first);
     double find_zero_gap(const TrackedContact& c, const lie::State& from, lie::State& to, double h);
     void resolve_impact(lie::State& x, TrackedContact& c, double h);
+    EvolvingContact::Multipliers impulse(const TrackedContact& c, const lie::State& x) const;
+    double rolling_rebound(const TrackedContact& c, const EvolvingContact::Multipliers& compressed,
+                           const EvolvingContact::Multipliers& rebounded, double rebound) const;
     bool force_is_determined(const TrackedContact& c, lie::State& x);
     void switch_to_fallback(const TrackedContact& c, lie::State& x, double speed);
     bool switch_least_curved_to_fallback(lie::State& x);

@@ -112,15 +112,32 @@ int UnilateralStep::step(State& x, double h)
             const int iterations = advance(x, h);
             rollback.done = true;
             return iterations;
-        } catch (const lie::NumericalFailure&) {
+        } catch (const lie::NumericalFailure& failure) {
+            const std::string active_contacts = names_of_active(x);
             if (rollback.from == &step_start) rollback.from = &(at_entry = step_start);
             x = step_start;
             event_log.resize(kept_events);
-            if (!switch_least_curved_to_fallback(x)) throw;
+            if (!switch_least_curved_to_fallback(x)) {
+                const auto* singular = dynamic_cast<const lie::SingularMatrix*>(&failure);
+                if (singular == nullptr || active_contacts.empty()) throw;
+                throw lie::SingularMatrix(failure.what() + active_contacts, singular->reciprocal_condition);
+            }
             kept_events = event_log.size();
             restart(x);
             step_start = x;
         }
+}
+
+/// "; active contacts: 'a', 'b'" for a message, at most 5 names; empty if there is none
+std::string UnilateralStep::names_of_active(const State& x) const
+{
+    constexpr int most = 5;
+    std::string names;
+    int number = 0;
+    for (const TrackedContact& c : contact)
+        if (is_active(c, x) && ++number <= most) names += (number == 1 ? "'" : ", '") + c.contact->name + "'";
+    if (number > most) names += " and " + std::to_string(number - most) + " more";
+    return number > 0 ? "; active contacts: " + names : names;
 }
 
 void UnilateralStep::fill_node(State& node, const State&) const

@@ -154,6 +154,7 @@ private:
     double rolling_rebound(const TrackedContact& c, const EvolvingContact::Multipliers& compressed,
                            const EvolvingContact::Multipliers& rebounded, double rebound) const;
     bool force_is_determined(const TrackedContact& c, lie::State& x);
+    std::string names_of_active(const lie::State& x) const;
     void switch_to_fallback(const TrackedContact& c, lie::State& x, double speed);
     bool switch_least_curved_to_fallback(lie::State& x);
     void report_fallbacks(const lie::State& x);

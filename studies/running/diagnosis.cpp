@@ -144,11 +144,13 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure);
     const dae::Model::Residual worst = model.largest_residual(node);
     const double rcond = reciprocal_condition(model, node);
-    if (!d.detail.empty()) d.detail += "; ";
-    d.detail += fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}",
-                            newton != nullptr ? newton->largest : model.name_of(worst),
-                            newton != nullptr ? newton->residual : worst.value, rcond,
-                            rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+    const std::string row = newton != nullptr ? newton->largest : model.name_of(worst);
+    if (!row.empty()) {  // there are rows in the equations of the node
+        if (!d.detail.empty()) d.detail += "; ";
+        d.detail += fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}", row,
+                                newton != nullptr ? newton->residual : worst.value, rcond,
+                                rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+    }
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
             if (const double limit = force->stable_step_in(scheme_or_default(scheme), node); h > limit)

@@ -2,8 +2,10 @@
 // Implicit friction where contacts act on each other, and where Coulomb's law has no solution.
 #include "contact/evolving/unilateral.hpp"
 #include "contact/soft_friction.hpp"
+#include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
+#include "contact/surfaces/torus.hpp"
 #include "dae/start.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
@@ -196,4 +198,33 @@ TEST_CASE("the lag of the friction force is named for a sliding contact that spi
             CHECK(found[0].find(
                       "contact 'top-table': the friction spring is too soft for a spin of 150 rad/s") == 0);
     }
+}
+
+TEST_CASE("a singular step names the contacts that are active", "[contact][unilateral]")
+{
+    // The torus falls flat into a wide cylinder, where its contact point moves by any amount.
+    dae::Model model;
+    model.add({"torus", 0.5, Vec3(1.8112e-3, 1.9695e-3, 1.8530e-3).asDiagonal()});
+    model.constrain("landing", std::make_unique<EvolvingContact>(
+                                   0, Shape{std::make_shared<Torus>(0.1068956, 0.04577268)}, dae::ground,
+                                   Shape{.surface = std::make_shared<Cylinder>(2, true),
+                                         .position = Vec3::Zero(),
+                                         .orientation = lie::exp(Vec3(-M_PI / 2, 0, 0))},
+                                   EvolvingContact::Friction::none, EvolvingContact::NormalRows::tangent,
+                                   Unilateral{.enabled = true}));
+    State x;
+    x.body.resize(1);
+    x.body[0].r = {0.031473, -0.00138394, -0.9};
+    x.body[0].A =
+        Eigen::Quaterniond(-0.114385, -0.495156, 0.485691, 0.711225).normalized().toRotationMatrix();
+    x.body[0].rdot = {0.3445284, 0.90133, 0};
+    x.body[0].omega_bar = {-2.6604, 0.28882672, 2.6184339};
+    dae::start(model, x);
+    std::string what;
+    try {
+        run(model, x, "rA-half-1-momentum", 0.5, 5e-4, [](const State&) {});
+    } catch (const lie::SingularMatrix& e) {
+        what = e.what();
+    }
+    CHECK_THAT(what, Catch::EndsWith("do not determine its contact points; active contacts: 'landing'"));
 }

@@ -2,8 +2,10 @@
 #include "io/vtk.hpp"
 
 #include "io/csv.hpp"
+#include "io/error.hpp"
 
 #include <cstdint>
+#include <fstream>
 #include <string_view>
 #include <type_traits>
 
@@ -77,17 +79,40 @@ std::string VtkPolyData::text()
     return std::move(xml += "</VTKFile>\n");
 }
 
+namespace {
+
+constexpr std::string_view end_of_collection = "</Collection>\n</VTKFile>\n";
+
+void append_entry(std::string& xml, double t, int part, const std::string& file)
+{
+    xml += "<DataSet timestep=\"";
+    append_number(xml, t);
+    xml += "\" part=\"" + std::to_string(part) + "\" file=\"" + escaped(file) + "\"/>\n";
+}
+
+}  // namespace
+
 std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files)
 {
     std::string xml = begin_of_file("Collection");
     int part = 0;
     for (size_t k = 0; k < files.size(); ++k) {
         part = k > 0 && files[k].first == files[k - 1].first ? part + 1 : 0;
-        xml += "<DataSet timestep=\"";
-        append_number(xml, files[k].first);
-        xml += "\" part=\"" + std::to_string(part) + "\" file=\"" + escaped(files[k].second) + "\"/>\n";
+        append_entry(xml, files[k].first, part, files[k].second);
     }
-    return xml + "</Collection>\n</VTKFile>\n";
+    return xml.append(end_of_collection);
+}
+
+void append_to_vtk_collection(const std::string& path, double t, const std::string& file, bool same_time)
+{
+    std::string entry;
+    append_entry(entry, t, same_time ? 1 : 0, file);
+    entry.append(end_of_collection);
+    // One write over the end of the list, which the entry exceeds in length
+    std::fstream list(path, std::ios::in | std::ios::out | std::ios::binary);
+    list.seekp(-static_cast<std::streamoff>(end_of_collection.size()), std::ios::end);
+    list << entry << std::flush;
+    if (!list) throw IoError(path + ": cannot be written");
 }
 
 }  // namespace hilda::io

@@ -9,7 +9,7 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 10};
+constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 11};
 
 void transfer(io::Archive& a, lie::State& x)
 {

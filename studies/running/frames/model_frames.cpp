@@ -51,10 +51,10 @@ std::vector<std::vector<Vec3>> attachments(const dae::Model& model,
 }
 
 /// Draws a body as bars between its points: one bar for two points, else a bar from each point to their mean.
-void add_bars(int body, const std::vector<Vec3>& points, Snapshots& to)
+void add_bars(int body, const std::vector<Vec3>& points, Drawing& to)
 {
     const auto add = [&](const Vec3& from, const Vec3& end) {
-        to.add_line({body, body, from, end}, Snapshots::bar);
+        to.add_line({body, body, from, end}, Drawing::bar);
     };
     if (points.size() == 2) return add(points[0], points[1]);
     Vec3 mean = Vec3::Zero();
@@ -64,19 +64,19 @@ void add_bars(int body, const std::vector<Vec3>& points, Snapshots& to)
 
 /// Draws a bar from each point outside the box of the mesh to the centre of mass.
 void connect_outer_points(int body, const std::vector<Vec3>& points, const contact::PolygonMesh& mesh,
-                          Snapshots& to)
+                          Drawing& to)
 {
     Eigen::AlignedBox3d box;
     for (const Vec3& p : mesh.point) box.extend(p);
     const double tolerance = 0.02 * box.diagonal().norm();
     for (const Vec3& p : points)
-        if (box.exteriorDistance(p) > tolerance) to.add_line({body, body, p, Vec3::Zero()}, Snapshots::bar);
+        if (box.exteriorDistance(p) > tolerance) to.add_line({body, body, p, Vec3::Zero()}, Drawing::bar);
 }
 
 /// A body with equal principal moments and at least two points is drawn as bars: its inertia says nothing
 /// about its form, as in planar mechanisms that state one moment only.
 void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
-                const std::vector<Connection>& connections, Snapshots& to)
+                const std::vector<Connection>& connections, Drawing& to)
 {
     std::vector<bool> has_surface(model.all_bodies().size());
     const auto add = [&](int body, const contact::Shape& shape) {
@@ -100,52 +100,56 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
     }
 }
 
-void add_connections(const std::vector<Connection>& connections, Snapshots& to)
+void add_connections(const std::vector<Connection>& connections, Drawing& to)
 {
     for (const Connection& c : connections) {
         if (c.is_joint) {
             to.add_joint(c.points.i, c.points.s_bar_i);
             to.add_joint(c.points.j, c.points.s_bar_j);
         }
-        if (c.is_link) to.add_line(c.points, Snapshots::link);
-        if (!c.is_joint) to.add_line(c.points, Snapshots::spring);
+        if (c.is_link) to.add_line(c.points, Drawing::link);
+        if (!c.is_joint) to.add_line(c.points, Drawing::spring);
     }
 }
 
 }  // namespace
 
-ModelFrames::ModelFrames(const dae::Model& model, const lie::TimeGrid& grid)
-    : ModelFrames(model, [grid](long n) { return grid.is_row(n); })
-{}
+ModelDrawing::ModelDrawing(const dae::Model& model) : model(model), contacts(model) {}
 
-ModelFrames::ModelFrames(const dae::Model& model, EvenSelection selected)
-    : ModelFrames(model, [selected](long n) mutable { return selected.is_selected(n); })
-{}
-
-ModelFrames::ModelFrames(const dae::Model& model, std::function<bool(long)> is_selected)
-    : is_selected(std::move(is_selected)), contacts(model)
+void ModelDrawing::add_to(Drawing& drawing) const
 {
     const std::vector<Connection> all = connections(model);
-    add_bodies(model, contacts, all, snapshots);
-    add_connections(all, snapshots);
+    add_bodies(model, contacts, all, drawing);
+    add_connections(all, drawing);
+}
+
+Drawing::Frame ModelDrawing::frame(const lie::State& x) const
+{
+    Drawing::Frame frame{.t = x.t, .body = x.body, .contacts = {}};
+    for (size_t k = 0; k < contacts.contacts.size(); ++k) {
+        const ContactOutput now = contacts.at(k, x);
+        if (!now.is_touching) continue;
+        frame.contacts.push_back({.contact = static_cast<int>(k),
+                                  .i = contacts.contacts[k].i,
+                                  .C = now.C,
+                                  .N = now.F_N * now.n,
+                                  .F = now.F,
+                                  .slipping = now.slipping,
+                                  .rolling = now.rolling});
+    }
+    return frame;
+}
+
+ModelFrames::ModelFrames(const dae::Model& model, EvenSelection selected) : selected(selected), drawing(model)
+{
+    drawing.add_to(snapshots);
 }
 
 void ModelFrames::accepted(const lie::State& x, long n, int)
 {
-    if (!is_selected(n)) return;
-    std::vector<Snapshots::ContactData> contact_data;
-    for (size_t k = 0; k < contacts.contacts.size(); ++k) {
-        const ContactOutput now = contacts.at(k, x);
-        if (!now.is_touching) continue;
-        contact_data.push_back({.contact = static_cast<int>(k),
-                                .i = contacts.contacts[k].i,
-                                .C = now.C,
-                                .N = now.F_N * now.n,
-                                .F = now.F,
-                                .slipping = now.slipping,
-                                .rolling = now.rolling});
-    }
-    snapshots.add(x.t, x.body, std::move(contact_data));
+    if (!selected.is_selected(n)) return;
+    Drawing::Frame frame = drawing.frame(x);
+    snapshots.add(frame.t, std::move(frame.body), std::move(frame.contacts));
 }
 
 }  // namespace hilda::studies

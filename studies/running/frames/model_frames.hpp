@@ -7,16 +7,26 @@
 #include "studies/running/contact_outputs.hpp"
 #include "studies/running/frames/vtk.hpp"
 
-#include <functional>
-
 namespace hilda::studies {
 
-/// Collects frames of a model: its bodies, joints, springs and contacts. A body is drawn by the surfaces of its
-/// contacts, or by body_drawing() if it has no bounded surface. The model must outlive this object.
+/// The drawing of a model: its bodies, joints, springs and contacts. A body is drawn by the surfaces of its contacts, or
+/// by body_drawing() if it has no bounded surface. The model must outlive this object.
+class ModelDrawing {
+public:
+    explicit ModelDrawing(const dae::Model& model);
+
+    /// Adds what is drawn.
+    void add_to(Drawing& drawing) const;
+    Drawing::Frame frame(const lie::State& x) const;
+
+private:
+    const dae::Model& model;
+    const ContactOutputs contacts;  ///< numbered in this order in the frames
+};
+
+/// Collects frames of a model. The model must outlive this object.
 class ModelFrames final : public lie::Observer {
 public:
-    /// A frame at each output row of the grid
-    ModelFrames(const dae::Model& model, const lie::TimeGrid& grid);
     ModelFrames(const dae::Model& model, EvenSelection selected);
 
     void accepted(const lie::State& x, long n, int iterations) override;
@@ -24,10 +34,8 @@ public:
     Snapshots snapshots;
 
 private:
-    ModelFrames(const dae::Model& model, std::function<bool(long)> is_selected);
-
-    const std::function<bool(long)> is_selected;  ///< true if node n is a frame
-    const ContactOutputs contacts;                ///< numbered in this order in the frames
+    EvenSelection selected;
+    const ModelDrawing drawing;
 };
 
 }  // namespace hilda::studies

@@ -3,19 +3,12 @@
 
 #pragma once
 
-#include "contact/compliant/contact.hpp"
-#include "contact/tessellation.hpp"
-#include "dae/body.hpp"
-#include "io/archive.hpp"
-#include "io/json.hpp"
+#include "studies/running/frames/drawing.hpp"
 
 #include <string>
 #include <vector>
 
 namespace hilda::studies {
-
-using contact::DrawingExtent;
-using contact::PolygonMesh;
 
 /// Selects `count` evenly spaced nodes of 0 … steps, including the first and the last. The nodes must be
 /// queried in ascending order.
@@ -33,104 +26,32 @@ private:
     int selected = 0;
 };
 
-/// The surfaces of the bodies of a run, and frames of motions and contacts. The frames are stored until the
-/// end of the run, because the drawn part of an unbounded surface depends on all of them.
-///
-/// File format: VTK XML PolyData with the polygons of the surfaces and solids, a vertex for each contact with a
-/// positive normal force and for each point of a joint, and a line for each spring and link.
-///     cell data    `body` (number, -1: ground; of a line the first body), `contact` (number, -1 for other cells),
-///                  `kind` (see Kind)
-///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the
-///                  first body [N], `slipping`, `rolling` (0 or 1); all vectors global
-class Snapshots {
+/// A drawing and the frames of a short run, kept in memory. FrameFiles writes those of a long run.
+class Snapshots : public Drawing {
 public:
-    /// What a cell shows
-    enum Kind { contact_point, joint, spring, link, solid, surface, bar };
-
-    /// Adds a surface of a body (-1: ground). A surface that was added before is ignored.
-    void add_surface(int body, const contact::Shape& shape);
-
-    /// Adds the drawing of a body without a surface, in the frame of the body.
-    void add_solid(int body, PolygonMesh mesh) { solids.push_back({body, std::move(mesh), solid}); }
-    /// Adds a point of a joint [m], in the frame of the body.
-    void add_joint(int body, const lie::Vec3& s_bar);
-    /// Adds a line between two points: a spring or a link.
-    void add_line(const dae::PointPair& ends, Kind kind) { lines.push_back({ends, kind}); }
-
-    /// A contact in a frame: contact point C [m], normal force N and friction force F on body i [N], and the
-    /// first tangent u of the contact frame, all global. u is zero where the contact frame is not known, and
-    /// is not part of a checkpoint.
-    struct ContactData {
-        int contact, i;  ///< number of the contact, and of its first body
-        lie::Vec3 C, N, F;
-        bool slipping, rolling;
-        lie::Vec3 u = lie::Vec3::Zero();
-    };
-    struct Frame {
-        double t;  ///< [s]
-        std::vector<lie::Motion> body;
-        std::vector<ContactData> contacts;
-    };
-    static ContactData contact_data(int contact, int i, const contact::ContactState& now,
-                                    const contact::Wrench& friction, const contact::Deflections& history);
-
     /// Adds a frame at the time t [s].
     void add(double t, std::vector<lie::Motion> bodies, std::vector<ContactData> contacts);
 
     /// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., then DIR/NAME.pvd with the list of files and times.
     /// io::IoError.
     void write(const std::string& directory, const std::string& name) const;
-    /// What is drawn, in the frames of the bodies (-1: ground):
-    ///     meshes   [{body, kind: surface or solid, unbounded, points: [[x, y, z], ...], polygons: [[point, ...], ...]}]
-    ///     joints   [{body, point}]
-    ///     lines    [{kind: spring, link or bar, body_i, point_i, body_j, point_j}]
-    /// `unbounded`: the mesh is the part of an unbounded surface that the frames need.
+    /// What is drawn, with the parts of unbounded surfaces that the frames need
     io::Json geometry() const;
     /// The frames in the order of add()
     const std::vector<Frame>& all_frames() const { return frames; }
 
-    /// Writes the frames to a checkpoint, or reads them.
-    void transfer(io::Archive& a);
     /// Removes the files of an earlier write() with this name.
     static void remove(const std::string& directory, const std::string& name);
 
     static constexpr int max_frames = 1000000;  ///< limit of the six-digit file names
 
 private:
-    struct BodySurface {
-        int body;
-        contact::Shape shape;
-    };
-    /// A mesh, in the frame of its body
-    struct BodyMesh {
-        int body;
-        PolygonMesh mesh;
-        Kind kind;
-        bool is_unbounded = false;  ///< the drawn part of an unbounded surface
+    std::vector<BodyMesh> meshes() const;
 
-        bool operator==(const BodyMesh&) const = default;
-    };
-
-    struct Joint {
-        int body;
-        lie::Vec3 s_bar;
-
-        bool operator==(const Joint&) const = default;
-    };
-    struct Line {
-        dae::PointPair ends;
-        Kind kind;
-    };
-
-    std::vector<BodyMesh> body_meshes() const;
-    DrawingExtent extent_of(const BodySurface& of, const std::vector<double>& radius) const;
-    std::string poly_data(const Frame& now, const std::vector<BodyMesh>& body_meshes) const;
-
-    std::vector<BodySurface> surfaces;
-    std::vector<BodyMesh> solids;
-    std::vector<Joint> joints;
-    std::vector<Line> lines;
     std::vector<Frame> frames;
 };
+
+/// vtk/NAME-000123.vtp: the file of frame k, relative to the directory of NAME.pvd
+std::string frame_file(const std::string& name, size_t k);
 
 }  // namespace hilda::studies

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView. The files are written at
-/// the end of the run (see Snapshots); a checkpoint contains the frames.
+/// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView.
 
 #include "studies/program/arguments.hpp"
+#include "studies/running/frames/frame_files.hpp"
 #include "studies/running/frames/model_frames.hpp"
 #include "studies/running/sink.hpp"
 
@@ -14,16 +14,32 @@ namespace {
 
 class Vtk final : public io::Sink<RunNode> {
 public:
-    Vtk(const RunSetup& run, const lie::TimeGrid& at) : frames(run.model, at), directory(run.directory) {}
+    Vtk(const RunSetup& run, const lie::TimeGrid& at)
+        : at(at), model(run.model), drawing(drawing_of(model)), frames(drawing, run.directory, "run")
+    {}
 
-    void node(const RunNode& node) override { frames.accepted(node.x, node.n, node.iterations); }
-    void transfer(io::Archive& a) override { frames.snapshots.transfer(a); }
-    void close() override { frames.snapshots.write(directory, "run"); }
+    void open() override { frames.open(); }
+    void node(const RunNode& node) override
+    {
+        if (at.is_row(node.n)) frames.add(model.frame(node.x));
+    }
+    void sync() override { frames.sync(); }
+    void transfer(io::Archive& a) override { frames.transfer(a); }
+    void close() override { frames.close(); }
     std::vector<std::string> files() const override { return {"run.pvd"}; }
 
 private:
-    ModelFrames frames;
-    const std::string directory;
+    static Drawing drawing_of(const ModelDrawing& model)
+    {
+        Drawing drawing;
+        model.add_to(drawing);
+        return drawing;
+    }
+
+    const lie::TimeGrid at;
+    const ModelDrawing model;
+    const Drawing drawing;
+    FrameFiles frames;
 };
 
 std::unique_ptr<io::Sink<RunNode>> make(const RunSetup& run)
@@ -50,7 +66,7 @@ const bool registered = io::Registry<SinkType>::add(
                   .check = [](const std::string& option,
                               const std::string& text) { positive_number(option, text); }}},
      .make = make,
-     .remove = [](const std::string& directory) { Snapshots::remove(directory, "run"); }});
+     .remove = [](const std::string& directory) { FrameFiles::remove(directory, "run"); }});
 
 }  // namespace
 

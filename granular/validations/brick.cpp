@@ -80,9 +80,10 @@ double in_double(double mu, bool incremental)
 struct Slide {
     double distance = std::nan("");  ///< [m]
     double friction_ratio = 0;       ///< largest |F_t|/(μ |F_n|) over all steps
+    std::vector<double> motion;      ///< t, x, v of each output row [s, m, m/s]
 };
 
-Slide slide(double mu, bool incremental, const ValidationOptions& options, ValidationTable* motion)
+Slide slide(double mu, bool incremental, const ValidationOptions& options)
 {
     World world(world_options(options.device), {soft()});
     world.set_law(0, 0, soft_law(restitution, mu, incremental));
@@ -100,8 +101,8 @@ Slide slide(double mu, bool incremental, const ValidationOptions& options, Valid
         const Particle p = world.particles()[0];
         const double x = p.r.x - start;
         if (p.v.norm() < rest_speed) out.distance = x;
-        if (motion != nullptr && (n % interval == 0 || !std::isnan(out.distance)))
-            motion->rows.push_back({mu, static_cast<double>(n) * h, x, p.v.x});
+        if (n % interval == 0 || !std::isnan(out.distance))
+            out.motion.insert(out.motion.end(), {static_cast<double>(n) * h, x, double(p.v.x)});
         for (const ContactRecord& c : world.contacts())
             out.friction_ratio =
                 max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
@@ -124,9 +125,21 @@ ValidationResult run(const ValidationOptions& options)
             options.progress(done++ / 18);
             // the normal force is constant, so both laws agree
             if (is_incremental && !options.full && mu < 0.39) continue;
-            const Slide s = slide(mu, is_incremental, options, is_incremental ? nullptr : &motion);
-            const double d = v_i * v_i / (2 * mu * g), distance_double = in_double(mu, is_incremental),
-                         spring = distance_with_spring(mu), difference = s.distance / d - 1;
+            Slide s;
+            double distance_double = 0;
+            options.kept.part(
+                [&] {
+                    s = slide(mu, is_incremental, options);
+                    distance_double = in_double(mu, is_incremental);
+                },
+                [&](io::Archive& a) {
+                    a.value(s.distance), a.value(s.friction_ratio), a.list(s.motion);
+                    a.value(distance_double);
+                });
+            for (std::size_t k = 0; !is_incremental && k + 2 < s.motion.size(); k += 3)
+                motion.rows.push_back({mu, s.motion[k], s.motion[k + 1], s.motion[k + 2]});
+            const double d = v_i * v_i / (2 * mu * g), spring = distance_with_spring(mu),
+                         difference = s.distance / d - 1;
             table.rows.push_back({is_incremental ? "mindlin-incremental" : "mindlin", mu, s.distance, d,
                                   difference, distance_double, distance_double / d - 1, spring,
                                   s.distance / spring - 1, s.friction_ratio});

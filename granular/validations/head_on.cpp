@@ -140,20 +140,27 @@ MomentumChange momentum_change(double drift, const ValidationOptions& options)
     const double ulp = std::ldexp(1, -23);
     MomentumChange momentum_change;
     for (const double e : restitutions()) {
-        World world =
-            world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler, step_of_text, options);
-        double start = std::nan(""), last = start;
-        while (world.t() < 0.1) {
-            world.step();
-            const double now = world.momentum().x;
-            // after the first step, when the velocities are rounded to single precision
-            if (std::isnan(start)) start = last = now;
-            momentum_change.of_step = max_or_nan(momentum_change.of_step, std::abs(now - last) / ulp);
-            momentum_change.of_all = max_or_nan(momentum_change.of_all, std::abs(now - start) / ulp);
-            last = now;
-        }
-        options.include(name_of({.restitution = e, .drift = drift}, Scheme::symplectic_euler, step_of_text),
-                        world);
+        MomentumChange of_pair;
+        const auto compute = [&] {
+            World world = world_of({{.restitution = e, .drift = drift}}, Scheme::symplectic_euler,
+                                   step_of_text, options);
+            double start = std::nan(""), last = start;
+            while (world.t() < 0.1) {
+                world.step();
+                const double now = world.momentum().x;
+                // after the first step, when the velocities are rounded to single precision
+                if (std::isnan(start)) start = last = now;
+                of_pair.of_step = max_or_nan(of_pair.of_step, std::abs(now - last) / ulp);
+                of_pair.of_all = max_or_nan(of_pair.of_all, std::abs(now - start) / ulp);
+                last = now;
+            }
+            options.include(
+                name_of({.restitution = e, .drift = drift}, Scheme::symplectic_euler, step_of_text), world);
+        };
+        options.kept.part(compute,
+                          [&](io::Archive& a) { a.value(of_pair.of_step), a.value(of_pair.of_all); });
+        momentum_change.of_step = max_or_nan(momentum_change.of_step, of_pair.of_step);
+        momentum_change.of_all = max_or_nan(momentum_change.of_all, of_pair.of_all);
     }
     return momentum_change;
 }
@@ -175,28 +182,47 @@ double fitted_slope(const std::vector<double>& h, const std::vector<double>& e)
 /// largest difference between the two
 struct SchemeErrors {
     double world = 0, in_double = 0, difference = 0;
+
+    void include(const SchemeErrors& other)
+    {
+        world = max_or_nan(world, other.world), in_double = max_or_nan(in_double, other.in_double);
+        difference = max_or_nan(difference, other.difference);
+    }
 };
+
+/// Those of the collisions with the restitution e
+SchemeErrors errors_at(double e, Scheme scheme, double h, int offsets, bool in_world,
+                       const ValidationOptions& options)
+{
+    SchemeErrors out;
+    if (!in_world) out.world = std::nan("");
+    std::vector<Collision> all;
+    all.reserve(offsets);
+    for (int k = 0; k < offsets; ++k) all.push_back({.restitution = e, .offset = 2 * h * v_i * k / offsets});
+    std::vector<double> in_double;
+    for (const Collision& m : all) {
+        in_double.push_back(rebound(m, scheme, h));
+        out.in_double = max_or_nan(out.in_double, std::abs(in_double.back() - e));
+    }
+    if (!in_world) return out;
+    const std::vector<double> v = rebounds(all, scheme, h, options);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        out.world = max_or_nan(out.world, std::abs(v[k] - e));
+        out.difference = max_or_nan(out.difference, std::abs(v[k] - in_double[k]));
+    }
+    return out;
+}
+
 SchemeErrors scheme_errors(Scheme scheme, double h, int offsets, bool in_world,
                            const ValidationOptions& options)
 {
     SchemeErrors out;
-    if (!in_world) out.world = std::nan("");
     for (const double e : restitutions()) {
-        std::vector<Collision> all;
-        all.reserve(offsets);
-        for (int k = 0; k < offsets; ++k)
-            all.push_back({.restitution = e, .offset = 2 * h * v_i * k / offsets});
-        std::vector<double> in_double;
-        for (const Collision& m : all) {
-            in_double.push_back(rebound(m, scheme, h));
-            out.in_double = max_or_nan(out.in_double, std::abs(in_double.back() - e));
-        }
-        if (!in_world) continue;
-        const std::vector<double> v = rebounds(all, scheme, h, options);
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            out.world = max_or_nan(out.world, std::abs(v[k] - e));
-            out.difference = max_or_nan(out.difference, std::abs(v[k] - in_double[k]));
-        }
+        SchemeErrors at;
+        options.kept.part(
+            [&] { at = errors_at(e, scheme, h, offsets, in_world, options); },
+            [&](io::Archive& a) { a.value(at.world), a.value(at.in_double), a.value(at.difference); });
+        out.include(at);
     }
     return out;
 }
@@ -216,8 +242,13 @@ ValidationResult run(const ValidationOptions& options)
     double difference = 0, progress = 0;
     for (const SchemeLimits& s : schemes) {
         for (const double e : restitutions()) {
-            const double v = rebounds({{e}}, s.scheme, step_of_text, options)[0],
-                         in_double = rebound({e}, s.scheme, step_of_text);
+            double v = 0, in_double = 0;
+            options.kept.part(
+                [&] {
+                    v = rebounds({{e}}, s.scheme, step_of_text, options)[0];
+                    in_double = rebound({e}, s.scheme, step_of_text);
+                },
+                [&](io::Archive& a) { a.value(v), a.value(in_double); });
             at_text.rows.push_back({s.name(), step_of_text, e, v, v - e, in_double, in_double - e});
         }
         std::vector<double> errors;
@@ -242,7 +273,9 @@ ValidationResult run(const ValidationOptions& options)
     result.checks.push_back({"largest difference of World from double precision", difference, 0, 1e-4});
 
     for (const double e : restitutions()) {
-        const double v = rebound({e}, Scheme::symplectic_euler, step_of_text, true);
+        double v = 0;
+        options.kept.part([&] { v = rebound({e}, Scheme::symplectic_euler, step_of_text, true); },
+                          [&](io::Archive& a) { a.value(v); });
         clamped.rows.push_back({e, v, v - e});
         for (const auto& [of, gain] : {std::pair(0.1, 0.1526), std::pair(0.5, 0.050)})
             if (e == of)

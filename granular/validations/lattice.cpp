@@ -135,17 +135,31 @@ std::vector<LatticeResponse> run_lattices(const std::vector<LoadCase>& all, cons
     Lattices lattices(all, run);
     World& world = lattices.get();
     const double end = run.settle + run.ramp + run.hold;
+    double begin = std::nan("");  // of the load; NaN before
+    std::vector<LatticeResponse::BoundaryForces> before;
+    std::vector<double> high;
+    const auto more = [&](io::Archive& a) { a.value(begin), a.list(before), a.list(high); };
+    run.kept.load([&](const std::string& bytes, const std::string& file) {
+        world.from_bytes(bytes, "lattices", file, more);
+    });
+    // The neighbour list is rebuilt at each instant, also if the state is not kept: the results do not depend on it.
+    const auto instant = [&] { return std::floor(world.t() / end * 20 + 1e-9); };
+    double last = instant();
     const auto step_to = [&](double t) {
         while (world.t() < t - 0.5 * run.h) {
             const double interval = std::min(t, world.t() + end / 200) - world.t();
             world.step(std::max(1L, std::lround(interval / run.h)));
             progress(world.t() / end);
+            if (instant() == last) continue;
+            last = instant();
+            run.kept.save(world.to_bytes("lattices", more));
         }
     };
-    step_to(run.settle);
-    const std::vector<LatticeResponse::BoundaryForces> before = lattices.boundary_forces();
-    const std::vector<double> high = lattices.heights();
-    const double begin = world.t();
+    if (std::isnan(begin)) {
+        step_to(run.settle);
+        before = lattices.boundary_forces(), high = lattices.heights();
+        begin = world.t();
+    }
     world.before_each_step([&](World& w) {
         const double part = (w.t() - begin) / run.ramp;
         if (part < 1 + run.h / run.ramp) lattices.apply_load(std::min(part, 1.));

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "granular/world/world.hpp"
+#include "granular/validations/validation.hpp"
 
 #include <array>
 #include <functional>
@@ -33,6 +33,8 @@ struct LatticeRun {
     double settle = 2, ramp = 2, hold = 2;  ///< times without load, of increasing load and of full load [s]
     Device device = {};
     std::function<void(const World&)> ended = [](const World&) {};  ///< called at the end of a run
+    /// Receives the state at twenty instants; an interrupted run continues from the last one.
+    ValidationProgress kept = {};
 };
 
 /// Forces on the boundaries of one lattice before the load is applied and at the end, over the weight of a

@@ -51,8 +51,9 @@ Particle incident_sphere(double angle)
 
 /// State after the impact
 struct Rebound {
-    double e_t, omega, e_n, energy;  ///< ω [rad/s]; velocity and energy ratios [-]
+    double e_t = 0, omega = 0, e_n = 0, energy = 0;  ///< ω [rad/s]; velocity and energy ratios [-]
 
+    Rebound() = default;
     Rebound(const Particle& p, double angle)
         : e_t(p.v.x / tangential(angle)), omega(p.omega.y), e_n(p.v.z / v_n),
           energy((p.v.dot(p.v) + 0.4 * R * R * p.omega.dot(p.omega)) /
@@ -60,13 +61,18 @@ struct Rebound {
     {}
 };
 
-Rebound in_double(double angle, double h, int law_index)
+Rebound in_double(double angle, double h, int law_index, const ValidationOptions& options)
 {
-    DoubleWorld world(options_of(h, 2), soft_law(e, mu, law_index == 1));
-    world.particle = {incident_sphere(angle)};
-    world.boundary = {Boundary{}};
-    world.step(std::lround(end / h));
-    return {world.particle[0], angle};
+    Rebound after;
+    const auto compute = [&] {
+        DoubleWorld world(options_of(h, 2), soft_law(e, mu, law_index == 1));
+        world.particle = {incident_sphere(angle)};
+        world.boundary = {Boundary{}};
+        world.step(std::lround(end / h));
+        after = {world.particle[0], angle};
+    };
+    options.kept.part(compute, [&](io::Archive& a) { a.value(after); });
+    return after;
 }
 
 /// All angles in one world, side by side
@@ -113,10 +119,12 @@ ValidationTable compare(const std::vector<double>& angles, const ValidationOptio
                               "omega_double", "e_t_sliding", "omega_sliding", "energy"},
                              {}};
     for (const int law_index : {0, 1}) {
-        const std::vector<Rebound> of_world = in_world(angles, law_index, options);
+        std::vector<Rebound> of_world;
+        options.kept.part([&] { of_world = in_world(angles, law_index, options); },
+                          [&](io::Archive& a) { a.list(of_world); });
         for (std::size_t k = 0; k < angles.size(); ++k) {
             const double theta = angles[k];
-            const Rebound &w = of_world[k], d = in_double(theta, step, law_index);
+            const Rebound &w = of_world[k], d = in_double(theta, step, law_index, options);
             const bool slides = theta > critical();
             const double e_t = slides ? sliding_e_t(theta) : std::nan(""),
                          omega = slides ? sliding_omega : std::nan("");
@@ -140,12 +148,12 @@ ValidationTable compare(const std::vector<double>& angles, const ValidationOptio
 }
 
 /// Curves in double precision, and the closed form where the contact slides
-ValidationTable reference(double degrees, const std::function<void()>& done)
+ValidationTable reference(double degrees, const ValidationOptions& options, const std::function<void()>& done)
 {
     ValidationTable table = {"reference", {"law", "from_normal", "e_t", "omega"}, {}};
     for (const double theta : angles_at(degrees)) {
         for (const int law_index : {0, 1}) {
-            const Rebound d = in_double(theta, step, law_index);
+            const Rebound d = in_double(theta, step, law_index, options);
             table.rows.push_back({laws[law_index], theta, d.e_t, d.omega});
         }
         if (theta > critical()) table.rows.push_back({"sliding", theta, sliding_e_t(theta), sliding_omega});
@@ -156,7 +164,8 @@ ValidationTable reference(double degrees, const std::function<void()>& done)
 }
 
 /// Values of other codes at angles without a closed form, and the dependence of ours on the step
-ValidationTable refine(std::vector<ValidationCheck>& checks, const std::function<void()>& done)
+ValidationTable refine(std::vector<ValidationCheck>& checks, const ValidationOptions& options,
+                       const std::function<void()>& done)
 {
     struct ReferenceValue {
         double from_surface, e_t, omega;
@@ -172,7 +181,7 @@ ValidationTable refine(std::vector<ValidationCheck>& checks, const std::function
     for (const int law_index : {0, 1})
         for (const ReferenceValue& k : references)
             for (const double h : {2e-5, 2e-6, 1e-6}) {
-                const Rebound d = in_double(90 - k.from_surface, h, law_index);
+                const Rebound d = in_double(90 - k.from_surface, h, law_index, options);
                 table.rows.push_back({laws[law_index], k.from_surface, h, d.e_t, d.omega});
                 if (law_index == 0 && h == step) {
                     const std::string at = std::to_string(std::lround(k.from_surface)) + " deg from the wall";
@@ -194,8 +203,8 @@ ValidationResult run(const ValidationOptions& options)
     const auto done = [&] { options.progress(++part / parts); };
     LargestErrors largest;
     ValidationResult result;
-    result.tables = {compare(angles, options, largest, done), reference(degrees, done),
-                     refine(result.checks, done)};
+    result.tables = {compare(angles, options, largest, done), reference(degrees, options, done),
+                     refine(result.checks, options, done)};
     result.checks.insert(
         result.checks.begin(),
         {{"e_t, sliding: relative difference from the closed form", largest.sliding_e_t, 0, 1e-4},

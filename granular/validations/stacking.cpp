@@ -93,6 +93,7 @@ public:
     {
         for (RollingModel& m : models) {
             m.run.device = options.device;
+            m.run.kept = options.kept;
             m.run.ended = [&options, name = m.name](const World& world) { options.include(name, world); };
         }
     }

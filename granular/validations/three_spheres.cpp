@@ -51,10 +51,8 @@ private:
     std::map<std::pair<double, double>, int> number;
 };
 
-}  // namespace
-
-std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<double>& top,
-                            const StackRun& run)
+std::vector<double> computed_heights(const std::vector<Stack>& stacks, const std::vector<double>& top,
+                                     const StackRun& run)
 {
     WorldOptions options;
     options.low = {-8 * R, -2 * R, -R}, options.high = {8 * R, 2 * R, 5 * R};
@@ -89,6 +87,16 @@ std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<
     const std::vector<Particle> now = world.particles();
     std::vector<double> z(n);
     for (std::size_t k = 0; k < n; ++k) z[k] = now[2 * n + k].r.z / R;
+    return z;
+}
+
+}  // namespace
+
+std::vector<double> heights(const std::vector<Stack>& stacks, const std::vector<double>& top,
+                            const StackRun& run)
+{
+    std::vector<double> z;
+    run.kept.part([&] { z = computed_heights(stacks, top, run); }, [&](io::Archive& a) { a.list(z); });
     return z;
 }
 

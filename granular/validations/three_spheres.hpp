@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "granular/world/world.hpp"
+#include "granular/validations/validation.hpp"
 
 #include <functional>
 #include <vector>
@@ -30,6 +30,7 @@ struct StackRun {
     double settle = 0.5, watch = 2;  ///< time before and after the insertion of the third sphere [s]
     Device device = {};
     std::function<void(const World&)> ended = [](const World&) {};  ///< called at the end of a run
+    ValidationProgress kept = {};                                   ///< of an interrupted validation
 };
 
 /// Final height of the centre of the upper sphere over the radius, for each stack and its upper mass [kg].

@@ -18,6 +18,19 @@ void ValidationWarnings::include(const std::string& run, const WatchRecord& reco
         same->record.include(record);
 }
 
+void ValidationWarnings::include(const ValidationWarnings& other)
+{
+    for (const WarnedRun& run : other.runs) include(run.name, run.record);
+}
+
+void ValidationWarnings::transfer(io::Archive& a)
+{
+    std::size_t count = runs.size();
+    a.count(count, sizeof(WatchRecord));
+    runs.resize(count);
+    for (WarnedRun& run : runs) a.list(run.name), a.value(run.record);
+}
+
 std::vector<ValidationWarning> ValidationWarnings::all() const
 {
     std::vector<ValidationWarning> lines;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "granular/world/world.hpp"
+#include "io/archive.hpp"
 #include "io/registry.hpp"
 
 #include <functional>
@@ -34,12 +35,33 @@ public:
     /// Of each kind of warning that with the largest value, with the number of other runs that have it
     std::vector<ValidationWarning> largest() const;
 
+    /// Adds those of another list.
+    void include(const ValidationWarnings& other);
+    /// Writes or reads the list.
+    void transfer(io::Archive& a);
+
 private:
     struct WarnedRun {
         std::string name;
-        WatchRecord record;
+        WatchRecord record = {};
     };
     std::vector<WarnedRun> runs;
+};
+
+/// How an interrupted validation continues. Without a file to continue from, each part is computed.
+struct ValidationProgress {
+    using Compute = std::function<void()>;
+    using Transfer = std::function<void(io::Archive&)>;
+
+    /// Computes a part, or reads its result if it was computed before the interruption. `transfer` writes or reads the
+    /// result. The parts of a validation are numbered by the order of the calls.
+    std::function<void(const Compute& compute, const Transfer& transfer)> part =
+        [](const Compute& compute, const Transfer&) { compute(); };
+    using Read = std::function<void(const std::string& bytes, const std::string& file)>;
+    /// Calls read() with the last state that save() has received before the interruption, if there is one.
+    std::function<void(const Read&)> load = [](const Read&) {};
+    /// Receives the state of a long part at intervals, as bytes of World::to_bytes().
+    std::function<void(const std::string&)> save = [](const std::string&) {};
 };
 
 struct ValidationOptions {
@@ -48,6 +70,8 @@ struct ValidationOptions {
     Device device = {};                                    ///< device of all worlds
     ValidationWarnings* warnings = nullptr;                ///< receives the warnings of all worlds
     std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
+
+    ValidationProgress kept = {};  ///< of an interrupted validation
 
     /// Adds the warnings of a run at its end.
     void include(const std::string& run, const World& world) const

@@ -113,9 +113,12 @@ ValidationResult waves(const ValidationOptions& options)
     const std::vector<LoadCase> of = load_cases(options.full);
     LatticeRun run{.h = 5e-5,  // 2e-5 s changes the shares by 2e-4 at most
                    .device = options.device,
-                   .ended = [&](const World& world) { options.include("all lattices", world); }};
+                   .ended = [&](const World& world) { options.include("all lattices", world); },
+                   .kept = options.kept};
     if (!options.full) run.ramp = run.hold = 0.5;
-    const std::vector<LatticeResponse> pressed = run_lattices(of, run, options.progress);
+    std::vector<LatticeResponse> pressed;
+    options.kept.part([&] { pressed = run_lattices(of, run, options.progress); },
+                      [&](io::Archive& a) { a.list(pressed); });
 
     ValidationTable study{"study",
                           {"stiffness", "mu", "F", "centre", "peak", "distance", "floor", "sides",

@@ -168,6 +168,12 @@ Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) cons
             finished.get()};
 }
 
+void StudyContext::job(const std::function<void()>& job,
+                       const std::function<void(io::Archive&)>& transfer) const
+{
+    Pool(1, "", 1, finished.get()).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
+}
+
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
 {
     criteria_passed = studies::evaluate(criteria, text, json);

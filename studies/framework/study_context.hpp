@@ -59,6 +59,9 @@ public:
     /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
     /// and the label. The results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
+    /// Calls job(), on this thread and without a progress line. `transfer` writes or reads its result, which is kept in the
+    /// file of the finished jobs: a job that finished before the study was interrupted is not called again.
+    void job(const std::function<void()>& job, const std::function<void(io::Archive&)>& transfer) const;
 
     // Results
     StudyText text;                                          ///< for stdout

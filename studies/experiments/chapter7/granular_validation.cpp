@@ -3,6 +3,7 @@
 ///
 /// The tables of a validation become files, its checks become acceptance criteria.
 
+#include "io/archive.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "io/progress.hpp"
@@ -37,19 +38,42 @@ Table as_table(const ValidationTable& validation_table)
     return table;
 }
 
+/// Keeps the results of the parts with their warnings in the file of the finished jobs, and the state of a long part in a
+/// checkpoint of the output directory. `of_part` receives the warnings of a part.
+granular::ValidationProgress kept_by(const StudyContext& study, granular::ValidationWarnings& warnings,
+                                     granular::ValidationWarnings& of_part)
+{
+    granular::ValidationProgress kept;
+    kept.part = [&](const auto& compute, const auto& transfer) {
+        of_part = {};
+        study.job(compute, [&](io::Archive& a) { transfer(a), of_part.transfer(a); });
+        warnings.include(of_part);
+    };
+    if (study.options.output.empty()) return kept;
+    const io::CheckpointFiles files(study.options.output);
+    if (!study.options.resume) files.remove();
+    kept.load = [=](const auto& read) { files.load(read); };
+    kept.save = [=](const std::string& bytes) { files.save(bytes); };
+    return kept;
+}
+
 granular::ValidationResult result_of(const Validation& validation, const StudyContext& study,
                                      granular::ValidationWarnings& warnings)
 {
+    granular::ValidationWarnings of_part;
     granular::ValidationOptions options;
     options.full = study.options.grid == "full";
-    options.warnings = &warnings;
+    options.warnings = &of_part;
+    options.kept = kept_by(study, warnings, of_part);
     io::ProgressLine line(study.options.quiet);
     options.progress = [&](double share) {
         if (line.is_due())
             line.show(fmt::format("{} {:.0f} %, {:.1f} s", study.name, 100 * share, line.seconds()));
     };
     try {
-        return validation.run(options);
+        granular::ValidationResult result = validation.run(options);
+        if (!study.options.output.empty()) io::CheckpointFiles(study.options.output).remove();
+        return result;
     } catch (const io::NumericalFailure& e) {
         throw io::NumericalFailure(e.status, "study " + study.name + ": " + e.what());
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 using namespace hilda::granular;
 
@@ -32,5 +33,32 @@ TEST_CASE("floor and walls carry the weight and the load of a lattice, with fric
             CHECK(std::abs(peak - lattice::middle) <= 7);
             CHECK(centre < 0.03);
         }
+    }
+}
+
+TEST_CASE("an interrupted run of lattices continues from its last state with the same results",
+          "[granular][lattice]")
+{
+    const std::vector<LoadCase> of = {{Stiffness::linear, 0.2, 5}};
+    const LatticeRun run{.h = 5e-5, .settle = 0.02, .ramp = 0.01, .hold = 0.01};
+    const std::vector<LatticeResponse> whole = run_lattices(of, run);
+    for (const int interrupted_at : {3, 14}) {  // before and after the load begins
+        CAPTURE(interrupted_at);
+        std::string saved;
+        int saves = 0;
+        LatticeRun part = run;
+        part.kept.save = [&](const std::string& bytes) {
+            saved = bytes;
+            if (++saves == interrupted_at) throw std::runtime_error("interrupted");
+        };
+        CHECK_THROWS_AS(run_lattices(of, part), std::runtime_error);
+        part.kept.load = [&](const auto& read) { read(saved, "checkpoint"); };
+        part.kept.save = [&](const std::string&) { ++saves; };
+        const std::vector<LatticeResponse> resumed = run_lattices(of, part);
+        CHECK(saves == 20);
+        CHECK(resumed[0].after.floor == whole[0].after.floor);
+        CHECK(resumed[0].before.floor == whole[0].before.floor);
+        CHECK(resumed[0].before.kinetic == whole[0].before.kinetic);
+        CHECK(resumed[0].displacement == whole[0].displacement);
     }
 }

@@ -27,7 +27,8 @@ const std::vector<Call> calls = {
     {{"study", "compare", "--problem", "slider_crank", "--steps", "1e-4", "--no-plot"},
      {"cpu_seconds"},
      {2, 2}},
-    {{"study", "friction", "--no-plot"}, {}, {3, 4, 5}}};
+    {{"study", "friction", "--no-plot"}, {}, {3, 4, 5}},
+    {{"study", "granular-oblique", "--no-plot"}, {}, {4, 50, 30}}};
 
 /// A CSV file without these columns
 std::string table(const fs::path& file, const std::vector<std::string>& without)
@@ -52,7 +53,7 @@ std::string table(const fs::path& file, const std::vector<std::string>& without)
 TEST_CASE("an interrupted study, resumed, gives the table of an uninterrupted study (long)",
           "[studies][resume]")
 {
-    const Call& c = calls[static_cast<size_t>(GENERATE(range(0, 5)))];
+    const Call& c = calls[static_cast<size_t>(GENERATE(range(0, 6)))];
     CAPTURE(c.arguments[1]);
     const Scratch in;
     REQUIRE(call(in, with(c.arguments, {"--quiet", "--output", "whole"})).code == 0);

@@ -46,6 +46,9 @@ const bool registered = io::Registry<SinkType>::add(
      .options = {{.name = "--log-steps", .help = "write steps.csv as well, a row for each step"}},
      .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {
          if (!run.options.contains("--log-steps")) return nullptr;
+         if (run.command == std::string("kinematics"))
+             throw io::UsageError(
+                 "kinematics: --log-steps is for the steps of an integrator; hilda run has them");
          return std::make_unique<Steps>(run);
      },
      .files = {"steps.csv"}});

@@ -113,6 +113,9 @@ TEST_CASE("kinematics has its name in the errors of the options that it shares w
                    StartsWith("hilda: error: kinematics: " + option + " writes "));
         CHECK_THAT(call(in, {"run", "four_link", option}).err, StartsWith("hilda: error: run: " + option));
     }
+    // There is no integrator: all columns but the time would be zero.
+    check_refused(in, {"kinematics", "four_link", "--log-steps"}, 2,
+                  "kinematics: --log-steps is for the steps of an integrator; hilda run has them");
     CHECK_FALSE(fs::exists(in / "out"));
 }
 

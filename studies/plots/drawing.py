@@ -69,8 +69,12 @@ def read_hdf5(path, table):
         import h5py  # not needed for CSV files
     except ImportError:
         sys.exit(f"{path}: {sys.executable} has no h5py, which reads HDF5 files (Debian: apt-get install python3-h5py)")
-    with h5py.File(path, "r") as file:
-        columns = {dataset.attrs["name"]: dataset[:].tolist() for dataset in file[table].values()}
+    try:
+        with h5py.File(path, "r") as file:
+            columns = {dataset.attrs["name"]: dataset[:].tolist() for dataset in file[table].values()}
+    except (OSError, KeyError, RuntimeError) as error:
+        print(f"{path}: cannot be read: {' '.join(str(error).split())}", file=sys.stderr)
+        sys.exit(5)
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 

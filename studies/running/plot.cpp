@@ -193,6 +193,8 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     constexpr int refused = 2;  // see studies/plots/options.py
     if (result.code == refused && !(options.integrators.empty() && options.quantities.empty()))
         throw io::UsageError("plot: " + last_line(result.output));
+    constexpr int damaged = 5;  // see studies/plots/drawing.py
+    if (result.code == damaged) throw io::IoError(last_line(result.output));
     const std::string why =
         path.empty() ? "the script " + script + " was not found" : failure_reason(result, options.time_limit);
     if (!why.empty()) {

@@ -23,6 +23,7 @@
 using namespace hilda;
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 using nlohmann::ordered_json;
 
 namespace {
@@ -319,6 +320,17 @@ TEST_CASE("hilda plot draws the figure of run.h5, and says so if Python has no h
     CAPTURE(drawn.err);
     CHECK(drawn.code == 0);
     CHECK(read(in / "hdf5/trajectory.png") == read(in / "csv/trajectory.png"));
+
+    // a damaged file is an error of files
+    const std::string whole = read(in / "hdf5/run.h5");
+    for (const std::string& damage : {std::string("not an HDF5 file"), whole.substr(0, whole.size() / 2)}) {
+        write(in / "hdf5/run.h5", damage);
+        const Ended damaged = call(in, {"plot", "hdf5"});
+        CHECK(damaged.code == 5);
+        CHECK_THAT(damaged.err, StartsWith("hilda: error: hdf5/run.h5: cannot be read: "));
+        CHECK(std::count(damaged.err.begin(), damaged.err.end(), '\n') == 1);
+    }
+    write(in / "hdf5/run.h5", whole);
 
     // the same Python without h5py
     fs::create_directories(in / "without/h5py");

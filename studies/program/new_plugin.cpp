@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/new_plugin.hpp"
 
+#include "granular/case/law_names.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/nearest.hpp"
@@ -85,7 +86,12 @@ void check_name(const Kind& kind, const std::string& name)
         throw io::UsageError(
             "new: NAME must begin with a letter and contain letters, digits, - and _ only, got '" + name +
             "'");
-    if (kind.name != "integrator") return;
+    if (kind.name == "granular-law") {
+        const std::vector<std::string> laws = granular::law_names("normal");
+        if (std::find(laws.begin(), laws.end(), name) != laws.end())
+            throw io::UsageError("new: there is a normal law '" + name + "'; choose another name");
+        return;
+    }
     for (const lie::Scheme& scheme : lie::schemes())
         if (scheme.name == name)
             throw io::UsageError("new: there is an integrator '" + name + "'; choose another name");

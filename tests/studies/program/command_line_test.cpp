@@ -25,6 +25,8 @@ TEST_CASE("an invalid command line is reported in one line with exit code 2", "[
         {{}, "no command given"},
         {{"runn", "double_pendulum"}, "unknown command 'runn'; did you mean 'run'?"},
         {{"help", "chek"}, "unknown command 'chek'; did you mean 'check'?"},
+        {{"new", "integrator", "rA-half-1"}, "new: there is an integrator 'rA-half-1'; choose another name"},
+        {{"new", "granular-law", "hertz"}, "new: there is a normal law 'hertz'; choose another name"},
         {{"run"}, "MODEL is required"},
         {{"run", "double_pendulum", "more"}, "one argument too many: 'more'"},
         {{"run", "double_pendulum", "--stepp", "1e-3"}, "unknown option '--stepp'; did you mean '--step'?"},

@@ -7,6 +7,7 @@
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
@@ -243,13 +244,36 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
 
 io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
-/// Writes the model with its projected initial state. The text is checked as hilda check would.
-/// io::UsageError if the file is that of the model, which has its parameters and notes.
+/// Copies the notes of an object and of the objects in it to those with the same keys, or the same numbers in lists of
+/// equal length.
+void copy_notes(const io::Json& from, io::Json& to)
+{
+    if (from.members() != nullptr && to.members() != nullptr) {
+        for (const auto& m : *from.members()) {
+            if (m.key == "note")
+                to["note"] = m.value;
+            else if (to.member(m.key) != nullptr)
+                copy_notes(m.value, to[m.key]);
+        }
+    } else if (auto* list = std::get_if<io::Json::List>(&to.value);
+               list != nullptr && from.size() == list->size()) {
+        for (size_t k = 0; from.list() != nullptr && k < list->size(); ++k)
+            copy_notes(from.at(k), (*list)[k]);
+    }
+}
+
+/// Writes the model with its projected initial state and the notes of its file. The text is checked as hilda check would.
+/// io::UsageError if the file is that of the model, which has its parameters.
 void write_projected(const dae::Description& d, const std::string& model, const std::string& file)
 {
     if (std::error_code error; std::filesystem::equivalent(model, file, error))
         throw io::UsageError("check: --fix would replace the model " + model + " itself; give another file");
-    const std::string text = dae::text_at(d, d.x);
+    std::string text = dae::text_at(d, d.x);
+    if (is_model_path(model)) {
+        io::JsonSource fixed(text, file);
+        copy_notes(io::JsonSource(io::read_file(model, io::JsonSource::max_bytes), model).root, fixed.root);
+        text = io::written(fixed.root) + '\n';
+    }
     dae::Description written = dae::read_model(text, file);
     dae::start(written);
     io::write_file(file, text);

@@ -139,6 +139,20 @@ TEST_CASE(
     CHECK(read(in / "j.json") == read(in / "f.json"));
 }
 
+TEST_CASE("check --fix keeps the notes of the model file", "[studies][check]")
+{
+    const Scratch in;
+    auto model = nlohmann::ordered_json::parse(driven(moved));
+    model["note"] = "whole", model["bodies"][0]["note"] = "bar", model["constraints"][0]["note"] = "pin";
+    write(in / "m.json", model.dump());
+    REQUIRE(call(in, {"check", "m.json", "--fix", "f.json"}).code == 0);
+    const auto fixed = nlohmann::ordered_json::parse(read(in / "f.json"));
+    CHECK(fixed["note"] == "whole");
+    CHECK(fixed["bodies"][0]["note"] == "bar");
+    CHECK(fixed["constraints"][0]["note"] == "pin");
+    CHECK(call(in, {"check", "f.json"}).code == 0);
+}
+
 TEST_CASE("the model.json of a run with --fix-initial passes a check and repeats the run", "[studies][check]")
 {
     const Scratch in;

@@ -19,6 +19,8 @@ Problem problem_or_file(const std::string& name_or_path)
         std::error_code error;  // of names that the file system does not accept
         if (!std::filesystem::exists(name_or_path, error))
             throw lie::InvalidInput(name_or_path + ": there is no such file");
+        if (!std::filesystem::is_regular_file(name_or_path, error))
+            throw lie::InvalidInput(name_or_path + ": a model file must be a regular file");
         p.name = std::filesystem::path(name_or_path).stem().string();
         p.what = "model file " + name_or_path;
         p.file = name_or_path;

@@ -69,7 +69,7 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
     constexpr size_t most = 64 << 20;  // as for a model file
     std::error_code error;             // of names that the file system does not accept
     for (const std::string& problem : o.problems)
-        if (is_model_path(problem) && std::filesystem::exists(problem, error)) {
+        if (is_model_path(problem) && std::filesystem::is_regular_file(problem, error)) {
             std::string text = io::read_file(problem, most);
             try {  // the canonical form contains the meshes that the model names
                 text += named_model(problem, o.set, "").text;

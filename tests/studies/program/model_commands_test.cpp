@@ -8,6 +8,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <sys/stat.h>
+
 #include <numbers>
 
 using namespace hilda;
@@ -151,6 +153,26 @@ TEST_CASE("check --fix keeps the notes of the model file", "[studies][check]")
     CHECK(fixed["bodies"][0]["note"] == "bar");
     CHECK(fixed["constraints"][0]["note"] == "pin");
     CHECK(call(in, {"check", "f.json"}).code == 0);
+}
+
+TEST_CASE("a model that is a pipe or a folder has the same error in all commands", "[studies][check]")
+{
+    const Scratch in;
+    REQUIRE(mkfifo((in / "pipe.json").c_str(), 0600) == 0);
+    fs::create_directory(in / "folder.json");
+    for (const std::string model : {"pipe.json", "folder.json"}) {
+        const std::string message = "hilda: error: " + model + ": a model file must be a regular file\n";
+        for (const std::vector<std::string>& command :
+             std::vector<std::vector<std::string>>{{"check", model},
+                                                   {"run", model},
+                                                   {"study", "energy", "--json", "--problem", model},
+                                                   {"study", "energy", "--problem", model}}) {
+            const Ended ended = call(in, command);
+            CHECK(ended.code == 3);
+            CHECK(ended.err == message);
+        }
+    }
+    CHECK_FALSE(fs::exists(in / "out/energy/study.part"));
 }
 
 TEST_CASE("the model.json of a run with --fix-initial passes a check and repeats the run", "[studies][check]")

@@ -2,6 +2,7 @@
 #include "studies/experiments/sweep/swept_values.hpp"
 
 #include "io/error.hpp"
+#include "io/expression.hpp"
 #include "io/json_source.hpp"
 #include "io/option_values.hpp"
 
@@ -76,7 +77,8 @@ std::string trimmed(const std::string& text)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// The same text for the same value: of a number, a JSON value, or a text with or without quotes
+/// The same text for the same value: of a number, an expression without parameters, a JSON value, or a text with or
+/// without quotes
 std::string canonical(const std::string& value)
 {
     const double number = io::finite_number_in(value);
@@ -84,8 +86,14 @@ std::string canonical(const std::string& value)
     try {
         return io::written(io::JsonSource(value, "").root);
     } catch (const io::InvalidInput&) {  // a text without quotes
-        return io::written(io::Json(value));
     }
+    try {
+        const io::Expression expression(value, {});
+        if (const double x = expression.value(std::span<const double>()); std::isfinite(x))
+            return io::shortest(x + 0.);
+    } catch (const io::ExpressionError&) {  // a text, or an expression in parameters
+    }
+    return io::written(io::Json(value));
 }
 
 void refuse_equal(const std::vector<std::string>& values, const std::string& text)

@@ -56,7 +56,8 @@ TEST_CASE("a sweep of another form is refused", "[studies][sweep]")
         refused(text, "without empty values");
     for (const char* text : {"/a=1,1", "/a=0:1:2,1", "/a=x,x"}) refused(text, "must contain each value once");
     refused("/a=10,10.0", "must contain each value once, and 10 and 10.0 are equal, got '/a=10,10.0'");
-    for (const char* text : {"/a=10,1e1", "/a=0,-0", "/a=0:1:11,0.50", "/a=[1,0],[1.0, 0]", "/a=x,\"x\""})
+    for (const char* text : {"/a=10,1e1", "/a=0,-0", "/a=0:1:11,0.50", "/a=[1,0],[1.0, 0]", "/a=x,\"x\"",
+                             "/a=2*pi,pi*2", "/a=1/2,0.5"})
         refused(text, "are equal, got");
     for (const char* text :
          {"/a=0:1:1", "/a=0:1:0", "/a=0:1:-2", "/a=0:1:2.5", "/a=0:1:100001", "/a=0:1:1e9"})

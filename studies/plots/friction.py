@@ -155,9 +155,10 @@ def snapshots(folder, name):
         times, body = run.times(), run.bodies[0]
         size = bodies.size_of(run, body)
         low, high = bodies.common_box([(run, t) for t in times], 0.25)
-        motion, contact = run.poses[body], run.contacts[body]
+        motion, contact = run.poses[body], run.contacts.get(body)
+        touching = {t: contact.at(t) if contact else None for t in times}
         fastest = max(math.hypot(*motion.v[motion.at(t)]) for t in times)
-        strongest = max(math.hypot(*contact.F[k]) for k in (contact.at(t) for t in times) if k is not None)
+        strongest = max((math.hypot(*contact.F[k]) for k in touching.values() if k is not None), default=0)
         moves, has_friction = fastest > 1e-6, strongest > 1e-6
         figure, axes = bodies.panels(len(times), columns, 3.1, 3.5 if slope else 2.9)
         for ax, t, text in zip(axes, times, texts):
@@ -169,7 +170,7 @@ def snapshots(folder, name):
             scene.contacts(0.6 * size, 1.2 * size / strongest if has_friction else 0)
             if moves:
                 scene.velocity(body, 1.5 * size / fastest)
-            text = text or ("" if contact.at(t) is not None else "no contact")
+            text = text or ("" if touching[t] is not None else "no contact")
             scene.finish(f"$t$ = {t:.4g} s" + (f"\n{text}" if text else ""), SLOPED if slope else AXES)
         entries = [("body frame", bodies.BODY_FRAME, "-"), ("contact frame $u$, $w$, $n$", bodies.CONTACT_FRAME, "-")]
         if moves:

@@ -319,6 +319,25 @@ class SnapshotFigures(unittest.TestCase):
         floor, solids = axes.collections
         self.assertLess(floor.get_zorder(), solids.get_zorder())
 
+    def test_a_body_that_never_touches_has_snapshots_without_forces(self):
+        for touches in (False, True):  # the contact has rows, but none at the times of the snapshots
+            with tempfile.TemporaryDirectory() as folder:
+                pose = dict(run="r", body="ball", rx=0, ry=0, rz=1, A11=1, A12=0, A13=0, A21=0, A22=1, A23=0, A31=0, A32=0,
+                            A33=1, vx=0, vy=0, vz=-1)
+                write(folder, "spin-poses.csv", [pose | {"t": t, "shown": 1} for t in (0, 1, 2, 3)])
+                if touches:
+                    vector = {name + axis: 1 for name in "CuNF" for axis in "xyz"}
+                    write(folder, "spin-contacts.csv", [dict(run="r", contact="ball", t=0.5, shown=0) | vector])
+                write(folder, "spin.csv", [{"run": "r", "t": t, "omega": 1, "T": 1} for t in (0, 3)])
+                mesh = {"body": 0, "kind": "solid", "unbounded": False, "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+                        "polygons": [[0, 1, 2]]}
+                with open(os.path.join(folder, "spin-shapes.json"), "w", encoding="utf-8") as file:
+                    json.dump([{"run": "r", "bodies": ["ball"], "meshes": [mesh], "joints": [], "lines": []}], file)
+                figures, _ = draw("friction.py", folder)
+                figure = figures["friction-spin-snapshots.png"]
+                self.assertFalse(any("friction force" in text for text in legend_texts(figure)))
+                plt.close(figure)
+
     def test_the_outline_of_a_cube_has_its_six_silhouette_edges(self):
         import bodies
         run = bodies.runs(self.folder)["two"]

@@ -166,7 +166,8 @@ void BoundedRows::fail(Saddle& K, Eigen::VectorXd& z)
         }
         const double bound = c.mu * c.n.dot(lambda.segment<3>(c.normal_row)),
                      error = std::abs(of_pair.norm() - bound) / of_pair.norm();
-        if (response == 0 && search[n].p > 1 && error > largest) largest = error, worst = n;
+        const bool within = search[n].p == 1 && of_pair.norm() <= bound;
+        if (response == 0 && !within && error > largest) largest = error, worst = n;
     }
     std::ostringstream what;
     what.precision(3);

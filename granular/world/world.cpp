@@ -36,7 +36,8 @@ World::World(const WorldOptions& o, std::vector<Material> all, std::unique_ptr<E
     for (const auto& [low, high, axis] :
          {std::tuple{o.low.x, o.high.x, 'x'}, {o.low.y, o.high.y, 'y'}, {o.low.z, o.high.z, 'z'}})
         if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
-            refuse("domain", std::string("the high end along ") + axis + " must be above the low one", high);
+            refuse("domain", std::string("the high end along ") + axis + " must be above the low one",
+                   std::isfinite(low) ? high : low);
     if (!(o.h > 0) || !std::isfinite(o.h)) refuse("step", "must be positive", o.h);
     if (!(o.skin > 0 && o.skin <= 1)) refuse("skin", "must be in (0, 1] diameters", o.skin);
     constexpr std::size_t max_materials = 4096;  // the table of pairs then takes 16 MB
@@ -73,14 +74,16 @@ int World::add(const Boundary& b)
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
     if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
-        refuse("boundary", "position, velocities and force must be finite", b.r.norm() + b.v.norm());
+        refuse("boundary", "position, velocities and force must be finite",
+               not_finite({b.r, b.v, b.omega, b.F}));
     const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
     if (round && !(b.radius > 0 && std::isfinite(b.radius)))
         refuse("boundary", "the radius must be positive", b.radius);
     if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
         refuse("boundary", "the length of axis must be 1", b.axis.norm());
     if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
-        refuse("boundary", "mass and inertia must not be negative", b.mass >= 0 ? b.inertia : b.mass);
+        refuse("boundary", "mass and inertia must not be negative",
+               b.mass >= 0 && std::isfinite(b.mass) ? b.inertia : b.mass);
     boundaries.push_back(b);
     start_balance();
     laws_changed = true;
@@ -91,7 +94,8 @@ int World::add(const Boundary& b)
 void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 {
     if (id >= count()) refuse("velocity", "no particle has this id", id);
-    if (!finite(v) || !finite(omega)) refuse("velocity of " + name_of(id), "must be finite", v.norm());
+    if (!finite(v) || !finite(omega))
+        refuse("velocity of " + name_of(id), "must be finite", not_finite({v, omega}));
     insert_pending();
     Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)

@@ -7,6 +7,7 @@
 #include "io/error.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <sstream>
 
 namespace hilda::granular::detail {
@@ -26,6 +27,15 @@ template <class Value>
     text.precision(9);
     text << where << ": " << what << ", got " << value;
     throw io::InvalidInput(text.str());
+}
+
+/// The first component that is not finite, for a message
+inline double not_finite(std::initializer_list<Vec3> all)
+{
+    for (const Vec3& v : all)
+        for (const double x : {v.x, v.y, v.z})
+            if (!std::isfinite(x)) return x;
+    return 0;
 }
 
 inline double sphere_mass(double radius, double density)

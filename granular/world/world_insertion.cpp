@@ -16,7 +16,7 @@ std::uint32_t World::add(const Particle& p)
     const std::string where = "particle " + std::to_string(id);
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
     if (!finite(p.r) || !finite(p.v) || !finite(p.omega))
-        refuse(where, "position and velocities must be finite", p.r.x);
+        refuse(where, "position and velocities must be finite", not_finite({p.r, p.v, p.omega}));
     if (p.material < 0 || p.material >= static_cast<int>(materials.size()))
         refuse(where, "no material has this number", p.material);
     if (!(std::abs(length(p.e) - 1) < 1e-3))

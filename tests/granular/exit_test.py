@@ -41,6 +41,22 @@ def arguments(runs, case):
         expect(ended.returncode == 2 and message in ended.stderr, f"{ended.returncode}: {ended.stderr}")
 
 
+def texts(runs):
+    """Options that print a text, and arguments that are missing or unknown"""
+    for option, start, contained in (("--help", "hilda-granular: runs a granular case or a validation\n",
+                                      "Exit codes: 0 done, 1 internal"), ("--version", "hilda-granular ", "git ")):
+        ended = runs.run(option)
+        expect(ended.returncode == 0 and ended.stderr == "" and ended.stdout.startswith(start)
+               and contained in ended.stdout, f"{option}: {ended.returncode}: {ended.stdout}{ended.stderr}")
+    for given, code, message in (
+            ((), 2, "granular: CASE is required"),
+            (("--sedd", "1"), 2, "granular: unknown option '--sedd'; did you mean '--seed'?"),
+            (("none",), 3, "none: does not exist; validations: brick, head-on, oblique, stacking, waves")):
+        ended = runs.run(*given)
+        expect(ended.returncode == code and ended.stderr == f"hilda: error: {message}\n",
+               f"{given}: {ended.returncode}: {ended.stderr}")
+
+
 def entries(runs, case):
     """Wrong entries of the case and of the options that change it: exit code 3, with the place"""
     def refused(pointer, message, *given):
@@ -86,6 +102,7 @@ def main():
         runs = Runs(sys.argv[1], folder)
         short = runs.case("short", end=1e-4, interval=5e-5)
         arguments(runs, short)
+        texts(runs)
         runs.refused(short, 7, "--device cuda:99: ", "--device", "cuda:99")
         expect([file.name for file in runs.folder.iterdir()] == ["short.json"], "rejected runs write no files")
         entries(runs, short)

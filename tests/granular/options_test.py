@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Options of hilda-granular: those that change entries of the case, the old names, --strict, and waiting threads.
+"""Options of hilda-granular: those that change entries of the case, the old names, --resume, --strict, and waiting threads.
 
     options_test.py PROGRAM
 """
@@ -76,6 +76,17 @@ def old_names(runs, case):
                             "remove one of them")
 
 
+def resume(runs, case, particles):
+    """--resume without a checkpoint, and after the end of the run"""
+    err = runs.finish(case, "--output", "never", "--resume")
+    expect("hilda: warning: never: has no checkpoint; starting from the initial state\n" in err, f"{err}")
+    expect((runs.folder / "never" / "particles.csv").read_bytes() == particles, "it is the whole run")
+    process = runs.start(case, "--output", "never", "--resume", "--quiet", "--json")
+    out, err = process.communicate()
+    expect(process.returncode == 0 and err == "" and json.loads(out) == runs.summary("never"),
+           f"the summary of the complete run: {out} {err}")
+
+
 def strict(runs, case, watch):
     """The watch over a run: its summary, its warnings, and --strict"""
     expect(watch["samples"] == 3 and not watch["energy"]["passive"] and watch["warnings"] == []
@@ -117,9 +128,11 @@ def main():
         expect(runs.finish(short, "--quiet") == "", "a valid case with --quiet prints nothing")
         summary = changed_entries(runs, short)
         old_names(runs, short)
+        particles = (runs.folder / "out" / "short" / "particles.csv").read_bytes()
+        resume(runs, short, particles)
         strict(runs, short, summary["watch"])
-        waiting_threads(runs, (runs.folder / "out" / "short" / "particles.csv").read_bytes())
-    print("changed entries, old names, --strict and waiting threads")
+        waiting_threads(runs, particles)
+    print("changed entries, old names, --resume, --strict and waiting threads")
 
 
 if __name__ == "__main__":

@@ -201,6 +201,32 @@ def changed(case, pointer, value):
     return case
 
 
+def faults_of_commands(schema):
+    """The commands schema and laws: the program prints the schema of this file, and the laws that it contains"""
+    def output_of(*arguments):
+        done = subprocess.run([sys.argv[1], *arguments], capture_output=True, text=True)
+        return done.returncode, done.stdout, done.stderr
+
+    code, out, err = output_of("schema")
+    faults = []
+    if code != 0 or err or json.loads(out) != schema:
+        faults.append(f"schema: exit code {code}, or not the schema of granular/case.schema.json: {err}")
+    code, out, err = output_of("laws")
+    found = re.findall(r"^(\w+) +([\w-]+)  ", out, re.MULTILINE)
+    kinds = ("normal", "tangential", "rolling", "spin", "cohesion")
+    definitions = [name for name in schema["$defs"] if name.split("_")[0] in kinds and not name.endswith("_law")]
+    if code != 0 or err or sorted("_".join(law).replace("-", "_") for law in found) != sorted(definitions):
+        faults.append(f"laws: exit code {code}, {found} and not {definitions}: {err}")
+    defaults = re.findall(r"^(\w+) +([\w-]+)  (?:(?!^\w).)*The default\.", re.sub(r"\n +", " ", out), re.MULTILINE)
+    if defaults != [(kind, "hertz" if kind == "normal" else "none") for kind in kinds]:
+        faults.append(f"laws: the defaults are {defaults}")
+    for command in "schema", "laws":
+        code, out, err = output_of(command, "--seed", "1")
+        if code != 2 or out or f"--seed: is valid for cases only, but {command} is a command" not in err:
+            faults.append(f"{command} --seed: exit code {code}: {err}")
+    return faults
+
+
 def main():
     with open(root / "granular" / "case.schema.json", encoding="utf-8") as file:
         schema = json.load(file)
@@ -254,6 +280,7 @@ def main():
             if f"/{old}" not in err or new not in err:
                 faults.append(f"/{old}: the program prints no notice with the new name {new}: {err}")
 
+    faults += faults_of_commands(schema)
     for fault in faults:
         print(fault)
     print(f"{len(valid)} cases accepted, {len(BY_BOTH)} rejected by both, {len(BY_THE_PROGRAM)} by the program only; "

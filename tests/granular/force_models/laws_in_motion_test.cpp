@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Motion of a sphere on a floor, or of two spheres, under single force laws: World against closed forms.
+#include "granular/case/case_file.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -235,4 +236,50 @@ TEST_CASE("cohesive spheres separate above their pull-off force and not below it
             while (world.t() < 2.5 && !world.contacts().empty()) world.step(100);
             CHECK(world.contacts().empty() == (share > 1));
         }
+}
+
+TEST_CASE("two spheres with the law scaled-hooke of a case collide as its energy and damping require",
+          "[granular][laws]")
+{
+    const double damping = GENERATE(0., 300.);
+    constexpr double v = 1, k_n = 2e4, radius = 0.01, rho = 2500;
+    const std::string gamma = damping > 0 ? ", \"gamma_n\": 300" : "";
+    granular::Case c = granular::read_case(R"({"hilda_case": 1, "step": 1e-6, "end": 1, "gravity": [0, 0, 0],
+        "domain": {"low": [0, 0, 0], "high": [0.1, 0.1, 0.1]},
+        "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}],
+        "laws": [{"normal": {"law": "scaled-hooke", "k_n": 2e4)" +
+                                               gamma + R"(}}],
+        "particles": [{"r": [0.0395, 0.05, 0.05], "v": [1, 0, 0], "radius": 0.01, "material": "glass"},
+                      {"r": [0.0605, 0.05, 0.05], "v": [-1, 0, 0], "radius": 0.01, "material": "glass"}]})",
+                                           "scaled");
+    granular::World& world = *c.world;
+    const double m = 4. / 3 * std::numbers::pi * radius * radius * radius * rho;
+    double deepest = 0, energy = 0;
+    for (int k = 0; k < 400; ++k) {
+        world.step(10);
+        for (const auto& contact : world.contacts()) deepest = std::max(deepest, contact.delta);
+    }
+    const auto after = world.particles();
+    REQUIRE(world.contacts().empty());
+    for (const Particle& p : after) energy += 0.5 * m * p.v.dot(p.v);
+    CHECK(after[0].v.x == Approx(-after[1].v.x).epsilon(1e-5));
+    CHECK(after[0].v.x < 0);
+    // m v² = 2/5 k_n δ^(5/2)/sqrt(R)
+    const double turning = std::pow(m * v * v * 5 / 2 * std::sqrt(radius) / k_n, 0.4);
+    if (damping == 0) {
+        CHECK(energy == Approx(m * v * v).epsilon(1e-4));
+        CHECK(deepest == Approx(turning).epsilon(1e-3));
+    } else {
+        // the dissipation of the undamped motion, both ways, is an upper bound of the loss and close to it
+        double loss = 0, u = 0;
+        const double dt = 1e-8;
+        for (double delta = 0, rate = 2 * v; delta >= 0 && u < 1; u += dt) {
+            rate -= dt * 2 / m * std::sqrt(delta / radius) * (k_n * delta + damping * m / 2 * rate);
+            delta += dt * rate;
+            if (delta > 0) loss += dt * std::sqrt(delta / radius) * damping * m / 2 * rate * rate;
+        }
+        CHECK(loss > 0.05 * m * v * v);
+        CHECK(energy == Approx(m * v * v - loss).epsilon(2e-3));
+        CHECK(deepest < turning);
+    }
 }

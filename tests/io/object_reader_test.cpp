@@ -77,3 +77,31 @@ TEST_CASE("a path in a text is relative to the folder of the text", "[io][object
         CHECK_THROWS_WITH(o.file(key),
                           Catch::Contains(std::string(key) + " must be the path of a file, got"));
 }
+
+TEST_CASE("a reader refuses integers, texts and formulas that are none", "[io][object_reader]")
+{
+    const auto integer = [](io::ObjectReader& o) { o.integer("x"); };
+    const auto text = [](io::ObjectReader& o) { o.text("x"); };
+    const auto formula = [](io::ObjectReader& o) { o.formula("x", {}, {"t"}); };
+    const auto of_names = [](io::ObjectReader& o) { o.formula_of_names("x", {"t"}); };
+    CHECK(refusal(R"({"x": -2147483647})", integer).empty());
+    CHECK(refusal(R"({"x": "1"})", integer) == "f:1:7 (/x): x must be a number, got \"1\"");
+    CHECK(refusal(R"({"x": 1.5})", integer) ==
+          "f:1:7 (/x): x must be an integer of at most 31 bits, got 1.5");
+    CHECK(refusal(R"({"x": 2147483648})", integer) ==
+          "f:1:7 (/x): x must be an integer of at most 31 bits, got 2147483648");
+    CHECK(refusal("{}", text) == "f:1:1 (/): missing key 'x'");
+    CHECK(refusal(R"({"x": 1})", text) == "f:1:7 (/x): x must be a string, got 1");
+    CHECK(refusal("{\"x\": \"" + std::string(io::JsonSource::max_string, 'a') + "\"}", text).empty());
+    CHECK(refusal(R"({"x": 2})", formula).empty());
+    CHECK(refusal(R"({"x": "t^2"})", formula).empty());
+    CHECK(refusal(R"({"x": [1]})", formula) ==
+          "f:1:7 (/x): x must be a number or an expression in a string, got [1]");
+    CHECK(refusal(R"({"x": ""})", of_names) == "f:1:7 (/x): x must be an expression, got \"\"");
+    CHECK(refusal(R"({"x": 1})", of_names) == "f:1:7 (/x): x must be a string, got 1");
+
+    const io::JsonSource source(R"({"x": 2})", "f");
+    io::ObjectReader o(source, source.root, "");
+    CHECK(o.formula("x", {}, {"t"}) == "2");
+    CHECK(o.formula("y", "t", {"t"}) == "t");
+}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Options of hilda-granular: those that change entries of the case, the old names, --resume, --strict, and waiting threads.
+"""Options of hilda-granular: changed entries of the case, old names, --resume, --strict, and waiting threads.
 
     options_test.py PROGRAM
 """

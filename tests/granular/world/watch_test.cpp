@@ -236,6 +236,39 @@ TEST_CASE("a rotating boundary and a rotating fixed sphere do the work of their 
     CHECK(w.largest_momentum_residual < 1e-5 * w.largest_momentum);
 }
 
+TEST_CASE("the work of a rotating fixed sphere includes its torques, whichever of the two has the smaller id",
+          "[granular][watch]")
+{
+    const int fixed = GENERATE(0, 1);
+    const double h = 1e-5;
+    World world(space(h, Scheme::symplectic_euler, {0, 0, -9.81}), {soft()});
+    PairLaw law;
+    law.normal = granular::Hooke{.k_n = 2e4f, .gamma_n = 50};
+    law.tangential = granular::Mindlin{.spring = {.k_t = 1e4f}, .cap = {0.2f, 0.2f}};
+    law.rolling = granular::ConstantTorque{.mu_r = 0.05f, .slow = 1e-3f};
+    world.set_law(0, 0, law);
+    Particle turning = soft_sphere(), moving = soft_sphere();
+    turning.r = {0, 0, -0.5}, turning.omega = {0, 0.2, 0.1}, turning.fixed = true;
+    moving.r = {0, 0, 0.5};
+    world.add(fixed == 0 ? turning : moving);
+    world.add(fixed == 0 ? moving : turning);
+    double work = 0, of_torque = 0;
+    for (int k = 0; k < 8000; ++k) {
+        world.step(1);
+        for (const granular::ContactRecord& c : world.contacts()) {
+            const double sign = static_cast<int>(c.i) == fixed ? 1 : -1;  // F and T act on i
+            const Vec3 T = sign * c.T, on_fixed = T + sign * (c.C - turning.r).cross(c.F);
+            work -= h * on_fixed.dot(turning.omega), of_torque -= h * T.dot(turning.omega);
+        }
+    }
+    const WatchRecord& w = world.watch();
+    CAPTURE(fixed);
+    CHECK(std::abs(of_torque) > 0.02 * std::abs(work));
+    CHECK(w.work == Approx(work).epsilon(2e-3));
+    CHECK(w.largest_momentum_residual < 1e-5 * w.largest_momentum);
+    CHECK(w.largest_gain < 1e-3 * w.largest_kinetic);
+}
+
 TEST_CASE("a step far too large ends with energy_created or overlap_too_large", "[granular][watch]")
 {
     const auto statuses = [](double h) {

@@ -14,12 +14,26 @@ namespace hilda::granular {
 
 namespace {
 
+/// The names in quotes, as many as fit into a line
+std::string list_of(const std::vector<std::string_view>& names)
+{
+    constexpr std::size_t longest = 200;
+    std::string list;
+    for (const std::string_view name : names) {
+        if (list.size() + name.size() > longest) return list + " ...";
+        list += (list.empty() ? "'" : ", '") + std::string(name) + '\'';
+    }
+    return list;
+}
+
 template <class Number>
 Number number(const io::CsvRow& row, const std::string& name, const char* rule)
 {
     const auto at =
         static_cast<std::size_t>(std::find(row.names.begin(), row.names.end(), name) - row.names.begin());
-    if (at == row.names.size()) throw io::InvalidInput(row.place + ": missing column " + name);
+    if (at == row.names.size())
+        throw io::InvalidInput(row.place + ": missing column " + name + "; the columns are " +
+                               list_of(row.names));
     const auto value = io::number_in<Number>(row.cells[at]);
     if (!value || !std::isfinite(static_cast<double>(*value)))
         throw io::InvalidInput(row.place + ": " + name + ' ' + rule + ", got '" + std::string(row.cells[at]) +
@@ -29,8 +43,9 @@ Number number(const io::CsvRow& row, const std::string& name, const char* rule)
 
 Particle particle(const io::CsvRow& row)
 {
-    const auto has = [&](const char* name) {
-        return std::find(row.names.begin(), row.names.end(), name) != row.names.end();
+    // a part of the columns of a vector is not ignored: number() names those that are missing
+    const auto has = [&](auto... names) {
+        return ((std::find(row.names.begin(), row.names.end(), names) != row.names.end()) || ...);
     };
     const auto real = [&](const char* name) { return number<double>(row, name, "must be a finite number"); };
     const auto vector = [&](const char* x, const char* y, const char* z) {
@@ -41,9 +56,9 @@ Particle particle(const io::CsvRow& row)
     if (!(p.radius > 0))
         throw io::InvalidInput(row.place + ": radius must be positive, got " + io::shortest(p.radius));
     if (has("material")) p.material = number<int>(row, "material", "must be the number of a material");
-    if (has("vx")) p.v = vector("vx", "vy", "vz");
-    if (has("omega_x")) p.omega = vector("omega_x", "omega_y", "omega_z");
-    if (has("e0")) p.e = {real("e0"), real("e1"), real("e2"), real("e3")};
+    if (has("vx", "vy", "vz")) p.v = vector("vx", "vy", "vz");
+    if (has("omega_x", "omega_y", "omega_z")) p.omega = vector("omega_x", "omega_y", "omega_z");
+    if (has("e0", "e1", "e2", "e3")) p.e = {real("e0"), real("e1"), real("e2"), real("e3")};
     return p;
 }
 

@@ -3,6 +3,7 @@
 // overlaps.
 #include "granular/world/world_impl.hpp"
 #include "io/error.hpp"
+#include "io/message.hpp"
 
 #include <algorithm>
 
@@ -65,9 +66,10 @@ Domain World::domain_of(const std::vector<Particle>& all) const
                    cells);
         if (options.periodic[k] && cells < 3)
             refuse("domain",
-                   "must be at least three cells wide along a periodic axis; a cell is as wide as the "
-                   "largest diameter and the "
-                   "skin; width [m]",
+                   io::formatted(
+                       "must be at least %.5g m wide along %c, a periodic axis: three times the largest "
+                       "diameter and the skin",
+                       1.0001 * 3 * edge, 'x' + k),
                    length);
         grid.cells[k] = static_cast<std::int32_t>(cells);
         if (options.periodic[k]) widest = std::max(widest, length / cells);

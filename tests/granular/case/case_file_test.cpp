@@ -538,12 +538,20 @@ TEST_CASE("an invalid particle table is rejected with its line", "[granular][fil
     const std::tuple<const char*, const char*> wrong[] = {
         {"", "t: contains no particles"},
         {"x,y,z,radius\n", "t: contains no particles"},
-        {"x,y,radius\n1,2,3\n", "t:2: missing column z"},
+        {"x,y,radius\n1,2,3\n", "t:2: missing column z; the columns are 'x', 'y', 'radius'"},
+        {"x;y;z;radius\n1;2;3;1\n", "t:2: missing column x; the columns are 'x;y;z;radius'"},
         {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
         {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
         {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1"},
         {"x,y,x,z,radius\n1,2,3,4,1\n", "t:1: two columns have the same name, got 'x'"},
-        {"x,y,z,radius,vx\n1,2,3,1,0\n", "t:2: missing column vy"},
+        {"x,y,z,radius,vx\n1,2,3,1,0\n",
+         "t:2: missing column vy; the columns are 'x', 'y', 'z', 'radius', 'vx'"},
+        {"x,y,z,radius,vz\n1,2,3,1,-2\n",
+         "t:2: missing column vx; the columns are 'x', 'y', 'z', 'radius', 'vz'"},
+        {"x,y,z,radius,omega_y\n1,2,3,1,5\n",
+         "t:2: missing column omega_x; the columns are 'x', 'y', 'z', 'radius', 'omega_y'"},
+        {"x,y,z,radius,e3\n1,2,3,1,1\n",
+         "t:2: missing column e0; the columns are 'x', 'y', 'z', 'radius', 'e3'"},
         {"x,y,z,radius,material\n1,2,3,1,0.5\n", "t:2: material must be the number of a material, got '0.5'"},
         {"x,y,z,radius\n1,2,3\n", "t:2: a row must have a field for each of the 4 columns, got 3"}};
     for (const auto& [table, message] : wrong)

@@ -169,8 +169,8 @@ TEST_CASE("a world refuses a domain of too many or too few cells", "[granular][r
     CHECK_THAT(domain(2.3e-4, 0.5),
                Catch::StartsWith("domain: must not have more than 2^31 cells in all replicas, got 3.8"));
     CHECK_THAT(domain(0.2, 1, true),
-               Catch::StartsWith("domain: must be at least three cells wide along a periodic axis; ") &&
-                   Catch::EndsWith("width [m], got 1"));
+               Catch::StartsWith("domain: must be at least 1.3201 m wide along z, a periodic axis: ") &&
+                   Catch::EndsWith("got 1"));
 }
 
 TEST_CASE("a checkpoint of a world with other options is refused with the reason",

@@ -355,3 +355,23 @@ TEST_CASE("a mirrored or reordered world has the same motion", "[granular][invar
     CHECK(far(run(false, true)) < 1e-5);
     CHECK(far(run(true, true)) < 1e-5);
 }
+
+TEST_CASE("a periodic domain that is too narrow is refused with the width that is sufficient", "[granular]")
+{
+    const auto insert = [](double width) {
+        WorldOptions o;
+        o.low = {0, 0, 0}, o.high = {width, 0.1, 0.1};
+        o.periodic = {true, false, false};
+        o.h = 1e-6;
+        World world(o, {glass()});
+        world.set_law(0, 0, hertz_mindlin(glass(), 0.8, 0.3));
+        Particle p;
+        p.r = {1e-3, 0.05, 0.05}, p.radius = 1e-3;
+        world.add(p);
+        world.step(1);
+    };
+    CHECK_THROWS_WITH(insert(0.005),
+                      "domain: must be at least 0.0066007 m wide along x, a periodic axis: three "
+                      "times the largest diameter and the skin, got 0.005");
+    insert(0.0066007);
+}

@@ -22,8 +22,8 @@ struct Shape {
     Vec3 to_body(const Vec3& a) const { return position + orientation * a; }
 };
 
-/// The smaller size of two surfaces [m]. A surface without a size, such as a plane, does not count; infinite if
-/// neither has one.
+/// The smaller size of two surfaces [m]. A surface without a size, such as a plane, does not count; infinite
+/// if neither has one.
 inline double smaller_size(const Shape& i, const Shape& j)
 {
     double smaller = std::numeric_limits<double>::infinity();

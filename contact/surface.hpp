@@ -77,11 +77,11 @@ public:
     /// chord alone. Otherwise the chord itself, which is shorter by the fraction (chord κ)²/24.
     virtual double arc(double chord) const { return chord; }
 
-    /// False for a surface with an edge or a fixed contact point. Its only partner is a plane, and it cannot be
-    /// part of an evolving contact.
+    /// False for a surface with an edge or a fixed contact point. Its only partner is a plane, and it cannot
+    /// be part of an evolving contact.
     virtual bool is_smooth() const { return true; }
-    /// Radius of a sphere about the origin of the frame that contains the body [m]; infinite if there is none.
-    /// The default is that of the bounding box of a convex body from its support points, else infinite.
+    /// Radius of a sphere about the origin of the frame that contains the body [m]; infinite if there is
+    /// none. The default is that of the bounding box of a convex body from its support points, else infinite.
     virtual double bounding_radius() const;
 
     /// True for a surface of which only an extent is drawn. The default is an implicit surface with a
@@ -90,7 +90,8 @@ public:
     /// Polygons that approximate the surface, at most about 500 points, outward for sigma() = 1. A point that
     /// is not found is NaN. The default samples a convex surface by its support function, which places the
     /// points by normal direction, an implicit surface along rays from its origin, and an unbounded one above
-    /// and below the points of the plane z = 0, by projection where there is no such point. For output see tessellate().
+    /// and below the points of the plane z = 0, by projection where there is no such point. For output see
+    /// tessellate().
     virtual PolygonMesh drawing(const DrawingExtent& extent) const;
 };
 

@@ -68,8 +68,8 @@ std::optional<Vec3> exit_point(const Surface& surface, const Vec3& u)
     return Vec3(upper * u);
 }
 
-/// The point of the surface above or below (a.x, a.y), at the height nearest to the extent; empty if the surface has
-/// none within three times the extent
+/// The point of the surface above or below (a.x, a.y), at the height nearest to the extent; empty if the
+/// surface has none within three times the extent
 std::optional<Vec3> point_above(const Surface& surface, const Vec3& a, const DrawingExtent& extent)
 {
     constexpr int samples = 200;

@@ -125,8 +125,8 @@ public:
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
     int update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;
-    /// The mode is fallback_active if start_error() has a reason and there is a fallback. A unilateral contact
-    /// starts inactive if it has a gap, or if its gap is zero and changes.
+    /// The mode is fallback_active if start_error() has a reason and there is a fallback. A unilateral
+    /// contact starts inactive if it has a gap, or if its gap is zero and changes.
     int start(const Arguments& x, double* alpha) const override;
     /// |gap|, at most 1e-6 L
     Violation position_violation(const Arguments& x, double tolerance) const override;

@@ -174,8 +174,8 @@ void UnilateralStep::restore(const History& saved)
     }
 }
 
-/// Advances x from t_n to t_n + h through all events. During a part of the step x is its beginning and `trial`
-/// its end.
+/// Advances x from t_n to t_n + h through all events. During a part of the step x is its beginning and
+/// `trial` its end.
 int UnilateralStep::advance(State& x, double h)
 {
     int iterations = 0;

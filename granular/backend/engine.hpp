@@ -70,12 +70,13 @@ public:
 
     // The watch over a run. The sums do not depend on the number of threads; see watch.hpp.
 
-    /// Whether the memory for the sums is available after the next neighbour search, and overlaps are compared.
+    /// Whether the memory for the sums is available after the next neighbour search, and overlaps are
+    /// compared.
     virtual void set_watched(bool on) = 0;
     /// Largest overlap over the smaller radius in all find_loads since the last call
     virtual float take_largest_overlap() = 0;
-    /// Loads of boundaries and fixed particles, after find_loads. `before` and `after` are the velocities of the
-    /// boundaries in the previous and in the next move; empty if no boundary moves.
+    /// Loads of boundaries and fixed particles, after find_loads. `before` and `after` are the velocities of
+    /// the boundaries in the previous and in the next move; empty if no boundary moves.
     virtual ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
                                        const std::vector<BoundaryVelocity>& after) = 0;
     /// Sums over the particles. Copies the velocities for kinetic_sums(), unless only the applied forces are

@@ -318,7 +318,8 @@ private:
         return {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
     }
 
-    /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there are.
+    /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there
+    /// are.
     template <class Flag>
     std::uint32_t list_pairs(Flag flag, par::Array<Backend, std::uint32_t>& list)
     {

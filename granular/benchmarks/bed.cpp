@@ -124,8 +124,8 @@ double cpu_time()
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Prints the CPU time of a step of the bed with and without the watch, and the median of the ratios. Blocks of
-/// steps of one world alternate, so that the load of the machine affects both.
+/// Prints the CPU time of a step of the bed with and without the watch, and the median of the ratios. Blocks
+/// of steps of one world alternate, so that the load of the machine affects both.
 void report_watch(const char* phase, World& world, long first)
 {
     world.step(first);

@@ -9,8 +9,9 @@ namespace hilda::granular {
 
 namespace {
 
-/// Reads a vector of numbers, or of formulas. The number is then the value at t = 0, or zero if it is not finite
-/// there: velocities and forces are evaluated within steps. Positions need it, which the caller checks.
+/// Reads a vector of numbers, or of formulas. The number is then the value at t = 0, or zero if it is not
+/// finite there: velocities and forces are evaluated within steps. Positions need it, which the caller
+/// checks.
 void read_vector(ObjectReader& o, const std::string& key, Vec3& number, std::optional<VectorFormula>& formula)
 {
     if (!o.has_formula(key)) {

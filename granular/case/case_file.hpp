@@ -40,7 +40,8 @@ struct Environment {
     std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
     std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...
     std::string folder = {};  ///< that contains all files which the case names; empty: they may be anywhere
-    /// Case of the run that is continued, or nullptr. Its intervals replace those that the case does not state.
+    /// Case of the run that is continued, or nullptr. Its intervals replace those that the case does not
+    /// state.
     const io::JsonSource* continues = nullptr;
 };
 
@@ -50,8 +51,8 @@ struct Environment {
 /// Throws io::InvalidInput with file, line, column and JSON pointer of the invalid entry, and DeviceError.
 Case read_case(const std::string& text, const std::string& file, const Environment& environment = {});
 
-/// Inserts the particles into the world. Throws io::InvalidInput with the place of the entry whose particles are
-/// invalid.
+/// Inserts the particles into the world. Throws io::InvalidInput with the place of the entry whose particles
+/// are invalid.
 void insert_particles(const Case& c);
 
 }  // namespace hilda::granular

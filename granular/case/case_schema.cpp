@@ -85,7 +85,8 @@ io::Json having(const std::string& key, const io::Json& value, bool is_default)
     return all;
 }
 
-/// Sets the definitions of the laws, and the conditions that they state for the other keys of an entry of `laws`.
+/// Sets the definitions of the laws, and the conditions that they state for the other keys of an entry of
+/// `laws`.
 void set_law_definitions(io::Json& definitions)
 {
     io::Json conditions = io::Json::array();

@@ -49,8 +49,8 @@ FillSpec read_fill(ObjectReader& o);
 
 /// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
 /// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,
-/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws io::InvalidInput with
-/// file and line.
+/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws io::InvalidInput
+/// with file and line.
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
 
 /// Estimated number of particles

@@ -9,7 +9,8 @@ namespace hilda::granular {
 
 namespace {
 
-/// Distances of centres within a row, of rows and of layers [m]. hcp is close-packed if the spacing is one diameter.
+/// Distances of centres within a row, of rows and of layers [m]. hcp is close-packed if the spacing is one
+/// diameter.
 Vec3 distances(const FillSpec& f, bool hcp)
 {
     const double a = f.spacing;

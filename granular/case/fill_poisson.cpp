@@ -55,8 +55,8 @@ std::vector<Vec3> centres(const FillSpec& f, const Vec3& low, const Vec3& high, 
     return all;
 }
 
-/// Bridson's algorithm generates about 0.58 particles per cube of the spacing. max_count is ignored, because all
-/// positions are generated first.
+/// Bridson's algorithm generates about 0.58 particles per cube of the spacing. max_count is ignored, because
+/// all positions are generated first.
 double estimated(const FillSpec& f, const Vec3& size)
 {
     const auto n = [&](double length) { return length / f.spacing + 0.4; };

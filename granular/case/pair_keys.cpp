@@ -9,8 +9,8 @@ namespace hilda::granular {
 
 namespace {
 
-/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it. The texts and
-/// examples are for the schema.
+/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it. The
+/// texts and examples are for the schema.
 class LawKeys {
 public:
     LawKeys(ObjectReader& own, ObjectReader& pair, const Material& i, const Material& j, const PairLaw& law)

@@ -15,13 +15,13 @@ int material_named(const std::string& name, const std::vector<Material>& materia
 /// Indices of the two materials of a law, from the key `between`. Throws io::PlacedError.
 std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>& materials);
 
-/// Reads the laws between the materials i and j. Throws io::PlacedError. A restitution of 0 is raised to 1e-7,
-/// with a warning in `notices`.
+/// Reads the laws between the materials i and j. Throws io::PlacedError. A restitution of 0 is raised to
+/// 1e-7, with a warning in `notices`.
 PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j,
                   std::vector<std::string>& notices);
 
-/// Calls f(key of the case, name of the default law, member of PairLaw) for each kind of law. The normal law is the
-/// first, because others depend on it.
+/// Calls f(key of the case, name of the default law, member of PairLaw) for each kind of law. The normal law
+/// is the first, because others depend on it.
 template <class F>
 void for_each_kind(const F& f)
 {

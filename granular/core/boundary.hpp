@@ -102,8 +102,8 @@ HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
     return b.v + b.omega.cross(point - b.r);
 }
 
-/// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is closest to the
-/// centre of the particle
+/// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is closest
+/// to the centre of the particle
 HILDA_HD inline Vec3 contact_lever(const Boundary& b, const Vec3& centre)
 {
     const Nearest near = nearest(b, centre);

@@ -29,7 +29,8 @@ struct PairView {
     Float4* torque;            ///< of rolling and spin on body i [N m]; nullptr if rotation_history is
     std::uint8_t* in_contact;  ///< 1 if the bodies overlap
     std::uint32_t count;       ///< number of pairs
-    /// Receives the largest overlap over the smaller radius, for each chunk of the loop; nullptr: not computed
+    /// Receives the largest overlap over the smaller radius, for each chunk of the loop; nullptr: not
+    /// computed
     float* largest_overlap = nullptr;
 };
 

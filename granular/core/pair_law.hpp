@@ -21,7 +21,8 @@ struct PairLaw {
 
     /// Whether there is a law of rolling or spin
     bool resists_rotation() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
-    /// Whether the elastic energy of the normal force and of the cohesion is known: the laws have a member energy().
+    /// Whether the elastic energy of the normal force and of the cohesion is known: the laws have a member
+    /// energy().
     bool has_energy() const
     {
         bool known = true;
@@ -91,8 +92,8 @@ struct ElasticEnergy {
     R normal, tangential;
 };
 
-/// The elastic energy of a contact. Of the members of `contact` it uses the overlap, the radii and the masses.
-/// A law without a member energy() contributes nothing.
+/// The elastic energy of a contact. Of the members of `contact` it uses the overlap, the radii and the
+/// masses. A law without a member energy() contributes nothing.
 ///
 ///     normal law, cohesion:        energy(contact)
 ///     friction, rolling, spin:     energy(contact, k_t, history), k_t the stiffness of the tangential spring

@@ -177,8 +177,8 @@ struct AddBoundaryLoads {
     {
         ExternalSums sum;
         const std::uint32_t end = end_of_block(block, count);
-        // The load of a pair without contact is zero. There are two partial sums, because an addition waits for
-        // the one before it.
+        // The load of a pair without contact is zero. There are two partial sums, because an addition waits
+        // for the one before it.
         Vec3 even{0, 0, 0}, odd{0, 0, 0};
         for (std::uint32_t k = block * watch_block; k < end; k += 2) {
             even += to_double(pairs.load[which[k]].F);

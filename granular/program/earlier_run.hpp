@@ -7,8 +7,8 @@
 
 namespace hilda::granular {
 
-/// The case of the run in a directory, from its case.json; empty if there is no such file. Throws io::IoError, and
-/// io::InvalidInput if it is not valid JSON.
+/// The case of the run in a directory, from its case.json; empty if there is no such file. Throws
+/// io::IoError, and io::InvalidInput if it is not valid JSON.
 std::optional<io::JsonSource> earlier_case(const std::string& directory);
 
 struct EarlierRun {
@@ -22,7 +22,8 @@ struct EarlierRun {
 /// if it has reached an end after that of c, or if it is complete and has no checkpoint for a later end.
 EarlierRun earlier_run(const Options& options, const Case& c);
 
-/// Throws io::UsageError: the end of c is not after the time [s] that the run in the output directory has reached.
+/// Throws io::UsageError: the end of c is not after the time [s] that the run in the output directory has
+/// reached.
 [[noreturn]] void refuse_end(const Options& options, const Case& c, double reached);
 
 /// Reports that the run in the output directory is complete, with --json by its summary. Returns the exit

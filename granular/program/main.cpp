@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The program hilda-granular: runs a granular case or a validation, or prints the schema of cases. It is separate
-/// from hilda because it may link the CUDA runtime, which must not be linked with GSL.
+/// The program hilda-granular: runs a granular case or a validation, or prints the schema of cases. It is
+/// separate from hilda because it may link the CUDA runtime, which must not be linked with GSL.
 
 #include "granular/case/case_schema.hpp"
 #include "granular/program/earlier_run.hpp"

@@ -91,8 +91,8 @@ private:
         if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
     }
 
-    /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none. Throws
-    /// io::UsageError if it is not before the end.
+    /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.
+    /// Throws io::UsageError if it is not before the end.
     bool load()
     {
         return files.load([&](const std::string& bytes, const std::string& from) {
@@ -167,7 +167,8 @@ private:
         if (c.world->steps() % interval == 0) ++rows;
     }
 
-    /// The run in the directory has another end from here on. It is incomplete, and it can be resumed at any time.
+    /// The run in the directory has another end from here on. It is incomplete, and it can be resumed at any
+    /// time.
     void begin_other_end()
     {
         save();

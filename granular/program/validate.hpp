@@ -13,8 +13,8 @@ const Validation* find_validation(const std::string& name);
 /// "; validations: A, B", a suffix for the message that a file does not exist
 std::string known_validations();
 
-/// Runs the validation, prints its tables and checks on stdout and returns the exit code. The warnings of the watch
-/// go to stderr; with `strict` they are a failure. Throws DeviceError.
+/// Runs the validation, prints its tables and checks on stdout and returns the exit code. The warnings of the
+/// watch go to stderr; with `strict` they are a failure. Throws DeviceError.
 int validate(const Validation& validation, ValidationOptions options, bool quiet, bool strict);
 
 }  // namespace hilda::granular

@@ -21,8 +21,8 @@ constexpr const char* strict_suffix = " (a warning, with --strict)";  ///< of th
 /// The block `watch` of summary.json
 io::Json watch_summary(const WatchRecord& record);
 
-/// Calls warn(text) for each warning of the record that is not in `known`, and adds it there. With `strict`, throws
-/// StrictWarning instead.
+/// Calls warn(text) for each warning of the record that is not in `known`, and adds it there. With `strict`,
+/// throws StrictWarning instead.
 void report_watch(const WatchRecord& record, std::int64_t& known, bool strict,
                   const std::function<void(const std::string&)>& warn);
 

@@ -63,8 +63,8 @@ Polygons plane(const Boundary& b, const Vec3& low, const Vec3& high)
     return all;
 }
 
-/// A surface of revolution about the axis of b through rings of these radii at these distances from b.r. Seen from
-/// outside the polygons are counterclockwise.
+/// A surface of revolution about the axis of b through rings of these radii at these distances from b.r. Seen
+/// from outside the polygons are counterclockwise.
 Polygons revolution(const Boundary& b, const std::vector<std::pair<double, double>>& rings)
 {
     const Frame frame(b.axis);

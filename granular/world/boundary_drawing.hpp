@@ -18,8 +18,8 @@ struct Polygons {
     std::vector<std::vector<int>> polygon;  ///< vertices, counterclockwise seen from the particles
 };
 
-/// The part of a boundary that is drawn, for a domain from `low` to `high`: of a plane its intersection with the
-/// domain, of a cylinder or cone the part between the planes through the corners of the domain that are
+/// The part of a boundary that is drawn, for a domain from `low` to `high`: of a plane its intersection with
+/// the domain, of a cylinder or cone the part between the planes through the corners of the domain that are
 /// perpendicular to its axis, a whole sphere. Empty if a plane does not intersect the domain.
 Polygons drawing(const Boundary& boundary, const Vec3& low, const Vec3& high);
 

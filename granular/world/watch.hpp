@@ -11,8 +11,8 @@
 
 namespace hilda::granular {
 
-/// The overlap of two bodies is above the limit, so that the contact laws do not hold and grains may pass through
-/// each other.
+/// The overlap of two bodies is above the limit, so that the contact laws do not hold and grains may pass
+/// through each other.
 class OverlapTooLarge : public io::NumericalFailure {
 public:
     explicit OverlapTooLarge(const std::string& what) : NumericalFailure("overlap_too_large", what) {}
@@ -33,17 +33,17 @@ constexpr double energy = 0.01;          ///< allowed gain, over the largest kin
 constexpr long interval = 128;           ///< steps between two samples
 }  // namespace watch_limit
 
-/// Record of the watch. Energies, momenta and fractions are those of the last sample, `largest` ones those of all
-/// samples; largest_overlap and, if all radii are equal, largest_displacement are those of all steps.
+/// Record of the watch. Energies, momenta and fractions are those of the last sample, `largest` ones those of
+/// all samples; largest_overlap and, if all radii are equal, largest_displacement are those of all steps.
 ///
 ///     E = T + V + U,    W - (E - E_0) = dissipated energy
 ///     P - P_0 = Σ h (m g + F)
 ///
 /// T: kinetic energy at t_n; see AddKinetic. V: potential energy in the gravity along the axes that are not
-/// periodic. U: energy of the contact springs. W: work of moving boundaries, of fixed particles that rotate, of
-/// applied forces, and of gravity along periodic axes. F: loads of boundaries and fixed particles, applied forces.
-/// A change of the particles or of their velocities from outside (World::add, World::set_velocity) starts a new
-/// balance, and the dissipated energy continues.
+/// periodic. U: energy of the contact springs. W: work of moving boundaries, of fixed particles that rotate,
+/// of applied forces, and of gravity along periodic axes. F: loads of boundaries and fixed particles, applied
+/// forces. A change of the particles or of their velocities from outside (World::add, World::set_velocity)
+/// starts a new balance, and the dissipated energy continues.
 ///
 /// All members have eight bytes: the record is stored in checkpoints.
 struct WatchRecord {

@@ -109,12 +109,13 @@ public:
     /// gravity.
     std::uint32_t add(const Particle& particle);
 
-    /// Inserts pending particles and computes n ≥ 0 steps. Throws io::InvalidInput if a pending particle cannot be
-    /// inserted (with n = 0 as well), ParticleLost, DeviceError; OverlapTooLarge and EnergyCreated after a complete
-    /// step, if the run is watched.
+    /// Inserts pending particles and computes n ≥ 0 steps. Throws io::InvalidInput if a pending particle
+    /// cannot be inserted (with n = 0 as well), ParticleLost, DeviceError; OverlapTooLarge and EnergyCreated
+    /// after a complete step, if the run is watched.
     void step(long n = 1);
-    /// Whether the run is watched, with a sample in every 64th step and, if `node_interval` is positive, in the last
-    /// step before each multiple of it. The default is a watched run. The watch does not change the results.
+    /// Whether the run is watched, with a sample every watch_limit::interval steps and, if `node_interval` is
+    /// positive, in the last step before each multiple of it. The default is a watched run. The watch does not
+    /// change the results.
     void set_watch(bool on, long node_interval = 0);
     /// What the watch has found so far
     const WatchRecord& watch() const { return record; }

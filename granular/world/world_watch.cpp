@@ -39,8 +39,8 @@ void World::set_watch(bool on, long interval)
     watched = on, node_interval = interval;
 }
 
-/// Whether a boundary moves by its velocities. Sets next_move, and marks the run as driven if a boundary moves, may
-/// be moved by its loads, or was moved from outside.
+/// Whether a boundary moves by its velocities. Sets next_move, and marks the run as driven if a boundary
+/// moves, may be moved by its loads, or was moved from outside.
 bool World::boundaries_move()
 {
     bool moves = false, free = false, placed = false;
@@ -66,11 +66,11 @@ bool World::boundaries_move()
     return true;
 }
 
-/// Loads of the present step at t_n, before the particles are advanced: impulses and work of the boundaries and, in
-/// a sample, momentum, potential and elastic energy.
+/// Loads of the present step at t_n, before the particles are advanced: impulses and work of the boundaries
+/// and, in a sample, momentum, potential and elastic energy.
 ///
-/// A boundary that moves with u before and u' after t_n does the work h/2 F·(u + u'). W at t_n has the first half
-/// of it.
+/// A boundary that moves with u before and u' after t_n does the work h/2 F·(u + u'). W at t_n has the first
+/// half of it.
 void World::watch_loads()
 {
     if (!watched) return;
@@ -148,11 +148,11 @@ void World::watch_advance()
 /// Gain of energy that the errors of integrator and laws explain [J].
 ///
 /// At the beginning and at the end of a contact with stiffness k the force has a kink, where one step of a
-/// symplectic scheme changes the energy by up to k (v h)²/8, a quarter of (ω h)² of the kinetic energy. The change
-/// has both signs; four collisions are allowed in one direction, and a tenth of the kinetic energy at most: coarser
-/// steps do not resolve a collision. The springs of friction, rolling and spin have a
-/// stiffness that depends on the overlap, and the laws do not account for the work of that change: their energy is
-/// allowed as well. The last terms are of rounding errors.
+/// symplectic scheme changes the energy by up to k (v h)²/8, a quarter of (ω h)² of the kinetic energy. The
+/// change has both signs; four collisions are allowed in one direction, and a tenth of the kinetic energy at
+/// most: coarser steps do not resolve a collision. The springs of friction, rolling and spin have a
+/// stiffness that depends on the overlap, and the laws do not account for the work of that change: their
+/// energy is allowed as well. The last terms are of rounding errors.
 double World::gain_tolerance() const
 {
     const double angle =

@@ -344,7 +344,8 @@ TEST_CASE("a step is stable up to the stability limit", "[contact][force]")
 TEST_CASE("the stability limit is that of symplectic Euler and of leapfrog with extrapolated velocities",
           "[contact][force]")
 {
-    // A ball on its static overlap, without friction and with a damped contact. A deviation grows above the limit.
+    // A ball on its static overlap, without friction and with a damped contact. A deviation grows above the
+    // limit.
     const double zeta = 0.7, c = 2 * zeta * std::sqrt(k * m);
     dae::Model model;
     model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Motions of ellipsoids with evolving contacts: against closed forms, against an independent integration of the same
-/// motions in minimal coordinates, and conservation of momentum.
+/// Motions of ellipsoids with evolving contacts: against closed forms, against an independent integration of
+/// the same motions in minimal coordinates, and conservation of momentum.
 
 #include "dae/model.hpp"
 #include "tests/support/evolving.hpp"

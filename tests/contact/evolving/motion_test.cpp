@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Motions of a ball with evolving contacts against closed forms and against an independent integration of the same
-/// motions in minimal coordinates, without constraints or multipliers.
+/// Motions of a ball with evolving contacts against closed forms and against an independent integration of
+/// the same motions in minimal coordinates, without constraints or multipliers.
 
 #include "dae/model.hpp"
 #include "lie/solver/linear_solver.hpp"
@@ -313,8 +313,8 @@ TEST_CASE("a ball loops inside an ellipsoid through normals in the xy-plane", "[
     CHECK(worst_condition < 36);
     CHECK(residual < 1e-12);
 
-    // The rows along x and y are singular where the normal is horizontal. Newton's method passes these positions with
-    // contact points that follow from the poses.
+    // The rows along x and y are singular where the normal is horizontal. Newton's method passes these
+    // positions with contact points that follow from the poses.
     lie::Vec3 end, end_fixed;
     loop(NormalRows::tangent, [&](const ContactModel&, const lie::State& x, long) { end = x.body[0].r; });
     loop(NormalRows::fixed_xy,

@@ -347,8 +347,8 @@ TEST_CASE(
     }
     CHECK(largest_torque <= mu_r * R * m * g * (1 + 1e-12));
     CHECK(largest_torque >= mu_r * R * m * g * (1 - 1e-12));
-    // 7/5 m R dv/dt = -μ_r R N about the contact point; the spring reaches its bound in the first step. Without
-    // damping the sliding spring oscillates.
+    // 7/5 m R dv/dt = -μ_r R N about the contact point; the spring reaches its bound in the first step.
+    // Without damping the sliding spring oscillates.
     const double margin = zeta > 0 ? 1.5e-5 : 5e-4;  // the torque acts from the second step
     CHECK(scene.body[0].rdot.x() == Approx(v0 - mu_r * g * 2000 * h / 1.4).margin(margin));
 }

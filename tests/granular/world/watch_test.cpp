@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The watch over granular runs: balances of energy and momentum, overlaps, displacements, and no influence on the
-// results.
+// The watch over granular runs: balances of energy and momentum, overlaps, displacements, and no influence on
+// the results.
 #include "granular/case/case_file.hpp"
 #include "tests/support/grains.hpp"
 

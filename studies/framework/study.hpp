@@ -54,6 +54,7 @@ struct StudyOptions {
 
     std::string output;  ///< existing output directory; "": no files (--json without --output)
     int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
+    bool strict = false;  ///< exit code 4 if the watch over a run has a warning
     bool check = false;   ///< evaluate all acceptance criteria; exit code 6 if one fails
     bool all = false;     ///< the complete default selection of a study that has a short one
     bool force = false;   ///< accept a non-empty directory and a reference solution that is too coarse
@@ -82,7 +83,8 @@ enum : unsigned {
     all = 1024,
     sweep = 2048,
     rtol = 4096,
-    seed = 8192
+    seed = 8192,
+    strict = 16384
 };
 }  // namespace takes
 

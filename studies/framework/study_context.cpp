@@ -191,6 +191,10 @@ io::Json StudyContext::measure(const std::string& of,
 void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
 {
     failed_runs = failures(runs);
+    for (const Run* run : runs)
+        if (const size_t end = run->findings.find(": "); end != std::string::npos)
+            warned(run->findings.substr(0, end),
+                   run->name() + run->findings.substr(end, run->findings.find('\n') - end));
     const auto has_failed = [](const Run* run) { return run->failed(); };
     const auto failed = static_cast<size_t>(std::count_if(runs.begin(), runs.end(), has_failed));
     if (failed == 0 || (failed < runs.size() && !every_run_must_succeed)) return;
@@ -201,6 +205,13 @@ void StudyContext::end_of_runs(const std::vector<const Run*>& runs)
                                     : failed < runs.size() ? fmt::format("{} of {}", failed, all)
                                                            : "all " + all,
                                     first.name(), first.message);
+}
+
+void StudyContext::warned(const std::string& warning, const std::string& text)
+{
+    if (options.strict && numerical_failure.empty())
+        numerical_failure =
+            fmt::format("hilda: error[{}]: study {}: {} (a warning, with --strict)\n", warning, name, text);
 }
 
 io::Json StudyContext::whole() const

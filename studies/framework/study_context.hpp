@@ -83,8 +83,10 @@ public:
     }
     /// Adds values by their keys of --expect. Returns them as a JSON object, for study.json.
     io::Json measure(const std::string& of, const std::vector<std::pair<std::string, double>>& values);
-    /// Records which runs failed. If all of them failed, so has the study (see every_run_must_succeed).
+    /// Records which runs failed or have warnings. If all of them failed, so has the study (see every_run_must_succeed).
     void end_of_runs(const std::vector<const Run*>& runs);
+    /// A warning of the watch over a run. With --strict the exit code is 4, and the first warning is its reason.
+    void warned(const std::string& warning, const std::string& text);
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
     void evaluate(const std::vector<Criterion>& criteria);
 

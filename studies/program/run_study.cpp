@@ -58,6 +58,7 @@ const std::vector<OptionOfSome>& options_of_some()
             {"--normal-rows", takes::normal_rows, 0, [](const auto& o) { return !o.normal_rows.empty(); }},
             {"--against", takes::against, 0, [](const auto& o) { return !o.against.empty(); }},
             {"--check", takes::check, 0, [](const auto& o) { return o.check; }},
+            {"--strict", takes::strict, 0, [](const auto& o) { return o.strict; }},
             {"--all", takes::all, 0, [](const auto& o) { return o.all; }},
             {"--grid", takes::grid, 0, [](const auto& o) { return !o.grid.empty(); }},
             {"--vtk", takes::vtk, 0, [](const auto& o) { return o.vtk > 0; }},

@@ -45,6 +45,7 @@ void add_selection(CLI::App& c, StudyOptions& o)
           "default: that of the model",
           assign(o.observable, unchanged));
     c.add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
+          "format of the motions of --keep: trajectory.csv, or run.h5; default: csv",
     add_fix_initial(c, "", o.fix_initial);
     add_settings(c, o.settings, o.given_settings);
 }
@@ -79,6 +80,8 @@ void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
     c.add_flag("--all", o.all,
                "study convergence with every problem, integrator and step instead of the short selection");
     c.add_flag("--check", o.check, "evaluate all acceptance criteria of the study; exit code 6 if one fails");
+    c.add_flag("--strict", o.strict,
+               "exit code 4, after the results are written, if a run has a warning about its solution");
     value(c, "--against", "FILE", "CSV table to compare the result with", assign(o.against, io::path));
     value(c, "--grid", "NAME", "parameter grid of a sweep; default: the finest", assign(o.grid, unchanged));
     value(c, "--vtk", "N", "number of ParaView frames of each run; default: no frames",

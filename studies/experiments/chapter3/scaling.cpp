@@ -153,7 +153,7 @@ void scaling(StudyContext& s)
 const bool registered =
     io::Registry<Study>::add({.name = "scaling",
                               .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                              .accepted = takes::repeats | takes::bars | takes::seed,
+                              .accepted = takes::repeats | takes::bars | takes::seed | takes::strict,
                               .lacking = lacks::problem,
                               .keys = {"exponent", "largest_exponent", "ratio_to_full"},
                               .files = {"scaling.png"},

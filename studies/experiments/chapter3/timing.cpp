@@ -72,7 +72,7 @@ void timing(StudyContext& s)
 const bool registered =
     io::Registry<Study>::add({.name = "timing",
                               .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
-                              .accepted = takes::repeats,
+                              .accepted = takes::repeats | takes::strict,
                               .keys = {"us_per_step", "ratio_to_full"},
                               .files = {"timing.png"},
                               .run = timing});

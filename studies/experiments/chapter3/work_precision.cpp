@@ -169,7 +169,7 @@ void work_precision(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "work-precision",
      .answers = "error against CPU time of all integrators, including those with step-size control",
-     .accepted = takes::reference | takes::rtols | takes::repeats,
+     .accepted = takes::reference | takes::rtols | takes::repeats | takes::strict,
      .keys = {"cpu_seconds_needed"},
      .files = {"work-precision-PROBLEM.png"},
      .run = work_precision});

@@ -146,13 +146,13 @@ void evolving_order(StudyContext& s)
     if (s.options.check) s.evaluate(criteria(all));
 }
 
-const bool registered =
-    io::Registry<Study>::add({.name = "evolving-order",
-                              .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
-                              .accepted = takes::reference | takes::check | takes::normal_rows,
-                              .keys = study.keys(),
-                              .files = {"evolving-order-PROBLEM.png"},
-                              .run = evolving_order});
+const bool registered = io::Registry<Study>::add(
+    {.name = "evolving-order",
+     .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
+     .accepted = takes::reference | takes::check | takes::normal_rows | takes::strict,
+     .keys = study.keys(),
+     .files = {"evolving-order-PROBLEM.png"},
+     .run = evolving_order});
 
 }  // namespace
 

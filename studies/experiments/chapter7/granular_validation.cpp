@@ -85,8 +85,10 @@ void report(const granular::ValidationWarnings& warnings, StudyContext& s)
     if (!s.options.quiet)
         for (const granular::ValidationWarning& w : warnings.largest())
             io::warning("study " + s.name + ": " + w.text);
-    for (const granular::ValidationWarning& w : warnings.all())
+    for (const granular::ValidationWarning& w : warnings.all()) {
         s.json["warnings"].push_back(w.name + ": " + w.text);
+        s.warned(w.name, w.text);
+    }
 }
 
 void validate(const Validation& validation, StudyContext& s)
@@ -136,7 +138,7 @@ std::vector<Study> all()
     for (const Validation& v : io::Registry<Validation>::all())
         studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
-                           .accepted = takes::check | takes::grid,
+                           .accepted = takes::check | takes::grid | takes::strict,
                            .lacking = lacks::all,
                            .files = files_of("granular-" + v.name),
                            .run = [v](StudyContext& study) { validate(v, study); }});

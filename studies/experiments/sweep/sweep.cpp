@@ -296,7 +296,7 @@ void sweep(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "sweep",
      .answers = "one model over a grid of values of its entries (--sweep): end states, energy, largest loads",
-     .accepted = takes::sweep | takes::rtol,
+     .accepted = takes::sweep | takes::rtol | takes::strict,
      .keys = {"observable_end", "observable_min", "observable_max", "energy_drift", "constraint_norm",
               "max_force", "max_torque"},
      .files = {"sweep.png"},

@@ -126,3 +126,28 @@ TEST_CASE("the energy study balances the work of a driven model and says which m
     CHECK(study.at("models")[1].at("conservative") == false);
     CHECK(study.at("models")[1].at("work_of")[0] == "driver 'DP1-drive'");
 }
+
+TEST_CASE("with --strict a study with a warning about a run ends with exit code 4 after its results",
+          "[studies][energy]")
+{
+    const Scratch in;
+    // 0.49 rad in one step
+    const std::vector<std::string> study = {"study",        "energy",    "--problem", "double_pendulum",
+                                            "--integrator", "rA-half-1", "--steps",   "0.1",
+                                            "--end",        "1",         "--no-plot"};
+    const Ended warned = call(in, with(study, {"--output", "a"})),
+                strict = call(in, with(study, {"--output", "b", "--strict"}));
+    CAPTURE(warned.out, strict.err);
+    CHECK(warned.code == 0);
+    CHECK_THAT(warned.out, Contains("warnings, in study.json for each run: large_turn (1 run)"));
+    CHECK(strict.code == 4);
+    CHECK_THAT(
+        strict.err,
+        Contains("hilda: error[large_turn]: study energy: rA-half-1 on double_pendulum at h = 0.1 s: ") &&
+            Contains(" (a warning, with --strict)"));
+    CHECK(read(in / "b/study.csv").substr(0, 40) == read(in / "a/study.csv").substr(0, 40));
+    CHECK(call(in, {"study", "energy", "--problem", "double_pendulum", "--integrator", "rA-half-1", "--steps",
+                    "1e-3", "--end", "0.1", "--no-plot", "--strict", "--output", "c"})
+              .code == 0);
+    CHECK(call(in, {"study", "friction", "--strict"}).code == 2);
+}

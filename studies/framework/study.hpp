@@ -38,6 +38,7 @@ struct StudyOptions {
     std::vector<std::string> sweep;  ///< /json/pointer=VALUES of study sweep
     std::string observable;          ///< column of study sweep; "": that of the problem
     bool keep = false;               ///< keep the motion of each run of study sweep
+    std::string format;              ///< of these motions: csv or hdf5; "": csv
     lie::Settings settings;
     std::vector<std::string> given_settings;  ///< the options of `settings` that were given, such as --rtol
 

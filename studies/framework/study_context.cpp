@@ -50,6 +50,7 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
         {"--sweep", joined(o.sweep)},
         {"--observable", o.observable},
         {"--keep", o.keep ? "yes" : "no"},
+        {"--format", o.format},
         {"--reference", o.reference},
         {"--reference-step", text_of(o.reference_step)},
         {"--reference-rtol", text_of(o.reference_rtol)},

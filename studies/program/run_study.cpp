@@ -66,6 +66,7 @@ const std::vector<OptionOfSome>& options_of_some()
             {"--sweep", takes::sweep, 0, [](const auto& o) { return !o.sweep.empty(); }},
             {"--observable", takes::sweep, 0, [](const auto& o) { return !o.observable.empty(); }},
             {"--keep", takes::sweep, 0, [](const auto& o) { return o.keep; }},
+            {"--format", takes::sweep, 0, [](const auto& o) { return !o.format.empty(); }},
             {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }}};
         for (const SettingOption& setting : setting_options())
             some.push_back({setting.name, studies_with(setting.name), lacks::models,

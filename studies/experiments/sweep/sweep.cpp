@@ -4,7 +4,7 @@
 /// For each combination of the values of --sweep, each integrator and each step: the state of one body at the
 /// end, the observed scalar at the end with its extrema over all nodes, energy, residuals, iterations, and
 /// the largest resultant constraint force and torque on a body. The scalar is that of --observable, or that
-/// of the problem. With --keep the motion of each run is written to runs/NUMBER. All models are read and
+/// of the problem. With --keep the motion of each run is written to runs/NUMBER, as CSV or HDF5 (--format). All models are read and
 /// started before the first run, so that an invalid value ends the study at once. A run that fails is a row
 /// with its status.
 
@@ -17,8 +17,10 @@
 #include "studies/running/invariants.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
+#include "studies/running/provenance.hpp"
 #include "studies/running/run_settings.hpp"
 #include "studies/running/sink.hpp"
+#include "studies/running/tables/run_table.hpp"
 
 #include <fmt/format.h>
 
@@ -132,6 +134,13 @@ void remove_kept(const StudyContext& s)
     fs::remove(s.options.output + "/runs", error);
 }
 
+io::SinkOptions options_of_sinks(const StudyContext& s)
+{
+    io::SinkOptions all;
+    if (!s.options.format.empty()) all[format_option] = s.options.format;
+    return all;
+}
+
 void compute(SweptRun& run, const std::string& observable, const StudyContext& s)
 {
     const Benchmark& c = *run.c;
@@ -139,7 +148,7 @@ void compute(SweptRun& run, const std::string& observable, const StudyContext& s
     SweptNodes nodes(run.result, c, observable, grid);
     std::optional<io::Sinks<RunSetup>> sinks;
     const std::string folder = folder_of(s, run.number);
-    const io::SinkOptions no_options;
+    const io::SinkOptions sink_options = options_of_sinks(s);
     if (s.options.keep) {
         sinks.emplace(RunSetup{.model = *c.started->model,
                                .outputs = c.started->outputs,
@@ -147,8 +156,13 @@ void compute(SweptRun& run, const std::string& observable, const StudyContext& s
                                .grid = grid,
                                .end = c.end,
                                .directory = folder,
-                               .options = no_options,
-                               .warn = [](const std::string&) {}});
+                               .options = sink_options,
+                               .warn = [](const std::string&) {},
+                               .tables = run_tables(sink_options, folder,
+                                                    {{"program", version_line()},
+                                                     {"integrator", run.scheme->name},
+                                                     {"model", c.problem.name},
+                                                     {"model_text", c.started->text}})});
         io::make_directory(folder);
         io::write_file(folder + "/model.json", c.started->text);
         sinks->open();
@@ -206,6 +220,9 @@ void sweep(StudyContext& s)
     if (s.options.problems.size() > 1) s.refuse("takes one model");
     if (s.options.keep && s.options.output.empty())
         s.refuse("--keep writes files: with --json it needs --output");
+    if (!s.options.format.empty() && !s.options.keep) s.refuse("--format is for the motions of --keep");
+    run_tables(options_of_sinks(s), s.options.output,
+               {});  // before the first run, for a program without HDF5
     const std::vector<SweptEntry> entries = swept_entries(s.options.sweep);
     if (entries.empty())
         s.refuse("needs --sweep /json/pointer=VALUE,VALUE,... or --sweep /json/pointer=A:B:N");

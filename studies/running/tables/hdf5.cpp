@@ -10,6 +10,7 @@
 #include "studies/running/tables/hdf5_file.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <set>
 
 namespace hilda::studies {
@@ -199,6 +200,85 @@ private:
     const std::shared_ptr<Hdf5File> file;
 };
 
+/// The HDF5 library of Debian may be used by one thread at a time: concurrent runs of a study write in turn.
+std::mutex& library()
+{
+    static std::mutex in_use;
+    return in_use;
+}
+
+/// A table whose functions, the destructor included, hold the lock of the library
+class LockedTable final : public RunTable {
+public:
+    explicit LockedTable(std::unique_ptr<RunTable> table) : table(std::move(table)) {}
+    ~LockedTable() override
+    {
+        const std::lock_guard lock(library());
+        table.reset();
+    }
+    LockedTable(const LockedTable&) = delete;
+    LockedTable& operator=(const LockedTable&) = delete;
+
+    void open() override
+    {
+        locked([&] { table->open(); });
+    }
+    void row(const std::vector<double>& values) override
+    {
+        locked([&] { table->row(values); });
+    }
+    void sync() override
+    {
+        locked([&] { table->sync(); });
+    }
+    void transfer(io::Archive& a) override
+    {
+        locked([&] { table->transfer(a); });
+    }
+    void close() override
+    {
+        locked([&] { table->close(); });
+    }
+    std::vector<std::string> files() const override { return table->files(); }
+    std::string label() const override { return table->label(); }
+
+private:
+    template <class Call>
+    static void locked(Call call)
+    {
+        const std::lock_guard lock(library());
+        call();
+    }
+
+    std::unique_ptr<RunTable> table;
+};
+
+/// Tables that are made, and whose file is closed, under the lock of the library
+class LockedTables final : public RunTables {
+public:
+    LockedTables(const std::string& directory, const RunRecord& record)
+    {
+        const std::lock_guard lock(library());
+        tables = std::make_unique<Hdf5Tables>(directory, record);
+    }
+    ~LockedTables() override
+    {
+        const std::lock_guard lock(library());
+        tables.reset();
+    }
+    LockedTables(const LockedTables&) = delete;
+    LockedTables& operator=(const LockedTables&) = delete;
+
+    std::unique_ptr<RunTable> table(const std::string& name, std::vector<TableColumn> columns) override
+    {
+        const std::lock_guard lock(library());
+        return std::make_unique<LockedTable>(tables->table(name, std::move(columns)));
+    }
+
+private:
+    std::unique_ptr<RunTables> tables;
+};
+
 }  // namespace
 
 }  // namespace hilda::studies
@@ -207,5 +287,5 @@ private:
 extern "C" void hilda_hdf5_tables(const std::string& directory, const hilda::studies::RunRecord& record,
                                   std::shared_ptr<hilda::studies::RunTables>& tables)
 {
-    tables = std::make_shared<hilda::studies::Hdf5Tables>(directory, record);
+    tables = std::make_shared<hilda::studies::LockedTables>(directory, record);
 }

@@ -8,12 +8,7 @@ namespace hilda::studies {
 
 namespace {
 
-void check_format(const std::string& option, const std::string& text)
-{
-    if (text != "csv" && text != "hdf5")
-        throw io::UsageError(option + ": must be csv or hdf5, got" +
-                             io::with_nearest(text, std::vector<std::string>{"csv", "hdf5"}));
-}
+void check_format(const std::string& option, const std::string& text) { table_format(option, text); }
 
 // A sink type without a sink: the format belongs to the tables of all sinks.
 const bool registered = io::Registry<SinkType>::add(
@@ -26,6 +21,14 @@ const bool registered = io::Registry<SinkType>::add(
      .files = {"run.h5", "run.h5.journal"}});
 
 }  // namespace
+
+std::string table_format(const std::string& option, const std::string& text)
+{
+    if (text != "csv" && text != "hdf5")
+        throw io::UsageError(option + ": must be csv or hdf5, got" +
+                             io::with_nearest(text, std::vector<std::string>{"csv", "hdf5"}));
+    return text;
+}
 
 std::shared_ptr<RunTables> run_tables(const io::SinkOptions& options, const std::string& directory,
                                       const RunRecord& record)

@@ -59,6 +59,8 @@ std::shared_ptr<RunTables> hdf5_tables(const std::string& directory, const RunRe
 /// The option that chooses the format
 inline constexpr const char* format_option = "--format";
 inline constexpr const char* default_format = "csv";
+/// The text of the option, csv or hdf5. io::UsageError for another text.
+std::string table_format(const std::string& option, const std::string& text);
 /// The tables in the format of the options: csv_tables() or hdf5_tables().
 std::shared_ptr<RunTables> run_tables(const io::SinkOptions& options, const std::string& directory,
                                       const RunRecord& record);

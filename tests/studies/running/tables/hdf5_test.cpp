@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda run --format hdf5: run.h5 is read back by the C library of HDF5 and compared with the CSV files of the same run.
+/// hilda run --format hdf5: run.h5 is read back by the C library of HDF5 and compared with the CSV files of
+/// the same run.
 ///
 /// This file is compiled if CMake has found HDF5, see tests/CMakeLists.txt.
 
@@ -385,7 +386,8 @@ TEST_CASE("a file killed at any write is readable, and continues from the checkp
         long rows = 0;
         if (fs::exists(in / "checkpoint")) {
             const std::string bytes = read(in / "checkpoint");
-            // A killed process leaves a file that other programs can read, except within the replacement of metadata.
+            // A killed process leaves a file that other programs can read, except within the replacement of
+            // metadata.
             if (!fs::exists(in / "run.h5.journal")) CHECK(tables_of(in / "run.h5").at("a").size() == 2);
             std::uint64_t numbers[3];  // chunk, rows in full chunks, rows after them
             std::memcpy(numbers, bytes.data(), sizeof numbers);
@@ -438,4 +440,31 @@ TEST_CASE("a full disk, a read-only folder and a damaged run.h5 are reported in 
     CHECK_THAT(missing.err, Contains("hilda: error: c/run.h5: cannot be written: No such file"));
     write(in / "c/run.h5", bytes);
     require_success(call(in, with(run, {"c", "--end", "0.2", "--resume"})));
+}
+
+TEST_CASE("a sweep keeps the motions of concurrent runs in HDF5 files, also after an interruption",
+          "[studies][hdf5][sweep]")
+{
+    const Scratch in;
+    const std::vector<std::string> study = {
+        "study",  "sweep",   "slider_crank", "--sweep", "/gravity/2=-10:0:12",
+        "--end",  "0.3",     "--steps",      "1e-4",    "--no-plot",
+        "--keep", "--quiet", "--jobs",       "2"};
+    require_success(call(in, with(study, {"--output", "csv"})));
+    const std::vector<std::string> hdf5 = with(study, {"--format", "hdf5", "--output"});
+    require_success(call(in, with(hdf5, {"whole"})));
+    CHECK(call(in, with(hdf5, {"parts"}), {.end_at = {SIGTERM, 5, "parts/study.part"}}).code ==
+          128 + SIGTERM);
+    require_success(call(in, with(hdf5, {"parts", "--resume"})));
+    for (int k = 1; k <= 12; ++k) {
+        const std::string run = (k < 10 ? "/runs/000" : "/runs/00") + std::to_string(k);
+        CAPTURE(run);
+        CHECK_FALSE(fs::exists(in / ("whole" + run + "/trajectory.csv")));
+        check_equal(tables_of(in / ("whole" + run + "/run.h5")).at("trajectory"),
+                    in / ("csv" + run + "/trajectory.csv"));
+        check_same(in / ("whole" + run + "/run.h5"), in / ("parts" + run + "/run.h5"));
+    }
+    CHECK(call(in, {"study", "sweep", "--sweep", "/end=1,2", "--format", "hdf5"}).code ==
+          2);  // without --keep
+    CHECK(call(in, {"study", "energy", "--format", "hdf5"}).code == 2);
 }

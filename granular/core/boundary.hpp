@@ -43,17 +43,22 @@ struct Boundary {
     HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };
 
-/// Signed distance of a point from a boundary [m], negative behind the surface, and the unit normal at the
-/// closest point, which points to the particles
+constexpr double infinite_curvature = 1e300;  ///< of the apex of a cone [1/m]
+
+/// Signed distance of a point from a boundary [m], negative behind the surface, the unit normal at the closest
+/// point, which points to the particles, and the mean curvature there [1/m]: half the divergence of n, positive
+/// for a surface that is convex towards the particles
 struct Nearest {
     double distance;
     Vec3 n;
+    double curvature = 0;
 };
 /// Closest point of a boundary: point - distance n is on the surface, and n is the gradient of the distance.
 ///
 /// On the axis of a cylinder or cone and at the centre of a sphere the distance is exact and |n| < 1, because
 /// the closest point is not unique. Inside a cone, for points behind its apex, the distance is negative but
-/// not the true distance.
+/// not the true distance. The curvature of a cone is cos(half angle)/(2 ρ) at the distance ρ of the closest
+/// point from the axis, and infinite at the apex.
 HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
 {
     const Vec3 d = point - b.r;
@@ -64,7 +69,7 @@ HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
         case Boundary::Shape::cylinder: {
             const Vec3 across = d - d.dot(b.axis) * b.axis;
             const double rho = across.norm();
-            return {sign * (rho - b.radius), (sign / (rho > 0 ? rho : 1)) * across};
+            return {sign * (rho - b.radius), (sign / (rho > 0 ? rho : 1)) * across, sign / (2 * b.radius)};
         }
         case Boundary::Shape::cone: {
             const double along = d.dot(b.axis);
@@ -75,15 +80,38 @@ HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
             // it is negative.
             if (along * b.cosine + rho * b.sine < 0 && b.inside == 0) {
                 const double from_apex = d.norm();
-                return {from_apex, (1 / (from_apex > 0 ? from_apex : 1)) * d};
+                return {from_apex, (1 / (from_apex > 0 ? from_apex : 1)) * d, infinite_curvature};
             }
-            return {sign * (rho * b.cosine - along * b.sine), sign * (b.cosine * radial - b.sine * b.axis)};
+            const double rho_at_surface = b.sine * (along * b.cosine + rho * b.sine);
+            return {sign * (rho * b.cosine - along * b.sine), sign * (b.cosine * radial - b.sine * b.axis),
+                    sign * (rho_at_surface > 0 ? b.cosine / (2 * rho_at_surface) : infinite_curvature)};
         }
         case Boundary::Shape::sphere:
             break;
     }
     const double from_centre = d.norm();
-    return {sign * (from_centre - b.radius), (sign / (from_centre > 0 ? from_centre : 1)) * d};
+    return {sign * (from_centre - b.radius), (sign / (from_centre > 0 ? from_centre : 1)) * d,
+            sign / b.radius};
+}
+
+/// Whether a sphere of this radius is at least as large as the cylinder or sphere that contains it
+HILDA_HD inline bool is_larger_than(const Boundary& b, double radius)
+{
+    const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
+    return round && b.inside != 0 && !(radius < b.radius);
+}
+
+/// Effective radius R* of the contact of a sphere of this radius with a boundary [m]: 1/R* = 1/R + κ with the
+/// mean curvature κ of the boundary at the closest point. is_larger_than() must be false.
+///
+/// At a cone κ is limited to -1/(2 R) ≤ κ ≤ 1/R: a sphere that touches the apex is in contact as with a sphere
+/// of its own size, and one that touches the inside of the cone all around has κ = -1/(2 R).
+HILDA_HD inline double effective_radius(const Boundary& b, double radius, const Nearest& near)
+{
+    double curvature = near.curvature;
+    if (b.shape == Boundary::Shape::cone && curvature > 1 / radius) curvature = 1 / radius;
+    if (b.shape == Boundary::Shape::cone && curvature < -0.5 / radius) curvature = -0.5 / radius;
+    return radius / (1 + radius * curvature);
 }
 
 /// Floor and four side walls of a box that is open at the top: planes through low and high

@@ -114,7 +114,8 @@ HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const C
     };
     contact.n = narrow(near.n);
     contact.delta = static_cast<float>(delta);
-    contact.R_i = contact.R_eff = v.w, contact.R_j = 0;
+    contact.R_i = v.w, contact.R_j = 0;
+    contact.R_eff = static_cast<float>(effective_radius(b, v.w, near));
     contact.m_eff = 1 / (w.w + b.inverse_mass());
     set_rates(contact, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
               Vec<float>{w.x, w.y, w.z}, narrow(b.omega));

@@ -14,12 +14,13 @@ namespace hilda::granular {
 ///
 /// Vectors are in the global frame. The normal and the relative velocities are opposite to those of Eqs. 2.38
 /// and 2.40: the normal points from j to i, and velocities are of i relative to j. The lever arm of the
-/// tangential force is the radius; the overlap is not subtracted. For a boundary as body j, R_j = 0.
+/// tangential force is the radius; the overlap is not subtracted. For a boundary as body j, R_j = 0 and R* is
+/// effective_radius().
 template <class R>
 struct ContactPoint {
     R delta;         ///< overlap [m], positive
     R R_i, R_j;      ///< radii, the lever arms of the tangential force [m]
-    R R_eff, m_eff;  ///< R* = R_i R_j/(R_i + R_j) [m], m* = m_i m_j/(m_i + m_j) [kg]; wall: R_i, m_i
+    R R_eff, m_eff;  ///< R* = R_i R_j/(R_i + R_j) [m], m* = m_i m_j/(m_i + m_j) [kg]
     Vec<R> n;        ///< unit normal, from j to i
     R v_n;           ///< rate of the overlap dδ/dt [m/s]; positive while the bodies approach
     Vec<R> v_t;      ///< tangential velocity of the surface of i relative to that of j [m/s]

@@ -36,7 +36,8 @@ void DoubleWorld::find_loads()
         }
         for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
             const Nearest near = nearest(boundary[b], p.r);
-            t.R_i = t.R_eff = p.radius, t.R_j = 0, t.n = near.n;
+            t.R_i = p.radius, t.R_j = 0, t.n = near.n;
+            t.R_eff = effective_radius(boundary[b], p.radius, near);
             t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
             set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega,
                       boundary[b].omega);

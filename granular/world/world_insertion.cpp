@@ -225,6 +225,11 @@ void World::check_overlaps(std::uint32_t first) const
     for (const ContactRecord& c : contacts()) {
         if (c.i < first && (c.boundary || c.j < first)) continue;
         const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
+        if (c.boundary && is_larger_than(boundaries[c.j], R))
+            refuse(name_of(c.i),
+                   "must be smaller than boundary " + std::to_string(c.j) +
+                       ", which contains it; its radius [m]",
+                   R);
         if (c.delta > max_overlap * R)
             refuse(name_of(c.i) + " and " + (c.boundary ? "boundary " + std::to_string(c.j) : name_of(c.j)),
                    "must not overlap by more than 5 % of a radius at the start", c.delta);

@@ -57,32 +57,36 @@ World::StepLimits World::step_limits(double least_speed) const
 {
     StepLimits limits;
     const std::vector<Particle> all = particles();
-    double max_speed = 0;
-    for (const Particle& p : all) max_speed = std::max(max_speed, p.v.norm());
+    double speed = least_speed;
+    for (const Particle& p : all) speed = std::max(speed, p.v.norm());
+    const auto add_collision = [&](double mass, double R) {
+        double& shortest = limits.collision;
+        const auto add = [&](const auto& l) {
+            if constexpr (requires { l.collision_time(mass, R, speed); }) {
+                shortest = std::min(shortest, l.collision_time(mass, R, speed));
+            } else if constexpr (requires { l.k_n, l.gamma_n; }) {
+                shortest = std::min(shortest, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
+                if (l.gamma_n > 0)  // a damper alone is stable up to h = 2/γ
+                    shortest = std::min(shortest, M_PI / static_cast<double>(l.gamma_n));
+            } else if constexpr (requires { l.E_eff; }) {
+                const double E_eff = l.E_eff;
+                shortest =
+                    std::min(shortest, 2.87 * std::pow(mass * mass / (R * E_eff * E_eff * speed), 0.2));
+            }
+        };
+        for (const PairLaw& law : laws) law.normal.visit(add);
+    };
     for (const Particle& p : all) {
         const Material& m = materials[static_cast<std::size_t>(p.material)];
         const double G = m.E / (2 * (1 + m.nu));
         if (p.fixed) continue;
         limits.rayleigh =
             std::min(limits.rayleigh, M_PI * p.radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766));
-        for (const PairLaw& law : laws)
-            law.normal.visit([&](const auto& l) {
-                // collision of two equal particles
-                const double mass = p.mass / 2, R = p.radius / 2;
-                if constexpr (requires { l.collision_time(mass, R, max_speed); }) {
-                    limits.collision = std::min(limits.collision,
-                                                l.collision_time(mass, R, std::max(max_speed, least_speed)));
-                } else if constexpr (requires { l.k_n, l.gamma_n; }) {
-                    limits.collision =
-                        std::min(limits.collision, M_PI * std::sqrt(mass / static_cast<double>(l.k_n)));
-                    if (l.gamma_n > 0)  // a damper alone is stable up to h = 2/γ
-                        limits.collision = std::min(limits.collision, M_PI / static_cast<double>(l.gamma_n));
-                } else if constexpr (requires { l.E_eff; }) {
-                    const double E_eff = l.E_eff, v = std::max(max_speed, least_speed);
-                    limits.collision = std::min(limits.collision,
-                                                2.87 * std::pow(mass * mass / (R * E_eff * E_eff * v), 0.2));
-                }
-            });
+        add_collision(p.mass / 2, p.radius / 2);  // of two equal particles
+        for (const Boundary& b : boundaries)      // of a bowl or tube that is little larger than the particle
+            if (b.inside != 0 && b.radius > p.radius && b.radius < 2 * p.radius)
+                add_collision(1 / (1 / p.mass + b.inverse_mass()),
+                              effective_radius(b, p.radius, nearest(b, b.r)));
     }
     return limits;
 }

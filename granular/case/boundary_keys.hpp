@@ -12,6 +12,13 @@ struct NamedBoundary {
     std::string name;
     Boundary boundary;
     BoundaryMotion motion = {};  ///< prescribed motion and load; the boundary number is not set
+
+    /// Whether the boundary moves under its loads or by a prescribed velocity
+    bool moves() const
+    {
+        return boundary.mass > 0 || motion.r || motion.v || motion.omega || boundary.v.norm() > 0 ||
+               boundary.omega.norm() > 0;
+    }
 };
 
 /// A type of boundary. A file registers it by io::Registry<BoundaryType>::add.

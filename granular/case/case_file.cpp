@@ -182,6 +182,7 @@ private:
             n.boundary.material = boundary_material;
             n.motion.boundary = o.located([&] { return out.world->add(n.boundary); });
             if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
+            if (n.moves()) out.moving.push_back(n.motion.boundary);
             if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
             out.boundaries.push_back(n.name);
         }

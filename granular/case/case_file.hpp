@@ -25,6 +25,7 @@ struct Case {
     double frame_interval = 0;       ///< time between frames [s]
     double checkpoint_interval = 0;  ///< time between the instants at which a checkpoint can be written [s]
     std::vector<std::string> boundaries = {};  ///< names, by number
+    std::vector<int> moving = {};              ///< numbers of the boundaries that move
     std::vector<std::string> notices = {};     ///< warnings, with their location
     std::string files_read = {};               ///< names and checksums of the other files that were read
     /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.csv: energy, contacts, stress and the loads on the boundaries over time.
+/// run.csv: energy, contacts, stress, the loads on the boundaries and the motion of those that move.
 
 #include "granular/program/sink.hpp"
 #include "io/message.hpp"
@@ -24,6 +24,9 @@ private:
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
         for (const std::string& b : c.boundaries)
             for (const char* of : {"_Fx", "_Fy", "_Fz", "_Tx", "_Ty", "_Tz"}) names += ',' + b + of;
+        for (const int b : c.moving)
+            for (const char* of : {"_x", "_y", "_z", "_vx", "_vy", "_vz", "_wx", "_wy", "_wz"})
+                names += ',' + c.boundaries[static_cast<std::size_t>(b)] + of;
         return names + '\n';
     }
 
@@ -34,9 +37,17 @@ private:
             io::formatted("%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts, w.candidates());
         for (const double part : totals.stress) text += io::formatted(",%.9g", part);
         for (const Wrench& on : totals.on_boundary)
-            for (const Vec3& part : {on.F, on.T})
-                text += io::formatted(",%.9g,%.9g,%.9g", part.x, part.y, part.z);
+            for (const Vec3& part : {on.F, on.T}) append(text, part);
+        for (const int b : c.moving) {
+            const Boundary& moving = w.all_boundaries()[static_cast<std::size_t>(b)];
+            append(text, moving.r), append(text, moving.v), append(text, moving.omega);
+        }
         text += '\n';
+    }
+
+    static void append(std::string& text, const Vec3& a)
+    {
+        text += io::formatted(",%.9g,%.9g,%.9g", a.x, a.y, a.z);
     }
 
     const Case& c;

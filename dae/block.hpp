@@ -12,10 +12,10 @@ namespace hilda::dae {
 
 /// A scalar row Φ(r, A, t) = 0 between the bodies i and j. Derive from Block to add a constraint.
 ///
-/// A block is a constraint of one position row without algebraic variables. The functions without a row number
-/// are those to override. The arguments contain the motions of the two bodies; the ground has the motion of a
-/// body at rest at the origin. A block may have internal states, for example to count revolutions. The model
-/// removes redundant blocks from the equations.
+/// A block is a constraint of one position row without algebraic variables. The functions without a row
+/// number are those to override. The arguments contain the motions of the two bodies; the ground has the
+/// motion of a body at rest at the origin. A block may have internal states, for example to count
+/// revolutions. The model removes redundant blocks from the equations.
 class Block : public Constraint {
 public:
     using Constraint::Constraint;

@@ -76,8 +76,8 @@ public:
     virtual bool solved_first(int /*pair*/) const { return false; }
 
     /// Whether the constraint can be switched off. It then has a mode in State::discrete_state: `active` if
-    /// its rows are part of the equations, else a number defined by the derived class. If it is not active its
-    /// rows and multipliers are zero, and a step does not change its algebraic variables.
+    /// its rows are part of the equations, else a number defined by the derived class. If it is not active
+    /// its rows and multipliers are zero, and a step does not change its algebraic variables.
     virtual bool may_be_inactive() const { return false; }
     static constexpr int active = 0;
 
@@ -151,8 +151,8 @@ public:
     {
         return x.mode;
     }
-    /// Mode of the constraint if its rows depend linearly on those of other constraints at the start; `active`
-    /// if the start then fails
+    /// Mode of the constraint if its rows depend linearly on those of other constraints at the start;
+    /// `active` if the start then fails
     virtual int mode_if_redundant() const { return active; }
 
     /// Violation of an active constraint by the positions or velocities of a start

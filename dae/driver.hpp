@@ -14,7 +14,8 @@ namespace hilda::dae {
 
 /// A prescribed function of time: a constant, by default 0, or an io::Expression in t.
 ///
-/// The constructors throw io::ExpressionError for an invalid expression and for a constant that is not finite.
+/// The constructors throw io::ExpressionError for an invalid expression and for a constant that is not
+/// finite.
 class Driver {
 public:
     Driver(double constant = 0);

@@ -28,8 +28,8 @@ class Force {
 public:
     virtual ~Force() = default;
 
-    /// Adds the loads in the state x to F [N, global frame, at the centre of mass] and n̄ [N m, body frame] of
-    /// the bodies. The result may depend on x only. The function must not allocate memory.
+    /// Adds the loads in the state x to F [N, global frame, at the centre of mass] and n̄ [N m, body frame]
+    /// of the bodies. The result may depend on x only. The function must not allocate memory.
     virtual void add(const State& x, lie::Loads& out) const = 0;
     /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
@@ -54,8 +54,8 @@ public:
     /// step: x is then the state after the step, with the discrete and internal states of the state before
     /// it. The function must not allocate memory.
     virtual void update_internal_state(State& /*x*/) const {}
-    /// Throws NumericalFailure "step_too_large" if the states cannot be updated over a step of this size. `after` has the
-    /// discrete and internal states of `before`. Called before update_internal_state().
+    /// Throws NumericalFailure "step_too_large" if the states cannot be updated over a step of this size.
+    /// `after` has the discrete and internal states of `before`. Called before update_internal_state().
     virtual void check_step(const State& /*before*/, const State& /*after*/) const {}
     /// Whether update_internal_state() reads x.lambda. A start then iterates until the loads and the
     /// multipliers are consistent.
@@ -73,26 +73,26 @@ public:
     static constexpr int most_spring_rows = 6;
     /// Largest number of spring rows, at most most_spring_rows
     virtual int max_spring_rows() const { return 0; }
-    /// Writes the springs and dampers of the force in the state x, at most max_spring_rows(), and returns their
-    /// number. The function must not allocate memory.
+    /// Writes the springs and dampers of the force in the state x, at most max_spring_rows(), and returns
+    /// their number. The function must not allocate memory.
     virtual int spring_rows(const State& /*x*/, SpringRow* /*out*/) const { return 0; }
-    /// Whether the spring rows describe the force in every state, so that `implicit` may be set. The bodies of
-    /// the rows are those of bodies().
+    /// Whether the spring rows describe the force in every state, so that `implicit` may be set. The bodies
+    /// of the rows are those of bodies().
     virtual bool may_be_implicit() const { return false; }
-    /// Whether integrators evaluate the spring rows implicitly if they can (lie::Scheme::implicit_springs). The
-    /// force then has no stability limit with them.
+    /// Whether integrators evaluate the spring rows implicitly if they can (lie::Scheme::implicit_springs).
+    /// The force then has no stability limit with them.
     bool implicit = false;
-    /// Stability limits of the steps for an explicit evaluation of the spring rows, with the effective masses of the constrained bodies
-    /// at the start [s]; set by dae::start(), see dae/forces/spring_limits.hpp
+    /// Stability limits of the steps for an explicit evaluation of the spring rows, with the effective masses
+    /// of the constrained bodies at the start [s]; set by dae::start(), see dae/forces/spring_limits.hpp
     struct SpringLimits {
         double at_step = std::numeric_limits<double>::infinity();
         double extrapolated = std::numeric_limits<double>::infinity();
     } spring_limits;
 
     /// Stability limit of the step [s] for schemes that evaluate this force explicitly, at the beginning of a
-    /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d is 1 for a scheme whose loads contain the
-    /// velocities of the last step, and 2 if they contain velocities extrapolated to the node. The default is
-    /// spring_limits.
+    /// step: the smallest h for which 4 M - 2 d h D - h² K is singular. d is 1 for a scheme whose loads
+    /// contain the velocities of the last step, and 2 if they contain velocities extrapolated to the node.
+    /// The default is spring_limits.
     virtual double stable_step(const State& /*x*/, LoadEvaluation evaluation = LoadEvaluation::at_step) const
     {
         return evaluation == LoadEvaluation::at_step        ? spring_limits.at_step
@@ -102,14 +102,14 @@ public:
     /// stable_step() for the loads of a scheme. Infinite if it evaluates this force implicitly.
     double stable_step_in(const lie::Scheme& scheme, const State& x) const;
     bool is_implicit_in(const lie::Scheme& scheme) const;
-    /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for each
-    /// accepted step; the function must not allocate memory.
+    /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for
+    /// each accepted step; the function must not allocate memory.
     virtual bool is_stable(const State& x, double h, LoadEvaluation evaluation) const
     {
         return !(h > stable_step(x, evaluation));
     }
-    /// Whether the force cannot supply energy: the work that it does is at most the decrease of potential_energy() +
-    /// internal_energy()
+    /// Whether the force cannot supply energy: the work that it does is at most the decrease of
+    /// potential_energy() + internal_energy()
     virtual bool is_passive() const { return false; }
     /// Energy of springs whose deflections are internal states, such as those of friction [J]
     virtual double internal_energy(const State& /*x*/) const { return 0; }

@@ -45,19 +45,19 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
 /// Q stays in the plane through P with the normal of body i, and the normals are parallel: 2 DP1, 1 DP2
 Blocks planar(int i, const Vec3& s_bar_i, const Vec3& normal_bar_i, int j, const Vec3& s_bar_j,
               const Vec3& normal_bar_j);
-/// The pitch circles of two gears with parallel axes and the centres P and Q roll on each other: one row. R_i > 0;
-/// R_j [m] is negative for an internal gear. Throws lie::InvalidInput for radii of zero and axes that are not
-/// parallel in x.
+/// The pitch circles of two gears with parallel axes and the centres P and Q roll on each other: one row. R_i
+/// > 0; R_j [m] is negative for an internal gear. Throws lie::InvalidInput for radii of zero and axes that
+/// are not parallel in x.
 Blocks gear(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, double R_i, int j, const Vec3& s_bar_j,
             const Vec3& axis_bar_j, double R_j, const State& x);
-/// The axes are collinear, and body j moves along the axis by `pitch` [m] for each revolution relative to body i:
-/// 2 DP1, 2 DP2, 1 RotationToTranslation. Throws lie::InvalidInput for axes that do not point in the same
-/// direction in x.
+/// The axes are collinear, and body j moves along the axis by `pitch` [m] for each revolution relative to
+/// body i: 2 DP1, 2 DP2, 1 RotationToTranslation. Throws lie::InvalidInput for axes that do not point in the
+/// same direction in x.
 Blocks screw(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, const Vec3& s_bar_j,
              const Vec3& axis_bar_j, double pitch, const State& x);
-/// The pinion, body j with the centre Q, rolls on the rack, body i: Q moves along the direction by radius times the
-/// rotation about the axis: 1 RotationToTranslation. Throws as screw(), and if the direction is not perpendicular
-/// to the axis.
+/// The pinion, body j with the centre Q, rolls on the rack, body i: Q moves along the direction by radius
+/// times the rotation about the axis: 1 RotationToTranslation. Throws as screw(), and if the direction is not
+/// perpendicular to the axis.
 Blocks rack_and_pinion(int i, const Vec3& s_bar_i, const Vec3& direction_bar_i, const Vec3& axis_bar_i, int j,
                        const Vec3& s_bar_j, const Vec3& axis_bar_j, double radius, const State& x);
 

@@ -35,9 +35,9 @@ private:
 
 /// Inverse dynamics: the multipliers that produce the accelerations of x under the loads of the model.
 ///
-/// λ is the least-squares solution of Φ_rᵀ λ = F - M r̈, Π̄ᵀ λ = τ̄ - J̄ ω̄̇. `unbalanced` receives the negative
-/// residual of each body: the force [N, global frame] and the torque [N m, body frame] that must be applied
-/// in addition to the constraint loads. The rows must be independent.
+/// λ is the least-squares solution of Φ_rᵀ λ = F - M r̈, Π̄ᵀ λ = τ̄ - J̄ ω̄̇. `unbalanced` receives the
+/// negative residual of each body: the force [N, global frame] and the torque [N m, body frame] that must be
+/// applied in addition to the constraint loads. The rows must be independent.
 Eigen::VectorXd inverse_dynamics(const Model& model, const State& x,
                                  std::vector<Reaction>* unbalanced = nullptr);
 

@@ -150,7 +150,8 @@ public:
     std::string name_of(const Row& row) const;
 
     /// Residual of one row divided by the length of its first variation |(Φ_r, Π̄)|, an error in m or rad: Φ,
-    /// then Φ_r ṙ + Π̄ ω̄ - ν per second, then Φ_r r̈ + Π̄ ω̄̇ - γ per second². Defined for removed rows as well.
+    /// then Φ_r ṙ + Π̄ ω̄ - ν per second, then Φ_r r̈ + Π̄ ω̄̇ - γ per second². Defined for removed rows as
+    /// well.
     double scaled_residual(const Row& row, const State& x) const;
     double scaled_velocity_residual(const Row& row, const State& x) const;
     double scaled_acceleration_residual(const Row& row, const State& x) const;

@@ -135,8 +135,8 @@ void Model::update_pairs(const State& x, std::vector<lie::BoundedPair>& pairs) c
     }
 }
 
-/// Calls f(constraint, row, k) for all rows k of the equations without algebraic variables; `row` is the number
-/// of the row within its constraint.
+/// Calls f(constraint, row, k) for all rows k of the equations without algebraic variables; `row` is the
+/// number of the row within its constraint.
 template <class F>
 void Model::for_rows_without_alpha(const State& x, F f) const
 {

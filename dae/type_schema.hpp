@@ -13,8 +13,8 @@ using io::note_key;
 using io::TypeKind;
 using io::TypeSchema;
 
-/// Definitions of another room: `add` adds those of its registered types to "$defs" of the schema. Registered by
-/// io::Registry<SchemaPart>::add().
+/// Definitions of another room: `add` adds those of its registered types to "$defs" of the schema. Registered
+/// by io::Registry<SchemaPart>::add().
 struct SchemaPart {
     std::string name;
     void (*add)(io::Json& definitions);

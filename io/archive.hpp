@@ -16,16 +16,17 @@
 
 namespace hilda::io {
 
-/// 64-bit checksum: a variant of FNV-1a over words of eight bytes and the remaining single bytes, with an additional
-/// shift
+/// 64-bit checksum: a variant of FNV-1a over words of eight bytes and the remaining single bytes, with an
+/// additional shift
 std::uint64_t checksum(const char* bytes, std::size_t count);
 
 /// Writes or reads values in a fixed order. One function serves both directions:
 ///
 ///     a.value(t), a.list(positions), a.value(count)
 ///
-/// An archive with a format begins with eight letters, the version and the total length [byte], and ends with the
-/// checksum of all preceding bytes. Little endian. An archive without a format consists of the values alone.
+/// An archive with a format begins with eight letters, the version and the total length [byte], and ends with
+/// the checksum of all preceding bytes. Little endian. An archive without a format consists of the values
+/// alone.
 class Archive {
 public:
     struct Format {
@@ -36,8 +37,8 @@ public:
     /// Writes.
     Archive() = default;
     explicit Archive(const Format& format);
-    /// Reads. `file` is for the messages; the bytes must outlive the archive. IoError if the letters, the version,
-    /// the length or the checksum are wrong.
+    /// Reads. `file` is for the messages; the bytes must outlive the archive. IoError if the letters, the
+    /// version, the length or the checksum are wrong.
     Archive(std::string_view bytes, std::string file) : in(bytes), file(std::move(file)), reading(true) {}
     Archive(const Format& format, std::string_view bytes, std::string file);
 
@@ -52,8 +53,8 @@ public:
         raw(&v, sizeof v);
     }
 
-    /// The first n elements of a list; reading sets its length. Returns the length. The elements are plain data
-    /// without padding.
+    /// The first n elements of a list; reading sets its length. Returns the length. The elements are plain
+    /// data without padding.
     template <class List>
     std::size_t list(List& values, std::size_t n)
     {
@@ -96,9 +97,9 @@ private:
     bool reading = false, has_format = false;
 };
 
-/// The last checkpoint of an unfinished run, `checkpoint`, and the one before it, `checkpoint.1`. At any time at least
-/// one of them is complete. The checkpoint at the end of a run, from which a longer run can continue, is
-/// `checkpoint.end`.
+/// The last checkpoint of an unfinished run, `checkpoint`, and the one before it, `checkpoint.1`. At any time
+/// at least one of them is complete. The checkpoint at the end of a run, from which a longer run can
+/// continue, is `checkpoint.end`.
 class CheckpointFiles {
 public:
     explicit CheckpointFiles(const std::string& directory)
@@ -109,9 +110,9 @@ public:
     bool exist() const;
     /// Writes `checkpoint`; the previous one becomes checkpoint.1. IoError.
     void save(const std::string& bytes) const;
-    /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one before, with
-    /// a warning. Without either, calls it for the checkpoint at the end of the run. Returns false if there is no
-    /// checkpoint. IoError if none can be read.
+    /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one
+    /// before, with a warning. Without either, calls it for the checkpoint at the end of the run. Returns
+    /// false if there is no checkpoint. IoError if none can be read.
     bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
     /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
     void save_final(const std::string& bytes) const;

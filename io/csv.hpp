@@ -34,8 +34,8 @@ void append_vector(std::string& row, const Vector& v)
     }
 }
 
-/// A name as a field of the header row, quoted if it contains a comma, a quote or a line break, or if it begins with a
-/// character that a spreadsheet takes for that of a formula
+/// A name as a field of the header row, quoted if it contains a comma, a quote or a line break, or if it
+/// begins with a character that a spreadsheet takes for that of a formula
 inline std::string csv_field(const std::string& name)
 {
     const bool is_formula =
@@ -53,9 +53,9 @@ struct CsvRow {
     std::string place;  ///< FILE:LINE
 };
 
-/// Calls `use` for each row of a table. The first line has the names of the columns. Empty lines and lines that
-/// begin with # are ignored. Throws InvalidInput with FILE:LINE for two columns of one name, and for a row with
-/// another number of cells.
+/// Calls `use` for each row of a table. The first line has the names of the columns. Empty lines and lines
+/// that begin with # are ignored. Throws InvalidInput with FILE:LINE for two columns of one name, and for a
+/// row with another number of cells.
 void read_csv(std::string_view text, const std::string& file, const std::function<void(const CsvRow&)>& use);
 
 }  // namespace hilda::io

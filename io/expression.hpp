@@ -83,8 +83,8 @@ public:
         std::size_t begin;
         std::string text;
     };
-    /// The names of variables and constants in the order of the text, which may be invalid otherwise. Names in
-    /// braces are left out.
+    /// The names of variables and constants in the order of the text, which may be invalid otherwise. Names
+    /// in braces are left out.
     static std::vector<Name> names(std::string_view text);
     /// Whether a text is a name: letters, digits and _, without a digit at the beginning
     static bool is_name(std::string_view text);

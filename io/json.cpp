@@ -31,7 +31,8 @@ void append_quoted(std::string& out, std::string_view s)
     out += '"';
 }
 
-/// A number in the style of JavaScript libraries: 1.0, 0.001, 1e-05, 1e+22. From 1e-4 to 1e15 without exponent.
+/// A number in the style of JavaScript libraries: 1.0, 0.001, 1e-05, 1e+22. From 1e-4 to 1e15 without
+/// exponent.
 std::string with_decimal_point(double x)
 {
     if (!std::isfinite(x)) return "null";

@@ -25,7 +25,8 @@ inline void warning(const std::string& what) { message("hilda: warning: " + what
 /// "1 row", "2 rows"; `many` is the plural if it is not `one` with an s.
 std::string counted(long n, const std::string& one, const std::string& many = "");
 
-/// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their errors here.
+/// Prints the error on stderr as "hilda: error: ..." and returns its exit code. All commands report their
+/// errors here.
 int report(const std::exception& error);
 
 }  // namespace hilda::io

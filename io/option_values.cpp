@@ -111,8 +111,8 @@ size_t characters(std::string_view text)
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Column of the description in "  --option TYPE   description" or "name  description"; without one the column of the
-/// first letter
+/// Column of the description in "  --option TYPE   description" or "name  description"; without one the
+/// column of the first letter
 size_t column_of_description(const std::string& line)
 {
     const size_t first = line.find_first_not_of(' ');

@@ -18,9 +18,9 @@ void check_output_directory(const std::string& directory, bool accepted, const s
 inline constexpr const char* force_overwrites = "--force overwrites it";
 inline constexpr const char* force_or_resume = "--force overwrites it, --resume continues its run";
 
-/// Excludes a second process that writes to the same output directory: an advisory lock (flock) of the directory,
-/// without a file, until the end of this object or of the process. File systems without such locks, for example
-/// some network file systems, exclude nothing.
+/// Excludes a second process that writes to the same output directory: an advisory lock (flock) of the
+/// directory, without a file, until the end of this object or of the process. File systems without such
+/// locks, for example some network file systems, exclude nothing.
 class OutputLock {
 public:
     /// Locks the directory if it exists. IoError if another process or object holds the lock.

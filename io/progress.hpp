@@ -8,8 +8,8 @@
 
 namespace hilda::io {
 
-/// One line on the terminal (stderr), which is rewritten at most five times per second and cut to the width of the
-/// terminal
+/// One line on the terminal (stderr), which is rewritten at most five times per second and cut to the width
+/// of the terminal
 class ProgressLine {
 public:
     using Clock = std::chrono::steady_clock;

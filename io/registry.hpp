@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Lists of named entries that files of the program register: integrators, joints, forces, surfaces, laws, studies.
+/// Lists of named entries that files of the program register: integrators, joints, forces, surfaces, laws,
+/// studies.
 
 #pragma once
 
@@ -20,8 +21,8 @@ namespace hilda::io {
 ///
 /// The order in which files are initialised has no effect on the list.
 ///
-/// An entry that many files register is declared in its header by `extern template class io::Registry<Entry>;`
-/// and instantiated in one .cpp file, so that add() is compiled once.
+/// An entry that many files register is declared in its header by `extern template class
+/// io::Registry<Entry>;` and instantiated in one .cpp file, so that add() is compiled once.
 template <class Entry>
 class Registry {
 public:

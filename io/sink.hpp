@@ -33,9 +33,11 @@ public:
     virtual void node(const Node& node) = 0;
     /// Synchronises the files with the disk, before a checkpoint is written. IoError.
     virtual void sync() {}
-    /// Writes what a resumed run needs to the archive; or reads it, instead of open(), and continues the files there.
+    /// Writes what a resumed run needs to the archive; or reads it, instead of open(), and continues the
+    /// files there.
     virtual void transfer(Archive&) {}
-    /// Writes what remains. Called once at the end of the run, also after an interruption or a failure. IoError.
+    /// Writes what remains. Called once at the end of the run, also after an interruption or a failure.
+    /// IoError.
     virtual void close() {}
     /// Names of the written files in the output directory, for summary.json
     virtual std::vector<std::string> files() const = 0;
@@ -53,15 +55,16 @@ struct SinkOption {
     void (*check)(const std::string& option, const std::string& text) = nullptr;
 };
 
-/// An output format. Run: what the sinks of a run are made from; it has a type Node. A file registers a format by
+/// An output format. Run: what the sinks of a run are made from; it has a type Node. A file registers a
+/// format by
 ///
 ///     const bool registered = io::Registry<io::SinkType<Run>>::add({.name = "energy", .make = ...});
 template <class Run>
 struct SinkType {
     std::string name;
     std::vector<SinkOption> options = {};
-    /// The sink of a run; nullptr if the options of the run do not request it. Throws UsageError for options that do
-    /// not apply. Writes no file.
+    /// The sink of a run; nullptr if the options of the run do not request it. Throws UsageError for options
+    /// that do not apply. Writes no file.
     std::unique_ptr<Sink<typename Run::Node>> (*make)(const Run& run) = nullptr;
     /// Files of an earlier run in the same directory, which a new run removes
     std::vector<std::string> files = {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The part of the schema of model files or cases that describes one type: a joint, a force, a surface, a law, a fill.
+/// The part of the schema of model files or cases that describes one type: a joint, a force, a surface, a
+/// law, a fill.
 
 #pragma once
 

@@ -10,7 +10,8 @@
 
 namespace hilda::io {
 
-/// A file of the type PolyData (.vtp) with one piece. The numbers are binary, after the XML elements ("appended raw").
+/// A file of the type PolyData (.vtp) with one piece. The numbers are binary, after the XML elements
+/// ("appended raw").
 class VtkPolyData {
 public:
     /// counts: attributes of the piece, such as {"NumberOfPoints", 3}
@@ -34,8 +35,8 @@ private:
 /// A list of files with their times [s] (.pvd). Successive files with the same time are parts of one frame.
 std::string vtk_collection(const std::vector<std::pair<double, std::string>>& files);
 
-/// Adds a file, the second with this time if `same_time`, to the list in `path`, which vtk_collection() or this
-/// function has written. The list is complete before and after. IoError.
+/// Adds a file, the second with this time if `same_time`, to the list in `path`, which vtk_collection() or
+/// this function has written. The list is complete before and after. IoError.
 void append_to_vtk_collection(const std::string& path, double t, const std::string& file, bool same_time);
 
 }  // namespace hilda::io

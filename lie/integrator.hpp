@@ -31,14 +31,16 @@ public:
     virtual bool is_staggered() const { return false; }
     /// Completes `node` at t_n from `after`, the result of the step from t_n to t_{n+1}.
     virtual void fill_node(State& /*node*/, const State& /*after*/) const {}
-    /// For staggered schemes: whether an empty x.history marks a start, where λ, r̈, ω̄̇ of x are those at x.t.
+    /// For staggered schemes: whether an empty x.history marks a start, where λ, r̈, ω̄̇ of x are those at
+    /// x.t.
     virtual bool keeps_history() const { return false; }
 
     /// The state in which the present pivots of the linear solver were chosen.
     ///
     /// The pivots affect the last digits of a result. They are the only data that a scheme may keep outside
-    /// State. A restarted run calls choose_pivots() with this state and the step h to reproduce the digits. The
-    /// default, no state, is for schemes whose first step from a saved node chooses the same pivots again.
+    /// State. A restarted run calls choose_pivots() with this state and the step h to reproduce the digits.
+    /// The default, no state, is for schemes whose first step from a saved node chooses the same pivots
+    /// again.
     virtual const State* pivots() const { return nullptr; }
     /// Chooses the pivots in the state x for steps of the length h.
     virtual void choose_pivots(const State& /*x*/, double /*h*/) {}

@@ -7,8 +7,8 @@
 
 namespace hilda::lie {
 
-/// Springs and dampers in n relative motions q̇ = C v of bodies, with the forces -K q - D q̇. C has the rows of
-/// the motions, and v = (ṙ, ω̄).
+/// Springs and dampers in n relative motions q̇ = C v of bodies, with the forces -K q - D q̇. C has the rows
+/// of the motions, and v = (ṙ, ω̄).
 ///
 /// A scheme that evaluates these forces explicitly is stable with a step h if the eigenvalues of W P are
 /// below 4:

@@ -35,7 +35,8 @@ struct Loads {
     std::vector<Vec3> n_bar;  ///< [N m], body frame, without the gyroscopic term
 
     explicit Loads(int bodies) : F(bodies, Vec3::Zero()), n_bar(bodies, Vec3::Zero()) {}
-    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i                                                                 Eq. 2.13c
+    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i                                                                 Eq.
+    /// 2.13c
     Vec3 tau_bar(int i, const Mat3& J_bar, const Vec3& omega_bar) const
     {
         return n_bar[i] - omega_bar.cross(J_bar * omega_bar);

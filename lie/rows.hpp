@@ -34,9 +34,9 @@ struct Rows {
     std::vector<int> start{0};
     std::vector<Entry> entry;
     std::vector<AlgebraicGroup> algebraic;
-    /// The regularised rows, ascending. Row regularised[n] has the diagonal entry -compliance[n] in the saddle
-    /// matrix. They are nonholonomic rows. Those of friction come first and are unilateral; those of implicit
-    /// springs are the last `springs` rows.
+    /// The regularised rows, ascending. Row regularised[n] has the diagonal entry -compliance[n] in the
+    /// saddle matrix. They are nonholonomic rows. Those of friction come first and are unilateral; those of
+    /// implicit springs are the last `springs` rows.
     std::vector<int> regularised;
     std::vector<double> compliance;  ///< [1/kg]
     int springs = 0;
@@ -45,8 +45,8 @@ struct Rows {
     /// correction zero. The multiplier of a row must be set to zero when the row becomes inactive.
     std::vector<int> unilateral;
 
-    /// Sets the compliances, one for each regularised row of friction. Without compliances these rows are made
-    /// inactive: their derivatives are set to zero.
+    /// Sets the compliances, one for each regularised row of friction. Without compliances these rows are
+    /// made inactive: their derivatives are set to zero.
     void regularise(std::span<const double> compliances);
     /// Sets the derivatives of a row to zero.
     void clear(int k)

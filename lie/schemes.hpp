@@ -35,8 +35,8 @@ struct Scheme {
     bool regularised = false;   ///< supports regularised rows: implicit friction
     bool implicit_springs =
         false;  ///< evaluates System::spring_pattern() implicitly, see lie::ImplicitSprings
-    /// Whether the energy of a conservative system may drift in one direction, by an error of the order of the scheme.
-    /// Other schemes of fixed step conserve or dissipate it.
+    /// Whether the energy of a conservative system may drift in one direction, by an error of the order of
+    /// the scheme. Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;
     bool rho_infinity =
         false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does

@@ -10,8 +10,8 @@ namespace hilda::lie {
 /// Settings of an integrator. Each scheme uses those that apply to it.
 struct Settings {
     /// Newton's method stops when the norm of the correction is below this tolerance. Half-implicit schemes
-    /// measure (Δr, Δθ̄, Δλ̂) in m, rad and kg m; fully implicit schemes measure h² (Δr̈, Δω̄̇, Δλ), in the same
-    /// units. NewtonStep::converged defines the norm.
+    /// measure (Δr, Δθ̄, Δλ̂) in m, rad and kg m; fully implicit schemes measure h² (Δr̈, Δω̄̇, Δλ), in the
+    /// same units. NewtonStep::converged defines the norm.
     double tolerance = 1e-10;
     int max_iterations = 30;
     LinearSolver linear_solver = LinearSolver::automatic;

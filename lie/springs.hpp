@@ -11,9 +11,9 @@ namespace hilda::lie {
 
 /// The deflections S of springs and dampers, and the derivatives of their loads.
 ///
-/// Row n has the derivatives C of the deflection: Ṡ = C v, S̈ = C v̇ + γ with v = (ṙ, ω̄). Its load f in the direction of the
-/// deflection acts on the bodies as -Cᵀ f and is part of System::loads(). A row without load has zero
-/// derivatives in C.
+/// Row n has the derivatives C of the deflection: Ṡ = C v, S̈ = C v̇ + γ with v = (ṙ, ω̄). Its load f in the
+/// direction of the deflection acts on the bodies as -Cᵀ f and is part of System::loads(). A row without load
+/// has zero derivatives in C.
 struct Springs {
     Rows rows;
     std::vector<double> stiffness;  ///< ∂f/∂S [N/m], or [N m/rad] for a rotation

@@ -51,9 +51,11 @@ public:
     virtual void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
     /// Φ_r, Π̄ and Φ_α; `out` is a copy of pattern()
     virtual void variation(const State& x, Rows& out) const = 0;
-    /// ν, the right side of Φ_r ṙ + Π̄ ω̄ + Φ_α α̇ = ν; -∂Φ/∂t for a position row                       Eq. 2.8
+    /// ν, the right side of Φ_r ṙ + Π̄ ω̄ + Φ_α α̇ = ν; -∂Φ/∂t for a position row                       Eq.
+    /// 2.8
     virtual void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
-    /// γ, the right side of Φ_r r̈ + Π̄ ω̄̇ + Φ_α α̈ = γ                                                 Eq. 2.9
+    /// γ, the right side of Φ_r r̈ + Π̄ ω̄̇ + Φ_α α̈ = γ                                                 Eq.
+    /// 2.9
     virtual void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;
     /// Computes x.alpha from the poses of the bodies. The present x.alpha is the initial guess. The poses may
     /// satisfy the constraints only approximately, as those of a stage of a Runge-Kutta step do. Throws
@@ -103,8 +105,9 @@ public:
     /// changes with these states. Called once for each accepted step. While the step is computed, `after` has
     /// the discrete and internal states of `before`.
     virtual void accepted(const State& /*before*/, State& /*after*/) const {}
-    /// Whether the solution depends on the history through State::internal_state, as with a friction law. If not,
-    /// internal states only select among equivalent forms of the equations, such as the number of revolutions.
+    /// Whether the solution depends on the history through State::internal_state, as with a friction law. If
+    /// not, internal states only select among equivalent forms of the equations, such as the number of
+    /// revolutions.
     virtual bool internal_states_are_history() const { return true; }
     /// Name of row k for messages, e.g. constraint 'crank-rod' row 2; bodies 'crank', 'rod'
     virtual std::string row_name(int k) const { return "constraint row " + std::to_string(k); }

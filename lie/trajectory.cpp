@@ -69,8 +69,8 @@ double March::time(long node) const
     return per_second >= 1 && std::abs(per_second * h - 1) < 1e-14 ? count / per_second : count * h;
 }
 
-/// Throws if a body rotates by π or more in the step, at the angular velocity of its beginning or its end. The
-/// turns of an angle that is followed from step to step would then be counted wrongly.
+/// Throws if a body rotates by π or more in the step, at the angular velocity of its beginning or its end.
+/// The turns of an angle that is followed from step to step would then be counted wrongly.
 void March::refuse_half_turns(const State& before, const State& to) const
 {
     for (size_t b = 0; b < to.body.size(); ++b) {

@@ -38,7 +38,8 @@ struct TimeGrid {
 class Observer {
 public:
     virtual ~Observer() = default;
-    /// Node n, and the number of iterations of the step that ends there (0 at the start). NodeFailure ends the run.
+    /// Node n, and the number of iterations of the step that ends there (0 at the start). NodeFailure ends
+    /// the run.
     virtual void accepted(const State& node, long n, int iterations) = 0;
 };
 
@@ -56,8 +57,8 @@ public:
     March(State x, Integrator& integrator, double h, long n = 0, int iterations = 0);
 
     /// Computes one step, and passes the node at its beginning to the observers. On a NumericalFailure the
-    /// march remains at its node. Throws NumericalFailure "step_too_large" if a body rotates by π or more in the step,
-    /// except with a scheme that chooses internal steps.
+    /// march remains at its node. Throws NumericalFailure "step_too_large" if a body rotates by π or more in
+    /// the step, except with a scheme that chooses internal steps.
     void advance(std::span<Observer* const> observers);
 
     /// Passes the current node to the observers: the end of a run. The march remains at this node.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the layout of the source tree: allowed includes between the rooms, the folders of each room, the
-// number of units in a folder, no catch-all folders, and the entries of the top level.
+// number of units in a folder, the width of comments, no catch-all folders, and the entries of the top level.
 #include "tests/support/paths.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -202,6 +203,23 @@ TEST_CASE("a folder holds at most about 20 units", "[house]")
     for (const auto& [folder, stems] : units) {
         INFO(folder);
         CHECK(stems.size() <= most_units);
+    }
+}
+
+TEST_CASE("comments are wrapped at 110 columns", "[house]")
+{
+    // Equations and tables, which are indented by four spaces, may be wider.
+    static const std::regex comment(R"re(^\s*//[/<]*\s{0,3}[^\s/<].*$)re");
+    const auto columns = [](const std::string& line) {
+        return std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    };
+    for (const fs::path& p : paths_in_rooms()) {
+        if (!is_source(p)) continue;
+        std::ifstream in(root / p);
+        std::string line;
+        for (int number = 1; std::getline(in, line); ++number)
+            if (columns(line) > 110 && std::regex_match(line, comment))
+                FAIL_CHECK(p.generic_string() << ":" << number << ": " << columns(line) << " columns");
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The angle of a vector about an axis of a body, with its derivatives, counted over any number of revolutions.
+/// The angle of a vector about an axis of a body, with its derivatives, counted over any number of
+/// revolutions.
 
 #pragma once
 
@@ -13,7 +14,8 @@ struct AngleFrame {
     Vec3 u_bar, w_bar;
 };
 
-/// The angle φ = atan2(v · w, v · u) [rad] of a vector v of two bodies i and j, where u and w are fixed in body i
+/// The angle φ = atan2(v · w, v · u) [rad] of a vector v of two bodies i and j, where u and w are fixed in
+/// body i
 struct Angle {
     double value = 0;     ///< φ
     Variation variation;  ///< δφ

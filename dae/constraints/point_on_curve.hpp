@@ -14,9 +14,10 @@ namespace hilda::dae {
 ///     Phi_k = n_k . (p - c(s)),  k = 1, 2        p: position of P in the frame of body j [m]
 ///
 /// s is the parameter of the point of the curve nearest to p: c'(s) . (p - c(s)) = 0. n_1 and n_2 are unit
-/// normals of the curve at s. n_1 is the projection of an internal state e on the normal plane; e is n_1 of the
-/// last node, so that the basis does not twist about the curve. The search of s starts from the value at the last
-/// node, an internal state, so that the constraint stays on its branch of a curve that comes near to itself.
+/// normals of the curve at s. n_1 is the projection of an internal state e on the normal plane; e is n_1 of
+/// the last node, so that the basis does not twist about the curve. The search of s starts from the value at
+/// the last node, an internal state, so that the constraint stays on its branch of a curve that comes near to
+/// itself.
 ///
 /// γ is exact for a point on the curve.
 class PointOnCurve final : public Constraint {

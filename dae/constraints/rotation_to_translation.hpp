@@ -8,16 +8,18 @@
 
 namespace hilda::dae {
 
-/// The displacement of a point of body j along a direction of body i is proportional to the rotation of body j
-/// relative to body i:
+/// The displacement of a point of body j along a direction of body i is proportional to the rotation of body
+/// j relative to body i:
 ///
 ///     Phi = e . d_ij - rho theta - C                                         [m]
 ///
-/// e = A_i e_bar is a unit vector fixed in body i, and d_ij the vector from point P of body i to point Q of body
-/// j. theta is the angle of the vector a of body j in the frame (u, w) of body i. It is counted over any number of
-/// revolutions, as an internal state; a step may change it by less than π. C makes Phi zero in the initial data.
+/// e = A_i e_bar is a unit vector fixed in body i, and d_ij the vector from point P of body i to point Q of
+/// body j. theta is the angle of the vector a of body j in the frame (u, w) of body i. It is counted over any
+/// number of revolutions, as an internal state; a step may change it by less than π. C makes Phi zero in the
+/// initial data.
 ///
-/// A screw has e along the axis and rho = pitch/(2 pi); a rack and pinion have e along the rack and rho = radius.
+/// A screw has e along the axis and rho = pitch/(2 pi); a rack and pinion have e along the rack and rho =
+/// radius.
 class RotationToTranslation final : public Block {
 public:
     RotationToTranslation(int i, const Vec3& s_bar_i, const Vec3& e_bar, const AngleFrame& frame, int j,

@@ -13,9 +13,10 @@ namespace hilda::dae {
 ///     F = -A_i (K d + C ddot)     on body j at Q; -F on body i at the same point             [N]
 ///     n = -J_r(psi)^-T (K_r psi + C_r psidot)     on body j, in its frame; -n on body i       [N m]
 ///
-/// d is the vector from P to Q in the frame of body i, and psi the rotation vector of A_j relative to A_i since the
-/// start, exp(psi~) = R_0^T A_i^T A_j. The forces and torques of the springs are derivatives of the potential
-/// (d^T K d + psi^T K_r psi)/2. add() throws lie::NumericalFailure "bushing_turned" for |psi| of 3 rad and more.
+/// d is the vector from P to Q in the frame of body i, and psi the rotation vector of A_j relative to A_i
+/// since the start, exp(psi~) = R_0^T A_i^T A_j. The forces and torques of the springs are derivatives of the
+/// potential (d^T K d + psi^T K_r psi)/2. add() throws lie::NumericalFailure "bushing_turned" for |psi| of 3
+/// rad and more.
 class Bushing final : public Force {
 public:
     struct Coefficients {

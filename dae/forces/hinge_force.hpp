@@ -25,8 +25,8 @@ public:
     Vec3 u_bar_i, v_bar_i;  ///< (u, v, axis): right-handed orthonormal, body i
     Vec3 u_bar_j;           ///< fixed in body j, equal to u_i at the start
 
-    /// theta is zero in the state `start`. `type` is for messages. Throws lie::InvalidInput for an axis of length
-    /// zero, and for axes that do not point in the same direction in `start`.
+    /// theta is zero in the state `start`. `type` is for messages. Throws lie::InvalidInput for an axis of
+    /// length zero, and for axes that do not point in the same direction in `start`.
     HingeForce(const char* type, int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j,
                const State& start);
 

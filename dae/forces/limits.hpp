@@ -12,8 +12,8 @@ namespace hilda::dae {
 ///
 ///     f = k delta max(0, 1 + d deltadot)                                 Hunt and Crossley (1975)
 ///
-/// The force is continuous and never pulls. For small d the coefficient of restitution at the approach speed v is
-/// about 1 - 2 d v/3.
+/// The force is continuous and never pulls. For small d the coefficient of restitution at the approach speed
+/// v is about 1 - 2 d v/3.
 struct Stop {
     double minimum = -std::numeric_limits<double>::infinity();  ///< of the range
     double maximum = std::numeric_limits<double>::infinity();

@@ -16,12 +16,13 @@ namespace {
 ///
 ///     Phi = R_i phi_i + R_j phi_j - C                                        [m]
 ///
-/// phi_i is the angle of the line of centres from P (body i) to Q (body j), measured in body i about its axis;
-/// phi_j that of the line from Q to P, measured in body j. R_i and R_j are the pitch radii; R_j is negative if
-/// body j is an internal gear (ring). C makes Phi zero in the initial data.
+/// phi_i is the angle of the line of centres from P (body i) to Q (body j), measured in body i about its
+/// axis; phi_j that of the line from Q to P, measured in body j. R_i and R_j are the pitch radii; R_j is
+/// negative if body j is an internal gear (ring). C makes Phi zero in the initial data.
 ///
-/// The line of centres may rotate, so that the gears of a planetary gear train need no carrier here. Both angles
-/// are counted over any number of revolutions, as internal states. A step may change each by less than π.
+/// The line of centres may rotate, so that the gears of a planetary gear train need no carrier here. Both
+/// angles are counted over any number of revolutions, as internal states. A step may change each by less than
+/// π.
 class GearRow final : public Block {
 public:
     GearRow(int i, const Vec3& s_bar_i, const AngleFrame& frame_i, double R_i, int j, const Vec3& s_bar_j,

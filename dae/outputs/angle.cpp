@@ -10,9 +10,9 @@ namespace hilda::dae {
 
 namespace {
 
-/// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start, counted through
-/// whole turns from node to node. The number of turns is that of the angle nearest to the prediction by the mean of the
-/// rates of both nodes. It is right as long as the prediction is right to half a turn.
+/// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start, counted
+/// through whole turns from node to node. The number of turns is that of the angle nearest to the prediction
+/// by the mean of the rates of both nodes. It is right as long as the prediction is right to half a turn.
 class AngleOutput final : public Output {
 public:
     AngleOutput(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j, const State& start)

@@ -6,8 +6,8 @@ namespace hilda::dae {
 
 namespace {
 
-/// l = |d_ij| and ldot = d_ij · ddot_ij / l of point P of body i and point Q of body j. ldot is 0 where the points
-/// coincide.
+/// l = |d_ij| and ldot = d_ij · ddot_ij / l of point P of body i and point Q of body j. ldot is 0 where the
+/// points coincide.
 class LengthOutput final : public Output {
 public:
     LengthOutput(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j)

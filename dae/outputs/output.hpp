@@ -12,10 +12,11 @@
 
 namespace hilda::dae {
 
-/// One or more scalar quantities of the state, such as the motion of a point. Derive from Output to add a type.
+/// One or more scalar quantities of the state, such as the motion of a point. Derive from Output to add a
+/// type.
 ///
-/// An output is constant during a run. What it has to remember from node to node, such as the revolutions of an
-/// angle, is an array of numbers that the caller keeps.
+/// An output is constant during a run. What it has to remember from node to node, such as the revolutions of
+/// an angle, is an array of numbers that the caller keeps.
 class Output {
 public:
     virtual ~Output() = default;
@@ -30,8 +31,8 @@ public:
     /// Updates the saved numbers. Called once at each node, in order, before values().
     virtual void update(const State& /*x*/, double* /*saved*/) const {}
 
-    /// The text of an expression in the columns of the run, which the output is; empty for other types. values()
-    /// is not called for an expression.
+    /// The text of an expression in the columns of the run, which the output is; empty for other types.
+    /// values() is not called for an expression.
     virtual std::string expression() const { return {}; }
 
     std::string name;
@@ -43,8 +44,8 @@ public:
 struct OutputType {
     std::string name;  ///< value of the key "type"
     TypeSchema schema;
-    /// Reads the keys of the type, including those of the bodies. `columns`: columns with names that a parameter may
-    /// have. Throws as ConstraintType::read.
+    /// Reads the keys of the type, including those of the bodies. `columns`: columns with names that a
+    /// parameter may have. Throws as ConstraintType::read.
     std::unique_ptr<Output> (*read)(ObjectReader& o, const BodyFinder& bodies, const State& x,
                                     const std::vector<std::string>& columns);
 };

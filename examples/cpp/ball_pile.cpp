@@ -42,8 +42,8 @@ contact::DviScene pile(double mu)
     scene.set_contact_law("ball-floor", of_ball, of_floor, {.mu = 0.6});
     scene.set_contact_law("ball-ball", of_ball, of_ball, {.mu = mu});
 
-    // add_body() adds a body of a type and returns its number: the floor is 0, the lower balls are 1 to 3, the
-    // top ball is 4.
+    // add_body() adds a body of a type and returns its number: the floor is 0, the lower balls are 1 to 3,
+    // the top ball is 4.
     scene.add_body(of_floor, {});
     lie::Motion at;
     for (int k = 0; k < 3; ++k) {

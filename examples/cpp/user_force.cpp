@@ -31,8 +31,8 @@ public:
     void add(const dae::State& x, lie::Loads& out) const override
     {
         const Vec3& v = x.body[body].rdot;
-        // apply_force() applies a force at a point of a body (body frame) and adds its moment; it does nothing for
-        // the ground.
+        // apply_force() applies a force at a point of a body (body frame) and adds its moment; it does
+        // nothing for the ground.
         apply_force(body, -c * v.norm() * v, Vec3::Zero(), x, out);
     }
 

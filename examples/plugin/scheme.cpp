@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// my-scheme: Heun's method on the index-1 equations, with projection. A starting point for your own integrator.
+/// my-scheme: Heun's method on the index-1 equations, with projection. A starting point for your own
+/// integrator.
 ///
 ///     r_{n+1} = r_n + h ṙ_n + h²/2 r̈_n,        A_{n+1} = A_n exp(h ω̄_n + h²/2 ω̄̇_n),      then Φ = 0 by projection
 ///     v_{n+1} = v_n + h/2 (v̇_n + v̇*),          v = (ṙ, ω̄), v̇* at the predicted state,     then Φ̇ = 0 by projection
@@ -24,7 +25,8 @@ public:
         : model(model), K(model), loads(model.bodies()), solution(K.size())
     {}
 
-    /// Advances x from t_n to t_n + h and returns the number of iterations. If it throws, x is still the state of t_n.
+    /// Advances x from t_n to t_n + h and returns the number of iterations. If it throws, x is still the
+    /// state of t_n.
     int step(State& x, double h) override
     {
         next = x;  // v̇_n is known: the start and each step compute it

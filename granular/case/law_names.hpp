@@ -8,7 +8,8 @@
 
 namespace hilda::granular {
 
-/// The names of the laws of a kind, which is a key of the case file: normal, tangential, rolling, spin or cohesion
+/// The names of the laws of a kind, which is a key of the case file: normal, tangential, rolling, spin or
+/// cohesion
 std::vector<std::string> law_names(const std::string& kind);
 
 }  // namespace hilda::granular

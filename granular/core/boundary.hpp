@@ -45,9 +45,9 @@ struct Boundary {
 
 constexpr double infinite_curvature = 1e300;  ///< of the apex of a cone [1/m]
 
-/// Signed distance of a point from a boundary [m], negative behind the surface, the unit normal at the closest
-/// point, which points to the particles, and the mean curvature there [1/m]: half the divergence of n, positive
-/// for a surface that is convex towards the particles
+/// Signed distance of a point from a boundary [m], negative behind the surface, the unit normal at the
+/// closest point, which points to the particles, and the mean curvature there [1/m]: half the divergence of
+/// n, positive for a surface that is convex towards the particles
 struct Nearest {
     double distance;
     Vec3 n;
@@ -104,8 +104,8 @@ HILDA_HD inline bool is_larger_than(const Boundary& b, double radius)
 /// Effective radius R* of the contact of a sphere of this radius with a boundary [m]: 1/R* = 1/R + κ with the
 /// mean curvature κ of the boundary at the closest point. is_larger_than() must be false.
 ///
-/// At a cone κ is limited to -1/(2 R) ≤ κ ≤ 1/R: a sphere that touches the apex is in contact as with a sphere
-/// of its own size, and one that touches the inside of the cone all around has κ = -1/(2 R).
+/// At a cone κ is limited to -1/(2 R) ≤ κ ≤ 1/R: a sphere that touches the apex is in contact as with a
+/// sphere of its own size, and one that touches the inside of the cone all around has κ = -1/(2 R).
 HILDA_HD inline double effective_radius(const Boundary& b, double radius, const Nearest& near)
 {
     double curvature = near.curvature;

@@ -142,7 +142,8 @@ std::vector<LatticeResponse> run_lattices(const std::vector<LoadCase>& all, cons
     run.kept.load([&](const std::string& bytes, const std::string& file) {
         world.from_bytes(bytes, "lattices", file, more);
     });
-    // The neighbour list is rebuilt at each instant, also if the state is not kept: the results do not depend on it.
+    // The neighbour list is rebuilt at each instant, also if the state is not kept: the results do not depend
+    // on it.
     const auto instant = [&] { return std::floor(world.t() / end * 20 + 1e-9); };
     double last = instant();
     const auto step_to = [&](double t) {

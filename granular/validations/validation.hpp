@@ -53,8 +53,8 @@ struct ValidationProgress {
     using Compute = std::function<void()>;
     using Transfer = std::function<void(io::Archive&)>;
 
-    /// Computes a part, or reads its result if it was computed before the interruption. `transfer` writes or reads the
-    /// result. The parts of a validation are numbered by the order of the calls.
+    /// Computes a part, or reads its result if it was computed before the interruption. `transfer` writes or
+    /// reads the result. The parts of a validation are numbered by the order of the calls.
     std::function<void(const Compute& compute, const Transfer& transfer)> part =
         [](const Compute& compute, const Transfer&) { compute(); };
     using Read = std::function<void(const std::string& bytes, const std::string& file)>;

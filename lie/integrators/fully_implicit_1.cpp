@@ -10,9 +10,9 @@
 /// cost iterations, not accuracy. The iteration diverges if a load has a stiffness of about m/h² or a damping
 /// of about m/h, or more.
 ///
-/// r, A, ṙ, ω̄ and λ are of order 1. Exception: if the system moves at the start, the multipliers of the first
-/// computed node contain half of the centripetal term only, and have an error of O(1). From the second node
-/// on their error is O(h).
+/// r, A, ṙ, ω̄ and λ are of order 1. Exception: if the system moves at the start, the multipliers of the
+/// first computed node contain half of the centripetal term only, and have an error of O(1). From the second
+/// node on their error is O(h).
 
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"

@@ -11,8 +11,8 @@
 ///     | h² H_θr - ∂n̄         J̄ + h (ω̄̃ J̄ - (J̄ω̄)~) + h² H_θθ J_r - ∂n̄       Π̄ᵀ   |      J_r = J_r(h ω̄)
 ///     | Φ_r                  Π̄ J_r                                         0    |
 ///
-/// H is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k/∂(δr, δθ̄). ∂F is h² ∂F/∂(δr, δθ̄), with J_r in the columns of
-/// δθ̄, plus h ∂F/∂(δṙ, δω̄).
+/// H is the second variation Σ λ_k ∂(Φ_rᵀ, Π̄ᵀ)_k/∂(δr, δθ̄). ∂F is h² ∂F/∂(δr, δθ̄), with J_r in the columns
+/// of δθ̄, plus h ∂F/∂(δṙ, δω̄).
 ///
 /// Convergence is quadratic, and each iteration takes a factorisation. (3.21-3.23) neglect H, J_r and the
 /// derivatives of the loads; the number of iterations is then about twice as large. Neglecting J_r alone

@@ -12,8 +12,8 @@
 /// and Hulbert (1993). ρ = ρ∞ in [0, 1] is the spectral radius for infinite frequency
 /// (Settings::rho_infinity).
 ///
-/// Start: a_0 = v̇_0 + (α_m - α_f) h v̈_0 ≈ v̇(t_0 + (α_m - α_f) h), as in Arnold, Brüls, Cardona (2015), Numer.
-/// Math. 129, 149-179. a_n is then a second-order approximation of v̇(t_n + (α_m - α_f) h) for all n.
+/// Start: a_0 = v̇_0 + (α_m - α_f) h v̈_0 ≈ v̇(t_0 + (α_m - α_f) h), as in Arnold, Brüls, Cardona (2015),
+/// Numer. Math. 129, 149-179. a_n is then a second-order approximation of v̇(t_n + (α_m - α_f) h) for all n.
 ///
 /// r, A, ṙ, ω̄ and λ are of order 2. The multipliers of the first nodes have an error of O(h) nevertheless:
 /// the velocities of a consistent start satisfy their constraints exactly, those of the smooth numerical
@@ -77,8 +77,8 @@ public:
     }
 
 private:
-    /// a_0 = v̇_0 + (α_m - α_f) h v̈_0, where h v̈_0 is the difference of v̇_0 and the accelerations of a state
-    /// one step ahead
+    /// a_0 = v̇_0 + (α_m - α_f) h v̈_0, where h v̈_0 is the difference of v̇_0 and the accelerations of a
+    /// state one step ahead
     void start(double h)
     {
         State ahead = x_n;

@@ -11,10 +11,10 @@
 /// increment. The iterates are the same; the increment avoids the cancellation in M r_{n+1} - M r_n. The
 /// Newton matrix is K(t_n) (3.32).
 ///
-/// r, A, ṙ, ω̄ and λ are of order 1. The step is that of leapfrog (SHAKE): ṙ_{n+1} and ω̄_{n+1} belong to t_n +
-/// h/2. The scheme reports them as the velocities of t_{n+1}, uses them for the loads of t_{n+1}, and starts
-/// with ṙ_0 in the place of ṙ_{-½}. These are its errors of first order. They are part of the scheme of the
-/// text and are not corrected here; rA-half-1-kick is the corrected scheme.
+/// r, A, ṙ, ω̄ and λ are of order 1. The step is that of leapfrog (SHAKE): ṙ_{n+1} and ω̄_{n+1} belong to t_n
+/// + h/2. The scheme reports them as the velocities of t_{n+1}, uses them for the loads of t_{n+1}, and
+/// starts with ṙ_0 in the place of ṙ_{-½}. These are its errors of first order. They are part of the scheme
+/// of the text and are not corrected here; rA-half-1-kick is the corrected scheme.
 ///
 /// Nonholonomic rows are imposed for the mean of the stored velocities, C_n (v_n + v_{n+1}) = 2 ν_n.
 

@@ -17,8 +17,8 @@
 /// p_{n+1}⁻: the angular momentum in global components is transferred exactly from step to step. For a free
 /// system it is constant to rounding.
 ///
-/// Start: p_0⁻ = J̄ ω̄_0 - ½h (J̄ ω̄̇_0 + ω̄_0 × J̄ ω̄_0), solved for ω̄_{-½}. Loads at t_n use the extrapolated
-/// velocities of rA-half-1-kick. r, A, ṙ, ω̄ and λ are of order 2.
+/// Start: p_0⁻ = J̄ ω̄_0 - ½h (J̄ ω̄̇_0 + ω̄_0 × J̄ ω̄_0), solved for ω̄_{-½}. Loads at t_n use the
+/// extrapolated velocities of rA-half-1-kick. r, A, ṙ, ω̄ and λ are of order 2.
 ///
 /// The unknowns are z = (r_{n+1} - r_n, θ, h² λ_n), the Newton matrix is K(t_n). J_r(θ)⁻¹ J̄ θ - J̄ θ is part
 /// of the residual. State::history is that of rA-half-1-kick.

@@ -9,8 +9,8 @@
 ///
 /// Start: r̈_{-1} = r̈_0, ω̄̇_{-1} = ω̄̇_0 from the consistent start.
 ///
-/// The unknowns are z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n). With the constraint rows doubled, the Newton
-/// matrix (3.51) is K(t_n).
+/// The unknowns are z = (h ṙ_{n+1}, θ̄ = h ω̄_{n+1}, 1.5 h² λ_n). With the constraint rows doubled, the
+/// Newton matrix (3.51) is K(t_n).
 ///
 /// r, A, ṙ, ω̄ are of order 2, λ of order 1. The residual of the velocity constraints, g = C v - ν, satisfies
 /// g_{n+1} + g_n = O(h²). The recursion has the parasitic root -1, which is not damped. The multipliers have

@@ -13,9 +13,9 @@
 /// the root -1, as it has with the trapezoidal rule of (3.36, 3.38) in rA-half-2.
 ///
 /// With d_n = (r_n - r_{n-1}, ψ_n), both rules together read e_n = e_{n-1}/3 for e_n = d_{n+1} - d_n - h²
-/// v̇_n. The start gives e_0 = 0, hence d_{n+1} = d_n + h² v̇_n for all n. This is leapfrog with the half-step
-/// velocities d_n/h. The scheme therefore computes the same r, A and λ as rA-half-1-kick. Only the reported
-/// velocities differ. They are extrapolated to the node here, v_{n+1} = (3 d_{n+1} - d_n)/(2h).
+/// v̇_n. The start gives e_0 = 0, hence d_{n+1} = d_n + h² v̇_n for all n. This is leapfrog with the
+/// half-step velocities d_n/h. The scheme therefore computes the same r, A and λ as rA-half-1-kick. Only the
+/// reported velocities differ. They are extrapolated to the node here, v_{n+1} = (3 d_{n+1} - d_n)/(2h).
 /// rA-half-1-kick reports the mean of the half-step velocities, which is more accurate.
 ///
 /// The unknowns are z = (h ṙ_{n+1}, h ω̄_{n+1}, 1.5 h² λ_n). With the constraint rows times 1.5 the Newton

@@ -13,11 +13,11 @@
 /// potential the step is symplectic and conserves momentum exactly. Loads that depend on velocities use ṙ_n,
 /// ω̄_n in the first half and 2 ṙ_{n+½} - ṙ_n, 2 ω̄_{n+½} - ω̄_n in the second.
 ///
-/// r, A, ṙ, ω̄ and λ are of order 2. The multipliers reported are not λ⁺ and λ⁻: accelerations and multipliers
-/// are computed from the saddle system at the node.
+/// r, A, ṙ, ω̄ and λ are of order 2. The multipliers reported are not λ⁺ and λ⁻: accelerations and
+/// multipliers are computed from the saddle system at the node.
 ///
-/// The unknowns are z = (r_{n+1} - r_n, θ, ½h² λ⁺) with the Newton matrix K(t_n), where J_r(θ)⁻¹ J̄ θ - J̄ θ is
-/// part of the residual. Velocities and accelerations take one solve each with K(t_{n+1}), which is the
+/// The unknowns are z = (r_{n+1} - r_n, θ, ½h² λ⁺) with the Newton matrix K(t_n), where J_r(θ)⁻¹ J̄ θ - J̄ θ
+/// is part of the residual. Velocities and accelerations take one solve each with K(t_{n+1}), which is the
 /// Newton matrix of the next step.
 
 #include "lie/schemes.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Elimination of the algebraic variables from the saddle system, group by group.
 ///
-/// Let λ be the multipliers of the rows of a group, B = (Φ_r, Π̄) of these rows and D = ∂Φ/∂α. The part of the
-/// group in the saddle system is
+/// Let λ be the multipliers of the rows of a group, B = (Φ_r, Π̄) of these rows and D = ∂Φ/∂α. The part of
+/// the group in the saddle system is
 ///
 ///     M x + Bᵀ λ = f,    B x + D α = g,    Dᵀ λ = p
 ///

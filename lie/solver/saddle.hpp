@@ -50,8 +50,8 @@ public:
                     LinearSolver solver = LinearSolver::klu, const Rows& springs = {});
     ~Saddle();
 
-    /// Sets the rows of the springs and their compliances for the next assemble(). They have the pattern given
-    /// to the constructor.
+    /// Sets the rows of the springs and their compliances for the next assemble(). They have the pattern
+    /// given to the constructor.
     void set_springs(const Rows& rows, std::span<const double> compliance)
     {
         C.set_springs(rows, compliance);
@@ -67,11 +67,11 @@ public:
     /// Factors K with other compliances. The rows remain those of the last assemble(), which had compliances.
     void refactor(std::span<const double> compliance);
 
-    /// The state at which the present KLU pivots were chosen, with the compliances of the regularised rows in the
-    /// place of State::history. It has no bodies if there are no pivots.
+    /// The state at which the present KLU pivots were chosen, with the compliances of the regularised rows in
+    /// the place of State::history. It has no bodies if there are no pivots.
     const State& pivots() const { return pivot_state; }
-    /// Chooses new KLU pivots in the state x. A state of pivots() gives the same pivots: its compliances of friction
-    /// rows replace `compliance`.
+    /// Chooses new KLU pivots in the state x. A state of pivots() gives the same pivots: its compliances of
+    /// friction rows replace `compliance`.
     void choose_pivots(const State& x, std::span<const double> compliance = {});
 
     /// Solves K z = b in place. b has size() components.

@@ -12,11 +12,12 @@ namespace hilda::lie {
 class Saddle;
 class System;
 
-/// Computes r̈, ω̄̇ and λ of x. Positions and velocities must satisfy the constraints. For starts and restarts.
+/// Computes r̈, ω̄̇ and λ of x. Positions and velocities must satisfy the constraints. For starts and
+/// restarts.
 ///
-/// Regularised rows have the compliance of a step of 1 s here. Their γ is replaced by γ - C v/τ with τ = 1e-6 s,
-/// so that friction opposes the sliding velocity. Throws NumericalFailure "start_not_converged" if their bounds
-/// and the normal forces do not become consistent, and NonFinite for a load that is not finite.
+/// Regularised rows have the compliance of a step of 1 s here. Their γ is replaced by γ - C v/τ with τ = 1e-6
+/// s, so that friction opposes the sliding velocity. Throws NumericalFailure "start_not_converged" if their
+/// bounds and the normal forces do not become consistent, and NonFinite for a load that is not finite.
 void solve_accelerations(const System& system, Saddle& K, State& x);
 
 /// The same in a step, for systems without regularised rows. K is factored at x; `loads` and `b` receive the

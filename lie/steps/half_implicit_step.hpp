@@ -45,8 +45,9 @@ protected:
     virtual void leave(State& x, double h);
     /// The known part of the moment equation of body i: h J̄ (ω̄ - (w - 1) h ω̄̇_{n-1}) + w h² τ̄_n
     virtual Vec3 known_moment(int i, double h) const;
-    /// Correction k of z. The rows of the bodies, of the algebraic variables and the nonholonomic rows are linear
-    /// in z: from the second correction on their residual is zero. k = 1 solves for the residual of all equations.
+    /// Correction k of z. The rows of the bodies, of the algebraic variables and the nonholonomic rows are
+    /// linear in z: from the second correction on their residual is zero. k = 1 solves for the residual of
+    /// all equations.
     virtual void correct(int k, const State& x);
     /// Evaluates the implicit springs in the state x, for the next assembly of K.
     void start_springs(const State& x, double h);

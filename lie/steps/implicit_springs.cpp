@@ -22,8 +22,8 @@ double exponential_weight(double x)
 
 }  // namespace
 
-/// The saddle matrix without springs. The condensed solver has no pivots that depend on the first state, so that
-/// a resumed run gives the same digits.
+/// The saddle matrix without springs. The condensed solver has no pivots that depend on the first state, so
+/// that a resumed run gives the same digits.
 struct ImplicitSprings::AtNode {
     AtNode(const System& system, const Springs& springs)
         : K(system, Metric::mass, LinearSolver::condensed), springs(springs), v(K.size()), b(K.size()),

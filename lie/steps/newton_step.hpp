@@ -36,7 +36,8 @@ protected:
         const State& x_n;
     };
 
-    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                               Eq. 2.13c
+    /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                               Eq.
+    /// 2.13c
     Vec3 tau_bar(int i, const Motion& body) const;
 
     // For schemes with the unknowns z = (motion of the bodies, multipliers, algebraic variables), scaled:
@@ -49,8 +50,9 @@ protected:
     void place_algebraic(State& x, double factor) const;
     /// algebraic part of z = factor · (x.alpha - α_n)
     void take_algebraic(const State& x, double factor);
-    /// The residual of the equations of motion in the state x: M r̈ + Φ_rᵀ λ - F, J̄ ω̄̇ + Π̄ᵀ λ - τ̄ and Φ_αᵀ λ in
-    /// the components of e for the bodies and the algebraic variables. Sets `loads`, and the rows C, in x.
+    /// The residual of the equations of motion in the state x: M r̈ + Φ_rᵀ λ - F, J̄ ω̄̇ + Π̄ᵀ λ - τ̄ and
+    /// Φ_αᵀ λ in the components of e for the bodies and the algebraic variables. Sets `loads`, and the rows
+    /// C, in x.
     void set_motion_residual(const State& x, Rows& C);
     Eigen::VectorBlock<Eigen::VectorXd> constraint_part(Eigen::VectorXd& z) const
     {

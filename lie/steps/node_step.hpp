@@ -20,7 +20,8 @@ protected:
     /// Assembles K in the state x, unless K is already that of x.
     void assemble_once(const State& x);
 
-    /// Sets r̈, ω̄̇, λ of x: K (r̈, ω̄̇, λ) = (F, τ̄, γ)                                Fang (2022), Eqs. 2.9, 2.17
+    /// Sets r̈, ω̄̇, λ of x: K (r̈, ω̄̇, λ) = (F, τ̄, γ)                                Fang (2022), Eqs.
+    /// 2.9, 2.17
     void set_accelerations(State& x);
 
 private:

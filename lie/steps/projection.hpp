@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Projection of positions and velocities onto the constraints. The changes are the shortest ones in the metric
-/// of the mass.
+/// Projection of positions and velocities onto the constraints. The changes are the shortest ones in the
+/// metric of the mass.
 ///
 /// The functions below the two projections are their parts, for steps that combine them otherwise. K is the
 /// saddle matrix of the system. The vectors b, dz and v have the order of its unknowns.
@@ -18,9 +18,9 @@ class System;
 /// Projects r, A and α onto Φ(r, A, α, t) = 0 by Newton's method, K (δr, δθ̄, δα, ·) = (0, -Φ).
 ///
 /// Returns the number of steps. The tolerance [m or rad] applies to System::position_error(). Far from the
-/// origin it is at least 8 eps max |r|, the rounding error of a position. The steps are damped, so that distant
-/// positions converge. On return K is factored at the last but one position. Throws NoConvergence after 50
-/// steps, and NonFinite if a residual is not finite.
+/// origin it is at least 8 eps max |r|, the rounding error of a position. The steps are damped, so that
+/// distant positions converge. On return K is factored at the last but one position. Throws NoConvergence
+/// after 50 steps, and NonFinite if a residual is not finite.
 int project_positions(const System& system, Saddle& K, State& x, double tolerance = 1e-13);
 
 /// Projects ṙ and ω̄ onto Φ_r ṙ + Π̄ ω̄ = ν by K (v, ·) = (M v, ν). The change is that of an ideal inelastic

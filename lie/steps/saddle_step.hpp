@@ -27,8 +27,8 @@ protected:
     /// receive the residual that set_linear_residual() has computed, for k > 1 zero.
     void set_constraint_residual(int k, const State& x, double factor);
 
-    /// J_r(θ)⁻¹ J̄ θ of body i: h times its angular momentum at the beginning of a step with θ = h ω̄, in the body
-    /// frame
+    /// J_r(θ)⁻¹ J̄ θ of body i: h times its angular momentum at the beginning of a step with θ = h ω̄, in the
+    /// body frame
     Vec3 momentum(int i, const Vec3& theta) const;
     /// Adds J̄ θ - J_r(θ)⁻¹ J̄ θ to the moment equations in e, for schemes that balance momentum(i, θ) in the
     /// place of J̄ θ.

@@ -8,9 +8,9 @@
 ///     Φ(r_{n+1}, q_{n+1}, t_{n+1}) = 0,    (pᵀp - 1)/2 = 0 at t_{n+1}                               (d)
 ///
 /// with δπ̄ = T δq: T = 2G for p, T = B for ε. The gyroscopic term of p is 2Gᵀ(-ω̄ × J̄ ω̄) instead of the
-/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25. The two differ by a multiple of p, which changes λ^P only; with the form above λ^P
-/// is zero. The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n). The Newton matrix is that of
-/// (a), (b), (d), evaluated once per step at t_n:
+/// 8 Ġᵀ J̄ Ġ p of Eq. 2.25. The two differ by a multiple of p, which changes λ^P only; with the form above
+/// λ^P is zero. The unknowns are z = (r_{n+1} - r_n, q_{n+1} - q_n, h²λ_n, h²λ^P_n). The Newton matrix is
+/// that of (a), (b), (d), evaluated once per step at t_n:
 ///
 ///     | M    0     Φ_rᵀ  0 |
 ///     | 0   TᵀJ̄T   Φ_qᵀ  p |
@@ -20,8 +20,8 @@
 /// Plain start: ṙ_{-1/2} = ṙ_0. The half-step velocities are stored as those of the following node, and its
 /// loads are evaluated with them. Order 1.
 ///
-/// Start with a half step: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0. The velocities of a node are the means of those half a
-/// step before and after it. The loads at t_n are evaluated with the extrapolated velocity 1.5 ṙ_{n-1/2} -
+/// Start with a half step: ṙ_{-1/2} = ṙ_0 - (h/2) r̈_0. The velocities of a node are the means of those half
+/// a step before and after it. The loads at t_n are evaluated with the extrapolated velocity 1.5 ṙ_{n-1/2} -
 /// 0.5 ṙ_{n-3/2}. Order 2 in all quantities.
 ///
 /// In p the scheme is rA-half-1 with another map from the velocity to the rotation. Since G(a) b = -G(b) a,
@@ -232,8 +232,8 @@ private:
         N.factor();
     }
 
-    /// The part of the residual that is constant in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2} +
-    /// h² Tᵀ(τ̄ - J̄ Ṫq̇)
+    /// The part of the residual that is constant in the iteration: M h ṙ_{n-1/2} + h² F_n, TᵀJ̄T h q̇_{n-1/2}
+    /// + h² Tᵀ(τ̄ - J̄ Ṫq̇)
     void set_known_part(double h)
     {
         model.loads(x_n, loads);

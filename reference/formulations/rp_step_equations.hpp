@@ -10,8 +10,8 @@
 ///
 ///     q̇ = q̇* + g_v q̈,    q = q* + g_q q̈
 ///
-/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) instead of -8 Ġᵀ J̄ Ġ p. The two terms differ by a multiple of p, which
-/// changes λ^P only. With the form above λ^P is zero.
+/// e_p is Eq. 2.30b with 2Gᵀ(ω̄ × J̄ ω̄) instead of -8 Ġᵀ J̄ Ġ p. The two terms differ by a multiple of p,
+/// which changes λ^P only. With the form above λ^P is zero.
 ///
 /// The Newton matrix is the exact derivative of e. It contains the second variations of the constraints and
 /// the derivatives of the loads. An iterate does not satisfy |p| = 1. A is the rotation of p/|p|, so that

@@ -10,8 +10,8 @@
 ///
 ///     q̇_1 = q̇_0 + (h/2)(q̈_0 + q̈_1),    q_1 = q_0 + h q̇_0 + h² (q̈_0/3 + q̈_1/6),
 ///
-/// whose local error in q_1 is O(h⁴). The constraints determine the normal part of q̈_1 from Φ(q_1)/h², so the
-/// error of λ_1 is O(h²). Backward Euler or the trapezoidal rule would be sufficient for r, p and their
+/// whose local error in q_1 is O(h⁴). The constraints determine the normal part of q̈_1 from Φ(q_1)/h², so
+/// the error of λ_1 is O(h²). Backward Euler or the trapezoidal rule would be sufficient for r, p and their
 /// velocities, but they cause an error of O(1) or O(h) in λ_1. After a change of h the scheme starts again
 /// with this step.
 ///

@@ -20,8 +20,8 @@ constexpr double leg_angle = 0.5;
 // Tolerance of the initial state, relative to R and to the speed. It covers decimal input.
 constexpr double start_tolerance = 1e-9;
 
-/// Stereographic coordinates: s, ṡ, s̈ without the term s_q q̈, and s_q = ∂s/∂q. The columns of e are e_1, e_2,
-/// e_3.
+/// Stereographic coordinates: s, ṡ, s̈ without the term s_q q̈, and s_q = ∂s/∂q. The columns of e are e_1,
+/// e_2, e_3.
 struct Stereographic {
     Vec2 qdot;
     Vec3 s, sdot, sddot_0;

@@ -25,8 +25,8 @@ namespace hilda::reference {
 ///     slide   r_qᵀ r̈ = r_qᵀ g                                               two equations for q̈
 ///     roll    r_q q̇ = R ω × n,    (J + m R²) ω̇ = m R n × g + m R² (n·ω) ṅ    five for q and ω
 ///
-/// The equation of rolling is the moment balance about the contact point, J ω̇ = -R n × m (r̈ - g) with r̈ = R
-/// (ω̇ × n + ω × ṅ) and n·ω̇ = 0. The attitude is integrated as a rotation vector, A = exp(θ̃) A_0, reset
+/// The equation of rolling is the moment balance about the contact point, J ω̇ = -R n × m (r̈ - g) with r̈ =
+/// R (ω̇ × n + ω × ṅ) and n·ω̇ = 0. The attitude is integrated as a rotation vector, A = exp(θ̃) A_0, reset
 /// together with the chart. The contact force is F = m (r̈ - g).
 struct BallInBowl {
     Vec3 semi_axes = Vec3(4, 3, 2);  ///< a, b, c [m]

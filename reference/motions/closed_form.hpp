@@ -81,8 +81,8 @@ private:
 ///     Ω (J_3 ω̄_3 - (J_1 + m l²) Ω cos θ) = m g l,    ω̄_3 = ψ̇ + Ω cos θ
 ///     A(t) = Rz(Ωt) Rx(θ) Rz(ψ̇t)
 ///
-/// The first line follows from the angular momentum about the tip, H = (J_1 + m l²) Ω ẑ + (J_3 ω̄_3 - (J_1 + m
-/// l²) Ω cos θ) k̂ with the symmetry axis k̂: Ḣ = Ω ẑ × H equals the moment of the weight, m g l ẑ × k̂.
+/// The first line follows from the angular momentum about the tip, H = (J_1 + m l²) Ω ẑ + (J_3 ω̄_3 - (J_1 +
+/// m l²) Ω cos θ) k̂ with the symmetry axis k̂: Ḣ = Ω ẑ × H equals the moment of the weight, m g l ẑ × k̂.
 struct HeavyTop {
     double m = 1, J_1 = 1, J_3 = 1;  ///< [kg]; principal moments about the centre of mass [kg m²]
     double l = 1, g = 9.81;          ///< [m] from the tip to the centre of mass, [m/s²] along -z

@@ -9,8 +9,8 @@
 namespace hilda::reference {
 
 /// The surface is āᵀ Σ⁻² ā = 1 in the body frame, with Σ = diag(a, b, c) and the origin at the centre of
-/// mass. J̄ need not be diagonal. With ē = Aᵀ ẑ and ē̇ = ē × ω̄, the contact point and the height of the centre
-/// are
+/// mass. J̄ need not be diagonal. With ē = Aᵀ ẑ and ē̇ = ē × ω̄, the contact point and the height of the
+/// centre are
 ///
 ///     ā = -Σ² ē/ρ,  ρ = √(ēᵀ Σ² ē),    r_z = ρ,  ṙ_z = -ā·ē̇
 ///     ā̇ = -(Σ² ē̇ + ρ̇ ā)/ρ
@@ -27,7 +27,8 @@ namespace hilda::reference {
 ///
 /// The energy is constant.
 ///
-/// The attitude is integrated as a rotation vector, A = A_0 exp(θ̃), which is reset after at most about 1 rad.
+/// The attitude is integrated as a rotation vector, A = A_0 exp(θ̃), which is reset after at most about 1
+/// rad.
 struct EllipsoidOnPlane {
     Vec3 semi_axes = Vec3(0.3, 0.25, 0.15);  ///< a, b, c along the body's x, y, z [m]
     double m = 2;                            ///< [kg]

@@ -7,8 +7,8 @@
 
 namespace hilda::reference {
 
-/// Period [s] of the oscillation M(q) q̇²/2 + U(q) = U(q_0) between -q_0 and q_0, with smooth M and U, even in
-/// q.
+/// Period [s] of the oscillation M(q) q̇²/2 + U(q) = U(q_0) between -q_0 and q_0, with smooth M and U, even
+/// in q.
 ///
 ///     T = 4 ∫₀^q₀ √(M/(2 (U(q_0) - U(q)))) dq,    q = q_0 sin χ
 ///

@@ -37,8 +37,8 @@ enum class RpForm {
 ///     ṙ - v + Φ_rᵀ μ = 0,   ṗ - u + Φ_pᵀ μ + p μ_P = 0          (v, u for ṙ, ṗ as unknowns; μ only with GGL)
 ///     M v̇ + Φ_rᵀ λ - F = 0,   Tᵀ (J̄ T u̇ + Π̄ᵀ λ - n̄ + ω̄ × J̄ ω̄) + p λ_P = 0
 ///
-/// followed by the constraint equations of RpForm. The rotational equation is that of 2.23, 4 Gᵀ J̄ G p̈ - 8 Ġᵀ
-/// J̄ Ġ p + ..., up to a multiple of p. With this choice λ_P = 0 in the solution. ω̄ = T ṗ is the angular
+/// followed by the constraint equations of RpForm. The rotational equation is that of 2.23, 4 Gᵀ J̄ G p̈ - 8
+/// Ġᵀ J̄ Ġ p + ..., up to a multiple of p. With this choice λ_P = 0 in the solution. ω̄ = T ṗ is the angular
 /// velocity of A(p/|p|) for any |p|, so the Jacobian is exact off the constraint |p| = 1 as well.
 class RpEquations {
 public:

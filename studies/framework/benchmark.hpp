@@ -35,8 +35,8 @@ using DefaultEnd = std::function<double(const dae::Description&)>;
 double end_of_model(const dae::Description& d);
 
 /// Benchmarks of the problems of --problem, or of the problems `defaults` without --problem. They are read in
-/// sequence, so that the first error is reproducible. Warnings name redundant constraint rows. io::UsageError for
-/// two problems with the same name, lie::InvalidInput for an invalid model.
+/// sequence, so that the first error is reproducible. Warnings name redundant constraint rows. io::UsageError
+/// for two problems with the same name, lie::InvalidInput for an invalid model.
 std::vector<Benchmark> benchmarks(const std::string& kind, const StudyOptions& options,
                                   const std::vector<std::string>& defaults,
                                   const DefaultEnd& end = end_of_model);

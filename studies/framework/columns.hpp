@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Columns of a table of rows of any type: each column states its name, its heading and its value once. The table
-/// on the terminal, the CSV file and the objects of study.json are made from the same list.
+/// Columns of a table of rows of any type: each column states its name, its heading and its value once. The
+/// table on the terminal, the CSV file and the objects of study.json are made from the same list.
 
 #pragma once
 
@@ -73,8 +73,8 @@ public:
     {
         return table(pointers<const Row*>(rows), selected({}, &Column<Row>::name), &Column<Row>::name).csv();
     }
-    /// Prints the columns with these names, or with these headings if they have no name; without names all that
-    /// have a heading.
+    /// Prints the columns with these names, or with these headings if they have no name; without names all
+    /// that have a heading.
     void print(StudyText& out, const Rows& rows, const Names& names = {}) const
     {
         table(rows, selected(names, &Column<Row>::heading), &Column<Row>::heading).print(out);

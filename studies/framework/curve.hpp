@@ -35,7 +35,8 @@ public:
     double first_time(const std::function<bool(size_t row)>& condition, double from = 0) const;
     /// Largest absolute value, without NaN, in the rows with t > after [s]; 0 if there are none
     double largest(const std::string& name, double after = -std::numeric_limits<double>::infinity()) const;
-    /// Times [s] at which the quantity falls from a positive value to zero, by linear interpolation between the rows
+    /// Times [s] at which the quantity falls from a positive value to zero, by linear interpolation between
+    /// the rows
     std::vector<double> zero_crossings(const std::string& name) const;
     /// Vertex of the parabola through a row and its two neighbours, whose interval is h [s]
     struct Extremum {

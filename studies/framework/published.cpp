@@ -14,8 +14,8 @@ namespace hilda::studies {
 
 namespace {
 
-/// A column of the file and a curve with the same quantity: their largest difference, the time t [s] at which it occurs,
-/// and the largest value of the column
+/// A column of the file and a curve with the same quantity: their largest difference, the time t [s] at which
+/// it occurs, and the largest value of the column
 struct ColumnMatch {
     std::string column, experiment, run;
     double largest = INFINITY, t = 0, size = 0;

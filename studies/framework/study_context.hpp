@@ -59,8 +59,9 @@ public:
     /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
     /// and the label. The results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
-    /// Calls job(), on this thread and without a progress line. `transfer` writes or reads its result, which is kept in the
-    /// file of the finished jobs: a job that finished before the study was interrupted is not called again.
+    /// Calls job(), on this thread and without a progress line. `transfer` writes or reads its result, which
+    /// is kept in the file of the finished jobs: a job that finished before the study was interrupted is not
+    /// called again.
     void job(const std::function<void()>& job, const std::function<void(io::Archive&)>& transfer) const;
 
     // Results
@@ -83,9 +84,11 @@ public:
     }
     /// Adds values by their keys of --expect. Returns them as a JSON object, for study.json.
     io::Json measure(const std::string& of, const std::vector<std::pair<std::string, double>>& values);
-    /// Records which runs failed or have warnings. If all of them failed, so has the study (see every_run_must_succeed).
+    /// Records which runs failed or have warnings. If all of them failed, so has the study (see
+    /// every_run_must_succeed).
     void end_of_runs(const std::vector<const Run*>& runs);
-    /// A warning of the watch over a run. With --strict the exit code is 4, and the first warning is its reason.
+    /// A warning of the watch over a run. With --strict the exit code is 4, and the first warning is its
+    /// reason.
     void warned(const std::string& warning, const std::string& text);
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
     void evaluate(const std::vector<Criterion>& criteria);

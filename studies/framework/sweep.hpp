@@ -13,8 +13,9 @@
 
 namespace hilda::studies {
 
-/// Rows of parameters and results. Run, or a class derived from it, has the parameters benchmark, scheme and step.
-/// Row::transfer(io::Archive&) writes or reads the results of a row, so that an interrupted study can be resumed.
+/// Rows of parameters and results. Run, or a class derived from it, has the parameters benchmark, scheme and
+/// step. Row::transfer(io::Archive&) writes or reads the results of a row, so that an interrupted study can
+/// be resumed.
 template <class Row>
 class Sweep : public std::vector<Row> {
 public:
@@ -34,8 +35,8 @@ public:
         return row;
     }
 
-    /// Calls job(row) for each row, on the threads of --jobs. Rows with small steps take longest. They start first,
-    /// so that no long run is alone at the end. A numerical failure becomes the status of its row.
+    /// Calls job(row) for each row, on the threads of --jobs. Rows with small steps take longest. They start
+    /// first, so that no long run is alone at the end. A numerical failure becomes the status of its row.
     template <class Job>
     void compute(const StudyContext& study, const Job& job, const std::string& label = "")
     {

@@ -244,8 +244,8 @@ std::vector<std::string> to_text(const ContactConstraintInfo& c)
 
 io::Json as_json(const Largest& l) { return {{"value", l.value}, {"body", l.body}}; }
 
-/// Copies the notes of an object and of the objects in it to those with the same keys, or the same numbers in lists of
-/// equal length.
+/// Copies the notes of an object and of the objects in it to those with the same keys, or the same numbers in
+/// lists of equal length.
 void copy_notes(const io::Json& from, io::Json& to)
 {
     if (from.members() != nullptr && to.members() != nullptr) {
@@ -262,8 +262,8 @@ void copy_notes(const io::Json& from, io::Json& to)
     }
 }
 
-/// Writes the model with its projected initial state and the notes of its file. The text is checked as hilda check would.
-/// io::UsageError if the file is that of the model, which has its parameters.
+/// Writes the model with its projected initial state and the notes of its file. The text is checked as hilda
+/// check would. io::UsageError if the file is that of the model, which has its parameters.
 void write_projected(const dae::Description& d, const std::string& model, const std::string& file)
 {
     if (std::error_code error; std::filesystem::equivalent(model, file, error))

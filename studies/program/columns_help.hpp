@@ -7,8 +7,8 @@
 
 namespace hilda::studies {
 
-/// Columns of trajectory.csv, contacts.csv, forces.csv and outputs.csv for a model with one entity of each kind. The names
-/// in capitals stand for those of the model.
+/// Columns of trajectory.csv, contacts.csv, forces.csv and outputs.csv for a model with one entity of each
+/// kind. The names in capitals stand for those of the model.
 std::string columns_help();
 
 }  // namespace hilda::studies

@@ -70,7 +70,8 @@ int run_kinematics(const KinematicsOptions& options)
     const double interval = options.interval.value_or(end / 1000);
     if (!(interval > 0))
         throw io::UsageError("kinematics: --interval must be positive, and --end for its default");
-    // The nodes are at most 5 ms apart and divide the interval, so that angles are counted through whole turns.
+    // The nodes are at most 5 ms apart and divide the interval, so that angles are counted through whole
+    // turns.
     constexpr double longest = 5e-3;
     const lie::TimeGrid grid = lie::TimeGrid::over(end, interval / std::ceil(interval / longest), interval);
     if (start.degrees_of_freedom != 0)

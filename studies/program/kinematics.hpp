@@ -25,10 +25,11 @@ struct KinematicsOptions {
     std::string command_line;  ///< recorded in summary.json
 };
 
-/// Kinematic analysis (dae::Kinematics): positions, velocities, accelerations and multipliers at each output row, from
-/// the constraints and drivers alone. The multipliers are the solution of the inverse dynamics: the loads of joints and
-/// drivers that produce the motion. Writes the files of `hilda run`. lie::InvalidInput for a model with degrees of
-/// freedom; a lie::NumericalFailure ends the analysis with its status and exit code 4.
+/// Kinematic analysis (dae::Kinematics): positions, velocities, accelerations and multipliers at each output
+/// row, from the constraints and drivers alone. The multipliers are the solution of the inverse dynamics: the
+/// loads of joints and drivers that produce the motion. Writes the files of `hilda run`. lie::InvalidInput
+/// for a model with degrees of freedom; a lie::NumericalFailure ends the analysis with its status and exit
+/// code 4.
 int run_kinematics(const KinematicsOptions& options);
 
 }  // namespace hilda::studies

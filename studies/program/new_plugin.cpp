@@ -24,7 +24,8 @@ extern const char law_cmake_text[], law_header_text[], law_case_text[], law_read
 
 namespace {
 
-/// A file of a new plug-in. In its name and in its text, my-scheme or my-law, my_law and MyLaw stand for the name.
+/// A file of a new plug-in. In its name and in its text, my-scheme or my-law, my_law and MyLaw stand for the
+/// name.
 struct NewFile {
     std::string name;
     const char* text;

@@ -24,8 +24,8 @@ struct ContactOutput {
     bool rolling = false;             ///< the rolling spring is at its bound; with ideal rolling always
 };
 
-/// The contacts of a model: compliant contacts, then contact constraints with their friction and fallback. The model
-/// must outlive this object.
+/// The contacts of a model: compliant contacts, then contact constraints with their friction and fallback.
+/// The model must outlive this object.
 class ContactOutputs {
 public:
     explicit ContactOutputs(const dae::Model& model);

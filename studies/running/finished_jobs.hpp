@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Results of the finished jobs of a study, kept in a file until the study ends: an interrupted study continues from
-/// them.
+/// Results of the finished jobs of a study, kept in a file until the study ends: an interrupted study
+/// continues from them.
 
 #pragma once
 
@@ -16,8 +16,9 @@
 
 namespace hilda::studies {
 
-/// The file DIRECTORY/study.part: what the results depend on, then a record for each finished job. A record is written
-/// when its job finishes. A record that an interruption cut off is dropped, and its job is computed again.
+/// The file DIRECTORY/study.part: what the results depend on, then a record for each finished job. A record
+/// is written when its job finishes. A record that an interruption cut off is dropped, and its job is
+/// computed again.
 class FinishedJobs {
 public:
     /// Name and value of everything that the results depend on
@@ -27,8 +28,8 @@ public:
     /// Number of the pool in the study, number of the job in the pool
     using Key = std::pair<long, long>;
 
-    /// Creates the file, or with `resume` reads it and continues it. io::UsageError if there is no file to resume, or if
-    /// it has another identity.
+    /// Creates the file, or with `resume` reads it and continues it. io::UsageError if there is no file to
+    /// resume, or if it has another identity.
     FinishedJobs(const std::string& directory, const Identity& identity, bool resume);
 
     /// Removes the file if no job has finished.

@@ -46,7 +46,8 @@ std::string math(const Number& number)
     return std::string(number.mantissa) + "\\times10^{" + std::to_string(exponent) + "}";
 }
 
-/// A whole cell that is a number with an optional sign, a bound and a mark, such as "+42.5", "<= 0.85", "1.2e-04*"
+/// A whole cell that is a number with an optional sign, a bound and a mark, such as "+42.5", "<= 0.85",
+/// "1.2e-04*"
 std::string number_cell(std::string_view cell)
 {
     std::string before;

@@ -21,8 +21,8 @@ bool is_model_path(const std::string& name_or_path);
 
 /// Reads a model file, or a built-in model if the text is not a path (is_model_path()). `set`: changes of the
 /// form /json/pointer=VALUE; `normal_rows`: rows of all contact constraints, "": those of the model.
-/// lie::InvalidInput as in read_model() and problem(); io::UsageError if `normal_rows` is given and the model has no
-/// contact constraint.
+/// lie::InvalidInput as in read_model() and problem(); io::UsageError if `normal_rows` is given and the model
+/// has no contact constraint.
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set,
                              const std::string& normal_rows);
 

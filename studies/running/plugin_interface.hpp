@@ -10,7 +10,8 @@
 #define HILDA_TEXT_OF(value) #value
 #define HILDA_TEXT_OF_VALUE(macro) HILDA_TEXT_OF(macro)
 
-/// "0.1.0 (7734a36), compiler 12.2.0, alignment 16". The alignment of Eigen types depends on the instruction set (-march).
+/// "0.1.0 (7734a36), compiler 12.2.0, alignment 16". The alignment of Eigen types depends on the instruction
+/// set (-march).
 #define HILDA_PLUGIN_INTERFACE \
     HILDA_VERSION_TEXT ", compiler " __VERSION__ ", alignment " HILDA_TEXT_OF_VALUE(EIGEN_MAX_ALIGN_BYTES)
 

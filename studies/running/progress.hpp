@@ -12,8 +12,8 @@ class Progress {
 public:
     using Clock = io::ProgressLine::Clock;
 
-    /// Shows nothing if stderr is not a terminal or `quiet` is set. first_step: number of the node at which the run
-    /// begins
+    /// Shows nothing if stderr is not a terminal or `quiet` is set. first_step: number of the node at which
+    /// the run begins
     Progress(bool quiet, double t_end, long steps, long first_step)
         : line(quiet), t_end(t_end), steps(steps), first_step(first_step)
     {}

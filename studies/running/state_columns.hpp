@@ -35,7 +35,8 @@ std::unique_ptr<ColumnGroup> force_columns(const dae::Model& model);
 /// Normal force, gap, contact point, normal, friction and slip of all contacts, see ContactOutput
 std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model);
 
-/// A table with a row of these columns at each output row of the run. Warns once of a value that is not finite.
+/// A table with a row of these columns at each output row of the run. Warns once of a value that is not
+/// finite.
 class ColumnsSink final : public TableSink {
 public:
     /// name: of the table, such as "outputs"

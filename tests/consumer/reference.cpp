@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The component reference of an installed HILDA: the period of a pendulum at 90 degrees is 4 K(1/2) √(l/g) with K = 1.8540747.
+// The component reference of an installed HILDA: the period of a pendulum at 90 degrees is 4 K(1/2) √(l/g)
+// with K = 1.8540747.
 #include <cmath>
 #include <cstdio>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The component studies of an installed HILDA: its library contains the studies and problems, which register themselves. With the
-// argument hdf5 it also loads the module for HDF5 files, which must be installed.
+// The component studies of an installed HILDA: its library contains the studies and problems, which register
+// themselves. With the argument hdf5 it also loads the module for HDF5 files, which must be installed.
 #include <algorithm>
 #include <cstdio>
 

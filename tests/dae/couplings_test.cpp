@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Gear, screw, rack and pinion, point on a curve: variations and γ compared with differences of Φ; counting of
-/// revolutions; invalid input. Bushing and limits: forces are derivatives of the potential.
+/// Gear, screw, rack and pinion, point on a curve: variations and γ compared with differences of Φ; counting
+/// of revolutions; invalid input. Bushing and limits: forces are derivatives of the potential.
 
 #include "dae/constraints/point_on_curve.hpp"
 #include "dae/forces/bushing.hpp"

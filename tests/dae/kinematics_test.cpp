@@ -40,8 +40,8 @@ std::vector<std::vector<double>> table(const std::string& file)
     return rows;
 }
 
-/// A row of the reference: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint force
-/// (global frame) and torque (body frame) of each body
+/// A row of the reference: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant constraint
+/// force (global frame) and torque (body frame) of each body
 struct Reference {
     double t;
     std::vector<Motion> body;

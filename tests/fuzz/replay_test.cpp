@@ -36,7 +36,8 @@ fs::path corpus(const std::string& target)
     return fs::path(tests::source_dir) / "tests/fuzz/corpus" / target;
 }
 
-/// The inputs of a target, in the order of their names. Those of `model` are also the models of the examples and tests.
+/// The inputs of a target, in the order of their names. Those of `model` are also the models of the examples
+/// and tests.
 std::vector<std::string> inputs(const std::string& target)
 {
     std::vector<fs::path> folders = {corpus(target)};

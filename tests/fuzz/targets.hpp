@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Entry functions of the fuzz targets. Each reads a text or a file of bytes as the programs do.
 ///
-/// An input is accepted, or refused by one of the documented exceptions, which the entry function catches. Any other
-/// exception ends the process: libFuzzer reports it, and the replay test fails.
+/// An input is accepted, or refused by one of the documented exceptions, which the entry function catches.
+/// Any other exception ends the process: libFuzzer reports it, and the replay test fails.
 
 #pragma once
 

@@ -56,7 +56,8 @@ TEST_CASE("the times of the nodes are the doubles nearest to the decimals, also 
 
 TEST_CASE("a step in which a body rotates by half a turn or more is refused", "[lie][march]")
 {
-    // The equations of an implicit scheme have several solutions then. 3.5 rad is 2.78 rad the other way round.
+    // The equations of an implicit scheme have several solutions then. 3.5 rad is 2.78 rad the other way
+    // round.
     const tests::SpinningTop top(true);
     const double h = 1e-2;
     for (const char* name :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A user-defined surface, a user-defined friction law and a user-defined normal law in one file. They register
-/// themselves and have their own keys in the model file.
+/// A user-defined surface, a user-defined friction law and a user-defined normal law in one file. They
+/// register themselves and have their own keys in the model file.
 
 #include "contact/friction/friction.hpp"
 #include "contact/implicit_surface.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Example of an output format in one file: momentum.csv, the momentum of all bodies and its largest value so far.
-/// Written with --momentum DIGITS.
+/// Example of an output format in one file: momentum.csv, the momentum of all bodies and its largest value so
+/// far. Written with --momentum DIGITS.
 
 #include "dae/model.hpp"
 #include "io/error.hpp"

@@ -13,8 +13,8 @@
 
 namespace hilda::tests {
 
-/// Row of a reference trajectory. Columns: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇, resultant
-/// constraint force (global) and torque (body frame) of each body.
+/// Row of a reference trajectory. Columns: t; then r, A (row major), ṙ, ω̄ of each body; then r̈, ω̄̇,
+/// resultant constraint force (global) and torque (body frame) of each body.
 struct Reference {
     lie::State x;
     std::vector<dae::Reaction> reaction;

@@ -70,8 +70,8 @@ inline std::vector<std::string> with(std::vector<std::string> arguments, const s
     return arguments;
 }
 
-/// Ends the process at a known write to a file (tests/support/end_at_write.cpp). The files and the exit code do not
-/// depend on the speed of the machine.
+/// Ends the process at a known write to a file (tests/support/end_at_write.cpp). The files and the exit code
+/// do not depend on the speed of the machine.
 struct EndAt {
     int signal = 0;         ///< 0: the process is not ended; -signal: its parent gets the signal
     long write = 1;         ///< number of the write to the file, from 1; the signal comes in the middle of it

@@ -11,8 +11,8 @@
 
 namespace hilda::tests {
 
-/// Paths of all files and directories below a scratch directory, without those of the tests and without the default
-/// directory "out" of results, which a study may have created
+/// Paths of all files and directories below a scratch directory, without those of the tests and without the
+/// default directory "out" of results, which a study may have created
 inline std::set<std::string> entries(const Scratch& in)
 {
     std::set<std::string> all;
@@ -22,8 +22,8 @@ inline std::set<std::string> entries(const Scratch& in)
     return all;
 }
 
-/// Requires that the program ends with this exit code and an error message of one line that contains `message`, prints
-/// no results and writes no files.
+/// Requires that the program ends with this exit code and an error message of one line that contains
+/// `message`, prints no results and writes no files.
 inline void check_refused(const Scratch& in, const std::vector<std::string>& arguments, int code,
                           const std::string& message)
 {

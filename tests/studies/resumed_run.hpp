@@ -27,8 +27,8 @@ inline std::string without_last_column(const std::string& table)
     return all;
 }
 
-/// The files of a run and of its subdirectories, by name, without checkpoints and without all that differs between two
-/// executions: wall times and the command line
+/// The files of a run and of its subdirectories, by name, without checkpoints and without all that differs
+/// between two executions: wall times and the command line
 inline std::map<std::string, std::string> results(const fs::path& directory)
 {
     std::map<std::string, std::string> files;
@@ -67,9 +67,9 @@ struct EndOfPart {
     long steps;  ///< after the start or the resumption of the run
 };
 
-/// Executes a run at once in the directory "whole", and in the directory "parts" with these ends, after each of which
-/// it is resumed. Requires that each part has ended before the end of the run, and that the files are the same at the
-/// end. `run`: the command without --output and --checkpoint.
+/// Executes a run at once in the directory "whole", and in the directory "parts" with these ends, after each
+/// of which it is resumed. Requires that each part has ended before the end of the run, and that the files
+/// are the same at the end. `run`: the command without --output and --checkpoint.
 inline void check_resumed(const Scratch& in, const std::vector<std::string>& run,
                           const std::vector<EndOfPart>& parts = {{SIGINT, 90}, {SIGKILL, 60}, {SIGKILL, 75}})
 {

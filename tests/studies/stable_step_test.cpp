@@ -250,7 +250,8 @@ TEST_CASE("check names an integrator that suits the model, and the reason", "[st
     CHECK_THAT(recommended("rolling_ball"), Catch::StartsWith("rA-half-1-momentum: compliant contacts"));
     CHECK_THAT(recommended("m.json"), Catch::StartsWith("rp-bdf2: stiff: force 'damper' limits the step"));
 
-    // A contact whose limit is below the default step; run refuses the step with the number that check prints.
+    // A contact whose limit is below the default step; run refuses the step with the number that check
+    // prints.
     tests::write(in / "ball.json", R"({"hilda_model": 1, "name": "ball", "end": 1,
         "bodies": [{"name": "ball", "mass": 5, "inertia": [0.08, 0.08, 0.08], "r": [0, 0, 0.2]}],
         "contacts": [{"name": "floor", "body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.2},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A library that takes the place of OpenBLAS in a test. When it is loaded, it prints the number of threads that
-/// OpenBLAS would start.
+/// A library that takes the place of OpenBLAS in a test. When it is loaded, it prints the number of threads
+/// that OpenBLAS would start.
 
 #include <cstdio>
 #include <cstdlib>

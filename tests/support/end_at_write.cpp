@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Ends the program at a known write to a file, for tests of --resume. Linked with --wrap of the functions below.
+/// Ends the program at a known write to a file, for tests of --resume. Linked with --wrap of the functions
+/// below.
 ///
 /// The environment variable HILDA_END_AT has the form
 ///     SIGNAL COUNT FILE           at write COUNT to a file whose path ends with FILE, this process gets the signal
 ///     -SIGNAL COUNT FILE          its parent process gets the signal; this process then waits for its own end
-/// The signal comes after the first half of the bytes. Files are not synchronised with the disk: the end of a process
-/// does not need it, and a checkpoint after each step takes 40 µs instead of 4 ms. Without the variable the program is
-/// unchanged.
+/// The signal comes after the first half of the bytes. Files are not synchronised with the disk: the end of a
+/// process does not need it, and a checkpoint after each step takes 40 µs instead of 4 ms. Without the
+/// variable the program is unchanged.
 
 #include <sys/types.h>
 #include <unistd.h>

@@ -5,7 +5,8 @@
 
 namespace hilda::tests {
 
-// Variables, not macros: the paths are then part of one object file, and ccache reuses all others in another clone.
+// Variables, not macros: the paths are then part of one object file, and ccache reuses all others in another
+// clone.
 
 extern const char* const source_dir;            ///< root of the source tree
 extern const char* const test_data;             ///< tests/data

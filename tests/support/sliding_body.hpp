@@ -6,8 +6,8 @@
 
 namespace hilda::tests {
 
-/// The centre of mass of the body is on the plane z = 0, and the body rotates about z only: rows 0 to 2. Rows 3
-/// and 4 are friction along x and y, a dashpot with the Coulomb bound μ N. N is the weight.
+/// The centre of mass of the body is on the plane z = 0, and the body rotates about z only: rows 0 to 2. Rows
+/// 3 and 4 are friction along x and y, a dashpot with the Coulomb bound μ N. N is the weight.
 class SlidingBody final : public lie::System {
 public:
     static constexpr double m = 2, g = 9.81, mu = 0.3;

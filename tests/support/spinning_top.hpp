@@ -11,8 +11,8 @@ namespace hilda::tests {
 using lie::Mat3;
 using lie::Vec3;
 
-/// State of a tilted, spinning and precessing top, consistent in position, velocity and acceleration. Its point s_bar
-/// [m, body frame] is at the origin with the velocity v [m/s].
+/// State of a tilted, spinning and precessing top, consistent in position, velocity and acceleration. Its
+/// point s_bar [m, body frame] is at the origin with the velocity v [m/s].
 inline lie::State tilted_top(const lie::System& top, const Vec3& s_bar, const Vec3& v = Vec3::Zero())
 {
     lie::State x;

@@ -11,8 +11,9 @@ namespace hilda::granular {
 
 ///     F = k δ     while the bodies approach,      F = e² k δ     while they separate
 ///
-/// e is the coefficient of restitution: the work k δ²/2 of the approach to the largest overlap δ returns as e² k δ²/2, at every
-/// velocity. A collision takes π/2 (1 + 1/e) √(m*/k). The force jumps when the velocity changes its sign.
+/// e is the coefficient of restitution: the work k δ²/2 of the approach to the largest overlap δ returns as
+/// e² k δ²/2, at every velocity. A collision takes π/2 (1 + 1/e) √(m*/k). The force jumps when the velocity
+/// changes its sign.
 ///
 /// Walton and Braun (1986), with the stiffness e² k from zero overlap, which needs no history.
 struct MyLaw {

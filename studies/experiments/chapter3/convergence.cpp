@@ -8,8 +8,8 @@
 /// it is
 ///
 /// - less than 10 times the estimated error of the reference solution, see Reference::estimate_errors,
-/// - less than 20 times the difference to a second run with a hundredth of the Newton tolerance and the other linear
-///   solver, which has other rounding errors and a smaller error of Newton's method,
+/// - less than 20 times the difference to a second run with a hundredth of the Newton tolerance and the other
+///   linear solver, which has other rounding errors and a smaller error of Newton's method,
 /// - or at rounding level.
 ///
 /// Without --all, --problem, --integrator and --steps the study is a subset: the schemes of the dissertation

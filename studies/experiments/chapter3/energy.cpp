@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Energy over time (Fang 2022, Fig. 3.5), and its balance for damped and driven models.
 ///
-/// For each problem, scheme and step size, E(t) - E(0) is evaluated at every node. E = T + V is the total energy
-/// with all velocities at the time of the node. For a conservative model this is the error of the energy. For a
-/// model with dampers, drivers, friction or other loads without potential the error is E(t) - E(0) - W(t), where
-/// W is their work (WorkBalance). The table contains the values at the end of the run and the largest ones, in J
-/// and relative to the largest kinetic energy of the run. energy.csv contains the curves.
+/// For each problem, scheme and step size, E(t) - E(0) is evaluated at every node. E = T + V is the total
+/// energy with all velocities at the time of the node. For a conservative model this is the error of the
+/// energy. For a model with dampers, drivers, friction or other loads without potential the error is E(t) -
+/// E(0) - W(t), where W is their work (WorkBalance). The table contains the values at the end of the run and
+/// the largest ones, in J and relative to the largest kinetic energy of the run. energy.csv contains the
+/// curves.
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"

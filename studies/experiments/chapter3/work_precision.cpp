@@ -102,7 +102,8 @@ void work_precision(StudyContext& s)
     for (const Benchmark& c : all)
         for (const lie::Scheme* scheme : schemes)
             for (const double resolution : scheme->adaptive ? rtols : steps)
-                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each node.
+                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each
+                // node.
                 runs.add(c, *scheme, scheme->adaptive ? c.instants.dt * c.instants.stride : resolution,
                          scheme->adaptive ? resolution : 0);
     runs.compute(

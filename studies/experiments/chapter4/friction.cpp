@@ -6,8 +6,8 @@
 /// rows per run. Some experiments have snapshots at the times of the dissertation: NAME-poses.csv,
 /// NAME-contacts.csv and NAME-shapes.json (SnapshotTables).
 ///
-/// --against FILE compares every step of the runs with the columns of a table. --check adds the runs that only the
-/// criteria need, and returns exit code 6 if a criterion fails.
+/// --against FILE compares every step of the runs with the columns of a table. --check adds the runs that
+/// only the criteria need, and returns exit code 6 if a criterion fails.
 
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 #include "studies/framework/columns.hpp"

@@ -148,8 +148,8 @@ Deviations deviations(const std::vector<Boundaries>& rows)
 /// Acceptance criteria: the boundaries agree with the Coulomb bounds. The resolution of a boundary is half a
 /// cell. With the preset `balanced` a sphere keeps slipping where it sticks with the preset `dissertation`.
 /// Therefore the rolling limit does not apply to `balanced`, and its rest limit applies only up to η_r = 1/2;
-/// above, the slip determines whether the sphere comes to rest. A grid that ends at η_r = 1/2 has no slip without
-/// rolling.
+/// above, the slip determines whether the sphere comes to rest. A grid that ends at η_r = 1/2 has no slip
+/// without rolling.
 std::vector<Criterion> criteria(const InclineGrid& g, const Deviations& d, bool dissertation)
 {
     const double half = 0.5 * (g.angle[1] - g.angle[0]), row = g.eta[1] - g.eta[0];

@@ -145,8 +145,8 @@ void print(const std::vector<MassCurve>& curves, StudyText& out)
     table.print(out);
 }
 
-/// Reference values for both presets, by gap: the η_r of the published peaks, and the plateau masses [kg] computed
-/// when the published curves were reproduced
+/// Reference values for both presets, by gap: the η_r of the published peaks, and the plateau masses [kg]
+/// computed when the published curves were reproduced
 struct ExpectedCurve {
     double peak_eta, plateau;
 };
@@ -217,7 +217,8 @@ void compare(StudyContext& s, const std::vector<StackCell>& cells, std::vector<C
     checks.push_back(between("largest difference to the file [kg]", largest, 0, 0.02));
 }
 
-/// A pair of figures: the heaviest stack that stands, and the same with 0.01 kg more on top      Fig. 4.19 b-g
+/// A pair of figures: the heaviest stack that stands, and the same with 0.01 kg more on top      Fig. 4.19
+/// b-g
 struct Pictured {
     double eta_r;
     std::string stable, collapsing;  ///< letters of the figures

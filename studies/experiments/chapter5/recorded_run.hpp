@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Runs of variants of a model that record a curve, write frames for ParaView (--vtk N), and may be repeated with half
-/// of the step for the acceptance criteria.
+/// Runs of variants of a model that record a curve, write frames for ParaView (--vtk N), and may be repeated
+/// with half of the step for the acceptance criteria.
 
 #pragma once
 
@@ -45,8 +45,8 @@ const Row* half_step_run(const std::vector<Row>& runs, const Row& run)
     return half.empty() || half.front()->failed() ? nullptr : half.front();
 }
 
-/// Integrates the run with a Newton tolerance of at most `tolerance`. Frames NAME-*.vtp are written to the directory of
-/// the study, except of a run for the criteria; those of an earlier run are removed.
+/// Integrates the run with a Newton tolerance of at most `tolerance`. Frames NAME-*.vtp are written to the
+/// directory of the study, except of a run for the criteria; those of an earlier run are removed.
 template <class Variant>
 void march_with_frames(RecordedRun<Variant>& run, const StudyOptions& options, double tolerance,
                        std::vector<lie::Observer*> observers, const std::string& name)

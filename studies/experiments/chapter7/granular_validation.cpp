@@ -38,8 +38,8 @@ Table as_table(const ValidationTable& validation_table)
     return table;
 }
 
-/// Keeps the results of the parts with their warnings in the file of the finished jobs, and the state of a long part in a
-/// checkpoint of the output directory. `of_part` receives the warnings of a part.
+/// Keeps the results of the parts with their warnings in the file of the finished jobs, and the state of a
+/// long part in a checkpoint of the output directory. `of_part` receives the warnings of a part.
 granular::ValidationProgress kept_by(const StudyContext& study, granular::ValidationWarnings& warnings,
                                      granular::ValidationWarnings& of_part)
 {

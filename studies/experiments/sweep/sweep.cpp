@@ -4,9 +4,9 @@
 /// For each combination of the values of --sweep, each integrator and each step: the state of one body at the
 /// end, the observed scalar at the end with its extrema over all nodes, energy, residuals, iterations, and
 /// the largest resultant constraint force and torque on a body. The scalar is that of --observable, or that
-/// of the problem. With --keep the motion of each run is written to runs/NUMBER, as CSV or HDF5 (--format). All models are read and
-/// started before the first run, so that an invalid value ends the study at once. A run that fails is a row
-/// with its status.
+/// of the problem. With --keep the motion of each run is written to runs/NUMBER, as CSV or HDF5 (--format).
+/// All models are read and started before the first run, so that an invalid value ends the study at once. A
+/// run that fails is a row with its status.
 
 #include "studies/framework/sweep.hpp"
 #include "dae/model.hpp"

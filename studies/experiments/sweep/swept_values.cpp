@@ -77,8 +77,8 @@ std::string trimmed(const std::string& text)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// The same text for the same value: of a number, an expression without parameters, a JSON value, or a text with or
-/// without quotes
+/// The same text for the same value: of a number, an expression without parameters, a JSON value, or a text
+/// with or without quotes
 std::string canonical(const std::string& value)
 {
     const double number = io::finite_number_in(value);

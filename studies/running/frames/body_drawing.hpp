@@ -8,8 +8,8 @@
 
 namespace hilda::studies {
 
-/// Polygons of a body, in the body frame: its shape if it has one, otherwise its equivalent_solid(). The polygons are
-/// counterclockwise seen from outside.
+/// Polygons of a body, in the body frame: its shape if it has one, otherwise its equivalent_solid(). The
+/// polygons are counterclockwise seen from outside.
 contact::PolygonMesh body_drawing(const dae::Body& body);
 
 /// The homogeneous box or sphere with the mass and the inertia of the body, in the body frame:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What is drawn of a model or a scene: surfaces and solids of bodies, joints, lines; and its frames as VTK files.
+/// What is drawn of a model or a scene: surfaces and solids of bodies, joints, lines; and its frames as VTK
+/// files.
 
 #pragma once
 
@@ -19,8 +20,8 @@ using contact::PolygonMesh;
 
 /// The bodies, joints and lines of a drawing, and the VTK file of a frame.
 ///
-/// File format: VTK XML PolyData with the polygons of the surfaces and solids, a vertex for each contact with a
-/// positive normal force and for each point of a joint, and a line for each spring and link.
+/// File format: VTK XML PolyData with the polygons of the surfaces and solids, a vertex for each contact with
+/// a positive normal force and for each point of a joint, and a line for each spring and link.
 ///     cell data    `body` (number, -1: ground; of a line the first body), `contact` (number, -1 for other cells),
 ///                  `kind` (see Kind)
 ///     point data   `velocity` [m/s]; for vertices of contacts also `normal_force` and `friction` on the

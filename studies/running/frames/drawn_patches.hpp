@@ -7,8 +7,9 @@
 
 namespace hilda::studies {
 
-/// The meshes of a drawing. An unbounded surface is drawn over the region, in its frame, of the bounding spheres of the
-/// surfaces of other bodies and of the contact points, over all frames so far. The drawing outlives this object.
+/// The meshes of a drawing. An unbounded surface is drawn over the region, in its frame, of the bounding
+/// spheres of the surfaces of other bodies and of the contact points, over all frames so far. The drawing
+/// outlives this object.
 class DrawnPatches {
 public:
     explicit DrawnPatches(const Drawing& drawing);

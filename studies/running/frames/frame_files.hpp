@@ -12,13 +12,14 @@
 
 namespace hilda::studies {
 
-/// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., and DIR/NAME.pvd with the list of files and times. Each frame and the
-/// list are complete after add(). Kept in memory: the times and the regions of the unbounded surfaces.
+/// Writes DIR/vtk/NAME-000000.vtp, -000001.vtp, ..., and DIR/NAME.pvd with the list of files and times. Each
+/// frame and the list are complete after add(). Kept in memory: the times and the regions of the unbounded
+/// surfaces.
 ///
-/// The drawn part of an unbounded surface depends on all frames. Until close() a frame shows the part that it and the
-/// frames before it need. close() writes the frames with an earlier part again; their motions are in DIR/checkpoint.NAME,
-/// an archive of Drawing::Frame for each frame, which drawings without unbounded surfaces do not need.
-/// The result is that of Snapshots::write(). All functions: io::IoError.
+/// The drawn part of an unbounded surface depends on all frames. Until close() a frame shows the part that it
+/// and the frames before it need. close() writes the frames with an earlier part again; their motions are in
+/// DIR/checkpoint.NAME, an archive of Drawing::Frame for each frame, which drawings without unbounded
+/// surfaces do not need. The result is that of Snapshots::write(). All functions: io::IoError.
 class FrameFiles {
 public:
     /// The drawing must outlive this object.
@@ -31,8 +32,8 @@ public:
     void sync();
     /// Writes the state to a checkpoint; or reads it, and removes the list entries of later frames.
     void transfer(io::Archive& a);
-    /// Writes the frames with an earlier part of an unbounded surface again, removes the files of later frames, and
-    /// synchronises the list.
+    /// Writes the frames with an earlier part of an unbounded surface again, removes the files of later
+    /// frames, and synchronises the list.
     void close();
 
     /// Removes the files of an earlier run with this name.

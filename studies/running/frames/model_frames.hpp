@@ -9,8 +9,8 @@
 
 namespace hilda::studies {
 
-/// The drawing of a model: its bodies, joints, springs and contacts. A body is drawn by the surfaces of its contacts, or
-/// by body_drawing() if it has no bounded surface. The model must outlive this object.
+/// The drawing of a model: its bodies, joints, springs and contacts. A body is drawn by the surfaces of its
+/// contacts, or by body_drawing() if it has no bounded surface. The model must outlive this object.
 class ModelDrawing {
 public:
     explicit ModelDrawing(const dae::Model& model);

@@ -33,7 +33,8 @@ double turned(const Rotation& from, const Rotation& to, double time)
     return time * std::max(from.omega_bar.norm(), to.omega_bar.norm());
 }
 
-/// ω̄ at the fraction s of the time between two nodes: cubic polynomial with the values and derivatives of both
+/// ω̄ at the fraction s of the time between two nodes: cubic polynomial with the values and derivatives of
+/// both
 lie::Vec3 omega_bar(const Rotation& from, const Rotation& to, double time, double s)
 {
     const double r = 1 - s;
@@ -42,10 +43,10 @@ lie::Vec3 omega_bar(const Rotation& from, const Rotation& to, double time, doubl
 }
 
 /// The first and the third angle are continuous: they are followed from node to node and pass ±π without a
-/// jump. Between two nodes of a variable-step integrator a body may turn several times: the angles are followed
-/// along the rotation with the interpolated ω̄, and the remaining difference to the orientation of the second node
-/// is distributed over it. Where the second angle passes the end of its range, both jump by π, as the angles are
-/// singular there.
+/// jump. Between two nodes of a variable-step integrator a body may turn several times: the angles are
+/// followed along the rotation with the interpolated ω̄, and the remaining difference to the orientation of
+/// the second node is distributed over it. Where the second angle passes the end of its range, both jump by
+/// π, as the angles are singular there.
 class EulerAngles final : public TableSink {
 public:
     EulerAngles(const RunSetup& run, const std::string& name)

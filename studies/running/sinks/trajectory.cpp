@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Table trajectory: the motion of all bodies at the output rows; with --reactions also forces and multipliers.
+/// Table trajectory: the motion of all bodies at the output rows; with --reactions also forces and
+/// multipliers.
 
 #include "dae/model.hpp"
 #include "dae/start.hpp"

@@ -29,7 +29,8 @@ public:
     virtual void row(const std::vector<double>& values) = 0;
     /// Synchronises with the disk what save and restore need, see transfer(). io::IoError.
     virtual void sync() = 0;
-    /// Writes what a resumed run needs to the archive; or reads it, instead of open(), and removes all later rows.
+    /// Writes what a resumed run needs to the archive; or reads it, instead of open(), and removes all later
+    /// rows.
     virtual void transfer(io::Archive& a) = 0;
     /// Writes what remains. io::IoError.
     virtual void close() = 0;

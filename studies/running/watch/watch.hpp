@@ -53,8 +53,8 @@ struct Finding {
 
 /// Observes a run.
 ///
-/// - Every node: rotation of each body in a step, condition of the matrix, overlap of compliant contacts, and for a
-///   contact with a larger overlap than before its stability limit
+/// - Every node: rotation of each body in a step, condition of the matrix, overlap of compliant contacts, and
+///   for a contact with a larger overlap than before its stability limit
 /// - Every 16th node: the stability limit of all forces that may have one
 /// - Every 16th node and every output row: the balance of energy. Its findings are for passive models only.
 ///

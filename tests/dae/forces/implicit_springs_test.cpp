@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Springs and dampers that half-implicit schemes evaluate implicitly: the recursion of an oscillator, the order of
-/// the schemes, stability at any step, and the same motion with both linear solvers.
+/// Springs and dampers that half-implicit schemes evaluate implicitly: the recursion of an oscillator, the
+/// order of the schemes, stability at any step, and the same motion with both linear solvers.
 
 #include "dae/forces/bushing.hpp"
 #include "dae/forces/limits.hpp"

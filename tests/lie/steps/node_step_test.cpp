@@ -13,8 +13,8 @@ using lie::Vec3;
 
 namespace {
 
-/// A body that cannot move along a direction, which depends on the state: x if the discrete state and α are 0, y
-/// if one of them is 1, z if both are.
+/// A body that cannot move along a direction, which depends on the state: x if the discrete state and α are
+/// 0, y if one of them is 1, z if both are.
 class GuidedBody final : public lie::System {
 public:
     GuidedBody()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Gear, screw, rack and pinion, planar joint, point on a curve, bushing and limits: motions in closed form, with
-/// schemes on rotation matrices, on Euler parameters and with IDA.
+/// Gear, screw, rack and pinion, planar joint, point on a curve, bushing and limits: motions in closed form,
+/// with schemes on rotation matrices, on Euler parameters and with IDA.
 
 #include "dae/constraints/point_on_curve.hpp"
 #include "dae/forces/bushing.hpp"
@@ -60,8 +60,8 @@ State run(const Scheme& s, Mechanism& m, double end)
     return lie::march(m.x, *integrator, lie::TimeGrid::over(end, s.h > 0 ? s.h : 0.01)).row.back();
 }
 
-/// Angle about z of a body that rotates with a constant acceleration to the angle `expected`, with the expected
-/// number of revolutions
+/// Angle about z of a body that rotates with a constant acceleration to the angle `expected`, with the
+/// expected number of revolutions
 double angle(const lie::Motion& body, double expected)
 {
     const double within = std::atan2(body.A(1, 0), body.A(0, 0));
@@ -93,7 +93,8 @@ TEST_CASE("a gear pair accelerates with the inertia reduced to one axis", "[refe
 
 TEST_CASE("the planet of a planetary gear train rotates as Willis' equation says", "[reference][constraints]")
 {
-    // Ring fixed to the ground, sun and three planets on a carrier: two of the rows for the planets are redundant.
+    // Ring fixed to the ground, sun and three planets on a carrier: two of the rows for the planets are
+    // redundant.
     const double R_sun = 0.1, R_planet = 0.05, R_ring = R_sun + 2 * R_planet, end = 1.5;
     Mechanism m;
     const int sun = m.add("sun", 1, {1, 1, 0.01}, O), carrier = m.add("carrier", 1, {1, 1, 0.05}, O);
@@ -144,7 +145,8 @@ TEST_CASE("a pinion drives a rack with the reduced inertia", "[reference][constr
               pinion = m.add("pinion", 1, {1, 1, J}, O);
     m.model.constrain("guide", translational(ground, {0, -radius, 0}, X, rack, O, X, m.x));
     m.model.constrain("bearing", revolute(ground, O, Z, pinion, O, Z));
-    // The pinion is above the rack. A rotation about z moves the pinion along -x of the rack, the rack along +x.
+    // The pinion is above the rack. A rotation about z moves the pinion along -x of the rack, the rack along
+    // +x.
     m.model.constrain("teeth", rack_and_pinion(rack, O, -X, Z, pinion, O, Z, radius, m.x));
     m.torque(pinion, n);
     const State x = run(scheme, m, end);
@@ -169,8 +171,8 @@ TEST_CASE("a puck on a plane moves like a free body in two dimensions", "[refere
 
 TEST_CASE("a bead on a cycloid has the same period at every amplitude", "[reference][constraints]")
 {
-    // Huygens: x = a (s + sin s), z = a (1 - cos s). The arc length from the lowest point, 4 a sin(s/2), is harmonic
-    // with the frequency sqrt(g/(4 a)).
+    // Huygens: x = a (s + sin s), z = a (1 - cos s). The arc length from the lowest point, 4 a sin(s/2), is
+    // harmonic with the frequency sqrt(g/(4 a)).
     const Scheme scheme = GENERATE(from_range(std::begin(schemes), std::end(schemes)));
     const double s_0 = GENERATE(0.4, 2.2), a = 0.5, end = 3;
     Mechanism m;

@@ -16,8 +16,8 @@ using studies::latex;
 
 namespace {
 
-/// Faults of a LaTeX text of tables: unbalanced braces, environments or $, unescaped special characters, rows with
-/// another number of cells than their tabular has columns
+/// Faults of a LaTeX text of tables: unbalanced braces, environments or $, unescaped special characters, rows
+/// with another number of cells than their tabular has columns
 std::vector<std::string> faults(const std::string& text)
 {
     std::vector<std::string> all, open;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Formats and choice of figures: --figure-format, --integrator and --quantity. What a figure shows is tested by
-/// tests/studies/figures_test.py.
+/// Formats and choice of figures: --figure-format, --integrator and --quantity. What a figure shows is tested
+/// by tests/studies/figures_test.py.
 
 #include "studies/running/plot.hpp"
 #include "tests/studies/program.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// hilda kinematics: motion and driver loads of driven mechanisms, against time integration and a closed form.
+/// hilda kinematics: motion and driver loads of driven mechanisms, against time integration and a closed
+/// form.
 #include "tests/studies/csv.hpp"
 #include "tests/studies/refused.hpp"
 

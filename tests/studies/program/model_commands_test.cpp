@@ -265,8 +265,8 @@ TEST_CASE(
     CHECK_FALSE(fs::exists(in / "z" / "euler.csv"));
 }
 
-// Rows 0.11 s apart, with 3.3 turns between two rows. The first body spins about a fixed axis, the second one nods at the
-// same time, the third one speeds up.
+// Rows 0.11 s apart, with 3.3 turns between two rows. The first body spins about a fixed axis, the second one
+// nods at the same time, the third one speeds up.
 TEST_CASE("Euler angles count the turns between two rows of each integrator", "[studies][run][euler]")
 {
     const std::string integrator =

@@ -57,8 +57,8 @@ TEST_CASE("each built-in model written to a file passes the check and gives the 
           "[studies][command line]")
 {
     const Scratch in;
-    // integrators, and the number of models that each accepts: rA-full-1 and rA-half-2 have no rolling without slip, and
-    // ida-rp has no contacts
+    // integrators, and the number of models that each accepts: rA-full-1 and rA-half-2 have no rolling
+    // without slip, and ida-rp has no contacts
     const auto [integrator, accepted] = GENERATE(table<std::string, size_t>(
         {{"rA-half-1", 24}, {"rA-full-1", 21}, {"rA-half-2", 21}, {"ida-rp", 13}}));
     size_t runs = 0;

@@ -59,8 +59,8 @@ TEST_CASE("an adaptive integrator rejects --step, --checkpoint and --resume", "[
 
 namespace {
 
-/// A parallelogram of three bars of 1 m and 1 kg. It lies flat, with a further degree of freedom, at about 0.711 s,
-/// 1.218 s.
+/// A parallelogram of three bars of 1 m and 1 kg. It lies flat, with a further degree of freedom, at about
+/// 0.711 s, 1.218 s.
 const char* const parallelogram = R"({"hilda_model": 1, "name": "m", "end": 1.3, "gravity": [0, -9.81, 0],
  "bodies": [
   {"name": "a", "mass": 1, "inertia": [0.08, 0.001, 0.08], "r": [0, 0.5, 0], "r_dot": [0.5, 0, 0], "omega": [0, 0, -1]},

@@ -42,7 +42,8 @@ const bool brick = register_experiment(
      .expected = {{"damped", "x at rest, damped [m]", last("x"), rest, 1e-9 * rest, "m g sin(alpha) / K_E"},
                   {"damped", "number of steps with slip, damped", count("slips"), 0, 0, "sticks"}}});
 
-// On the slope of arctan mu_s the required friction equals the static bound; the spring force approaches it from below.
+// On the slope of arctan mu_s the required friction equals the static bound; the spring force approaches it
+// from below.
 const bool brick_angles = register_experiment(
     {.name = "brick-angles",
      .figure = "4.7",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Friction experiments (Fang 2022, Sec. 4.4): short runs of one body on a plane, and their acceptance criteria.
+/// Friction experiments (Fang 2022, Sec. 4.4): short runs of one body on a plane, and their acceptance
+/// criteria.
 
 #pragma once
 

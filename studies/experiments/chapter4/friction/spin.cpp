@@ -43,8 +43,8 @@ BodyOnPlane spin(const Spinner& body, const contact::FrictionParameters& p, doub
         .friction = p,
         .h = h,
         .end = end,
-        // For K_E >= 1e7 N/m the step is above the stability limit of the sliding springs, but the sliding springs
-        // are not excited here.
+        // For K_E >= 1e7 N/m the step is above the stability limit of the sliding springs, but the sliding
+        // springs are not excited here.
         .above_stability_limit = true,
         .columns = {"t", "omega", "Psi", "T", "T_E", "angle", "slips"},
         .record = [angle = 0.](Curve& c, const Node& n) mutable {
@@ -118,7 +118,8 @@ const bool spinning = register_experiment({.name = "spin",
 
 // Fig. 4.16
 
-/// Balls with their stop times [s]: that of an independent code with the preset `dissertation`, and the rigid one
+/// Balls with their stop times [s]: that of an independent code with the preset `dissertation`, and the rigid
+/// one
 struct Ball {
     std::string name;
     double R, rho, E, nu, published, rigid;
@@ -201,8 +202,9 @@ std::vector<ExperimentRun> ellipsoids()
     return all;
 }
 
-/// Spinning resistance of the steel ellipsoid at K_E = 5e6 N/m on a contact point with the mean curvature kappa [1/m]:
-/// stiffness [N m/rad] and micro-deflection at the static bound [rad]                                Table 4.7
+/// Spinning resistance of the steel ellipsoid at K_E = 5e6 N/m on a contact point with the mean curvature
+/// kappa [1/m]: stiffness [N m/rad] and micro-deflection at the static bound [rad]
+///     Table 4.7
 struct SpinSpring {
     double K = 0, S = 0;
 };

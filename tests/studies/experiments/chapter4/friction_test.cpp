@@ -124,7 +124,8 @@ TEST_CASE("the snapshots of the friction study are those of the dissertation", "
         CHECK(number(force[k], "Cy") == Approx(number(incline[k], "ry")));  // below the centre
         CHECK(number(force[k], "Cz") == Approx(0).margin(1e-12));
     }
-    // up the slope in phases I and II, down in III and IV; friction on the sphere down the slope in I, up in IV
+    // up the slope in phases I and II, down in III and IV; friction on the sphere down the slope in I, up in
+    // IV
     CHECK(number(incline[0], "vy") > 0);
     CHECK(number(incline[1], "vy") > 0);
     CHECK(number(incline[2], "vy") < 0);
@@ -135,7 +136,8 @@ TEST_CASE("the snapshots of the friction study are those of the dissertation", "
     const auto spin = shown("spin-poses.csv"), frame = shown("spin-contacts.csv");
     CHECK(times(spin) == std::vector<double>{0, 2, 4, 8});
     for (size_t k = 0; k < frame.size(); ++k) {
-        // The contact frame is carried by the sphere (preset dissertation): the angle between them is constant.
+        // The contact frame is carried by the sphere (preset dissertation): the angle between them is
+        // constant.
         const double cosine =
             number(frame[k], "ux") * number(spin[k], "A11") + number(frame[k], "uy") * number(spin[k], "A21");
         const double at_start =

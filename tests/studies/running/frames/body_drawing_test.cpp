@@ -11,8 +11,8 @@ using lie::Vec3;
 
 namespace {
 
-/// Volume and inertia about the origin of a homogeneous polyhedron of unit density, summed over the tetrahedra
-/// from the origin to the triangles of its faces
+/// Volume and inertia about the origin of a homogeneous polyhedron of unit density, summed over the
+/// tetrahedra from the origin to the triangles of its faces
 struct Polyhedron {
     double volume = 0;
     Mat3 J = Mat3::Zero();
@@ -76,7 +76,8 @@ TEST_CASE("a body with a shape is drawn as this shape", "[studies][vtk]")
         dae::Body body{.name = shape.type, .m = 2, .J_bar = shape.inertia(2)};
         body.shape = shape;
         const Polyhedron drawn(studies::body_drawing(body));
-        // Inscribed polyhedra: the volume is smaller, by up to 8 % for the ellipsoid; the orientation is outward.
+        // Inscribed polyhedra: the volume is smaller, by up to 8 % for the ellipsoid; the orientation is
+        // outward.
         const double margin = shape.type == "box" ? 1e-12 : 0.08;
         CHECK(drawn.volume == Approx(shape.volume()).epsilon(margin));
         CHECK((2 / drawn.volume * drawn.J - shape.inertia(2)).norm() < margin * shape.inertia(2).norm());

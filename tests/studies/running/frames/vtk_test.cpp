@@ -491,7 +491,8 @@ TEST_CASE("a joint outside the solid of its body is connected with the centre of
 
 TEST_CASE("the drawn patch of an unbounded surface covers the region of the other bodies", "[studies][vtk]")
 {
-    // A cone of 45 degrees: the point above (x, y) is at the height sqrt(x² + y²), its projection is elsewhere.
+    // A cone of 45 degrees: the point above (x, y) is at the height sqrt(x² + y²), its projection is
+    // elsewhere.
     const contact::Cone cone(0.25 * 3.14159265358979, true);
     const studies::DrawingExtent reach{.box = {Vec3(-1, -1, 0.1), Vec3(1, 1, 1.2)}, .scene_size = 3};
     Eigen::AlignedBox3d box;

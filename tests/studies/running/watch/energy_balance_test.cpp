@@ -17,8 +17,8 @@ using studies::EnergyBalance;
 
 namespace {
 
-/// A body of 2 kg on a spring of 50 N/m along x (frequency 5 rad/s), deflected by 0.1 m, with a damper [N s/m] and a
-/// force along x [N]
+/// A body of 2 kg on a spring of 50 N/m along x (frequency 5 rad/s), deflected by 0.1 m, with a damper [N
+/// s/m] and a force along x [N]
 struct Oscillator {
     dae::Description d;
 

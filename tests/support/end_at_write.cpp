@@ -19,12 +19,14 @@
 #include <sstream>
 #include <string>
 
+// NOLINTBEGIN(bugprone-reserved-identifier): the names that the linker gives wrapped functions
 extern "C" ssize_t __real_write(int descriptor, const void* bytes, size_t count);
 extern "C" ssize_t __wrap_write(int descriptor, const void* bytes, size_t count);
 extern "C" int __real_fsync(int descriptor);
 extern "C" int __wrap_fsync(int descriptor);
 extern "C" int __real_fdatasync(int descriptor);
 extern "C" int __wrap_fdatasync(int descriptor);
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace {
 

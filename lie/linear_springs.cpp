@@ -12,11 +12,13 @@ namespace hilda::lie {
 template <int n>
 bool LinearSprings<n>::is_stable(double h, double damping_factor) const
 {
+    if (!K.allFinite() || !D.allFinite() || !W.allFinite()) return false;
     const Vector P = K.binaryExpr(D, [&](double k, double c) {
         const double at = k < 0 ? std::clamp(-damping_factor * c / k, 0., h) : h;
         return std::max(0., 2 * damping_factor * at * c + at * at * k);
     });
     if (P.dot(W.diagonal()) < 4) return true;  // the trace of W P is an upper limit
+    if (!P.allFinite()) return false;
     const Vector root = P.cwiseSqrt();
     const Matrix scaled = root.asDiagonal() * W * root.asDiagonal();  // has the eigenvalues of W P
     return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() < 4;

@@ -2,6 +2,7 @@
 #include "contact/compliant/contact.hpp"
 
 #include "dae/body.hpp"
+#include "io/json.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -96,7 +97,11 @@ ContactState CompliantContact::evaluate(const Motion& bi, const Motion& bj,
 ContactState CompliantContact::evaluate_at(const ContactPoint& contact_point, const Motion& bi,
                                            const Motion& bj, const ContactHistory& history) const
 {
-    return contact_state(contact_point, law->force(normal_input(contact_point, bi, bj)), bi, bj, history);
+    const double N = law->force(normal_input(contact_point, bi, bj));
+    if (!std::isfinite(N))
+        throw lie::NonFinite("contact '" + name + "': the normal force is not finite at an overlap of " +
+                             io::shortest(-contact_point.gap) + " m");
+    return contact_state(contact_point, N, bi, bj, history);
 }
 
 bool CompliantContact::is_near_contact(const Motion& bi, const Motion& bj,

@@ -5,6 +5,8 @@
 #include "lie/loads.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
 using namespace hilda;
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -48,6 +50,23 @@ TEST_CASE("the stability limit of a damped oscillator is where the roots of the 
         CHECK(decays(stiffness + damping - 2, 1 - damping) == (h < limit));
         CHECK(spring.is_stable(h, d_euler) == (h < limit));
     }
+}
+
+TEST_CASE("no step is stable with a stiffness, damping or mass that is not finite", "[lie][stable]")
+{
+    const double bad = GENERATE(std::numeric_limits<double>::infinity(), std::nan(""));
+    const Springs finite{
+        .W = MatrixXd::Identity(2, 2), .K = VectorXd::Constant(2, 1e3), .D = VectorXd::Constant(2, 10)};
+    Springs stiff = finite, damped = finite, light = finite;
+    stiff.K[1] = damped.D[1] = light.W(1, 1) = bad;
+    CHECK(finite.is_stable(1e-9, 1));
+    for (const Springs& springs : {stiff, damped, light}) {
+        CHECK_FALSE(springs.is_stable(1e-9, 1));
+        CHECK(springs.stable_step(1) < 1e-14);
+    }
+    Springs largest = finite;
+    largest.K[1] = 1e308;  // h² K overflows for a large h
+    CHECK(largest.stable_step(1) < 1e-14);
 }
 
 TEST_CASE("the stability limit of coupled springs is that of their highest frequency", "[lie][stable]")

@@ -242,6 +242,17 @@ TEST_CASE("a failed search at the start is a NumericalFailure", "[contact]")
     }
 }
 
+TEST_CASE("a normal force that is not finite ends the run with the name of the contact", "[contact]")
+{
+    // 2 E* overflows; the damping of a restitution of 1 is 0 times infinity
+    const contact::CompliantContact c("c", sphere(0.25), plane, ball(1, 0.1), {},
+                                      std::make_shared<contact::Hertz>(1e308, 1), friction({.K_E = 1}));
+    CHECK(c.evaluate(at({0, 0, 0.3}), Motion(), {}).N == 0);
+    CHECK_THROWS_MATCHES(
+        c.evaluate(at({0, 0, 0.1875}), Motion(), {}), lie::NonFinite,
+        Catch::Message("contact 'c': the normal force is not finite at an overlap of 0.0625 m"));
+}
+
 TEST_CASE("a friction law rejects invalid parameters", "[contact][friction]")
 {
     const auto why = [](const FrictionParameters& p) { return refusal([&] { friction(p); }); };

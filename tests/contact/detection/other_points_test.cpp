@@ -126,7 +126,8 @@ TEST_CASE("a ball too large for the rim of its bowl ends the run where it touche
     CHECK(out.most_energy < ball.energy(ball.x) * (1 + 1e-3) + 1e-3);
 }
 
-TEST_CASE("a ball dropped on a ring that is too narrow does not fall through it", "[contact][detection]")
+TEST_CASE("a ball dropped on a ring that is too narrow does not fall through it (long)",
+          "[contact][detection]")
 {
     constexpr double R = 0.35;
     const double x0 = GENERATE(0., 0.02, 0.1);

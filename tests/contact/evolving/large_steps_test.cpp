@@ -51,7 +51,7 @@ TEST_CASE("a ball that turns by 0.8 rad per step rolls in a cylinder as with sma
     }
 }
 
-TEST_CASE("a fast Euler disk rolls with steps of a millisecond", "[contact][evolving]")
+TEST_CASE("a fast Euler disk rolls with steps of a millisecond (long)", "[contact][evolving]")
 {
     // The centre is at rest. Thin ring: 4 g = R Ω² sin θ; the tube changes it slightly.
     constexpr double R = 0.0375, a = 0.003, m = 0.4;

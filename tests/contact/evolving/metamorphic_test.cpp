@@ -155,7 +155,8 @@ TEST_CASE("evolving contacts do not depend on frame, order and units (long)", "[
     }
 }
 
-TEST_CASE("four times the gravity at half the step gives the same motion bit for bit", "[contact][evolving]")
+TEST_CASE("four times the gravity at half the step gives the same motion bit for bit (long)",
+          "[contact][evolving]")
 {
     for (const char* scheme : {"rA-half-1", "rA-half-1-kick", "rA-half-1-momentum"}) {
         const auto run_with = [&](double g, double h) {

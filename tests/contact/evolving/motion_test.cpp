@@ -290,7 +290,7 @@ TEST_CASE("a ball slides and rolls along the wall of an upright cylinder (long)"
     }
 }
 
-TEST_CASE("a ball loops inside an ellipsoid through normals in the xy-plane", "[contact][evolving]")
+TEST_CASE("a ball loops inside an ellipsoid through normals in the xy-plane (long)", "[contact][evolving]")
 {
     const auto loop = [](NormalRows normal_rows,
                          const std::function<void(const ContactModel&, const lie::State&, long)>& f) {
@@ -352,7 +352,7 @@ TEST_CASE("a ball in a V-groove has equal normal forces on both walls", "[contac
     }
 }
 
-TEST_CASE("a ball circles in a toroidal groove on its steady orbit", "[contact][evolving][order]")
+TEST_CASE("a ball circles in a toroidal groove on its steady orbit (long)", "[contact][evolving][order]")
 {
     const double R_t = 2, q = 0.6 - 0.2, beta = 0.7, g = 9.81;
     const double Omega = std::sqrt(g * std::tan(beta) / (R_t + q * std::sin(beta))),

@@ -134,7 +134,7 @@ TEST_CASE("balls that touch each other in a bowl lose energy until the end of th
     CHECK(rise < 1e-3 * (start - least));
 }
 
-TEST_CASE("a rod that jams on the floor takes the impact that stops its end and gains no energy",
+TEST_CASE("a rod that jams on the floor takes the impact that stops its end and gains no energy (long)",
           "[contact][evolving][implicit]")
 {
     const bool unilateral = GENERATE(true, false);

@@ -331,7 +331,7 @@ std::pair<std::vector<Vec3>, std::vector<Triangle>> body_with_fan(int n)
 
 }  // namespace
 
-TEST_CASE("a vertex with 14000 triangles is checked in a time proportional to their number",
+TEST_CASE("a vertex with 14000 triangles is checked in a time proportional to their number (long)",
           "[contact][mesh]")
 {
     // Processor time, the shortest of three: other programs on the machine do not change it by much.
@@ -354,7 +354,8 @@ TEST_CASE("a vertex with 14000 triangles is checked in a time proportional to th
             Catch::EndsWith(" vertices are within 0.975 m, 2.5 times its longest edge; the limit is 4000"));
 }
 
-TEST_CASE("the surface of a mesh with a vertex of many triangles is that of its sphere", "[contact][mesh]")
+TEST_CASE("the surface of a mesh with a vertex of many triangles is that of its sphere (long)",
+          "[contact][mesh]")
 {
     const auto [vertices, triangles] = body_with_fan(300);
     const MeshSurface mesh{TriangleMesh(vertices, triangles)};

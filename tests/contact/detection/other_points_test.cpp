@@ -112,7 +112,7 @@ TEST_CASE("pairs that may have several contact points are known", "[contact][det
         CHECK(OtherPoints::possible(i, j));
 }
 
-TEST_CASE("a ball too large for the rim of its bowl ends the run where it touches the second point",
+TEST_CASE("a ball too large for the rim of its bowl ends the run where it touches the second point (long)",
           "[contact][detection]")
 {
     const Kind kind = GENERATE(Kind::hertz, Kind::unilateral);

@@ -24,7 +24,7 @@ const char* const schemes[] = {"rA-half-1-momentum", "rA-half-1-kick", "rA-half-
 
 }  // namespace
 
-TEST_CASE("a ball that turns by 0.8 rad per step rolls in a cylinder as with small steps",
+TEST_CASE("a ball that turns by 0.8 rad per step rolls in a cylinder as with small steps (long)",
           "[contact][evolving]")
 {
     constexpr double R = 1, r = 0.1, m = 1, v = 8, I = 0.4 * m * r * r;

@@ -80,7 +80,7 @@ struct Impact {
 
 }  // namespace
 
-TEST_CASE("an impact of a contact with ideal rolling follows its law and supplies no energy",
+TEST_CASE("an impact of a contact with ideal rolling follows its law and supplies no energy (long)",
           "[contact][unilateral]")
 {
     int limited = 0;

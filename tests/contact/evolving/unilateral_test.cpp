@@ -181,7 +181,7 @@ TEST_CASE("a ball leaves a sphere at the angle of the closed form with second or
     }
 }
 
-TEST_CASE("a ball with e = 1 in a bowl conserves energy over its impacts", "[contact][unilateral]")
+TEST_CASE("a ball with e = 1 in a bowl conserves energy over its impacts (long)", "[contact][unilateral]")
 {
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     const Ball b(0.5, 1, bowl, Vec3(0.4, 0.9, 0.3), Vec3(0.2, -0.1, 0), {true, 1});

@@ -201,7 +201,7 @@ struct Spatial {
 
 }  // namespace
 
-TEST_CASE("implicit springs keep the order of the schemes", "[dae][forces][implicit]")
+TEST_CASE("implicit springs keep the order of the schemes (long)", "[dae][forces][implicit]")
 {
     constexpr double end = 0.4;
     const auto [scheme, order] = GENERATE(std::pair("rA-half-1", 1), std::pair("rA-half-1-kick", 2),

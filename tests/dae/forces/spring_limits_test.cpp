@@ -63,7 +63,7 @@ double root(double k, double c, double w, double beta)
 
 }  // namespace
 
-TEST_CASE("the limit of a spring-damper is the step at which the schemes become unstable",
+TEST_CASE("the limit of a spring-damper is the step at which the schemes become unstable (long)",
           "[dae][forces][stable]")
 {
     const auto [k, c] = GENERATE(std::pair(1e6, 0.), std::pair(1e6, 500.), std::pair(10., 4e4));

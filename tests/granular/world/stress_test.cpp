@@ -70,7 +70,7 @@ TEST_CASE("the mean stress of a column under gravity is half the weight over the
     only_upright(sigma, 1e-4 * weight / A);
 }
 
-TEST_CASE("the stress is symmetric without friction, and at rest with friction", "[granular][stress]")
+TEST_CASE("the stress is symmetric without friction, and at rest with friction (long)", "[granular][stress]")
 {
     const double mu = GENERATE(0., 0.4);
     std::mt19937 engine(3);

@@ -143,7 +143,7 @@ TEST_CASE("the dissipated energy of a damped collision is 1 - e² of the energy"
     CHECK(world.watch().largest_momentum_residual < 1e-6 * world.watch().largest_momentum);
 }
 
-TEST_CASE("energy and momentum of a bed under gravity are balanced", "[granular][watch]")
+TEST_CASE("energy and momentum of a bed under gravity are balanced (long)", "[granular][watch]")
 {
     const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung);
     INFO(granular::scheme_names[static_cast<int>(scheme)]);
@@ -164,7 +164,7 @@ TEST_CASE("energy and momentum of a bed under gravity are balanced", "[granular]
     CHECK(w.impulse.norm() < 0.1 * w.mass * 9.81 * world->t());
 }
 
-TEST_CASE("gravity along a periodic axis does work", "[granular][watch]")
+TEST_CASE("gravity along a periodic axis does work (long)", "[granular][watch]")
 {
     const auto world = bed(Scheme::symplectic_euler, {4, 0, -9}, true);
     world->step(1);
@@ -365,7 +365,7 @@ TEST_CASE("particles and velocities from outside start a new balance", "[granula
     CHECK(world.watch().largest_momentum_residual < 1e-5 * world.watch().largest_momentum);
 }
 
-TEST_CASE("the watch does not change the results and survives a checkpoint", "[granular][watch]")
+TEST_CASE("the watch does not change the results and survives a checkpoint (long)", "[granular][watch]")
 {
     const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet);
     const auto without = bed(scheme), with = bed(scheme), resumed = bed(scheme);

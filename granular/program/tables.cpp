@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// particles.csv and contacts.csv: the particles and contacts at the end of the run.
+/// particles.csv, and with --contacts contacts.csv: the particles and contacts at the end of the run.
 
 #include "granular/program/sink.hpp"
 #include "granular/world/output.hpp"
@@ -13,24 +13,33 @@ namespace {
 
 class Tables final : public Sink {
 public:
-    explicit Tables(const CaseSetup& run) : world(*run.c.world), directory(run.directory) {}
+    explicit Tables(const CaseSetup& run)
+        : world(*run.c.world), directory(run.directory), with_contacts(run.options.contains("--contacts"))
+    {}
 
     long interval() const override { return std::numeric_limits<long>::max(); }
     void node(const World&) override {}
     void close() override
     {
         io::write_file(directory + "/particles.csv", particles_csv(world));
-        io::write_file(directory + "/contacts.csv", contacts_csv(world));
+        if (with_contacts) io::write_file(directory + "/contacts.csv", contacts_csv(world));
     }
-    std::vector<std::string> files() const override { return {"particles.csv", "contacts.csv"}; }
+    std::vector<std::string> files() const override
+    {
+        if (with_contacts) return {"particles.csv", "contacts.csv"};
+        return {"particles.csv"};
+    }
 
 private:
     const World& world;
     const std::string& directory;
+    const bool with_contacts;
 };
 
 const bool registered = io::Registry<SinkType>::add(
     {.name = "tables",
+     .options = {{.name = "--contacts",
+                  .help = "write contacts.csv as well: all contacts at the end of the run"}},
      .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> { return std::make_unique<Tables>(run); },
      .files = {"particles.csv", "contacts.csv"}});
 

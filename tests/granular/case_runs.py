@@ -42,7 +42,7 @@ class Runs:
 
     def start(self, name, *arguments, program=None):
         threads = () if "--threads" in arguments else ("--threads", "1")
-        return subprocess.Popen([program or self.program, f"{name}.json", *threads, *arguments], cwd=self.folder,
+        return subprocess.Popen([program or self.program, f"{name}.json", "--contacts", *threads, *arguments], cwd=self.folder,
                                 env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def finish(self, name, *arguments, code=0, **options):

@@ -40,7 +40,7 @@ def main():
         interval = 50 * case["step"]
         case.update(checkpoint_interval=interval, interval=interval, frame_interval=4 * interval)
         (folder / "bed.json").write_text(json.dumps(case))
-        command = [row.granular, "bed.json", "--quiet", "--interval", interval]
+        command = [row.granular, "bed.json", "--quiet", "--contacts", "--interval", interval]
         parts = 12
         row.run(command + ["--end", repr(parts * interval), "--output", "grains", "--force"], cwd=folder)
         codes = []

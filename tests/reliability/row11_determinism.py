@@ -36,7 +36,7 @@ def main():
             (folder / f"{name}.json").write_text(json.dumps(case))
             end = repr(steps * case["step"])
             commands[name] = [row.granular, f"{name}.json", "--end", end, "--interval", repr(50 * case["step"]),
-                              "--quiet", "--threads"]
+                              "--quiet", "--contacts", "--threads"]
         studies = (["convergence", "--problem", "double_pendulum", "--steps", "4e-3,2e-3", "--end", "0.5"],
                    ["energy", "--problem", "slider_crank", "--end", "0.5"],
                    ["compare", "--problem", "four_link", "--steps", "1e-3", "--end", "0.3"])

@@ -14,7 +14,12 @@ std::vector<std::string> gpus(std::string& why_not)
 {
     int count = 0;
     const cudaError_t code = cudaGetDeviceCount(&count);
-    // a missing driver (error 35) and a missing device (error 100) are treated alike
+    // Without a driver the runtime reports a driver that is older than itself, of version 0.
+    int driver = 0;
+    if (code == cudaErrorInsufficientDriver && cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
+        why_not = "no NVIDIA driver is loaded";
+        return {};
+    }
     if (code != cudaSuccess) {
         why_not = cudaGetErrorString(code);
         return {};

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/boundary_keys.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <set>
 
 namespace hilda::granular {
 
@@ -60,25 +59,16 @@ std::vector<NamedBoundary> read_box(ObjectReader& o, NamedBoundary box)
         if (!(widths[k] > 0))
             o.fail("high", std::string("high must be above low along ") + "xyz"[k] + ", got " +
                                described(*o.find("high")));
-    const std::pair<std::string, Vec3> sides[] = {{"-x", {1, 0, 0}},  {"+x", {-1, 0, 0}}, {"-y", {0, 1, 0}},
-                                                  {"+y", {0, -1, 0}}, {"-z", {0, 0, 1}},  {"+z", {0, 0, -1}}};
-    std::set<std::string> open;
-    const io::Json::List& listed = o.list("open", false);
-    for (std::size_t k = 0; k < listed.size(); ++k) {
-        const auto is = [&](const auto& side) {
-            return listed[k].string() != nullptr && side.first == *listed[k].string();
-        };
-        if (std::none_of(std::begin(sides), std::end(sides), is) || !open.insert(*listed[k].string()).second)
-            o.fail("open", k,
-                   "open must list some of -x, +x, -y, +y, -z, +z, each once, got " + described(listed[k]));
-    }
+    constexpr std::array<Vec3, 6> normals = {
+        {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+    const std::array<bool, 6> open = o.sides("open");
     std::vector<NamedBoundary> all;
-    for (const auto& [side, normal] : sides) {
-        if (open.contains(side)) continue;
+    for (std::size_t side = 0; side < open.size(); ++side) {
+        if (open[side]) continue;
         NamedBoundary plane = box;
-        plane.name = plane.motion.name = box.name + side;
-        plane.boundary.axis = normal;
-        const Vec3 corner = side[0] == '-' ? low : high;
+        plane.name = plane.motion.name = box.name + ObjectReader::side_names[side];
+        plane.boundary.axis = normals[side];
+        const Vec3 corner = side % 2 == 0 ? low : high;
         plane.boundary.r += corner;
         if (box.motion.r) {
             const double from[] = {corner.x, corner.y, corner.z};

@@ -41,6 +41,12 @@ void read_domain(ObjectReader domain, WorldOptions& o)
             domain.fail("high", axis,
                         "high must be above low, " + io::shortest(low) + ", got " + io::shortest(high));
     o.periodic = domain.flags("periodic", o.periodic);
+    o.outflow = domain.sides("outflow");
+    for (std::size_t side = 0; side < o.outflow.size(); ++side)
+        if (o.outflow[side] && o.periodic[side / 2])
+            domain.fail("outflow", std::string("outflow must not list a side along a periodic axis, got \"") +
+                                       ObjectReader::side_names[side] + '"');
+    o.delete_lost = domain.one_of("lost", {"error", "delete"}, "error") == "delete";
     domain.finish();
 }
 

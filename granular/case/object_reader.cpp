@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -25,6 +26,23 @@ Vec3 ObjectReader::direction(std::string_view key)
     if (!(v.norm() > 0))
         fail(key, std::string(key) + " must have a direction, got " + io::described(*find(key)));
     return (1 / v.norm()) * v;
+}
+
+std::array<bool, 6> ObjectReader::sides(std::string_view key)
+{
+    std::array<bool, 6> listed{};
+    const io::Json::List& all = list(key, false);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::string* name = all[k].string();
+        const auto* at =
+            name == nullptr ? side_names.end() : std::find(side_names.begin(), side_names.end(), *name);
+        if (at == side_names.end() ||
+            std::exchange(listed[static_cast<std::size_t>(at - side_names.begin())], true))
+            fail(key, k,
+                 std::string(key) + " must list some of -x, +x, -y, +y, -z, +z, each once, got " +
+                     io::described(all[k]));
+    }
+    return listed;
 }
 
 std::array<bool, 3> ObjectReader::flags(std::string_view key, const std::array<bool, 3>& fallback)

@@ -19,6 +19,9 @@ public:
     Vec3 vec3(std::string_view key, const std::optional<Vec3>& fallback = {});
     Vec3 direction(std::string_view key);  ///< three numbers, not all zero, divided by their length
     std::array<bool, 3> flags(std::string_view key, const std::array<bool, 3>& fallback);
+    /// The sides of a box that the list names: -x, +x, -y, +y, -z, +z. Empty if the key is missing.
+    std::array<bool, 6> sides(std::string_view key);
+    static constexpr std::array<const char*, 6> side_names = {"-x", "+x", "-y", "+y", "-z", "+z"};
     /// Whether the value is a list that contains a string, that is, a formula
     bool has_formula(std::string_view key);
     /// A vector of three components, each a number or a formula in t

@@ -20,6 +20,7 @@ private:
     std::string header() const override
     {
         std::string names = "t,kinetic_energy,contacts,pairs";
+        if (c.world->removes()) names += ",removed,removed_mass";
         for (const char a : {'x', 'y', 'z'})
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
         for (const std::string& b : c.boundaries)
@@ -35,6 +36,8 @@ private:
         const World::Totals totals = w.totals();
         text +=
             io::formatted("%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts, w.candidates());
+        if (w.removes())
+            text += io::formatted(",%lld,%.9g", static_cast<long long>(w.outflow().count), w.outflow().mass);
         for (const double part : totals.stress) text += io::formatted(",%.9g", part);
         for (const Wrench& on : totals.on_boundary)
             for (const Vec3& part : {on.F, on.T}) append(text, part);

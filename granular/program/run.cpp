@@ -274,6 +274,8 @@ private:
                      {"set", c.source.changes},
                      {"warnings", c.notices}};
         s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows}, {"t", w.t()}};
+        if (w.removes())
+            s["outflow"] = {{"particles", static_cast<long>(w.outflow().count)}, {"mass", w.outflow().mass}};
         if (status == "interrupted") s["counters"]["t_checkpoint"] = snapshot_time;
         s["kinetic_energy"] = w.kinetic_energy();
         s["watch"] = watch_summary(w.watch());

@@ -14,7 +14,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 8};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 9};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
 template <class Array>
@@ -49,6 +49,12 @@ bool valid(const WatchRecord& w)
            std::all_of(std::begin(all), std::end(all), [](double x) { return std::isfinite(x); });
 }
 
+bool valid_removed(const RemovedParticle& p)
+{
+    return finite(p.r) && finite(p.v) && finite(p.omega) && std::isfinite(p.t + p.radius + p.mass) &&
+           p.side < 6;
+}
+
 /// All members are equal except those that change during a run: r, axis, v, omega and F, which are finite.
 bool same_boundary(const Boundary& now, Boundary saved)
 {
@@ -68,15 +74,13 @@ bool inside(const CellGrid& g, const Position& p)
            CellGrid::z_of(p.cell) < g.cells[2] && near(p.x) && near(p.y) && near(p.z);
 }
 
-/// The ids are the numbers 0 … n - 1.
-bool is_permutation(const std::uint32_t* id, std::size_t n)
+/// The n ids are below `limit`, and all differ.
+bool valid_ids(const std::uint32_t* id, std::size_t n, std::uint32_t limit)
 {
-    std::vector<bool> seen(n);
-    for (std::size_t k = 0; k < n; ++k) {
-        if (id[k] >= n || seen[id[k]]) return false;
-        seen[id[k]] = true;
-    }
-    return true;
+    std::vector<std::uint32_t> sorted(id, id + n);
+    std::sort(sorted.begin(), sorted.end());
+    return (n == 0 || sorted.back() < limit) &&
+           std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
 /// The pairs in contact. Only they have a history; the others are found when the neighbour list is rebuilt.
@@ -121,6 +125,10 @@ void World::transfer(io::Archive& a)
     a.check(step_count >= 0 && std::isfinite(max_speed) && valid(domain, options), "invalid domain or time");
     a.value(record), a.list(moved);
     a.check(valid(record), "a number of the watch that is not finite");
+    a.value(next_id), a.value(total_outflow), a.list(removed_particles);
+    a.check(total_outflow.count >= 0 && std::isfinite(total_outflow.mass) &&
+                std::all_of(removed_particles.begin(), removed_particles.end(), valid_removed),
+            "an invalid record of a removed particle");
     std::vector<Boundary> now = boundaries;
     a.list(boundaries), a.list(forces);
     a.check(std::equal(now.begin(), now.end(), boundaries.begin(), boundaries.end(), same_boundary),
@@ -157,8 +165,10 @@ void World::transfer(io::Archive& a)
                     p.species.data()[k].material < materials.size() &&
                     p.species.data()[k].replica < domain.replicas && p.velocity.data()[k].w > 0,
                 "invalid position, material or radius of a particle");
-    a.check(is_permutation(p.id.data(), n), "invalid ids of the particles");
-    a.check(forces.empty() || forces.size() == n, "wrong number of forces");
+    a.check(next_id >= n && next_id - n == static_cast<std::uint64_t>(total_outflow.count) &&
+                valid_ids(p.id.data(), n, next_id),
+            "invalid ids of the particles");
+    a.check(forces.empty() || forces.size() == next_id, "wrong number of forces");
     a.check(all_finite(p.velocity) && all_finite(p.omega) && all_finite(p.orientation) && all_finite(forces),
             "a velocity or force that is not finite");
     transfer_pairs(a, all.pairs, n, boundaries.size());

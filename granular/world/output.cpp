@@ -25,9 +25,8 @@ std::string particles_csv(const World& world)
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
     csv += orientation ? ",e0,e1,e2,e3\n" : "\n";
     csv.reserve((orientation ? 300 : 220) * world.count());
-    std::size_t id = 0;
     for (const Particle& p : world.particles()) {
-        csv += std::to_string(id++) + ',' + std::to_string(p.material) + ',';
+        csv += std::to_string(p.id) + ',' + std::to_string(p.material) + ',';
         io::append_number(csv, p.radius);
         append(csv, p.r), append(csv, p.v), append(csv, p.omega);
         for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', io::append_number(csv, p.e[k]);
@@ -58,7 +57,7 @@ std::string particles_vtp(const World& world)
     std::vector<double> r, v, omega, e;
     std::vector<std::int32_t> material, id;
     for (const Particle& p : world.particles()) {
-        id.push_back(static_cast<std::int32_t>(id.size()));
+        id.push_back(static_cast<std::int32_t>(p.id));
         radius.push_back(static_cast<float>(p.radius)), material.push_back(p.material);
         r.insert(r.end(), {p.r.x, p.r.y, p.r.z});
         v.insert(v.end(), {p.v.x, p.v.y, p.v.z});
@@ -85,7 +84,8 @@ std::array<double, 9> stress(const World& world, const std::vector<ContactRecord
     const std::vector<Particle> all = world.particles();
     for (const ContactRecord& c : contacts) {
         // length of the branch vector, which is parallel to n
-        const double length = all[c.i].radius + (c.boundary ? 0 : all[c.j].radius) - c.delta;
+        const double length =
+            all[index_of(c.i, all)].radius + (c.boundary ? 0 : all[index_of(c.j, all)].radius) - c.delta;
         const double l[] = {length * c.n.x, length * c.n.y, length * c.n.z}, F[] = {c.F.x, c.F.y, c.F.z};
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) sum[3 * a + b] += l[a] * F[b] / volume;

@@ -93,7 +93,7 @@ int World::add(const Boundary& b)
 
 void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 {
-    if (id >= count()) refuse("velocity", "no particle has this id", id);
+    if (is_removed(id)) refuse("velocity", "no particle has this id", id);
     if (!finite(v) || !finite(omega))
         refuse("velocity of " + name_of(id), "must be finite", not_finite({v, omega}));
     insert_pending();
@@ -111,9 +111,9 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
 
 void World::set_force(std::uint32_t id, const Vec3& F)
 {
-    if (id >= count()) refuse("force", "no particle has this id", id);
+    if (is_removed(id)) refuse("force", "no particle has this id", id);
     if (!finite(F)) refuse("force on " + name_of(id), "must be finite", F.norm());
-    forces.resize(count());
+    forces.resize(next_id + pending.size());
     forces[id] = to_float4(F, 0);
     forces_changed = true;
 }
@@ -150,7 +150,19 @@ void World::update_neighbours()
     rebuild_neighbours();
 }
 
-void World::rebuild_neighbours() const
+void World::rebuild_neighbours()
+{
+    try {
+        find_neighbours();
+    } catch (const LeftDomain& lost) {
+        if (!removes()) throw_left(lost.id);
+        remove_outside();
+        find_neighbours();
+    }
+}
+
+/// Throws LeftDomain, in which case the list and the order of the particles have not changed.
+void World::find_neighbours() const
 {
     if (laws_changed) {
         check_laws(particles());
@@ -160,11 +172,6 @@ void World::rebuild_neighbours() const
     engine->set_boundaries(boundaries);
     try {
         engine->find_neighbours(domain);
-    } catch (const LeftDomain& lost) {
-        const Particles<par::Cpu>& p = engine->arrays().particle;
-        const auto* at = std::find(p.id.data(), p.id.data() + p.count, lost.id);
-        particle_lost = true;
-        throw_lost(static_cast<std::uint32_t>(at - p.id.data()), "has left the domain");
     } catch (const TooManyPairs&) {
         refuse("particles",
                "the neighbour list must not have more than 2^31 pairs; reduce the skin or the ratio of "

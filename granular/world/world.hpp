@@ -10,6 +10,7 @@
 #include "granular/world/watch.hpp"
 #include "io/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -52,6 +53,25 @@ struct Particle {
     /// Euler parameters e0, e1, e2, e3 of the rotation from the body frame to the global frame; normalised on
     /// insertion. They are integrated only if WorldOptions::orientation is set.
     std::array<double, 4> e = {1, 0, 0, 0};
+    std::uint32_t id = 0;  ///< set by World::particles(); World::add() assigns it
+};
+/// Index of the particle with this id in a list that is ordered by ids and contains it
+inline std::size_t index_of(std::uint32_t id, const std::vector<Particle>& ordered)
+{
+    if (id < ordered.size() && ordered[id].id == id) return id;
+    const auto at = std::lower_bound(ordered.begin(), ordered.end(), id,
+                                     [](const Particle& p, std::uint32_t i) { return p.id < i; });
+    return static_cast<std::size_t>(at - ordered.begin());
+}
+
+/// A particle that has left the domain and was removed. Its state is that of the neighbour search that found
+/// it outside: it had left at most a few steps before. There is no padding, because checkpoints store the
+/// bytes.
+struct RemovedParticle {
+    double t = 0;                                          ///< [s]
+    Vec3 r = {0, 0, 0}, v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m, m/s, rad/s]
+    double radius = 0, mass = 0;                           ///< [m, kg]; mass is 0 for a fixed particle
+    std::uint32_t id = 0, side = 0;                        ///< side: index into WorldOptions::outflow
 };
 
 /// A contact at t. Vectors are in the global frame.
@@ -72,8 +92,12 @@ struct ContactRecord {
 struct WorldOptions {
     Vec3 low = {0, 0, 0}, high = {0, 0, 0};                ///< lower and upper corner of the domain [m]
     std::array<bool, 3> periodic = {false, false, false};  ///< along x, y, z
-    Vec3 gravity = {0, 0, -9.81};                          ///< [m/s²]
-    double h = 0;                                          ///< step [s]
+    /// Sides -x, +x, -y, +y, -z, +z of the domain through which particles leave: they are removed and
+    /// recorded in World::removed(). A side along a periodic axis has no effect.
+    std::array<bool, 6> outflow = {};
+    bool delete_lost = false;      ///< the same for all other sides; otherwise ParticleLost is thrown
+    Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
+    double h = 0;                  ///< step [s]
     double skin = 0.1;  ///< skin of the neighbour list, in diameters of the largest particle, in (0, 1]
     Scheme scheme = Scheme::symplectic_euler;
     bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
@@ -102,6 +126,8 @@ public:
     /// Adds a boundary and returns its number. Throws io::InvalidInput.
     int add(const Boundary& boundary);
     /// Adds a particle and returns its id. Throws io::InvalidInput.
+    ///
+    /// Ids count from 0 in the order of the calls. The id of a removed particle is not used again.
     ///
     /// The particle is pending until the next call of step(), set_velocity() or to_bytes() inserts it. The
     /// insertion checks its position and its overlaps, which may be at most 5 % of the smaller radius. If
@@ -182,6 +208,21 @@ public:
         return size.x * size.y * size.z;
     }
     Vec3 momentum() const;  ///< linear momentum of the particles [kg m/s]
+    /// The particles that were removed since the last call of clear_removed(), ordered by time, then by id
+    const std::vector<RemovedParticle>& removed() const { return removed_particles; }
+    void clear_removed() { removed_particles.clear(); }
+    /// Number and mass of all removed particles [kg]
+    struct Outflow {
+        std::int64_t count = 0;
+        double mass = 0;
+    };
+    const Outflow& outflow() const { return total_outflow; }
+    /// Whether particles that leave the domain are removed, through one side at least
+    bool removes() const
+    {
+        return options.delete_lost ||
+               std::find(options.outflow.begin(), options.outflow.end(), true) != options.outflow.end();
+    }
     /// Number of particles, pending ones included
     std::size_t count() const { return inserted_count + pending.size(); }
     /// Number of pairs in the neighbour list
@@ -240,7 +281,11 @@ private:
     CurrentLoads current_loads() const;
     ContactRecord contact(const CurrentLoads& now, std::uint32_t pair) const;
     void update_neighbours();
-    void rebuild_neighbours() const;
+    void find_neighbours() const;
+    void rebuild_neighbours();
+    void remove_outside();
+    bool is_removed(std::uint32_t id) const;
+    [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();
     void accelerate_tools();
@@ -267,6 +312,9 @@ private:
     std::unique_ptr<Engine> engine;
     Domain domain;
     std::size_t inserted_count = 0;
+    std::uint32_t next_id = 0;  ///< of the next particle that is inserted
+    std::vector<RemovedParticle> removed_particles;
+    Outflow total_outflow;
     double time = 0;
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
     /// [m]; infinite if the list must be rebuilt. The list is a cache, therefore these members are mutable.

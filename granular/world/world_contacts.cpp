@@ -31,7 +31,12 @@ struct World::CurrentLoads {
 World::CurrentLoads World::current_loads() const
 {
     if (!std::isfinite(particle_displacement) && inserted_count > 0 && !particle_lost) {
-        rebuild_neighbours();
+        try {
+            find_neighbours();
+        } catch (const LeftDomain& lost) {
+            // The next step removes the particle. The present list has all pairs in contact.
+            if (!removes()) throw_left(lost.id);
+        }
         // The requested rebuild before the next step still has to take place.
         particle_displacement = std::numeric_limits<double>::infinity();
     }

@@ -13,7 +13,7 @@ using namespace detail;
 
 std::uint32_t World::add(const Particle& p)
 {
-    const auto id = static_cast<std::uint32_t>(count());
+    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
     const std::string where = "particle " + std::to_string(id);
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
     if (!finite(p.r) || !finite(p.v) || !finite(p.omega))
@@ -32,7 +32,7 @@ std::uint32_t World::add(const Particle& p)
     if (!p.fixed && !(mass >= least && mass <= 1 / least))
         refuse(where, "the mass must be in the range of single precision, 1.2e-38 to 8.5e37 kg", mass);
     pending.push_back(p);
-    pending.back().mass = mass;
+    pending.back().mass = mass, pending.back().id = id;
     return id;
 }
 
@@ -105,10 +105,8 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in,
                 units -= length * std::floor(units / length);
             } else if (!(units >= 0 && units <= length)) {
                 if (k >= inserted_count)
-                    refuse(name_of(k), std::string("is outside the domain along ") + "xyz"[c], r[c]);
-                const std::uint32_t* id = engine->arrays().particle.id.data();
-                throw_lost(static_cast<std::uint32_t>(std::find(id, id + inserted_count, k) - id),
-                           "has left the domain");
+                    refuse(name_of(all[k].id), std::string("is outside the domain along ") + "xyz"[c], r[c]);
+                throw_left(all[k].id);
             }
             const double cell_index = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
             cell[c] = static_cast<std::int32_t>(cell_index);
@@ -130,25 +128,28 @@ void World::insert_pending()
     if (!insertion_error.empty()) throw io::InvalidInput(insertion_error);
     if (pending.empty()) return;
     if (laws.empty()) refuse("world", "at least one law must be set", "none");
+    if (removes()) remove_outside();
     const std::vector<Particle> all = particles();
     const Domain next = domain_of(all);
     const std::vector<CellPosition> located = cell_positions(next, all);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
-    const auto first = static_cast<std::uint32_t>(inserted_count);
+    const std::uint32_t first = next_id;
     domain = next;
 
     // contacts and accelerations of the particles that are in the arrays already are preserved
     Particles<par::Cpu>& p = a.particle;
-    const auto id = [&](std::uint32_t k) { return p.id.data()[k]; };
+    const auto index = [&](std::uint32_t k) {
+        return static_cast<std::uint32_t>(index_of(p.id.data()[k], all));
+    };
     for (std::uint32_t n = 0; n < a.pairs.count; ++n) {
         std::uint32_t &i = a.pairs.i.data()[n], &j = a.pairs.j.data()[n];
-        i = id(i);
-        if ((j & PairView::boundary_bit) == 0) j = id(j);
+        i = index(i);
+        if ((j & PairView::boundary_bit) == 0) j = index(j);
     }
     std::vector<Float4> acc_of(all.size(), to_float4(options.gravity, 0)), alpha_of(all.size());
     for (std::uint32_t k = 0; k < p.acc.size(); ++k)
-        acc_of[id(k)] = p.acc.data()[k], alpha_of[id(k)] = p.alpha.data()[k];
+        acc_of[index(k)] = p.acc.data()[k], alpha_of[index(k)] = p.alpha.data()[k];
 
     p.resize(static_cast<std::uint32_t>(all.size()));
     for (std::uint32_t k = 0; k < p.count; ++k) {
@@ -163,7 +164,7 @@ void World::insert_pending()
         Compensation& compensation = p.compensation.data()[k] = {.displacement = split.remainder};
         store_bfloat16(compensation.v, rounding_error(particle.v), dither_to_nearest);
         store_bfloat16(compensation.omega, rounding_error(particle.omega), dither_to_nearest);
-        p.id.data()[k] = k;
+        p.id.data()[k] = particle.id;
     }
     if (uses_previous_acceleration(options.scheme)) {
         p.acc.resize(p.count), p.alpha.resize(p.count);
@@ -182,7 +183,8 @@ void World::insert_pending()
     pending.clear();
     start_balance();
     inserted_count = all.size();
-    if (!forces.empty()) forces.resize(all.size()), forces_changed = true;
+    next_id = all.back().id + 1;
+    if (!forces.empty()) forces.resize(next_id), forces_changed = true;
     engine->arrays_modified();
     rebuild_neighbours();
     try {
@@ -224,7 +226,8 @@ void World::check_overlaps(std::uint32_t first) const
     const std::vector<Particle> all = particles();
     for (const ContactRecord& c : contacts()) {
         if (c.i < first && (c.boundary || c.j < first)) continue;
-        const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
+        const double R_i = all[index_of(c.i, all)].radius,
+                     R = c.boundary ? R_i : std::min(R_i, all[index_of(c.j, all)].radius);
         if (c.boundary && is_larger_than(boundaries[c.j], R))
             refuse(name_of(c.i),
                    "must be smaller than boundary " + std::to_string(c.j) +

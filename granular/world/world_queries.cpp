@@ -13,11 +13,13 @@ std::vector<Particle> World::particles() const
     const Particles<par::Cpu>& in = engine->arrays().particle;
     const CellGrid& grid = domain.grid;
     std::vector<Particle> all(in.count);
+    const bool none_removed = next_id == in.count;
     for (std::uint32_t k = 0; k < in.count; ++k) {
         const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
         const Compensation& compensation = in.compensation.data()[k];
         const Species species = in.species.data()[k];
-        Particle& p = all[in.id.data()[k]];
+        Particle& p = all[none_removed ? in.id.data()[k] : k];
+        p.id = in.id.data()[k];
         p.r = global_position(grid, in.position.data()[k]) +
               grid.unit * to_double(unpack_remainder<float>(compensation.displacement));
         p.v = to_double(v) + to_double(load_bfloat16(compensation.v));
@@ -34,6 +36,8 @@ std::vector<Particle> World::particles() const
         p.mass = p.fixed ? sphere_mass(p.radius, materials[species.material].density)
                          : 1 / static_cast<double>(w.w);
     }
+    if (!none_removed)
+        std::sort(all.begin(), all.end(), [](const Particle& p, const Particle& q) { return p.id < q.id; });
     all.insert(all.end(), pending.begin(), pending.end());
     return all;
 }

@@ -170,7 +170,8 @@ void World::throw_overlap() const
     ContactRecord deepest;
     double largest = 0;
     for (const ContactRecord& c : contacts()) {
-        const double R = c.boundary ? all[c.i].radius : std::min(all[c.i].radius, all[c.j].radius);
+        const double R_i = all[index_of(c.i, all)].radius,
+                     R = c.boundary ? R_i : std::min(R_i, all[index_of(c.j, all)].radius);
         if (c.delta / R > largest) largest = c.delta / R, deepest = c;
     }
     std::string what =

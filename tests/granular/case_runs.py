@@ -56,6 +56,8 @@ class Runs:
         """SHA-256 of all output that does not depend on wall time"""
         out = self.folder / output
         files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
+        if (out / "outflow.csv").exists():
+            files.append(out / "outflow.csv")
         if (out / "vtk").exists():
             files += [out / "run.pvd"] + sorted((out / "vtk").iterdir())
         whole = hashlib.sha256()

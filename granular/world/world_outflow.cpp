@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Removal of the particles that have left the domain. It takes place in a neighbour search within a step, so
+// that it depends neither on the outputs nor on the number of threads.
+#include "granular/world/world_impl.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+using namespace detail;
+
+namespace {
+
+/// Coordinate along an axis from the low side of the domain [units]
+std::int64_t coordinate(const CellGrid& g, const Position& p, int axis)
+{
+    const std::int32_t cell = axis == 0   ? CellGrid::x_of(p.cell)
+                              : axis == 1 ? CellGrid::y_of(p.cell)
+                                          : CellGrid::z_of(p.cell),
+                       at = axis == 0   ? p.x
+                            : axis == 1 ? p.y
+                                        : p.z;
+    return std::int64_t{cell} * g.width[axis] + at;
+}
+
+/// The side of the domain behind which the particle is, that with the largest distance; -1 if it is inside.
+/// The condition is that of the neighbour search.
+int side_behind(const CellGrid& g, const Position& p)
+{
+    int side = -1;
+    std::int64_t farthest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (g.periodic[axis] != 0) continue;
+        const std::int64_t x = coordinate(g, p, axis),
+                           high = std::int64_t{g.width[axis]} * (g.cells[axis] - 1) + g.last[axis];
+        if (-x > farthest) farthest = -x, side = 2 * axis;
+        if (x - high > farthest) farthest = x - high, side = 2 * axis + 1;
+    }
+    return side;
+}
+
+/// Keeps the first `kept` elements of those that `index` lists.
+template <class Array>
+void keep(Array& values, const std::vector<std::uint32_t>& index)
+{
+    if (values.size() == 0) return;
+    for (std::size_t k = 0; k < index.size(); ++k) values.data()[k] = values.data()[index[k]];
+    values.resize(index.size());
+}
+
+}  // namespace
+
+bool World::is_removed(std::uint32_t id) const
+{
+    if (id >= next_id) return id >= next_id + pending.size();
+    if (next_id == inserted_count) return false;
+    const std::uint32_t* ids = engine->arrays().particle.id.data();
+    return std::find(ids, ids + inserted_count, id) == ids + inserted_count;
+}
+
+/// Throws ParticleLost for a particle that has left the domain.
+void World::throw_left(std::uint32_t id) const
+{
+    particle_lost = true;
+    const std::uint32_t* ids = engine->arrays().particle.id.data();
+    throw_lost(static_cast<std::uint32_t>(std::find(ids, ids + inserted_count, id) - ids),
+               "has left the domain");
+}
+
+/// Removes and records the particles outside the domain with their contacts. The list of pairs keeps those in
+/// contact only; a neighbour search has to follow. Throws ParticleLost for a particle outside that has left
+/// through another side.
+void World::remove_outside()
+{
+    Arrays<par::Cpu>& a = engine->arrays();
+    Particles<par::Cpu>& p = a.particle;
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::vector<std::uint32_t> kept, new_index(p.count, none);
+    const std::size_t first = removed_particles.size();
+    for (std::uint32_t k = 0; k < p.count; ++k) {
+        const int side = side_behind(domain.grid, p.position.data()[k]);
+        if (side < 0) {
+            new_index[k] = static_cast<std::uint32_t>(kept.size());
+            kept.push_back(k);
+            continue;
+        }
+        if (!options.outflow[static_cast<std::size_t>(side)] && !options.delete_lost)
+            throw_left(p.id.data()[k]);
+        const Float4 v = p.velocity.data()[k], w = p.omega.data()[k];
+        removed_particles.push_back({.t = time,
+                                     .r = global_position(domain.grid, p.position.data()[k]),
+                                     .v = to_double(v),
+                                     .omega = to_double(w),
+                                     .radius = v.w,
+                                     .mass = w.w > 0 ? 1 / static_cast<double>(w.w) : 0,
+                                     .id = p.id.data()[k],
+                                     .side = static_cast<std::uint32_t>(side)});
+    }
+    if (kept.size() == p.count) return;
+    std::sort(removed_particles.begin() + static_cast<std::ptrdiff_t>(first), removed_particles.end(),
+              [](const RemovedParticle& x, const RemovedParticle& y) { return x.id < y.id; });
+    for (std::size_t k = first; k < removed_particles.size(); ++k)
+        ++total_outflow.count, total_outflow.mass += removed_particles[k].mass;
+
+    keep(p.position, kept), keep(p.velocity, kept), keep(p.omega, kept), keep(p.compensation, kept);
+    keep(p.species, kept), keep(p.id, kept), keep(p.acc, kept), keep(p.alpha, kept);
+    keep(p.orientation, kept), keep(p.orientation_compensation, kept), keep(p.position_at_build, kept);
+    p.count = static_cast<std::uint32_t>(kept.size());
+    inserted_count = kept.size();
+
+    Pairs<par::Cpu>& pairs = a.pairs;
+    std::vector<std::uint32_t> rows;
+    const auto is_boundary = [](std::uint32_t j) { return (j & PairView::boundary_bit) != 0; };
+    for (std::uint32_t n = 0; n < pairs.count; ++n) {
+        std::uint32_t &i = pairs.i.data()[n], &j = pairs.j.data()[n];
+        if (pairs.in_contact.data()[n] == 0 || new_index[i] == none ||
+            (!is_boundary(j) && new_index[j] == none))
+            continue;
+        i = new_index[i];
+        if (!is_boundary(j)) j = new_index[j];
+        rows.push_back(n);
+    }
+    keep(pairs.i, rows), keep(pairs.j, rows), keep(pairs.in_contact, rows), keep(pairs.history, rows);
+    keep(pairs.rotation_history, rows), keep(pairs.torque, rows), keep(pairs.load, rows);
+    pairs.count = static_cast<std::uint32_t>(rows.size());
+    engine->arrays_modified();
+    start_balance();
+}
+
+}  // namespace hilda::granular

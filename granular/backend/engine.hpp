@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/core/attached.hpp"
 #include "granular/core/integrator.hpp"
 #include "granular/core/neighbours.hpp"
 #include "granular/core/watch.hpp"
@@ -56,6 +57,11 @@ public:
     virtual void set_boundaries(const std::vector<Boundary>& boundaries) = 0;
     /// External forces by particle id [N]; an empty list means none.
     virtual void set_forces(const std::vector<Float4>& forces) = 0;
+
+    /// The particles that are attached to boundaries; effective from the next call of move_attached() on
+    virtual void set_attached(const std::vector<AttachedParticle>& attached) = 0;
+    /// See MoveAttached; `poses` by boundary number
+    virtual void move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses) = 0;
 
     /// See Neighbours::find.
     virtual void find_neighbours(const Domain& domain) = 0;

@@ -124,6 +124,23 @@ public:
 
     void set_forces(const std::vector<Float4>& all) override { send(force, all); }
 
+    void set_attached(const std::vector<AttachedParticle>& all) override
+    {
+        send(attached, all);
+        find_attached();
+    }
+
+    void move_attached(const Domain& domain, const std::vector<BoundaryPose>& all) override
+    {
+        host_is_current = false;
+        send(poses, all);
+        Particles<Backend>& p = own.particle;
+        par::for_each(
+            on, static_cast<std::uint32_t>(attached.size()),
+            MoveAttached{domain.grid, attached.data(), attached_index.data(), poses.data(), p.position.data(),
+                         p.velocity.data(), p.omega.data(), p.compensation.data()});
+    }
+
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
@@ -134,6 +151,7 @@ public:
                          .boundaries = static_cast<std::uint32_t>(boundaries.size()),
                          .rotation_laws = rotation_laws},
                         own.particle, own.pairs);
+        find_attached();
         free_pairs = 0;
         if (any_free)
             free_pairs = list_pairs(
@@ -293,7 +311,8 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes();
+               counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
+               attached_index.bytes() + poses.bytes();
     }
 
 private:
@@ -316,6 +335,17 @@ private:
     LawView law_view(float h) const
     {
         return {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
+    }
+
+    /// Lists the indices of the attached particles.
+    void find_attached()
+    {
+        if (attached.size() == 0) return;
+        attached_index.resize(attached.size());
+        par::fill(on, attached_index.data(), attached_index.size(), not_listed);
+        par::for_each(on, own.particle.count,
+                      FindAttached{own.particle.id.data(), attached.data(),
+                                   static_cast<std::uint32_t>(attached.size()), attached_index.data()});
     }
 
     /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there
@@ -421,6 +451,9 @@ private:
     par::Array<Backend, std::uint8_t> law_of;
     par::Array<Backend, Boundary> boundaries;
     par::Array<Backend, Float4> force;
+    par::Array<Backend, AttachedParticle> attached;
+    par::Array<Backend, std::uint32_t> attached_index;  ///< see FindAttached
+    par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
     std::uint32_t materials = 1, free_pairs = 0;
     bool one_law = true, rotation_laws = false, any_free = false;

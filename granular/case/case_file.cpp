@@ -195,6 +195,21 @@ private:
         o.finish();
     }
 
+    /// The number of the boundary that the key attached_to names, or -1
+    int attached_to(ObjectReader& o)
+    {
+        if (!o.has("attached_to")) return -1;
+        const std::string name = o.one_of("attached_to", out.boundaries);
+        const auto at = std::find(out.boundaries.begin(), out.boundaries.end(), name);
+        const int number = static_cast<int>(at - out.boundaries.begin());
+        if (out.world->all_boundaries()[static_cast<std::size_t>(number)].mass > 0)
+            o.fail("attached_to",
+                   "attached_to must name a boundary without a mass, got " + io::described(name));
+        for (const char* key : {"v", "omega", "random_v"})
+            if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with attached_to");
+        return number;
+    }
+
     std::uint16_t replica(ObjectReader& o)
     {
         constexpr long most = 0xffff;
@@ -214,7 +229,8 @@ private:
                    .v = o.vec3("v", Vec3{0, 0, 0}),
                    .omega = o.vec3("omega", Vec3{0, 0, 0}),
                    .fixed = o.flag("fixed", false),
-                   .replica = replica(o)};
+                   .replica = replica(o),
+                   .attached_to = attached_to(o)};
         if (o.has("orientation")) {
             if (!world.orientation) o.fail("orientation", "orientation requires /orientation to be true");
             const std::vector<double> e = o.numbers("orientation", 4);
@@ -233,6 +249,7 @@ private:
         const bool from_csv = !spec.particles.empty();
         spec.material = from_csv && !o.has("material") ? -1 : material(o);
         spec.replica = replica(o);
+        spec.attached_to = attached_to(o);
         if (!world.orientation)
             for (Particle& p : spec.particles) p.e = Particle().e;
         if (from_csv) out.files_read += "\n" + o.pointer("file") + ' ' + std::to_string(spec.checksum);

@@ -52,7 +52,7 @@ std::vector<Particle> fill(const FillSpec& f)
     if (!f.particles.empty()) {
         std::vector<Particle> all = f.particles;
         for (Particle& p : all) {
-            p.replica = f.replica;
+            p.replica = f.replica, p.attached_to = f.attached_to;
             if (f.material >= 0) p.material = f.material;
         }
         return all;
@@ -67,7 +67,7 @@ std::vector<Particle> fill(const FillSpec& f)
     for (const Vec3& r : places) {
         Particle p;
         p.radius = random.number(f.least_radius, f.radius);
-        p.material = f.material, p.replica = f.replica;
+        p.material = f.material, p.replica = f.replica, p.attached_to = f.attached_to;
         p.r = r + Vec3{random.number(-free, free), random.number(-free, free), random.number(-free, free)};
         p.r = {std::clamp(p.r.x, low.x, high.x), std::clamp(p.r.y, low.y, high.y),
                std::clamp(p.r.z, low.z, high.z)};

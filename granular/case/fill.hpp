@@ -22,6 +22,7 @@ struct FillSpec {
     std::uint64_t seed = 1;
     int material = 0;  ///< index; -1 with particles of a table: as in the table
     std::uint16_t replica = 0;
+    int attached_to = -1;                  ///< number of a boundary; -1: none
     Vec3 v = {0, 0, 0};                    ///< [m/s]
     double random_v = 0;                   ///< magnitude of an added velocity of random direction [m/s]
     std::vector<Particle> particles = {};  ///< of the table; empty for the other types

@@ -204,8 +204,7 @@ struct AddBoundaryLoads {
     }
 };
 
-/// Loads of a block of the pairs with fixed particles. The centre of a fixed particle is at rest; its surface
-/// moves with its angular velocity.
+/// Loads of a block of the pairs with fixed particles, whose velocities are given
 struct AddFixedLoads {
     ParticleView particles;
     PairView pairs;
@@ -227,8 +226,10 @@ struct AddFixedLoads {
             const std::uint32_t fixed = i_fixed ? pairs.i[n] : pairs.j[n];
             const double R = particles.velocity[fixed].w;
             const Vec3 on_fixed = i_fixed ? R * M + T : R * M - T;
-            sum.F += i_fixed ? -F : F;
-            const double power = -on_fixed.dot(to_double(particles.omega[fixed]));
+            const Vec3 on_other = i_fixed ? -F : F;
+            sum.F += on_other;
+            const double power = on_other.dot(to_double(particles.velocity[fixed])) -
+                                 on_fixed.dot(to_double(particles.omega[fixed]));
             sum.before += power, sum.after += power;
         }
         out[block] = sum;

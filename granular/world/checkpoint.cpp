@@ -55,6 +55,16 @@ bool valid_removed(const RemovedParticle& p)
            p.side < 6;
 }
 
+/// Ordered by ids below `ids`, with finite places and known boundaries
+bool valid_attached(const std::vector<AttachedParticle>& all, std::uint32_t ids, std::size_t boundaries)
+{
+    const auto not_before = [](const AttachedParticle& a, const AttachedParticle& b) { return a.id >= b.id; };
+    return std::adjacent_find(all.begin(), all.end(), not_before) == all.end() &&
+           std::all_of(all.begin(), all.end(), [&](const AttachedParticle& a) {
+               return a.id < ids && a.boundary < boundaries && finite(a.X);
+           });
+}
+
 /// All members are equal except those that change during a run: r, axis, v, omega and F, which are finite.
 bool same_boundary(const Boundary& now, Boundary saved)
 {
@@ -149,6 +159,13 @@ void World::transfer(io::Archive& a)
     };
     n = a.list(p.position, n);
     list(p.velocity), list(p.omega), list(p.compensation), list(p.species), list(p.id);
+    a.list(attached), a.list(rotations);
+    a.check(valid_attached(attached, next_id, boundaries.size()) &&
+                (rotations.empty() ? attached.empty() : rotations.size() == boundaries.size()),
+            "an invalid attached particle");
+    for (const EulerParameters<double>& e : rotations)
+        a.check(std::abs(e.e0 * e.e0 + e.e.dot(e.e) - 1) < 1e-6, "an invalid rotation of a boundary");
+    attached_changed = !attached.empty();
     const bool previous = detail::uses_previous_acceleration(options.scheme);
     list_if(previous, p.acc), list_if(previous, p.alpha);
     const std::size_t oriented = a.list(p.orientation);

@@ -221,6 +221,7 @@ void World::accelerate_tools()
 /// the displacement of the boundary points within the domain [m].
 double World::move_boundaries()
 {
+    rotate_frames();
     const double h = options.h;
     double largest = 0;
     moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
@@ -300,6 +301,7 @@ void World::one_step()
         check_displacement(displacement);
         return displacement;
     };
+    if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads();
         engine->advance(step_parameters(Part::only_loads));
@@ -307,6 +309,7 @@ void World::one_step()
     if (verlet) {
         particle_displacement += advance(Part::before_loads);
         boundary_displacement += move_boundaries();
+        if (!is_posed()) move_attached();
         find_loads();
         accelerate_tools();
         watch_loads();
@@ -319,6 +322,7 @@ void World::one_step()
         particle_displacement += advance(Part::whole);
         watch_advance();
         boundary_displacement += move_boundaries();
+        if (!is_posed()) move_attached();
     }
     take(times.advance);
 }

@@ -54,6 +54,9 @@ struct Particle {
     /// insertion. They are integrated only if WorldOptions::orientation is set.
     std::array<double, 4> e = {1, 0, 0, 0};
     std::uint32_t id = 0;  ///< set by World::particles(); World::add() assigns it
+    /// Number of the boundary with which the particle moves rigidly from its insertion on; -1: none. The
+    /// boundary has no mass. Such a particle is fixed: contacts do not accelerate it.
+    int attached_to = -1;
 };
 /// Index of the particle with this id in a list that is ordered by ids and contains it
 inline std::size_t index_of(std::uint32_t id, const std::vector<Particle>& ordered)
@@ -153,7 +156,8 @@ public:
     /// ordered by i, then by j. Throws ParticleLost if the neighbour list has to be rebuilt and a particle
     /// is outside the domain.
     std::vector<ContactRecord> contacts() const;
-    /// Resultant of the contact forces on a boundary at t, about Boundary::r [N, N m]. With `replica` ≥ 0
+    /// Resultant of the contact forces on a boundary and on the particles attached to it at t, about
+    /// Boundary::r [N, N m]. With `replica` ≥ 0
     /// only the contacts of that replica are included.
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
     /// The same, computed from the result of contacts()
@@ -164,7 +168,8 @@ public:
         /// Love-Weber stress over the volume of the domain, 3 × 3 by rows [Pa]; positive in compression. See
         /// stress() in output.hpp.
         std::array<double, 9> stress = {};
-        /// Resultants of the contact forces on each boundary, about its Boundary::r [N, N m]
+        /// Resultants of the contact forces on each boundary and the particles attached to it, about its
+        /// Boundary::r [N, N m]
         std::vector<Wrench> on_boundary;
     };
     Totals totals() const;
@@ -285,6 +290,12 @@ private:
     void rebuild_neighbours();
     void remove_outside();
     bool is_removed(std::uint32_t id) const;
+    void attach(const Particle& p);
+    int boundary_of(std::uint32_t id) const;
+    void rotate_frames();
+    void move_attached();
+    bool is_posed() const;
+    void add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const;
     [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();
@@ -314,6 +325,11 @@ private:
     std::size_t inserted_count = 0;
     std::uint32_t next_id = 0;  ///< of the next particle that is inserted
     std::vector<RemovedParticle> removed_particles;
+    std::vector<AttachedParticle> attached;          ///< ordered by id
+    std::vector<EulerParameters<double>> rotations;  ///< of the boundaries; empty if no particle is attached
+    std::vector<BoundaryPose> poses, posed;          ///< posed: of the last move_attached()
+    std::vector<double> reach;  ///< largest |X| of the attached particles, by boundary [m]; 0: there are none
+    bool attached_changed = false;
     Outflow total_outflow;
     double time = 0;
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built

@@ -9,16 +9,19 @@ namespace hilda::granular {
 
 using namespace detail;
 
-namespace {
-
-/// Adds the force and the torque of a contact on its boundary, about Boundary::r.
-void add_wrench(Wrench& to, const ContactRecord& c, const Boundary& b)
+/// Adds the force and the torque of a contact on its boundary, and on the boundaries to which its particles
+/// are attached, about Boundary::r.
+void World::add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const
 {
-    to.F -= c.F;
-    to.T -= (c.C - b.r).cross(c.F) + c.T;
+    const auto add = [&](int number, double sign) {
+        if (number < 0) return;
+        const auto b = static_cast<std::size_t>(number);
+        to[b].F += sign * c.F;
+        to[b].T += sign * ((c.C - boundaries[b].r).cross(c.F) + c.T);
+    };
+    add(c.boundary ? static_cast<int>(c.j) : boundary_of(c.j), -1);
+    if (!c.boundary) add(boundary_of(c.i), 1);
 }
-
-}  // namespace
 
 /// Loads at t of all pairs in the neighbour list
 struct World::CurrentLoads {
@@ -124,12 +127,10 @@ std::vector<ContactRecord> World::contacts() const
 
 Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int replica) const
 {
-    Wrench sum;
-    for (const ContactRecord& c : contacts) {
-        if (!c.boundary || static_cast<int>(c.j) != b || (replica >= 0 && c.replica != replica)) continue;
-        add_wrench(sum, c, boundaries[c.j]);
-    }
-    return sum;
+    std::vector<Wrench> on(boundaries.size());
+    for (const ContactRecord& c : contacts)
+        if (replica < 0 || c.replica == replica) add_wrench(on, c);
+    return on[static_cast<std::size_t>(b)];
 }
 
 World::Totals World::totals() const
@@ -162,11 +163,15 @@ World::Totals World::totals() const
     };
     par::for_each(par::Cpu(), sums.size(), particles, 1);
     Sum sum;
+    const auto is_fixed = [&](std::uint32_t k) { return !(now.of.particle.omega.data()[k].w > 0); };
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         const std::uint32_t j = pairs.j.data()[n];
-        if (now.in_contact.data()[n] == 0 || (j & PairView::boundary_bit) == 0) continue;
+        if (now.in_contact.data()[n] == 0) continue;
+        const bool boundary = (j & PairView::boundary_bit) != 0;
+        if (!boundary && (attached.empty() || !(is_fixed(pairs.i.data()[n]) || is_fixed(j)))) continue;
         const ContactRecord c = contact(now, n);
-        add_wrench(all.on_boundary[c.j], c, boundaries[c.j]);
+        add_wrench(all.on_boundary, c);
+        if (!boundary) continue;  // its stress is in `sums`
         const double R = now.of.particle.velocity.data()[pairs.i.data()[n]].w;
         add_stress(sum, (R - c.delta) * c.n, now.load.data()[n].F);
     }

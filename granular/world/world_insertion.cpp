@@ -31,8 +31,13 @@ std::uint32_t World::add(const Particle& p)
     constexpr double least = std::numeric_limits<float>::min();
     if (!p.fixed && !(mass >= least && mass <= 1 / least))
         refuse(where, "the mass must be in the range of single precision, 1.2e-38 to 8.5e37 kg", mass);
+    if (p.attached_to >= static_cast<int>(boundaries.size()) || p.attached_to < -1)
+        refuse(where, "no boundary has this number", p.attached_to);
+    if (p.attached_to >= 0 && boundaries[static_cast<std::size_t>(p.attached_to)].mass > 0)
+        refuse(where, "must not be attached to a boundary with a mass; boundary", p.attached_to);
     pending.push_back(p);
     pending.back().mass = mass, pending.back().id = id;
+    if (p.attached_to >= 0) pending.back().fixed = true;
     return id;
 }
 
@@ -180,6 +185,8 @@ void World::insert_pending()
                                                     rounding_error(e2), rounding_error(e3)};
         }
     }
+    for (const Particle& particle : pending)
+        if (particle.attached_to >= 0) attach(particle);
     pending.clear();
     start_balance();
     inserted_count = all.size();

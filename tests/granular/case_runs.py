@@ -30,6 +30,11 @@ CASE = {
     "fill": [{"type": "lattice", "low": [0.003, 0.003, 0], "high": [0.017, 0.017, 0.03], "radius": 1e-3,
               "least_radius": 6e-4, "spacing": 1.02, "jitter": 1, "random_v": 0.2, "material": "glass"}]}
 
+# Particles attached to the shaken floor and to the rotating wall, below those of CASE
+ATTACHED = {"particles": [{"r": [0.006 + 0.004 * k, 0.01, 5e-4], "radius": 6e-4, "material": "glass", "attached_to": name}
+                          for k, name in ((0, "floor"), (1, "wall"), (2, "wall"))],
+            "fill": [dict(CASE["fill"][0], low=[0.003, 0.003, 0.002])]}
+
 
 class Runs:
     def __init__(self, program, folder):

@@ -6,14 +6,16 @@ Usage: outflow_test.py PROGRAM
 """
 import csv
 import json
+import math
 import sys
 import tempfile
 
-from case_runs import CASE, Runs, expect
+from case_runs import ATTACHED, CASE, Runs, expect
 
 # The cup without floor and lid: the grains fall out of the domain.
 DOMAIN = dict(CASE["domain"], outflow=["-z"])
-OPEN = dict(domain=DOMAIN, boundaries=[CASE["boundaries"][1]], checkpoint_interval=3e-3, frame_interval=7e-3, interval=4e-3)
+OPEN = dict(domain=DOMAIN, boundaries=[CASE["boundaries"][1]], checkpoint_interval=3e-3, frame_interval=7e-3, interval=4e-3,
+            particles=ATTACHED["particles"][1:], fill=ATTACHED["fill"])
 
 
 def rows(runs, output, name):
@@ -30,6 +32,9 @@ def main():
     number = json.loads((runs.folder / "whole" / "summary.json").read_text())
     expect(len(left) > 10 and len({row["id"] for row in left + particles}) == len(left) + len(particles),
            "each particle is in one of the two tables")
+    expect([row["id"] for row in particles][:2] == ["0", "1"] and
+           abs(math.hypot(float(particles[1]["x"]) - 0.01, float(particles[1]["y"]) - 0.01) - 4e-3) < 1e-12,
+           "the particles attached to the wall remain, at their distance from its axis")
     expect(all(row["side"] == "-z" and -0.0025 < float(row["z"]) <= -0.002 and float(row["vz"]) < 0 for row in left),
            "the particles leave downwards, and are found close to the side")
     times = [float(row["t"]) for row in left]

@@ -16,12 +16,12 @@ import sys
 import tempfile
 import time
 
-from case_runs import CASE, Runs, expect
+from case_runs import ATTACHED, CASE, Runs, expect
 
 
 def kills(runs, wanted=20, legs=20):
     """Kills a run at random instants, wall time / legs apart on average, and resumes it until it is complete"""
-    case = runs.case("cup")
+    case = runs.case("cup", **ATTACHED)
     begin = time.monotonic()
     runs.finish(case, "--output", "whole")
     seconds = time.monotonic() - begin
@@ -174,7 +174,7 @@ def longer(runs):
         return all((runs.folder / "out" / name).read_bytes() == files[name] for name in files)
 
     # 0.015 s is a multiple of checkpoint_interval, 0.0153 s is not; the second step goes from one extension to the next
-    case = runs.case("cup", checkpoint_interval=3e-3, frame_interval=2e-3, interval=1e-3)
+    case = runs.case("cup", **ATTACHED, checkpoint_interval=3e-3, frame_interval=2e-3, interval=1e-3)
     for first, options in (("0.015", ()), ("0.0153", ()), ("0.0153", ("--no-vtk",)), ("0.002", ("--threads", "2"))):
         runs.finish(case, "--end", first, "--output", "out", *options)
         for end in ("0.02", "0.0261"):
@@ -185,13 +185,13 @@ def longer(runs):
         runs.remove("out")
 
     # without intervals in the case, those of the first run remain
-    bare = dict(CASE)
+    bare = dict(CASE, **ATTACHED)
     for key in ("interval", "frame_interval", "checkpoint_interval"):
         del bare[key]
     (runs.folder / "bare.json").write_text(json.dumps(dict(bare, end=0.01)))
     runs.finish("bare", "--output", "out")
     longer_run("bare", "0.013")
-    stated = runs.case("stated", end=0.01, interval=1e-5, frame_interval=1e-4, checkpoint_interval=1e-4)
+    stated = runs.case("stated", **ATTACHED, end=0.01, interval=1e-5, frame_interval=1e-4, checkpoint_interval=1e-4)
     expect(runs.sha("out").split() and (runs.folder / "out" / "run.csv").read_text().count("\n") == 1302,
            "the interval of the rows is a thousandth of the first end")
     runs.finish(stated, "--end", "0.013", "--output", "whole")

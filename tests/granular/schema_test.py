@@ -70,6 +70,8 @@ BY_THE_PROGRAM = [
     ("/boundaries/0/r/2", 0, "/particles/0: particle 0 and boundary 0: must not overlap by more than 5 % of a radius at the start, got 0.05"),
     ("/boundaries/4/v/2", "sine(t)", "/boundaries/4/v/2: unknown function 'sine' in \"sine(t)\" at column 1; did you mean 'sin'?"),
     ("/boundaries/4/v/2", "1/t-1/t+log(t-1)", "/boundaries/4: boundary 'box-x': v is not finite at t = 5e-06 s"),
+    ("/particles/0/attached_to", "drum", "/particles/0/attached_to: unknown attached_to"),
+    ("/fill/0/attached_to", "lid", "/fill/0/attached_to: attached_to must name a boundary without a mass, got \"lid\""),
     ("/particles/0/replica", 1, "/particles/0/replica: replica must be 0 if a boundary has a mass, as /boundaries/5 has, got 1"),
     ("/boundaries/4/high", [1, 1, -1], "/boundaries/4/high: high must be above low along z"),
     ("/particles/0/material", "wood", "/particles/0/material: no material"),

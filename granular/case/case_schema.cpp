@@ -90,7 +90,11 @@ io::Json having(const std::string& key, const io::Json& value, bool is_default)
 void set_law_definitions(io::Json& definitions)
 {
     io::Json conditions = io::Json::array();
-    const io::Json hertz = having("normal", having("law", {{"const", Hertz::name}}, true), true);
+    io::Json material_laws = io::Json::array();
+    NormalLaws::for_each([&]<class Law>(const Law&) {
+        if (has_material_stiffness<Law>) material_laws.push_back(Law::name);
+    });
+    const io::Json of_materials = having("normal", having("law", {{"enum", material_laws}}, true), true);
     for_each_kind([&]<class Laws>(const std::string& kind, const std::string& standard, Laws PairLaw::*) {
         io::Json variants = io::Json::array();
         io::TypeKind law_kind = {kind + " law", "law", "Name of the law."};
@@ -111,11 +115,13 @@ void set_law_definitions(io::Json& definitions)
             read.schema.keys.push_back(io::note_key);
             definitions[definition] = io::definition(law_kind, name, read.schema);
             if (!read.of_material) return;
-            for (const auto& [normal, then] :
-                 {std::pair(hertz, io::Json{{"allOf", none}}),
-                  std::pair(io::Json{{"not", hertz}}, io::Json{{"required", read.required_otherwise}})})
-                conditions.push_back({{"if", {{"allOf", io::Json::List{chosen, normal}}}},
-                                      {"then", {{"properties", {{kind, then}}}}}});
+            conditions.push_back({{"if", {{"allOf", io::Json::List{chosen, of_materials}}}},
+                                  {"then",
+                                   {{"required", io::Json::List{"restitution"}},
+                                    {"properties", {{kind, {{"allOf", none}}}}}}}});
+            conditions.push_back(
+                {{"if", {{"allOf", io::Json::List{chosen, {{"not", of_materials}}}}}},
+                 {"then", {{"properties", {{kind, {{"required", read.required_otherwise}}}}}}}});
         });
         definitions[kind + "_law"]["allOf"] = variants;
     });

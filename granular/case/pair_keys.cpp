@@ -35,7 +35,12 @@ public:
     float kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
     /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
     /// then does so too
-    bool material_normal() const { return law.normal.is<Hertz>(); }
+    bool material_normal() const
+    {
+        bool result = false;
+        law.normal.visit([&]<class Law>(const Law&) { result = has_material_stiffness<Law>; });
+        return result;
+    }
 
     const Material &i, &j;
 

@@ -42,8 +42,8 @@ struct History {
 template <class R>
 struct NormalForce {
     R F;  ///< component along n of the force on body i [N]; negative if damping makes it tensile
-    /// Factor of the tangential stiffness and damping: √(R* δ) [m] of `hertz`, √(δ/R) of `scaled-hooke`, 1 of
-    /// `hooke`
+    /// Factor of the tangential stiffness and damping: √(R* δ) [m] of the Hertzian laws, √(δ/R) of
+    /// `scaled-hooke`, 1 of the linear laws
     R scale;
     Number<R> power = 0;  ///< exponent a of scale ∝ δ^a
 };

@@ -11,6 +11,14 @@
 
 namespace hilda::granular {
 
+/// Whether the stiffness of a normal law is computed from the moduli of the materials, as the law states by
+/// `static constexpr bool material_stiffness = true`. The tangential stiffness is then 8 G* a.
+template <class Law>
+constexpr bool has_material_stiffness = [] {
+    if constexpr (requires { Law::material_stiffness; }) return Law::material_stiffness;
+    return false;
+}();
+
 /// The laws of a pair of materials. The default is `none` for all but the normal law, which must be set.
 struct PairLaw {
     NormalLaws normal;

@@ -69,7 +69,7 @@ with tempfile.TemporaryDirectory() as folder:
     # messages
     (folder / "wrong.json").write_text(json.dumps(wrong), encoding="utf-8")
     check("(/laws/0/normal/k): k must be positive, got -1" in call(mine, folder / "wrong.json", code=3), "a wrong key")
-    check('unknown law "two-slopes"; allowed: hertz, hooke, scaled-hooke' in
+    check('unknown law "two-slopes"; allowed: hertz, hooke, hunt-crossley, kuwabara-kono, scaled-hooke' in
           call(original, law / "head_on.json", "--output", folder / "no", code=3), "the law is unknown to hilda-granular")
     check("step must not be above" in call(mine, law / "head_on.json", "--step", 1e-2, "--output", folder / "no", code=3),
           "the limit of the time step follows from the collision time of the law")

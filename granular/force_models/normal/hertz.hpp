@@ -18,6 +18,7 @@ struct Hertz {
     static constexpr const char* description =
         "Hertzian contact with damping (Fang 2022, Eq. 2.42): F = 2/3 S delta + c sqrt(m* S) "
         "deltadot with S = 2 E* sqrt(R* delta) and c from the coefficient of restitution.";
+    static constexpr bool material_stiffness = true;
 
     float E_eff = 0;  ///< effective modulus E* [Pa]
     float c = 0;      ///< damping coefficient [-]; see damping()

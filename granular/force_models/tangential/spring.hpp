@@ -14,10 +14,10 @@ constexpr float tiny = 1e-30f;  // lower bound of denominators, against 0/0
 ///
 ///     k = k_t s,    γ = c √(m* k) + γ_t m* s
 ///
-/// s is NormalForce::scale. With `hertz` k_t = 8 G* [Pa], c = damping(e) and γ_t = 0. With the other normal
-/// laws k_t and γ_t are prescribed and c = 0.
+/// s is NormalForce::scale. With normal laws whose stiffness is that of the materials k_t = 8 G* [Pa],
+/// c = damping(e) and γ_t = 0. With the other normal laws k_t and γ_t are prescribed and c = 0.
 struct TangentialSpring {
-    float k_t = 0;      ///< [Pa] with `hertz`, else [N/m]
+    float k_t = 0;      ///< [Pa] if it is 8 G*, else [N/m]
     float c = 0;        ///< damping coefficient [-]
     float gamma_t = 0;  ///< [1/s]
 
@@ -38,13 +38,14 @@ struct TangentialSpring {
         if (!keys.material_normal())
             return {.k_t = keys.positive(
                         "k_t",
-                        "Tangential stiffness k_t [N/m]. Required with the normal laws hooke and "
-                        "scaled-hooke; not allowed with hertz, which uses 8 G*.",
+                        "Tangential stiffness k_t [N/m]. Not allowed with the normal laws hertz, "
+                        "hunt-crossley and kuwabara-kono, where it is 8 G* sqrt(R* delta); required with the "
+                        "others.",
                         1e4),
                     .c = 0,
                     .gamma_t = keys.not_negative("gamma_t", 0,
                                                  "Tangential damping coefficient per effective mass [1/s]. "
-                                                 "Not allowed with the normal law hertz.",
+                                                 "Allowed with the same laws as k_t.",
                                                  3)};
         return of_materials(keys.i, keys.j, keys.restitution());
     }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/validations/lattice.hpp"
 
+#include "io/message.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -82,9 +85,16 @@ public:
             const bool on_floor = static_cast<int>(c.j) == floor;
             (on_floor ? k < of.floor.size() ? of.floor[k] : of.upper_layers : of.sides) += c.F.z / (m * g);
         }
-        for (const Particle& p : world.particles())
-            at[p.replica].kinetic += 0.5 * (p.v.dot(p.v) + 0.4 * R * R * p.omega.dot(p.omega)) / (g * R);
         return at;
+    }
+
+    /// Kinetic energy of each lattice [m g R]
+    std::vector<double> kinetic() const
+    {
+        std::vector<double> T(all.size(), 0);
+        for (const Particle& p : world.particles())
+            T[p.replica] += 0.5 * (p.v.dot(p.v) + 0.4 * R * R * p.omega.dot(p.omega)) / (g * R);
+        return T;
     }
 
     std::vector<double> heights() const
@@ -129,50 +139,144 @@ std::array<double, lattice::widest> LatticeResponse::share(double F) const
     return of;
 }
 
+namespace {
+
+/// What a run needs besides the state of its world
+struct RunState {
+    enum Phase : std::int64_t { falls, settles, is_loaded, settles_again, is_done };
+    std::int64_t phase = falls;
+    double begin = 0;                    ///< of the phase [s]
+    std::vector<double> previous;        ///< kinetic energies at the last interval [m g R]
+    std::vector<double> settled;         ///< largest kinetic energy when it settled; NaN before
+    std::vector<double> time_to_settle;  ///< in this phase [s]
+    std::vector<LatticeResponse::BoundaryForces> before;
+    std::vector<double> heights, first_time;  ///< of the loaded spheres; times of the first phase
+
+    void transfer(io::Archive& a)
+    {
+        a.value(phase), a.value(begin), a.list(previous), a.list(settled), a.list(time_to_settle);
+        a.list(before), a.list(heights), a.list(first_time);
+    }
+};
+
+class SettlingRun {
+public:
+    SettlingRun(const std::vector<LoadCase>& all, const LatticeRun& run)
+        : all(all), run(run), lattices(all, run), world(lattices.get()),
+          interval(std::max(1L, std::lround(run.interval / run.h)))
+    {}
+
+    std::vector<LatticeResponse> compute(const std::function<void(double)>& progress)
+    {
+        const auto more = [&](io::Archive& a) { state.transfer(a); };
+        run.kept.load([&](const std::string& bytes, const std::string& file) {
+            world.from_bytes(bytes, "lattices", file, more);
+        });
+        world.before_each_step([&](World& w) {
+            const double part = (w.t() - state.begin) / run.ramp;
+            if (state.phase == RunState::is_loaded) lattices.apply_load(std::min(part, 1.));
+        });
+        while (state.phase != RunState::is_done) {
+            world.step(interval);
+            const double in_phase = world.t() - state.begin;
+            progress((static_cast<double>(state.phase) + std::min(in_phase / run.longest, 1.)) / 4);
+            if (advance_phase(in_phase)) state.begin = world.t(), ++state.phase;
+            // The neighbour list is rebuilt also if the state is not kept: the results do not depend on it.
+            if (world.steps() % (interval * run.save_every) == 0)
+                run.kept.save(world.to_bytes("lattices", more));
+        }
+        run.ended(world);
+        return response();
+    }
+
+private:
+    /// Whether the phase has ended
+    bool advance_phase(double in_phase)
+    {
+        switch (state.phase) {
+            case RunState::falls:
+                return in_phase > run.fall - 0.5 * run.h;
+            case RunState::is_loaded:
+                if (in_phase < run.ramp - 0.5 * run.h) return false;
+                lattices.apply_load(1);
+                return true;
+            default:
+                if (!settle(in_phase)) return false;
+                if (state.phase == RunState::settles) {
+                    state.before = boundary_forces(), state.heights = lattices.heights();
+                    state.first_time = state.time_to_settle;
+                    state.previous.clear();
+                }
+                return true;
+        }
+    }
+
+    bool settle(double in_phase)
+    {
+        const std::vector<double> T = lattices.kinetic();
+        if (state.previous.empty()) {
+            state.previous = T;
+            state.settled.assign(all.size(), std::nan("")), state.time_to_settle.assign(all.size(), 0);
+            return false;
+        }
+        bool done = true;
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            const double largest = std::exchange(state.previous[n], T[n]);
+            if (std::isnan(state.settled[n]) && T[n] <= largest) {
+                if (largest < run.kinetic) {
+                    state.settled[n] = largest, state.time_to_settle[n] = in_phase;
+                } else {
+                    world.stop(static_cast<std::uint16_t>(n));
+                    state.previous[n] = 0;
+                }
+            }
+            if (!std::isnan(state.settled[n])) continue;
+            done = false;
+            if (in_phase > run.longest)
+                throw io::NumericalFailure(
+                    "not_settled",
+                    io::formatted("lattice %zu (mu = %g, F = %g mg) has not settled after %g s: its kinetic "
+                                  "energy is %.3g m g R, and %g is allowed",
+                                  n, all[n].mu, all[n].F, run.longest, largest, run.kinetic));
+        }
+        return done;
+    }
+
+    std::vector<LatticeResponse::BoundaryForces> boundary_forces() const
+    {
+        std::vector<LatticeResponse::BoundaryForces> at = lattices.boundary_forces();
+        for (std::size_t n = 0; n < all.size(); ++n) at[n].kinetic = state.settled[n];
+        return at;
+    }
+
+    std::vector<LatticeResponse> response() const
+    {
+        const std::vector<LatticeResponse::BoundaryForces> after = boundary_forces();
+        const std::vector<double> low = lattices.heights();
+        std::vector<LatticeResponse> pressed(all.size());
+        for (std::size_t n = 0; n < all.size(); ++n)
+            pressed[n] = {.before = state.before[n],
+                          .after = after[n],
+                          .settled = state.first_time[n],
+                          .held = state.time_to_settle[n],
+                          .displacement = (state.heights[n] - low[n]) / R};
+        return pressed;
+    }
+
+    const std::vector<LoadCase>& all;
+    const LatticeRun& run;
+    Lattices lattices;
+    World& world;
+    const long interval;
+    RunState state;
+};
+
+}  // namespace
+
 std::vector<LatticeResponse> run_lattices(const std::vector<LoadCase>& all, const LatticeRun& run,
                                           const std::function<void(double)>& progress)
 {
-    Lattices lattices(all, run);
-    World& world = lattices.get();
-    const double end = run.settle + run.ramp + run.hold;
-    double begin = std::nan("");  // of the load; NaN before
-    std::vector<LatticeResponse::BoundaryForces> before;
-    std::vector<double> high;
-    const auto more = [&](io::Archive& a) { a.value(begin), a.list(before), a.list(high); };
-    run.kept.load([&](const std::string& bytes, const std::string& file) {
-        world.from_bytes(bytes, "lattices", file, more);
-    });
-    // The neighbour list is rebuilt at each instant, also if the state is not kept: the results do not depend
-    // on it.
-    const auto instant = [&] { return std::floor(world.t() / end * 20 + 1e-9); };
-    double last = instant();
-    const auto step_to = [&](double t) {
-        while (world.t() < t - 0.5 * run.h) {
-            const double interval = std::min(t, world.t() + end / 200) - world.t();
-            world.step(std::max(1L, std::lround(interval / run.h)));
-            progress(world.t() / end);
-            if (instant() == last) continue;
-            last = instant();
-            run.kept.save(world.to_bytes("lattices", more));
-        }
-    };
-    if (std::isnan(begin)) {
-        step_to(run.settle);
-        before = lattices.boundary_forces(), high = lattices.heights();
-        begin = world.t();
-    }
-    world.before_each_step([&](World& w) {
-        const double part = (w.t() - begin) / run.ramp;
-        if (part < 1 + run.h / run.ramp) lattices.apply_load(std::min(part, 1.));
-    });
-    step_to(end);
-    run.ended(world);
-    const std::vector<LatticeResponse::BoundaryForces> after = lattices.boundary_forces();
-    const std::vector<double> low = lattices.heights();
-    std::vector<LatticeResponse> pressed(all.size());
-    for (std::size_t n = 0; n < all.size(); ++n)
-        pressed[n] = {.before = before[n], .after = after[n], .displacement = (high[n] - low[n]) / R};
-    return pressed;
+    return SettlingRun(all, run).compute(progress);
 }
 
 }  // namespace hilda::granular

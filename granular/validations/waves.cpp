@@ -98,8 +98,11 @@ std::vector<ValidationCheck> check(const std::vector<Profile>& all)
         checks.push_back({named("peak", rough.of), rough.peak, 0.06, 0.07});
         const Profile &smooth = find(all, s, 0, 20), &between = find(all, s, 0.1, 20),
                       &rougher = find(all, s, 0.2, 20);
-        checks.push_back({named("middle", smooth.of), smooth.centre, -1, 0.03});
-        checks.push_back({named("distance of the peak from the middle", smooth.of), smooth.at, 5, 7});
+        for (const double F : {5., 20.}) {
+            const Profile& p = find(all, s, 0, F);
+            checks.push_back({named("middle", p.of), p.centre, -1, 0.03});
+            checks.push_back({named("distance of the peak from the middle", p.of), p.at, 5, 7});
+        }
         checks.push_back(
             {named("middle, increase over mu = 0", between.of), between.centre - smooth.centre, 1e-3, 1});
         checks.push_back(
@@ -115,15 +118,16 @@ ValidationResult waves(const ValidationOptions& options)
                    .device = options.device,
                    .ended = [&](const World& world) { options.include("all lattices", world); },
                    .kept = options.kept};
-    if (!options.full) run.ramp = run.hold = 0.5;
+    if (!options.full) run.ramp = 0.5;
     std::vector<LatticeResponse> pressed;
     options.kept.part([&] { pressed = run_lattices(of, run, options.progress); },
                       [&](io::Archive& a) { a.list(pressed); });
 
-    ValidationTable study{"study",
-                          {"stiffness", "mu", "F", "centre", "peak", "distance", "floor", "sides",
-                           "asymmetry", "weight", "kinetic_before", "kinetic_after", "sunk"},
-                          {}},
+    ValidationTable study{
+        "study",
+        {"stiffness", "mu", "F", "centre", "peak", "distance", "floor", "sides", "asymmetry", "weight",
+         "kinetic_before", "kinetic_after", "settled", "held", "sunk"},
+        {}},
         profiles{"profiles", {"stiffness", "mu", "F", "position", "share", "weight"}, {}};
     std::vector<Profile> all;
     for (std::size_t n = 0; n < of.size(); ++n) {
@@ -132,7 +136,8 @@ ValidationResult waves(const ValidationOptions& options)
         const std::string name = name_of(of[n].stiffness);
         study.rows.push_back({name, of[n].mu, of[n].F, p.centre, p.peak, p.at, p.total,
                               (now.after.sides - now.before.sides) / of[n].F, p.asymmetry, p.weight,
-                              now.before.kinetic, now.after.kinetic, now.displacement});
+                              now.before.kinetic, now.after.kinetic, now.settled, now.held,
+                              now.displacement});
         for (int k = 0; k < lattice::widest; ++k)
             profiles.rows.push_back(
                 {name, of[n].mu, of[n].F, double(k - lattice::middle), p.share[k], now.before.floor[k]});

@@ -109,6 +109,20 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
     engine->arrays_modified();
 }
 
+void World::stop(std::uint16_t replica)
+{
+    insert_pending();
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    for (std::uint32_t k = 0; k < p.count; ++k) {
+        if (p.species.data()[k].replica != replica) continue;
+        p.velocity.data()[k] = to_float4({0, 0, 0}, p.velocity.data()[k].w);
+        p.omega.data()[k] = to_float4({0, 0, 0}, p.omega.data()[k].w);
+        p.compensation.data()[k] = {.displacement = p.compensation.data()[k].displacement};
+    }
+    start_balance();
+    engine->arrays_modified();
+}
+
 void World::set_force(std::uint32_t id, const Vec3& F)
 {
     if (is_removed(id)) refuse("force", "no particle has this id", id);

@@ -190,6 +190,8 @@ public:
     void set_force(std::uint32_t id, const Vec3& F);
     /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws io::InvalidInput.
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
+    /// Sets the velocities of all particles of a replica to zero.
+    void stop(std::uint16_t replica);
     /// If true, torques do not accelerate the rotation of particles.
     void set_omega_locked(bool locked) { rotation_locked = locked; }
 

@@ -70,8 +70,12 @@ struct TooManyPairs {};
 /// The cell grid of the domain and the settings of the neighbour search
 struct Domain {
     CellGrid grid;
-    float skin = 0;              ///< largest distance of the surfaces of a listed pair [m]
-    float radius = 0;            ///< common radius of all particles [m]; 0 if they differ
+    float skin = 0;    ///< largest distance of the surfaces of a listed pair [m]
+    float radius = 0;  ///< common radius of all particles [m]; 0 if they differ
+    /// Radius up to which a particle is small [m]. Small particles in contact are in the same cell or in
+    /// adjacent ones. A larger particle searches all cells within its reach.
+    float small = 0;
+    float largest = 0;           ///< radius of the largest particle [m]
     std::uint32_t replicas = 1;  ///< number of systems that share the domain and do not interact
     std::uint32_t unused = 0;    ///< explicit padding, because checkpoints store the bytes of a Domain
 };

@@ -112,8 +112,10 @@ struct Invert {
 };
 
 /// Calls f(j) in a fixed order for the partners of particle k whose surfaces are closer than the skin:
-/// particles in the following half of the neighbouring cells, then boundaries with PairView::boundary_bit.
-/// Two fixed bodies are no pair.
+/// particles, then boundaries with PairView::boundary_bit. Two fixed bodies are no pair.
+///
+/// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
+/// finds all small ones and the large ones with higher indices in the cells within its reach.
 struct Search {
     CellGrid grid;
     const Position* position;
@@ -121,6 +123,7 @@ struct Search {
     const Species* species;
     const std::uint32_t* cell_start;
     float unit, skin;
+    float small, largest;  ///< see Domain
     const Boundary* boundary;
     std::uint32_t boundaries;
 
@@ -129,8 +132,9 @@ struct Search {
     {
         const Position at = position[k];
         const float radius_and_skin = velocity[k].w + skin;
-        const bool fixed = omega[k].w == 0;
+        const bool fixed = omega[k].w == 0, is_large = velocity[k].w > small;
         for (std::uint32_t j = first; j < last; ++j) {
+            if (velocity[j].w > small && !(is_large && j > k)) continue;
             const Difference d = difference(grid, at, position[j]);
             const float x = unit * static_cast<float>(d.x), y = unit * static_cast<float>(d.y),
                         z = unit * static_cast<float>(d.z), limit = radius_and_skin + velocity[j].w;
@@ -138,8 +142,71 @@ struct Search {
         }
     }
 
+    /// Cells along an axis that are within the reach of a particle: `count` cells from `first` on. Along a
+    /// periodic axis `first` may be negative, and first + count above the number of cells.
+    struct Cells {
+        std::int32_t first, count;
+    };
+    HILDA_HD Cells cells_within(float reach, std::int32_t cell, int axis) const
+    {
+        const std::int32_t n = grid.cells[axis];
+        const auto each_side =
+            static_cast<std::int32_t>(reach / (unit * static_cast<float>(grid.width[axis]))) + 2;
+        if (grid.periodic[axis] != 0)
+            return 2 * each_side + 1 < n ? Cells{cell - each_side, 2 * each_side + 1} : Cells{0, n};
+        const std::int32_t first = cell > each_side ? cell - each_side : 0,
+                           last = cell + each_side < n ? cell + each_side : n - 1;
+        return {first, last - first + 1};
+    }
+    HILDA_HD static std::int32_t wrapped(std::int32_t cell, std::int32_t cells)
+    {
+        return cell < 0 ? cell + cells : cell >= cells ? cell - cells : cell;
+    }
+
+    template <class F>
+    HILDA_HD void search_reach(std::uint32_t k, const F& f) const
+    {
+        const std::uint32_t cell = position[k].cell, replica = species[k].replica;
+        const float reach = velocity[k].w + largest + skin;
+        const Cells x = cells_within(reach, CellGrid::x_of(cell), 0),
+                    y = cells_within(reach, CellGrid::y_of(cell), 1),
+                    z = cells_within(reach, CellGrid::z_of(cell), 2);
+        const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
+        for (std::int32_t c = z.first; c < z.first + z.count; ++c)
+            for (std::int32_t b = y.first; b < y.first + y.count; ++b) {
+                const std::uint32_t base = ((replica * nz + wrapped(c, nz)) * ny + wrapped(b, ny)) * nx;
+                const std::int32_t end = x.first + x.count;
+                const auto row = [&](std::int32_t from, std::int32_t to) {  // without a periodic boundary
+                    if (from < to) range_without(k, cell_start[base + from], cell_start[base + to], f);
+                };
+                row(x.first < 0 ? x.first + nx : nx, nx);
+                row(x.first < 0 ? 0 : x.first, end < nx ? end : nx);
+                row(0, end > nx ? end - nx : 0);
+            }
+    }
+    /// range() without the particle itself
+    template <class F>
+    HILDA_HD void range_without(std::uint32_t k, std::uint32_t first, std::uint32_t last, const F& f) const
+    {
+        if (k < first || k >= last) return range(k, first, last, f);
+        range(k, first, k, f), range(k, k + 1, last, f);
+    }
+
     template <class F>
     HILDA_HD void operator()(std::uint32_t k, const F& f) const
+    {
+        if (velocity[k].w > small)
+            search_reach(k, f);
+        else
+            search_half(k, f);
+        for (std::uint32_t b = 0; b < boundaries; ++b)
+            if (omega[k].w != 0 &&
+                nearest(boundary[b], global_position(grid, position[k])).distance < velocity[k].w + skin)
+                f(PairView::boundary_bit | b);
+    }
+
+    template <class F>
+    HILDA_HD void search_half(std::uint32_t k, const F& f) const
     {
         const std::uint32_t cell = position[k].cell;
         const std::int32_t x = CellGrid::x_of(cell), y = CellGrid::y_of(cell), z = CellGrid::z_of(cell);
@@ -167,10 +234,6 @@ struct Search {
             if (row != 0 && from < 0) range(k, cell_start[base + nx - 1], cell_start[base + nx], f);
             if (to >= nx) range(k, cell_start[base], cell_start[base + 1], f);
         }
-        for (std::uint32_t b = 0; b < boundaries; ++b)
-            if (omega[k].w != 0 &&
-                nearest(boundary[b], global_position(grid, position[k])).distance < velocity[k].w + skin)
-                f(PairView::boundary_bit | b);
     }
 };
 
@@ -399,6 +462,8 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
                                 .cell_start = cell_start.data(),
                                 .unit = static_cast<float>(domain.grid.unit),
                                 .skin = domain.skin,
+                                .small = domain.small,
+                                .largest = domain.largest,
                                 .boundary = input.boundary,
                                 .boundaries = input.boundaries};
     counts.resize(n);

@@ -104,8 +104,9 @@ HILDA_HD inline SplitDisplacement<R> split_displacement(const Vec<R>& displaceme
     return out;
 }
 
-/// Regular cell grid over a box-shaped domain. A cell is at least as wide as the largest particle diameter
-/// plus the skin, so that interacting particles lie in the same cell or in adjacent cells.
+/// Regular cell grid over a box-shaped domain. A cell is at least as wide as the diameter of the largest
+/// small particle plus the skin, so that interacting small particles lie in the same cell or in adjacent
+/// cells; see Domain::small.
 struct CellGrid {
     static constexpr int bits_x = 11, bits_y = 11, bits_z = 10;
     static constexpr std::int32_t widest = 1 << 29;  ///< width of the widest cell [units]

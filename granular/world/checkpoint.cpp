@@ -35,7 +35,7 @@ bool valid(const Domain& d, const WorldOptions& options)
             return false;
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
     return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
-           d.replicas >= 1;
+           positive(d.small) && positive(d.largest) && d.replicas >= 1;
 }
 
 bool valid(const WatchRecord& w)

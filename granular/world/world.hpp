@@ -101,7 +101,7 @@ struct WorldOptions {
     bool delete_lost = false;      ///< the same for all other sides; otherwise ParticleLost is thrown
     Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
     double h = 0;                  ///< step [s]
-    double skin = 0.1;  ///< skin of the neighbour list, in diameters of the largest particle, in (0, 1]
+    double skin = 0.1;  ///< skin of the neighbour list, in median diameters of the particles, in (0, 1]
     Scheme scheme = Scheme::symplectic_euler;
     bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
     Device device = {};
@@ -277,6 +277,7 @@ private:
     void transfer(io::Archive& a);
     void insert_pending();
     Domain domain_of(const std::vector<Particle>& all) const;
+    bool fits(double width, std::uint32_t replicas, std::size_t particles) const;
     struct CellPosition {
         Position position;
         Vec<float> remainder;  ///< position minus its whole units [units]

@@ -41,23 +41,59 @@ std::uint32_t World::add(const Particle& p)
     return id;
 }
 
-/// Cell grid for particles up to the largest of these. Throws io::InvalidInput.
+namespace {
+
+/// Diameter of the largest particle for which the cells are made. `sorted`: all diameters in ascending order.
+///
+/// The number of distances that a neighbour search computes is estimated for candidates D, with cells of the
+/// width w = D + skin, a constant density of particles, and large particles of the diameters D_i > D:
+///
+///     27/2 w³ for each small particle,    (D_i + D_max + 6 w)³ for each large one
+///
+/// Cells of less than half the width for the largest particle are used if they need fewer distances.
+double cell_diameter(const std::vector<double>& sorted, double skin)
+{
+    const double most = sorted.back();
+    const auto cube = [](double x) { return x * x * x; };
+    double least = 13.5 * static_cast<double>(sorted.size()) * cube(most + skin), best = most;
+    // The candidates leave half, a quarter, ... of the particles as large ones.
+    for (std::size_t large = sorted.size() / 2; large > 0; large /= 2) {
+        const double D = sorted[sorted.size() - 1 - large], w = D + skin;
+        if (w > 0.5 * (most + skin)) break;
+        double cost = 13.5 * static_cast<double>(sorted.size()) * cube(w);
+        for (auto it = std::upper_bound(sorted.begin(), sorted.end(), D); it != sorted.end(); ++it)
+            cost += cube(*it + most + 6 * w);
+        if (cost < least) least = cost, best = D;
+    }
+    return best;
+}
+
+}  // namespace
+
+/// Cell grid for these particles. Throws io::InvalidInput.
 Domain World::domain_of(const std::vector<Particle>& all) const
 {
     Domain in;
     CellGrid& grid = in.grid;
-    double largest = 0;
     in.radius = static_cast<float>(all[0].radius);
+    std::vector<double> diameters;
     for (const Particle& p : all) {
-        largest = std::max(largest, 2 * p.radius);
+        diameters.push_back(2 * p.radius);
         if (static_cast<float>(p.radius) != in.radius) in.radius = 0;
         in.replicas = std::max(in.replicas, std::uint32_t{p.replica} + 1);
     }
-    in.skin = static_cast<float>(options.skin * largest);
-    const double edge = largest + in.skin;
+    if (in.radius == 0) std::sort(diameters.begin(), diameters.end());
+    const double largest = diameters.back();
+    // The median and not the largest diameter: with the latter, a single large particle multiplies the number
+    // of pairs of all others. A pair is listed up to the distance R_i + R_j + skin of the centres.
+    in.skin = static_cast<float>(options.skin * diameters[diameters.size() / 2]);
+    double cell = cell_diameter(diameters, in.skin);
+    if (!fits(cell + in.skin, in.replicas, all.size())) cell = largest;
+    in.small = static_cast<float>(cell / 2), in.largest = static_cast<float>(largest / 2);
+    const double edge = cell + in.skin;
     const double low[] = {options.low.x, options.low.y, options.low.z},
                  high[] = {options.high.x, options.high.y, options.high.z};
-    double widest = edge;
+    double widest = largest + in.skin;
     for (int k = 0; k < 3; ++k) {
         grid.low[k] = low[k];
         grid.periodic[k] = options.periodic[k];
@@ -69,12 +105,12 @@ Domain World::domain_of(const std::vector<Particle>& all) const
                    "must not be wider than " + std::to_string(max_cells) +
                        " cells along one axis; a cell is as wide as the largest diameter and the skin; cells",
                    cells);
-        if (options.periodic[k] && cells < 3)
+        if (options.periodic[k] && length < 3 * (largest + in.skin))
             refuse("domain",
                    io::formatted(
                        "must be at least %.5g m wide along %c, a periodic axis: three times the largest "
                        "diameter and the skin",
-                       1.0001 * 3 * edge, 'x' + k),
+                       1.0001 * 3 * (largest + in.skin), 'x' + k),
                    length);
         grid.cells[k] = static_cast<std::int32_t>(cells);
         if (options.periodic[k]) widest = std::max(widest, length / cells);
@@ -90,6 +126,15 @@ Domain World::domain_of(const std::vector<Particle>& all) const
             std::lround(length / grid.unit - double(grid.width[k]) * (grid.cells[k] - 1)));
     }
     return in;
+}
+
+/// Whether cells of this width are possible in the domain, and do not need more memory than the particles
+bool World::fits(double width, std::uint32_t replicas, std::size_t particles) const
+{
+    const Vec3 size = options.high - options.low;
+    const double x = std::ceil(size.x / width), y = std::ceil(size.y / width), z = std::ceil(size.z / width);
+    return x <= 1 << CellGrid::bits_x && y <= 1 << CellGrid::bits_y && z <= 1 << CellGrid::bits_z &&
+           x * y * z * replicas <= 1e5 + 30 * static_cast<double>(particles);
 }
 
 /// Cell and position within the cell of each particle. Throws ParticleLost if a particle that was inserted

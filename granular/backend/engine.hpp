@@ -65,8 +65,9 @@ public:
 
     /// See Neighbours::find.
     virtual void find_neighbours(const Domain& domain) = 0;
-    /// See find_loads.
-    virtual void find_loads(const Domain& domain, float h) = 0;
+    /// See find_loads. Without `store`, the CPU computes only the loads on boundaries here, and with a watch
+    /// those on fixed particles; it computes the other ones in advance(). See sweep.hpp.
+    virtual void find_loads(const Domain& domain, float h, bool store) = 0;
     /// See advance.
     virtual float advance(const StepParameters& step) = 0;
     /// Largest displacement of a particle since the last neighbour search [units]

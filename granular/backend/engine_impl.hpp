@@ -3,12 +3,16 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
+#include "granular/core/sweep.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <span>
 #include <type_traits>
 #include <utility>
+
+#include <omp.h>
 
 namespace hilda::granular {
 
@@ -152,6 +156,7 @@ public:
                          .rotation_laws = rotation_laws},
                         own.particle, own.pairs);
         find_attached();
+        plan.reset();
         free_pairs = 0;
         if (any_free)
             free_pairs = list_pairs(
@@ -159,36 +164,54 @@ public:
         if (watched) prepare_watch();
     }
 
-    void find_loads(const Domain& domain, float h) override
+    void find_loads(const Domain& domain, float h, bool store) override
     {
         host_is_current = false;
         PairView pairs = pair_view();
         if (watched) pairs.largest_overlap = overlaps.data();
-        granular::find_loads(on, particle_view(domain, own.particle), pairs, law_view(h));
+        const ParticleView particles = particle_view(domain, own.particle);
+        if constexpr (is_cpu) {
+            if (!store) {
+                if (plan.threads() != omp_get_max_threads()) {
+                    plan.make(own.particle, own.pairs, omp_get_max_threads(), watched);
+                    resize_overlaps();
+                    if (watched) pairs.largest_overlap = overlaps.data();
+                }
+                find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
+                                  static_cast<std::uint32_t>(plan.list.size()));
+                pending = {particles, pairs, law_view(h)};
+                sweeps = true;
+                return;
+            }
+        }
+        granular::find_loads(on, particles, pairs, law_view(h));
     }
 
     float advance(const StepParameters& step) override
     {
         host_is_current = false;
         Particles<Backend>& p = own.particle;
-        return granular::advance(on, p.count,
-                                 {.position = p.position.data(),
-                                  .velocity = p.velocity.data(),
-                                  .omega = p.omega.data(),
-                                  .compensation = p.compensation.data(),
-                                  .acc = p.acc.data(),
-                                  .alpha = p.alpha.data(),
-                                  .orientation = p.orientation.data(),
-                                  .orientation_compensation = p.orientation_compensation.data(),
-                                  .start = own.pairs.start.data(),
-                                  .other_start = own.pairs.other_start.data(),
-                                  .other = own.pairs.other.data(),
-                                  .load = own.pairs.load.data(),
-                                  .in_contact = own.pairs.in_contact.data(),
-                                  .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
-                                  .force = force.size() > 0 ? force.data() : nullptr,
-                                  .id = p.id.data(),
-                                  .step = step});
+        const AdvanceView arrays{.position = p.position.data(),
+                                 .velocity = p.velocity.data(),
+                                 .omega = p.omega.data(),
+                                 .compensation = p.compensation.data(),
+                                 .acc = p.acc.data(),
+                                 .alpha = p.alpha.data(),
+                                 .orientation = p.orientation.data(),
+                                 .orientation_compensation = p.orientation_compensation.data(),
+                                 .start = own.pairs.start.data(),
+                                 .other_start = own.pairs.other_start.data(),
+                                 .other = own.pairs.other.data(),
+                                 .load = own.pairs.load.data(),
+                                 .in_contact = own.pairs.in_contact.data(),
+                                 .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
+                                 .force = force.size() > 0 ? force.data() : nullptr,
+                                 .id = p.id.data(),
+                                 .step = step};
+        if constexpr (is_cpu)
+            if (std::exchange(sweeps, false))
+                return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, p.count);
+        return granular::advance(on, p.count, arrays);
     }
 
     float largest_displacement() override
@@ -216,6 +239,7 @@ public:
     void set_watched(bool is_watched) override
     {
         watched = is_watched;
+        plan.reset();
         if (watched && own.pairs.start.size() > 0) prepare_watch();
     }
 
@@ -312,7 +336,7 @@ public:
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
                counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
-               attached_index.bytes() + poses.bytes();
+               attached_index.bytes() + poses.bytes() + plan.bytes();
     }
 
 private:
@@ -365,7 +389,6 @@ private:
     /// Lists the pairs with external loads and provides the memory of the sums.
     void prepare_watch()
     {
-        earlier_overlap = take_largest_overlap();
         const std::uint32_t n = own.particle.count, pairs = own.pairs.count;
         const Float4* const omega = own.particle.omega.data();
         boundary_pairs = fixed_pairs = 0;
@@ -378,7 +401,19 @@ private:
         particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
         contact_blocks.resize(watch_blocks(pairs));
         external_blocks.resize(watch_blocks(boundary_pairs) + watch_blocks(fixed_pairs));
-        overlaps.resize(is_cpu ? (pairs + loop_chunk - 1) / loop_chunk : 1);
+        resize_overlaps();
+    }
+
+    /// One number for each task of a loop that compares overlaps
+    void resize_overlaps()
+    {
+        if (!watched) return;
+        const auto tasks = [](std::size_t n, std::size_t of_task) { return (n + of_task - 1) / of_task; };
+        earlier_overlap = take_largest_overlap();
+        overlaps.resize(is_cpu ? std::max({tasks(own.pairs.count, loop_chunk),
+                                           tasks(own.particle.count, SweepPlan::block),
+                                           tasks(plan.list.size(), list_chunk)})
+                               : 1);
         par::fill(on, overlaps.data(), overlaps.size(), 0.f);
     }
 
@@ -455,6 +490,14 @@ private:
     par::Array<Backend, std::uint32_t> attached_index;  ///< see FindAttached
     par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
+    SweepPlan plan;  ///< of the CPU
+    /// Arguments of find_loads() for the pass in advance()
+    struct Pending {
+        ParticleView particles;
+        PairView pairs;
+        LawView laws;
+    } pending = {};
+    bool sweeps = false;  ///< whether advance() computes the loads as well
     std::uint32_t materials = 1, free_pairs = 0;
     bool one_law = true, rotation_laws = false, any_free = false;
     par::Array<Backend, std::uint32_t> counts, offset;  ///< counts: indices of the pairs with free boundaries

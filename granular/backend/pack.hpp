@@ -54,12 +54,6 @@ struct Ints {
     }
 };
 
-/// 64-bit integers
-struct Longs {
-    using V __attribute__((vector_size(8 * lanes))) = std::int64_t;
-    V v;
-};
-
 /// Single-precision numbers
 struct Pack {
     using V __attribute__((vector_size(4 * lanes))) = float;
@@ -116,11 +110,66 @@ inline unsigned bits(PackMask m)
 #endif
 
 inline Pack to_float(Ints a) { return __builtin_convertvector(a.v, Pack::V); }
-inline Pack to_float(Longs a) { return __builtin_convertvector(a.v, Pack::V); }
 inline Ints to_int(Pack a) { return {__builtin_convertvector(a.v, Ints::V)}; }
 inline Ints as_int(Pack a) { return {Ints::V(a.v)}; }
 inline Pack as_float(Ints bits) { return Pack::V(bits.v); }
-inline Longs wide(Ints a) { return {__builtin_convertvector(a.v, Longs::V)}; }
+
+/// The sum d² = x² + y² + z² and the difference D² - d², exact in 64-bit integers
+class Squares {
+public:
+    Squares() = default;
+#ifdef __AVX512DQ__
+    Squares(Ints x, Ints y, Ints z, Ints D)
+    {
+        // The multiplication reads the even lanes; the odd ones are shifted into them.
+        const auto squares = [](const auto& of, __m512i& d2, __m512i& q) {
+            const auto square = [](__m512i a) { return _mm512_mul_epi32(a, a); };
+            d2 = _mm512_add_epi64(_mm512_add_epi64(square(of[0]), square(of[1])), square(of[2]));
+            q = _mm512_sub_epi64(square(of[3]), d2);
+        };
+        const __m512i even[4] = {__m512i(x.v), __m512i(y.v), __m512i(z.v), __m512i(D.v)};
+        __m512i odd[4];
+        for (int k = 0; k < 4; ++k) odd[k] = _mm512_srli_epi64(even[k], 32);
+        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
+    }
+    Pack sum() const { return merged(even_d2, odd_d2); }
+    Pack difference() const { return merged(even_q, odd_q); }
+    /// Bit k of the result: the difference of lane k is positive
+    unsigned positive() const
+    {
+        const __m512i zero = _mm512_setzero_si512(), even = _mm512_sub_epi64(zero, even_q),
+                      odd = _mm512_sub_epi64(zero, odd_q);
+        return _mm512_movepi32_mask(_mm512_mask_blend_epi32(0xAAAA, _mm512_srli_epi64(even, 32), odd));
+    }
+
+private:
+    static Pack merged(__m512i even, __m512i odd)
+    {
+        const auto wide = [](__m512i a) {
+            return _mm512_cvtepu32_epi64(_mm256_castps_si256(_mm512_cvtepi64_ps(a)));
+        };
+        return Pack::V(_mm512_or_si512(wide(even), _mm512_slli_epi64(wide(odd), 32)));
+    }
+    __m512i even_d2, odd_d2, even_q, odd_q;
+#else
+    Squares(Ints x, Ints y, Ints z, Ints D)
+    {
+        const auto square = [](Ints a) {
+            const V wide = __builtin_convertvector(a.v, V);
+            return wide * wide;
+        };
+        d2 = square(x) + square(y) + square(z);
+        q = square(D) - d2;
+    }
+    Pack sum() const { return __builtin_convertvector(d2, Pack::V); }
+    Pack difference() const { return __builtin_convertvector(q, Pack::V); }
+    unsigned positive() const { return bits(PackMask{__builtin_convertvector(q > 0, Ints::V)}); }
+
+private:
+    using V __attribute__((vector_size(8 * lanes))) = std::int64_t;
+    V d2, q;
+#endif
+};
 
 /// Rounds to the nearest integer. The magnitude must be below 2^31.
 inline Pack rint(Pack a)

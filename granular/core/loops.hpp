@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loops over pairs and particles with one scalar call per pair or particle, for the GPU. The results are
-// bitwise equal to those of the packs in contact_loop_cpu.cpp and integrator_cpu.cpp.
+// bitwise equal to those of the packs in contact_loop_cpu.cpp and sweep_cpu.cpp.
 #pragma once
 
 #include "granular/core/add_contacts.hpp"
@@ -125,8 +125,10 @@ struct AdvanceOne {
             if (arrays.torque != nullptr) {
                 for (std::uint32_t n = arrays.start[k]; n < arrays.start[k + 1]; ++n)
                     T += vec(arrays.torque[n]);
+                Vec<float> T_j{0, 0, 0};
                 for (std::uint32_t m = arrays.other_start[k]; m < arrays.other_start[k + 1]; ++m)
-                    T -= vec(arrays.torque[arrays.other[m]]);
+                    T_j += vec(arrays.torque[arrays.other[m]]);
+                T -= T_j;
             }
             T = v.w * M + T;
         }

@@ -281,17 +281,18 @@ void World::one_step()
 {
     const auto h = static_cast<float>(options.h);
     const bool verlet = options.scheme == Scheme::velocity_verlet;
+    const bool sample = watched && is_sample();  // whether the loads are needed before the particles move
     Lap lap;
     const auto take = [&](double& to) {
         if (timed) engine->wait();
         to += lap.take();
     };
-    const auto find_loads = [&] {
+    const auto find_loads = [&](bool store) {
         take(times.advance);
         update_neighbours();
         engine->set_boundaries(boundaries);
         take(times.neighbours);
-        engine->find_loads(domain, h);
+        engine->find_loads(domain, h, store);
         take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
@@ -317,20 +318,20 @@ void World::one_step()
     };
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
-        find_loads();
+        find_loads(true);
         engine->advance(step_parameters(Part::only_loads));
     }
     if (verlet) {
         particle_displacement += advance(Part::before_loads);
         boundary_displacement += move_boundaries();
         if (!is_posed()) move_attached();
-        find_loads();
+        find_loads(sample);
         accelerate_tools();
         watch_loads();
         advance(Part::after_loads);
         watch_advance();
     } else {
-        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads();
+        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads(sample);
         accelerate_tools();
         watch_loads();
         particle_displacement += advance(Part::whole);

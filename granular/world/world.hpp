@@ -306,6 +306,7 @@ private:
     StepParameters step_parameters(Part part) const;
     bool laws_have_energy() const;
     bool boundaries_move();
+    bool is_sample() const;
     void watch_loads();
     void watch_advance();
     void start_balance() { record.is_balanced = 0; }

@@ -66,6 +66,13 @@ bool World::boundaries_move()
     return true;
 }
 
+/// Whether the present step is a sample of the watch.
+bool World::is_sample() const
+{
+    return record.is_balanced == 0 || step_count % watch_limit::interval == 0 ||
+           (node_interval > 0 && (step_count + 1) % node_interval == 0);
+}
+
 /// Loads of the present step at t_n, before the particles are advanced: impulses and work of the boundaries
 /// and, in a sample, momentum, potential and elastic energy.
 ///
@@ -75,8 +82,7 @@ void World::watch_loads()
 {
     if (!watched) return;
     WatchRecord& w = record;
-    sampling = w.is_balanced == 0 || step_count % watch_limit::interval == 0 ||
-               (node_interval > 0 && (step_count + 1) % node_interval == 0);
+    sampling = is_sample();
     static const std::vector<BoundaryVelocity> none;
     const bool move = boundaries_move();
     const double h = static_cast<float>(options.h);

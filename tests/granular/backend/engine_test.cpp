@@ -10,6 +10,8 @@
 
 #include <random>
 
+#include <omp.h>
+
 using namespace hilda;
 using namespace hilda::tests;
 using granular::Boundary;
@@ -90,7 +92,51 @@ std::string dense_packing(std::unique_ptr<Engine> engine, int n)
     return world.to_bytes("");
 }
 
+/// Several blocks and ranges of the one-pass step: a dense packing of n³ particles with several radii and
+/// laws, periodic along two axes, with fixed particles and a watch
+std::string mixed_packing(std::unique_ptr<Engine> engine, int n, Scheme scheme)
+{
+    WorldOptions o;
+    const double width = 2.05 * R * n;
+    o.low = {0, 0, -R}, o.high = {width, width, width + 20 * R};
+    o.periodic = {true, true, false};
+    o.h = 1e-5, o.skin = 0.05, o.scheme = scheme;
+    World world(o, {glass(), steel()}, std::move(engine));
+    PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
+    law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
+    world.set_law(0, 0, law), world.set_law(0, 1, law);
+    world.set_law(1, 1, hertz_mindlin(steel(), 0.8, 0.2));
+    world.add(Boundary{});
+    world.set_watch(true, 0);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> in(-1, 1);
+    for (int k = 0; k < n * n * n; ++k)
+        world.add(Particle{.r = 2.05 * R * Vec3{k % n + 0.5, k / n % n + 0.5, k / (n * n) % n + 0.5},
+                           .radius = R * (1 - 0.04 * (k % 3)),
+                           .material = k % 2,
+                           .v = {0.3 * in(random), 0.3 * in(random), 0.3 * in(random)},
+                           .fixed = k % 101 == 0});
+    world.step(150);
+    CHECK(world.rebuilds() > 5);
+    return world.to_bytes("");
+}
+
 }  // namespace
+
+TEST_CASE("one-pass steps give the bits of the scalar loops for any number of threads", "[granular][engine]")
+{
+    const Scheme scheme = GENERATE(Scheme::symplectic_euler, Scheme::velocity_verlet, Scheme::chung);
+    const int most = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const std::string expected =
+        mixed_packing(std::make_unique<granular::EngineOn<ScalarBackend>>(), 14, scheme);
+    for (const int threads : {1, 2, 3, 5}) {
+        CAPTURE(threads);
+        omp_set_num_threads(threads);
+        CHECK(mixed_packing(granular::make_engine({}), 14, scheme) == expected);
+    }
+    omp_set_num_threads(most);
+}
 
 TEST_CASE("packs and scalar loops give bitwise equal results", "[granular][engine]")
 {

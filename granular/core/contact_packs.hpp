@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Contacts of particles in packs: geometry, force laws and histories, for the loops over pairs on the CPU.
+
+#pragma once
+
+#include "granular/backend/lanes.hpp"
+#include "granular/core/contact_loop.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular::detail {
+
+/// Four words of a row as packs
+template <class T>
+struct Words4 {
+    T x, y, z, w;
+};
+
+template <class Word, class T>
+Words4<Word> gather_rows(const T* from, const std::uint32_t* which)
+{
+    Word w[4];
+    load_rows<Word, T>([&](int k) { return &from[which[k]]; }, w);
+    return {w[0], w[1], w[2], w[3]};
+}
+
+/// Separation r_i - r_j of a pack of pairs, and the numbers q, d² and D of set_overlap [units, units²]
+struct PackOverlap {
+    Vec<Pack> separation;
+    Pack q, d2, D;
+};
+
+/// Loads of a pack of contacts: F and M of Load, and the torque T of rolling and spin on body i
+struct PackLoad {
+    Pack F[4], M[4], T[4];
+};
+
+/// Contacts of a list of pairs
+struct ContactPacks {
+    const ParticleView& particles;
+    const PairView& pairs;
+    const LawView& laws;
+    float units_per_metre = 1 / static_cast<float>(particles.grid.unit),
+          unit = static_cast<float>(particles.grid.unit);
+
+    /// The function difference() for packs
+    static Ints axis_difference(Ints cell_i, Ints cell_j, Ints i, Ints j, const CellGrid& g, int axis)
+    {
+        Ints::V d = cell_i.v - cell_j.v;
+        if (g.periodic[axis] != 0) {
+            const Ints::V n = Ints::V{} + g.cells[axis];
+            d += (2 * d > n ? -n : 2 * d < -n ? n : Ints::V{});
+        }
+        using Unsigned = Ints::Unsigned;
+        return {Ints::V(Unsigned(d) * static_cast<std::uint32_t>(g.width[axis]) +
+                        (Unsigned(i.v) - Unsigned(j.v)))};
+    }
+
+    /// Integers of the overlap of a pack of pairs
+    struct Integers {
+        Ints x, y, z, D;
+        Squares squares;  ///< q > 0: the two particles overlap
+
+        PackOverlap to_floats() const
+        {
+            return {
+                {to_float(x), to_float(y), to_float(z)}, squares.difference(), squares.sum(), to_float(D)};
+        }
+    };
+    Integers integers(const std::uint32_t* i, const std::uint32_t* j, Pack R_i, Pack R_j) const
+    {
+        const CellGrid& g = particles.grid;
+        const auto a = gather_rows<Ints>(particles.position, i), b = gather_rows<Ints>(particles.position, j);
+        constexpr int mask_x = (1 << CellGrid::bits_x) - 1, mask_y = (1 << CellGrid::bits_y) - 1,
+                      mask_z = (1 << CellGrid::bits_z) - 1;
+        const auto x_of = [](Ints c) { return Ints{c.v & mask_x}; };
+        const auto y_of = [](Ints c) { return Ints{c.v >> CellGrid::bits_x & mask_y}; };
+        const auto z_of = [](Ints c) { return Ints{c.v >> (CellGrid::bits_x + CellGrid::bits_y) & mask_z}; };
+        Integers out;
+        out.x = axis_difference(x_of(a.x), x_of(b.x), a.y, b.y, g, 0);
+        out.y = axis_difference(y_of(a.x), y_of(b.x), a.z, b.z, g, 1);
+        out.z = axis_difference(z_of(a.x), z_of(b.x), a.w, b.w, g, 2);
+        out.D = {to_int(R_i * units_per_metre).v + to_int(R_j * units_per_metre).v};
+        out.squares = Squares(out.x, out.y, out.z, out.D);
+        return out;
+    }
+    /// The same, for pairs that need not be in contact: for these only positions and radii are read.
+    Integers integers(const std::uint32_t* i, const std::uint32_t* j) const
+    {
+        Pack R_i = particles.radius, R_j = R_i;
+        if (!(particles.radius > 0))
+            R_i = gather_rows<Pack>(particles.velocity, i).w,
+            R_j = gather_rows<Pack>(particles.velocity, j).w;
+        return integers(i, j, R_i, R_j);
+    }
+
+    void clear_contact(std::uint32_t n) const
+    {
+        pairs.in_contact[n] = 0;
+        pairs.history[n] = {};
+        pairs.load[n] = {};
+        if (pairs.rotation_history != nullptr) pairs.rotation_history[n] = {}, pairs.torque[n] = {};
+    }
+
+    /// The loads of a pack of contacts of particles i and j, with one law; n: numbers of the pairs.
+    [[gnu::flatten]] PackLoad evaluate_particles(const PairLaw& law, const PackOverlap& overlap,
+                                                 const std::uint32_t* i, const std::uint32_t* j,
+                                                 const std::uint32_t* n, Pack& overlaps) const
+    {
+        const auto v_i = gather_rows<Pack>(particles.velocity, i),
+                   v_j = gather_rows<Pack>(particles.velocity, j);
+        const auto w_i = gather_rows<Pack>(particles.omega, i), w_j = gather_rows<Pack>(particles.omega, j);
+        ContactPoint<Pack> contact;
+        contact.h = laws.h;
+        contact.R_i = v_i.w, contact.R_j = v_j.w;
+        set_overlap(contact, overlap.q, overlap.d2, overlap.D, overlap.separation, Pack(unit));
+        set_masses(contact, w_i.w, w_j.w);
+        set_rates(contact, Vec<Pack>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
+                  Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
+        overlaps = larger(overlaps, contact.delta / smaller(contact.R_i, contact.R_j));
+        return evaluate_pack(law, contact, n);
+    }
+
+    /// Evaluates the force law and advances the histories of the pairs n. Several lanes may hold the same
+    /// pair; they then store the same values.
+    [[gnu::flatten]] PackLoad evaluate_pack(const PairLaw& law, const ContactPoint<Pack>& contact,
+                                            const std::uint32_t* n) const
+    {
+        const auto u = gather_rows<Pack>(pairs.history, n);
+        History<Pack> history;
+        history.u = {u.x, u.y, u.z};
+        history.slid = u.w < Pack(0.f);  // the sign of the age marks sliding
+        history.age = abs(u.w) + laws.h;
+        const bool rotation_laws = pairs.rotation_history != nullptr;
+        if (rotation_laws) {
+            const auto psi = gather_rows<Pack>(pairs.rotation_history, n);
+            history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
+        }
+        const ContactForce<Pack> out = evaluate(law, contact, history, rotation_laws);
+        if (rotation_laws) {
+            const Pack to_rotation[4] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
+            store_rows(to_rotation, [&](int k) { return &pairs.rotation_history[n[k]]; });
+        }
+        const Pack to_history[4] = {history.u.x, history.u.y, history.u.z,
+                                    select(history.slid, -history.age, history.age)};
+        store_rows(to_history, [&](int k) { return &pairs.history[n[k]]; });
+        const Vec<Pack> M = -contact.n.cross(out.F_t);
+        const Pack zero(0.f);
+        return {{out.F.x, out.F.y, out.F.z, zero}, {M.x, M.y, M.z, zero}, {out.T.x, out.T.y, out.T.z, zero}};
+    }
+
+    /// Stores the loads of the pairs n.
+    void store_loads(const PackLoad& load, const std::uint32_t* n) const
+    {
+        store_rows(load.F, [&](int k) { return &pairs.load[n[k]].F; });
+        store_rows(load.M, [&](int k) { return &pairs.load[n[k]].M; });
+        if (pairs.rotation_history != nullptr) store_rows(load.T, [&](int k) { return &pairs.torque[n[k]]; });
+    }
+};
+
+/// Calls f(law, elements, number of elements) once per law. law_of(e) is the number of the law of an element;
+/// the elements of a law keep their order. `sorted` has memory for `count` elements.
+template <class LawOf, class F>
+void by_law(const LawView& laws, const LawOf& law_of, const std::uint32_t* elements, std::uint32_t count,
+            std::uint32_t* sorted, const F& f)
+{
+    std::uint32_t start[257] = {};
+    for (std::uint32_t k = 0; k < count; ++k) ++start[law_of(elements[k]) + 1];
+    for (int l = 0; l < 256; ++l) start[l + 1] += start[l];
+    std::uint32_t next[256];
+    std::copy_n(start, 256, next);
+    for (std::uint32_t k = 0; k < count; ++k) sorted[next[law_of(elements[k])]++] = elements[k];
+    for (int l = 0; l < laws.laws; ++l)
+        if (start[l + 1] > start[l]) f(laws.law[l], sorted + start[l], start[l + 1] - start[l]);
+}
+
+}  // namespace hilda::granular::detail

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The order of a one-pass step.
+#include "granular/core/sweep.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>& pairs, int threads,
+                     bool fixed_ahead)
+{
+    planned_threads = threads;
+    const std::uint32_t n = particles.count, blocks = (n + block - 1) / block;
+    const std::uint32_t* const start = pairs.start.data();
+    // Ranges of about the same work; a range of a few blocks is not worth a thread.
+    const std::uint32_t most = std::max(1u, std::min(static_cast<std::uint32_t>(threads), blocks / 4));
+    const auto work = [&](std::uint32_t b) {
+        const std::uint32_t k = std::min(b * block, n);
+        return std::uint64_t{start[k]} + 4 * std::uint64_t{k};
+    };
+    first_block.assign(1, 0);
+    for (std::uint32_t b = 1; b < blocks; ++b)
+        if (work(b) * most >= work(blocks) * first_block.size()) first_block.push_back(b);
+    first_block.push_back(blocks);
+
+    ahead.assign(pairs.count, 0);
+    std::vector<std::vector<std::uint32_t>> lists(ranges());
+    par::for_each(
+        par::Cpu(), ranges(),
+        [&](std::uint32_t r) {
+            const std::uint32_t end = std::min(first_block[r + 1] * block, n);
+            for (std::uint32_t p = first_block[r] * block; p < end; ++p)
+                for (std::uint32_t k = start[p]; k < start[p + 1]; ++k) {
+                    const std::uint32_t j = pairs.j.data()[k];
+                    const bool boundary = (j & PairView::boundary_bit) != 0;
+                    const auto fixed = [&](std::uint32_t a) { return !(particles.omega.data()[a].w > 0); };
+                    if (!(boundary || j < p / block * block || j >= end ||
+                          (fixed_ahead && (fixed(p) || fixed(j)))))
+                        continue;
+                    ahead[k] = 1, lists[r].push_back(k);
+                }
+        },
+        1);
+    list.clear();
+    for (const auto& of_range : lists) list.insert(list.end(), of_range.begin(), of_range.end());
+
+    std::vector<std::uint32_t> range_of_block(blocks);
+    for (std::uint32_t r = 0; r < ranges(); ++r)
+        std::fill(range_of_block.begin() + first_block[r], range_of_block.begin() + first_block[r + 1], r);
+    // Counting sorts; pairs with the same key keep their order.
+    const auto sort = [&](bool is_early, std::size_t keys, const auto& key, std::vector<std::uint32_t>& first,
+                          std::vector<std::uint32_t>& sorted) {
+        const auto each = [&](const auto& f) {
+            for (const std::uint32_t k : list) {
+                const std::uint32_t i = pairs.i.data()[k], j = pairs.j.data()[k];
+                if ((j & PairView::boundary_bit) == 0 && (i < j) == is_early) f(key(j), k);
+            }
+        };
+        first.assign(keys + 1, 0);
+        each([&](std::uint32_t to, std::uint32_t) { ++first[to + 1]; });
+        for (std::size_t k = 0; k < keys; ++k) first[k + 1] += first[k];
+        sorted.resize(first[keys]);
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        each([&](std::uint32_t to, std::uint32_t k) { sorted[next[to]++] = k; });
+    };
+    sort(
+        true, ranges(), [&](std::uint32_t j) { return range_of_block[j / block]; }, early_start, early);
+    sort(
+        false, blocks, [&](std::uint32_t j) { return j / block; }, late_start, late);
+
+    sum_j.resize(n), torque_j.resize(pairs.rotation_history.size() > 0 ? n : 0);
+    par::fill(par::Cpu(), sum_j.data(), sum_j.size(), Load{});
+    par::fill(par::Cpu(), torque_j.data(), torque_j.size(), Float4{});
+}
+
+std::size_t SweepPlan::bytes() const
+{
+    std::size_t words = 0;
+    for (const auto* v : {&first_block, &list, &early_start, &early, &late_start, &late})
+        words += v->capacity();
+    return words * sizeof(std::uint32_t) + ahead.capacity() + sum_j.bytes() + torque_j.bytes();
+}
+
+}  // namespace hilda::granular

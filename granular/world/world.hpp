@@ -286,7 +286,9 @@ private:
     void check_laws(const std::vector<Particle>& all) const;
     void check_overlaps(std::uint32_t first) const;
     struct CurrentLoads;
-    CurrentLoads current_loads() const;
+    template <class F>
+    void for_current_loads(const F& f) const;
+    void update_for_query() const;
     ContactRecord contact(const CurrentLoads& now, std::uint32_t pair) const;
     void update_neighbours();
     void find_neighbours() const;

@@ -4,6 +4,9 @@
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <tuple>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -23,51 +26,67 @@ void World::add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const
     if (!c.boundary) add(boundary_of(c.i), 1);
 }
 
-/// Loads at t of all pairs in the neighbour list
+/// Loads at t of a part of the pairs in the neighbour list
 struct World::CurrentLoads {
+    static constexpr std::uint32_t most = 1024;  ///< pairs of a part
+
     const Arrays<par::Cpu>& of;
-    par::Array<par::Cpu, Float4> history, rotation_history, torque;
-    par::Array<par::Cpu, Load> load;
-    par::Array<par::Cpu, std::uint8_t> in_contact;
+    std::uint32_t begin, count;  ///< number of the first pair, number of pairs
+    Float4 history[most] = {}, rotation_history[most] = {}, torque[most] = {};
+    Load load[most] = {};
+    std::uint8_t in_contact[most] = {};
+
+    bool touching(std::uint32_t n) const { return in_contact[n - begin] != 0; }
+    static std::uint32_t parts(std::uint32_t pairs) { return (pairs + most - 1) / most; }
 };
 
-World::CurrentLoads World::current_loads() const
+/// Calls f(number of a part, CurrentLoads) for all parts of the pairs, in parallel.
+template <class F>
+void World::for_current_loads(const F& f) const
 {
-    if (!std::isfinite(particle_displacement) && inserted_count > 0 && !particle_lost) {
-        try {
-            find_neighbours();
-        } catch (const LeftDomain& lost) {
-            // The next step removes the particle. The present list has all pairs in contact.
-            if (!removes()) throw_left(lost.id);
-        }
-        // The requested rebuild before the next step still has to take place.
-        particle_displacement = std::numeric_limits<double>::infinity();
-    }
-    const Arrays<par::Cpu>& a = engine->arrays();
-    const Pairs<par::Cpu>& pairs = a.pairs;
-    const auto copy_of = [&](const auto& array) {
-        using T = std::remove_reference_t<decltype(*array.data())>;
-        par::Array<par::Cpu, T> copy(std::min(array.size(), std::size_t{pairs.count}));
-        par::copy_bytes(par::Cpu(), copy.data(), array.data(), copy.size() * sizeof(T));
-        return copy;
-    };
-    CurrentLoads now{.of = a,
-                     .history = copy_of(pairs.history),
-                     .rotation_history = copy_of(pairs.rotation_history),
-                     .torque = par::Array<par::Cpu, Float4>(pairs.rotation_history.size()),
-                     .load = par::Array<par::Cpu, Load>(pairs.count),
-                     .in_contact = copy_of(pairs.in_contact)};
-    const bool rotation_laws = now.rotation_history.size() > 0;
+    const Arrays<par::Cpu>& of = engine->arrays();
+    const Pairs<par::Cpu>& pairs = of.pairs;
+    const bool rotation_laws = pairs.rotation_history.size() > 0;
     // With velocity Verlet the histories belong to t already. With the other schemes they belong to the
     // previous step.
     const float h =
         options.scheme == Scheme::velocity_verlet && step_count > 0 ? 0 : static_cast<float>(options.h);
-    find_loads(par::Cpu(), particle_view(domain, a.particle),
-               {pairs.i.data(), pairs.j.data(), laws.size() > 1 ? pairs.law.data() : nullptr,
-                now.history.data(), rotation_laws ? now.rotation_history.data() : nullptr, now.load.data(),
-                rotation_laws ? now.torque.data() : nullptr, now.in_contact.data(), pairs.count},
-               {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h});
-    return now;
+    const LawView law_view{laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
+    const ParticleView particles = particle_view(domain, of.particle);
+    constexpr std::uint32_t most = CurrentLoads::most;
+    par::for_each(
+        par::Cpu(), CurrentLoads::parts(pairs.count),
+        [&](std::uint32_t part) {
+            const std::uint32_t begin = part * most, count = std::min(most, pairs.count - begin);
+            const auto now =
+                std::unique_ptr<CurrentLoads>(new CurrentLoads{.of = of, .begin = begin, .count = count});
+            std::copy_n(pairs.history.data() + begin, count, now->history);
+            std::copy_n(pairs.in_contact.data() + begin, count, now->in_contact);
+            if (rotation_laws)
+                std::copy_n(pairs.rotation_history.data() + begin, count, now->rotation_history);
+            find_loads(par::Cpu(), particles,
+                       {pairs.i.data() + begin, pairs.j.data() + begin,
+                        laws.size() > 1 ? pairs.law.data() + begin : nullptr, now->history,
+                        rotation_laws ? now->rotation_history : nullptr, now->load,
+                        rotation_laws ? now->torque : nullptr, now->in_contact, count},
+                       law_view);
+            f(part, *now);
+        },
+        1);
+}
+
+/// Rebuilds the neighbour list for a query if the particles or laws have changed since the last step.
+void World::update_for_query() const
+{
+    if (std::isfinite(particle_displacement) || inserted_count == 0 || particle_lost) return;
+    try {
+        find_neighbours();
+    } catch (const LeftDomain& lost) {
+        // The next step removes the particle. The present list has all pairs in contact.
+        if (!removes()) throw_left(lost.id);
+    }
+    // The requested rebuild before the next step still has to take place.
+    particle_displacement = std::numeric_limits<double>::infinity();
 }
 
 /// Record of the pair n, which is in contact. i is the particle with the lower id.
@@ -93,8 +112,8 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
         c.delta = R + particle.velocity.data()[j].w - apart.norm();
         c.C = r - R * c.n;
     }
-    if (now.rotation_history.size() > 0) c.T = to_double(now.torque.data()[n]);
-    c.F = to_double(now.load.data()[n].F), c.u = to_double(now.history.data()[n]);
+    c.T = to_double(now.torque[n - now.begin]);
+    c.F = to_double(now.load[n - now.begin].F), c.u = to_double(now.history[n - now.begin]);
     if (!c.boundary && c.j < c.i) {
         std::swap(c.i, c.j);
         c.C += c.delta * c.n;  // from the surface of one particle to that of the other
@@ -105,23 +124,17 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
 
 std::vector<ContactRecord> World::contacts() const
 {
-    const CurrentLoads now = current_loads();
-    const std::uint32_t* id = now.of.particle.id.data();
-    std::vector<std::uint32_t> pair;
-    std::vector<std::uint64_t> key;
-    for (std::uint32_t n = 0; n < now.of.pairs.count; ++n) {
-        if (now.in_contact.data()[n] == 0) continue;
-        std::uint32_t i = id[now.of.pairs.i.data()[n]], j = now.of.pairs.j.data()[n];
-        const bool boundary = (j & PairView::boundary_bit) != 0;
-        if (!boundary) j = id[j];
-        if (!boundary && j < i) std::swap(i, j);
-        constexpr std::uint64_t last = std::uint64_t{1} << 63;
-        pair.push_back(n);
-        key.push_back((boundary ? last : 0) | std::uint64_t{i} << 32 | j);
-    }
-    par::stable_sort_by_key(par::Cpu(), key.data(), pair.data(), pair.size(), 64);
-    std::vector<ContactRecord> all(pair.size());
-    par::for_each(par::Cpu(), pair.size(), [&](std::uint32_t k) { all[k] = contact(now, pair[k]); });
+    update_for_query();
+    std::vector<std::vector<ContactRecord>> parts(CurrentLoads::parts(engine->arrays().pairs.count));
+    for_current_loads([&](std::uint32_t part, const CurrentLoads& now) {
+        for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n)
+            if (now.touching(n)) parts[part].push_back(contact(now, n));
+    });
+    std::vector<ContactRecord> all;
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    std::stable_sort(all.begin(), all.end(), [](const ContactRecord& a, const ContactRecord& b) {
+        return std::tie(a.boundary, a.i, a.j) < std::tie(b.boundary, b.i, b.j);
+    });
     return all;
 }
 
@@ -135,52 +148,49 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
 
 World::Totals World::totals() const
 {
-    const CurrentLoads now = current_loads();
-    const Pairs<par::Cpu>& pairs = now.of.pairs;
-    const Position* position = now.of.particle.position.data();
-    Totals all{.contacts = 0, .stress = {}, .on_boundary = std::vector<Wrench>(boundaries.size())};
-
-    // Partial sums over fixed blocks, added in order: the result does not depend on the number of threads.
-    constexpr std::uint32_t piece = 4096;
+    update_for_query();
+    const Arrays<par::Cpu>& of = engine->arrays();
+    const Position* position = of.particle.position.data();
+    const Float4* omega = of.particle.omega.data();
+    // Partial sums over fixed parts of the pairs, added in order: the result does not depend on the number of
+    // threads.
     struct Sum {
         std::size_t contacts = 0;
         std::array<double, 9> stress = {};
+        std::vector<ContactRecord> with_boundaries;  ///< those that load a boundary
     };
-    std::vector<Sum> sums((pairs.count + piece - 1) / piece);
+    std::vector<Sum> sums(CurrentLoads::parts(of.pairs.count));
     const auto add_stress = [](Sum& to, const Vec3& l, const Float4& F) {
         const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) to.stress[3 * a + b] += from_j[a] * on_i[b];
         ++to.contacts;
     };
-    const auto particles = [&](std::uint32_t k) {
-        for (std::uint32_t n = k * piece; n < std::min((k + 1) * piece, pairs.count); ++n) {
-            const std::uint32_t j = pairs.j.data()[n];
-            if (now.in_contact.data()[n] != 0 && (j & PairView::boundary_bit) == 0)
-                add_stress(sums[k], separation(domain.grid, position[pairs.i.data()[n]], position[j]),
-                           now.load.data()[n].F);
+    for_current_loads([&](std::uint32_t part, const CurrentLoads& now) {
+        Sum sum;
+        for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n) {
+            if (!now.touching(n)) continue;
+            const std::uint32_t i = of.pairs.i.data()[n], j = of.pairs.j.data()[n];
+            const Float4 F = now.load[n - now.begin].F;
+            if ((j & PairView::boundary_bit) == 0) {
+                add_stress(sum, separation(domain.grid, position[i], position[j]), F);
+                const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
+                if (!attached.empty() && fixed) sum.with_boundaries.push_back(contact(now, n));
+            } else {
+                const ContactRecord c = contact(now, n);
+                add_stress(sum, (of.particle.velocity.data()[i].w - c.delta) * c.n, F);
+                sum.with_boundaries.push_back(c);
+            }
         }
-    };
-    par::for_each(par::Cpu(), sums.size(), particles, 1);
-    Sum sum;
-    const auto is_fixed = [&](std::uint32_t k) { return !(now.of.particle.omega.data()[k].w > 0); };
-    for (std::uint32_t n = 0; n < pairs.count; ++n) {
-        const std::uint32_t j = pairs.j.data()[n];
-        if (now.in_contact.data()[n] == 0) continue;
-        const bool boundary = (j & PairView::boundary_bit) != 0;
-        if (!boundary && (attached.empty() || !(is_fixed(pairs.i.data()[n]) || is_fixed(j)))) continue;
-        const ContactRecord c = contact(now, n);
-        add_wrench(all.on_boundary, c);
-        if (!boundary) continue;  // its stress is in `sums`
-        const double R = now.of.particle.velocity.data()[pairs.i.data()[n]].w;
-        add_stress(sum, (R - c.delta) * c.n, now.load.data()[n].F);
+        sums[part] = std::move(sum);
+    });
+    Totals all{.contacts = 0, .stress = {}, .on_boundary = std::vector<Wrench>(boundaries.size())};
+    for (const Sum& sum : sums) {
+        all.contacts += sum.contacts;
+        for (int k = 0; k < 9; ++k) all.stress[k] += sum.stress[k];
+        for (const ContactRecord& c : sum.with_boundaries) add_wrench(all.on_boundary, c);
     }
-    for (const Sum& s : sums) {
-        sum.contacts += s.contacts;
-        for (int k = 0; k < 9; ++k) sum.stress[k] += s.stress[k];
-    }
-    all.contacts = sum.contacts;
-    for (int k = 0; k < 9; ++k) all.stress[k] = sum.stress[k] / volume();
+    for (int k = 0; k < 9; ++k) all.stress[k] /= volume();
     return all;
 }
 

@@ -3,6 +3,7 @@
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hilda::granular {
 
@@ -44,8 +45,27 @@ std::vector<Particle> World::particles() const
 
 double World::kinetic_energy() const
 {
-    double T = 0;
-    for (const Particle& p : particles())
+    const Particles<par::Cpu>& in = engine->arrays().particle;
+    constexpr std::uint32_t block = 256;
+    // Partial sums over fixed blocks: the result does not depend on the number of threads.
+    std::vector<double> sums((in.count + block - 1) / block);
+    par::for_each(
+        par::Cpu(), sums.size(),
+        [&](std::uint32_t number) {
+            for (std::uint32_t k = number * block; k < std::min((number + 1) * block, in.count); ++k) {
+                const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
+                const Compensation& compensation = in.compensation.data()[k];
+                const Vec3 velocity = to_double(v) + to_double(load_bfloat16(compensation.v)),
+                           omega = to_double(w) + to_double(load_bfloat16(compensation.omega));
+                const double R = v.w,
+                             m = w.w > 0 ? 1 / static_cast<double>(w.w)
+                                         : sphere_mass(R, materials[in.species.data()[k].material].density);
+                sums[number] += 0.5 * m * (velocity.dot(velocity) + 0.4 * R * R * omega.dot(omega));
+            }
+        },
+        8);
+    double T = std::accumulate(sums.begin(), sums.end(), 0.);
+    for (const Particle& p : pending)
         T += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
     return T;
 }

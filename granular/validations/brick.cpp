@@ -63,9 +63,9 @@ double distance_with_spring(double mu)
     return v_i * v_i / (2 * mu * g) + (2 * zeta * zeta - 1) * mu * g / k - 0.5 * h * v_i;
 }
 
-double in_double(double mu, bool incremental)
+double in_double(const PairLaw& law)
 {
-    DoubleWorld world(world_options(), soft_law(restitution, mu, incremental));
+    DoubleWorld world(world_options(), law);
     world.particle = {sphere_at_rest()};
     world.boundary = {Boundary{}};
     world.turns = false;
@@ -83,10 +83,21 @@ struct Slide {
     std::vector<double> motion;      ///< t, x, v of each output row [s, m, m/s]
 };
 
-Slide slide(double mu, bool incremental, const ValidationOptions& options)
+/// The law with the bound of the spring alone, as Eqs. 2.46 and 2.47 are printed
+PairLaw printed_law(double mu)
+{
+    PairLaw law = soft_law(restitution, mu, false);
+    const auto bound = static_cast<float>(mu);
+    law.tangential = Mindlin{.spring = TangentialSpring::of_materials(soft(), soft(), restitution),
+                             .cap = {bound, bound},
+                             .spring_bound = 1};
+    return law;
+}
+
+Slide slide(double mu, const PairLaw& law, const std::string& name, const ValidationOptions& options)
 {
     World world(world_options(options.device), {soft()});
-    world.set_law(0, 0, soft_law(restitution, mu, incremental));
+    world.set_law(0, 0, law);
     world.add(Boundary{});
     world.set_omega_locked(true);
     world.add(sphere_at_rest());
@@ -107,7 +118,7 @@ Slide slide(double mu, bool incremental, const ValidationOptions& options)
             out.friction_ratio =
                 max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
     }
-    options.include(io::formatted("%s, mu = %g", incremental ? "mindlin-incremental" : "mindlin", mu), world);
+    options.include(io::formatted("%s, mu = %g", name.c_str(), mu), world);
     return out;
 }
 
@@ -120,17 +131,19 @@ ValidationResult run(const ValidationOptions& options)
     ValidationTable motion = {"motion", {"mu", "t", "x", "v"}, {}};
     ValidationResult result;
     double from_double = 0, from_spring = 0, incremental = 0, friction = 0, done = 0;
+    const auto count = static_cast<double>(3 * frictions().size());
     for (const bool is_incremental : {false, true})
         for (const double mu : frictions()) {
-            options.progress(done++ / 18);
+            options.progress(done++ / count);
             // the normal force is constant, so both laws agree
             if (is_incremental && !options.full && mu < 0.39) continue;
+            const std::string name = is_incremental ? "mindlin-incremental" : "mindlin";
             Slide s;
             double distance_double = 0;
             options.kept.part(
                 [&] {
-                    s = slide(mu, is_incremental, options);
-                    distance_double = in_double(mu, is_incremental);
+                    s = slide(mu, soft_law(restitution, mu, is_incremental), name, options);
+                    distance_double = in_double(soft_law(restitution, mu, is_incremental));
                 },
                 [&](io::Archive& a) {
                     a.value(s.distance), a.value(s.friction_ratio), a.list(s.motion);
@@ -140,9 +153,9 @@ ValidationResult run(const ValidationOptions& options)
                 motion.rows.push_back({mu, s.motion[k], s.motion[k + 1], s.motion[k + 2]});
             const double d = v_i * v_i / (2 * mu * g), spring = distance_with_spring(mu),
                          difference = s.distance / d - 1;
-            table.rows.push_back({is_incremental ? "mindlin-incremental" : "mindlin", mu, s.distance, d,
-                                  difference, distance_double, distance_double / d - 1, spring,
-                                  s.distance / spring - 1, s.friction_ratio});
+            table.rows.push_back({name, mu, s.distance, d, difference, distance_double,
+                                  distance_double / d - 1, spring, s.distance / spring - 1,
+                                  s.friction_ratio});
             if (is_incremental) {
                 incremental = max_or_nan(incremental, std::abs(difference));
             } else {
@@ -154,6 +167,32 @@ ValidationResult run(const ValidationOptions& options)
             from_spring = max_or_nan(from_spring, std::abs(s.distance / spring - 1));
             friction = max_or_nan(friction, s.friction_ratio);
         }
+    // The fault of the printed bound grows with the coefficient of friction.
+    for (const double mu : frictions()) {
+        options.progress(done++ / count);
+        if (!options.full && mu > 0.11 && mu < 0.49) continue;
+        Slide s;
+        double distance_double = 0;
+        options.kept.part(
+            [&] {
+                s = slide(mu, printed_law(mu), "mindlin, spring_bound", options);
+                distance_double = in_double(printed_law(mu));
+            },
+            [&](io::Archive& a) {
+                a.value(s.distance), a.value(s.friction_ratio), a.list(s.motion);
+                a.value(distance_double);
+            });
+        const double d = v_i * v_i / (2 * mu * g), difference = s.distance / d - 1;
+        table.rows.push_back({"mindlin, spring_bound", mu, s.distance, d, difference, distance_double,
+                              distance_double / d - 1, "", "", s.friction_ratio});
+        from_double = max_or_nan(from_double, std::abs(s.distance / distance_double - 1));
+        if (mu < 0.11)
+            result.checks.push_back(
+                {"bound of the spring alone: too short at mu = 0.1", -difference, 0.003, 0.007});
+        if (mu > 0.49)
+            result.checks.push_back(
+                {"bound of the spring alone: too short at mu = 0.5", -difference, 0.035, 0.05});
+    }
     result.checks.push_back(
         {"distance over v^2/(2 mu g) - 1: largest, incremental law", incremental, 0, 3e-4});
     result.checks.push_back(

@@ -10,6 +10,7 @@ from drawing import COLOURS, Line2D, directory, grid, number, numbers, plt, read
 def draw(folder):
     rows, motion = read(folder, "study.csv"), read(folder, "motion.csv")
     mindlin, incremental = where(rows, law="mindlin"), where(rows, law="mindlin-incremental")
+    printed = where(rows, law="mindlin, spring_bound")
     mu = numbers(mindlin, "mu")
     figure, (speed, distance, difference) = plt.subplots(1, 3, figsize=(11, 4))
 
@@ -29,6 +30,8 @@ def draw(folder):
     scale = numbers(mindlin, "coulomb")[0] * mu[0]
     distance.plot(fine, [scale / m for m in fine], "-", color="0.35", lw=1.2, label=r"$v_i^2/2\mu g$")
     distance.plot(mu, numbers(mindlin, "distance"), "o", color=COLOURS[0], ms=6, label="measured")
+    distance.plot(numbers(printed, "mu"), numbers(printed, "distance"), "x", color=COLOURS[3], ms=7,
+                  label="bound of the spring alone")
     distance.set(xlabel=r"friction coefficient $\mu$", ylabel="sliding distance [m]", ylim=(0, None))
     distance.legend(frameon=False)
 

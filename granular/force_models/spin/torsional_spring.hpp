@@ -5,6 +5,8 @@
 
 #include "granular/force_models/tangential/spring.hpp"
 
+#include <numbers>
+
 namespace hilda::granular {
 
 ///     M = -K ∫ω_sp dt - D ω_sp   (Eq. 2.51),   |M| ≤ 2/3 μ |F_n| a
@@ -12,6 +14,9 @@ namespace hilda::granular {
 ///
 /// k_t [N/m] and γ_t [N s/m] are the current stiffness and damping constant of the tangential law. The bound
 /// holds for the sum of spring and dashpot; at the bound the angle is computed back from M.
+///
+/// 2/3 μ |F_n| a is the torque of a uniform pressure. With critical = 1 the bound is that of the pressure of
+/// Hertz's theory, at which the whole contact area slips: 3π/16 μ |F_n| a (Sec. 2.2.1.5).
 struct TorsionalSpring {
     static constexpr const char* name = "torsional-spring";
     static constexpr const char* description =
@@ -19,7 +24,8 @@ struct TorsionalSpring {
         "most 2/3 mu |F_n| a with the contact radius a = sqrt(R* delta). It requires a tangential "
         "law other than none.";
 
-    float mu = 0;  ///< coefficient of kinetic friction
+    float mu = 0;      ///< coefficient of kinetic friction
+    int critical = 0;  ///< 1: bound of the pressure of Hertz's theory
 
     template <class R>
     HILDA_HD R operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R k_t, R gamma_t,
@@ -29,7 +35,8 @@ struct TorsionalSpring {
                 D = Number<R>(0.5) * gamma_t * a2;
         const R omega_sp = contact.n.dot(contact.omega), angle = history.spin + R(contact.h) * omega_sp;
         const R test = -(K * angle) - D * omega_sp, size = abs(test);
-        const R bound = Number<R>(2) / 3 * mu * abs(normal.F) * sqrt(a2);
+        const Number<R> factor = critical != 0 ? Number<R>(3 * std::numbers::pi / 16) : Number<R>(2) / 3;
+        const R bound = factor * mu * abs(normal.F) * sqrt(a2);
         const Mask<R> saturated = size > bound;
         const R M = select(saturated, bound / larger(size, R(tiny)), R(1.f)) * test;
         history.spin = select(saturated, -(M + D * omega_sp) / larger(K, R(tiny)), angle);
@@ -46,7 +53,11 @@ struct TorsionalSpring {
     template <class Keys>
     static TorsionalSpring read(Keys& keys)
     {
-        return {.mu = keys.kinetic_friction()};
+        return {.mu = keys.kinetic_friction(),
+                .critical =
+                    keys.flag("critical",
+                              "If true, the torque is at most 3 pi/16 mu |F_n| a, at which the whole area "
+                              "of a Hertzian contact slips, instead of 2/3 mu |F_n| a.")};
     }
 };
 

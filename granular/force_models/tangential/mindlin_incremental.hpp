@@ -29,10 +29,7 @@ struct MindlinIncremental {
                                History<R>& history) const
     {
         const R k = spring.stiffness(normal), gamma = spring.damping(contact, normal);
-        // s to first order in h: the overlap of the previous step was δ - h dδ/dt
-        const R reduction = select(
-            contact.v_n < R(0.f),
-            larger(R(1.f) + R(normal.power * contact.h) * contact.v_n / contact.delta, R(0.f)), R(1.f));
+        const R reduction = unloading_factor(contact, normal.power);
         const Vec<R> T =
             reduction * to_tangent_plane(history.u, contact.n) - (R(contact.h) * k) * contact.v_t;
         const Vec<R> test = T - gamma * contact.v_t;

@@ -83,6 +83,15 @@ struct Cap {
     }
 };
 
+/// Factor of a quantity that is proportional to δ^power while the contact is unloaded: its value at t_n over
+/// that at t_{n-1}, to first order in h, where the overlap was δ - h dδ/dt. 1 while the contact is loaded.
+template <class R>
+HILDA_HD inline R unloading_factor(const ContactPoint<R>& contact, Number<R> power)
+{
+    return select(contact.v_n < R(0.f),
+                  larger(R(1.f) + R(power * contact.h) * contact.v_n / contact.delta, R(0.f)), R(1.f));
+}
+
 /// Rotates a tangential displacement of the previous step into the tangent plane of the normal n: the
 /// component along n is removed and the length is restored. Zero if u is parallel to n.
 template <class R>

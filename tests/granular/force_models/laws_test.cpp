@@ -231,6 +231,56 @@ TEST_CASE("the rolling torque rotates with the contact normal", "[granular][laws
     }
 }
 
+TEST_CASE("with spring_bound Coulomb's bound holds for the spring alone", "[granular][laws]")
+{
+    const float gamma_t = 16;
+    PairLaw law = springs(gamma_t);
+    law.tangential =
+        Mindlin{.spring = {.k_t = 512, .c = 0, .gamma_t = gamma_t}, .cap = {0.78125, 0.5}, .spring_bound = 1};
+    History<double> history{};
+    ContactPoint<double> contact = resting(delta);
+    const double v = 1. / 8, damping = gamma_t * m * v;
+    contact.v_t = v * tangent;
+    const auto friction = [&] {
+        const ContactForce<double> out = evaluate(law, contact, history, false);
+        return out.F_t;
+    };
+    const double step = k_t * h * v;  // growth of the force of the spring [N]
+    for (int k = 1; k * step <= 0.78125 * N; ++k) REQUIRE(same(friction(), -(k * step + damping) * tangent));
+    REQUIRE(0.78125 * N > 5 * step);
+    for (int k = 0; k < 5; ++k) CHECK(same(friction(), -0.5 * N * tangent));
+    CHECK(same(history.u, 0.5 * N / k_t * tangent));
+    contact.v_t = -v * tangent;  // sticks at once
+    CHECK(same(friction(), -(0.5 * N - step - damping) * tangent));
+}
+
+TEST_CASE("rescale reduces the displacement with the contact radius of an unloaded contact",
+          "[granular][laws]")
+{
+    PairLaw law;
+    law.normal = Hertz{.E_eff = 1e6f};
+    const double u = 1e-4, deep = delta, shallow = delta / 4;
+    // a ∝ √δ: the displacement is halved. The factor of a step is exact to second order in h.
+    const auto unloaded = [&](bool rescale, int steps) {
+        law.tangential = Mindlin{.spring = {.k_t = 512}, .cap = {100, 100}, .rescale = rescale ? 1 : 0};
+        History<double> history{};
+        history.u = u * tangent;
+        for (int k = 1; k <= steps; ++k) {
+            ContactPoint<double> contact = resting(deep + (shallow - deep) * k / steps);
+            contact.v_n = (shallow - deep) / (steps * h);
+            evaluate(law, contact, history, false);
+        }
+        ContactPoint<double> loading = resting(deep);
+        loading.v_n = (deep - shallow) / h;
+        evaluate(law, loading, history, false);  // loading changes nothing
+        return history.u.dot(tangent) / u;
+    };
+    CHECK(unloaded(false, 100) == Approx(1).epsilon(1e-12));
+    const double coarse = unloaded(true, 1000) - 0.5, fine = unloaded(true, 2000) - 0.5;
+    CHECK(std::abs(fine) < 1e-3);
+    CHECK(coarse / fine == Approx(2).epsilon(0.02));  // first order
+}
+
 TEST_CASE("the torsional spring resists spin about the normal up to its bound", "[granular][laws]")
 {
     PairLaw law = springs(16);
@@ -255,6 +305,10 @@ TEST_CASE("the torsional spring resists spin about the normal up to its bound", 
     const double elastic = bound - D * 2 * omega;
     CHECK(same(spin(0), -elastic * n));
     CHECK(same(spin(-omega), (-(elastic - K * h * omega) + D * omega) * n));
+
+    law.spin = TorsionalSpring{.mu = 0.375, .critical = 1};
+    for (int k = 0; k < 200; ++k) spin(2 * omega);
+    CHECK(same(spin(2 * omega), -3 * std::numbers::pi / 16 * 0.375 * N * a * n));
 }
 
 TEST_CASE("laws of rolling and spin dissipate energy in every cycle", "[granular][laws]")

@@ -123,6 +123,7 @@ std::vector<std::string> files_of(const std::string& study)
     const std::map<std::string, std::vector<std::string>> tables = {
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
+        {"granular-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}}};

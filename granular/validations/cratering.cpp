@@ -105,18 +105,20 @@ struct Bed {
     /// walls [m]
     double surface(double R) const
     {
-        const int squares = static_cast<int>(width / (4 * R));
-        const double edge = width / squares;
-        std::vector<double> top(static_cast<std::size_t>(squares * squares), 0);
-        const auto index = [&](double x) { return std::clamp(static_cast<int>(x / edge), 0, squares - 1); };
+        const auto squares = static_cast<std::size_t>(width / (4 * R));
+        const double edge = width / static_cast<double>(squares);
+        std::vector<double> top(squares * squares, 0);
+        const auto index = [&](double x) {
+            return std::min(static_cast<std::size_t>(std::max(x, 0.) / edge), squares - 1);
+        };
         for (const Particle& p : world.particles()) {
-            double& highest = top[static_cast<std::size_t>(index(p.r.y) * squares + index(p.r.x))];
+            double& highest = top[index(p.r.y) * squares + index(p.r.x)];
             highest = std::max(highest, p.r.z + R);
         }
         double sum = 0;
-        for (int b = 1; b < squares - 1; ++b)
-            for (int a = 1; a < squares - 1; ++a) sum += top[static_cast<std::size_t>(b * squares + a)];
-        return sum / ((squares - 2) * (squares - 2));
+        for (std::size_t b = 1; b < squares - 1; ++b)
+            for (std::size_t a = 1; a < squares - 1; ++a) sum += top[b * squares + a];
+        return sum / static_cast<double>((squares - 2) * (squares - 2));
     }
 
     /// Bulk density between 20 % and 80 % of the height of the surface [kg/m³]

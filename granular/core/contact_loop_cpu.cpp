@@ -126,10 +126,107 @@ struct ContactLoop : detail::ContactPacks {
             laws, [&](std::uint32_t n) { return pairs.law[n]; }, which, number, sorted, f);
     }
 
-    /// Contacts with boundaries: the geometry is computed per pair in double precision, the force law per
-    /// pack. These contacts are few.
+    /// Contacts with boundaries, in runs of pairs with the same boundary
     void evaluate_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t number,
                              Pack& overlaps) const
+    {
+        for (std::uint32_t first = 0, last = 0; first < number; first = last) {
+            const std::uint32_t j = pairs.j[which[first]];
+            while (last < number && pairs.j[which[last]] == j) ++last;
+            const Boundary& b = laws.boundary[j & ~PairView::boundary_bit];
+            if (b.shape == Boundary::Shape::plane)
+                evaluate_plane(law, b, which + first, last - first, overlaps);
+            else
+                evaluate_boundary(law, b, which + first, last - first, overlaps);
+        }
+    }
+
+    /// Positions of particles in the global frame [m]
+    struct Points {
+        alignas(64) double x[lanes], y[lanes], z[lanes];
+    };
+    Points points(const std::uint32_t* i) const
+    {
+        const CellGrid& g = particles.grid;
+        const auto p = detail::gather_rows<Ints>(particles.position, i);
+        alignas(64) std::int32_t cell[lanes], x[lanes], y[lanes], z[lanes];
+        std::memcpy(cell, &p.x, sizeof cell), std::memcpy(x, &p.y, sizeof x);
+        std::memcpy(y, &p.z, sizeof y), std::memcpy(z, &p.w, sizeof z);
+        Points out;
+        for (int k = 0; k < lanes; ++k) {
+            const Vec3 r = global_position(g, {static_cast<std::uint32_t>(cell[k]), x[k], y[k], z[k]});
+            out.x[k] = r.x, out.y[k] = r.y, out.z[k] = r.z;
+        }
+        return out;
+    }
+
+    /// Contacts with a plane: geometry in double precision, as in find_boundary_contact(), and force law per
+    /// pack
+    void evaluate_plane(const PairLaw& law, const Boundary& b, const std::uint32_t* which,
+                        std::uint32_t number, Pack& overlaps) const
+    {
+        std::uint32_t touching[2 * lanes], touching_count = 0;
+        const auto flush = [&] {
+            for (std::uint32_t k = touching_count; k < lanes; ++k) touching[k] = touching[0];
+            evaluate_touching_plane(law, b, touching, overlaps);
+            touching_count -= std::min<std::uint32_t>(touching_count, lanes);
+            std::copy_n(touching + lanes, touching_count, touching);
+        };
+        for (std::uint32_t first = 0; first < number; first += lanes) {
+            const std::uint32_t valid = std::min<std::uint32_t>(lanes, number - first);
+            std::uint32_t n[lanes], i[lanes];
+            for (std::uint32_t k = 0; k < lanes; ++k)
+                n[k] = which[first + std::min(k, valid - 1)], i[k] = pairs.i[n[k]];
+            const Points r = points(i);
+            const Pack R = detail::gather_rows<Pack>(particles.velocity, i).w;
+            alignas(64) double overlap[lanes];
+            for (int k = 0; k < lanes; ++k)
+                overlap[k] = R.v[k] - nearest(b, {r.x[k], r.y[k], r.z[k]}).distance;
+            for (std::uint32_t k = 0; k < valid; ++k) {
+                if (overlap[k] > 0)
+                    pairs.in_contact[n[k]] = 1, touching[touching_count++] = n[k];
+                else if (pairs.in_contact[n[k]] != 0)
+                    clear_contact(n[k]);
+            }
+            if (touching_count >= lanes) flush();
+        }
+        if (touching_count > 0) flush();
+    }
+
+    void evaluate_touching_plane(const PairLaw& law, const Boundary& b, const std::uint32_t* n,
+                                 Pack& overlaps) const
+    {
+        std::uint32_t i[lanes];
+        for (int k = 0; k < lanes; ++k) i[k] = pairs.i[n[k]];
+        const Points r = points(i);
+        const auto v = detail::gather_rows<Pack>(particles.velocity, i),
+                   w = detail::gather_rows<Pack>(particles.omega, i);
+        Vec<Pack> relative;
+        ContactPoint<Pack> contact;
+        for (int k = 0; k < lanes; ++k) {
+            const Vec3 at{r.x[k], r.y[k], r.z[k]};
+            const double distance = (at - b.r).dot(b.axis);
+            const Vec3 u = Vec3{v.x.v[k], v.y.v[k], v.z.v[k]} - velocity(b, at - distance * b.axis);
+            contact.delta.v[k] = static_cast<float>(v.w.v[k] - distance);
+            relative.x.v[k] = static_cast<float>(u.x), relative.y.v[k] = static_cast<float>(u.y),
+            relative.z.v[k] = static_cast<float>(u.z);
+        }
+        const auto narrow = [](const Vec3& a) {
+            return Vec<Pack>{Pack(static_cast<float>(a.x)), Pack(static_cast<float>(a.y)),
+                             Pack(static_cast<float>(a.z))};
+        };
+        contact.h = laws.h, contact.n = narrow(b.axis);
+        contact.R_i = contact.R_eff = v.w, contact.R_j = Pack(0.f);
+        contact.m_eff = Pack(1.f) / (w.w + Pack(b.inverse_mass()));
+        set_rates(contact, relative, Vec<Pack>{w.x, w.y, w.z}, narrow(b.omega));
+        overlaps = larger(overlaps, contact.delta / contact.R_i);
+        store_loads(evaluate_pack(law, contact, n), n);
+    }
+
+    /// Contacts with any boundary: the geometry is computed per pair in double precision, the force law per
+    /// pack.
+    void evaluate_boundary(const PairLaw& law, const Boundary& b, const std::uint32_t* which,
+                           std::uint32_t number, Pack& overlaps) const
     {
         // a pack of contacts in the memory layout of ContactPoint<Pack>
         constexpr int values = sizeof(ContactPoint<float>) / sizeof(float);
@@ -156,8 +253,7 @@ struct ContactLoop : detail::ContactPacks {
             const std::uint32_t at = which[m], i = pairs.i[at];
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],
-                                       particles.omega[i],
-                                       laws.boundary[pairs.j[at] & ~PairView::boundary_bit])) {
+                                       particles.omega[i], b)) {
                 if (pairs.in_contact[at] != 0) clear_contact(at);
                 continue;
             }

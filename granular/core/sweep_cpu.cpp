@@ -216,6 +216,7 @@ struct Sweep : detail::ContactPacks {
     SweepPlan& plan;
     std::uint32_t particle_count;
     bool rotates = pairs.rotation_history != nullptr;
+    bool prefetches = particle_count > 20000;  ///< whether the arrays are larger than the cache of a core
 
     float operator()(std::uint32_t range) const
     {
@@ -311,6 +312,8 @@ struct Sweep : detail::ContactPacks {
             if (touching == 0) continue;
             const std::uint32_t h = hits.count;
             const detail::PackOverlap overlap = found.to_floats();
+            for (unsigned remaining = prefetches ? touching : 0; remaining != 0; remaining &= remaining - 1)
+                prefetch(first + static_cast<std::uint32_t>(__builtin_ctz(remaining)));
             append(hits.n + h, first, touching);
             compress(hits.i + h, i_words, touching), compress(hits.j + h, j_words, touching);
             compress(hits.x + h, overlap.separation.x, touching);
@@ -320,6 +323,15 @@ struct Sweep : detail::ContactPacks {
             compress(hits.D + h, overlap.D, touching);
             hits.count = h + static_cast<std::uint32_t>(__builtin_popcount(touching));
         }
+    }
+
+    /// Requests what the contact n reads and is not in the cache of one core: rows of its particle j, which is
+    /// far from i in memory, and its history.
+    void prefetch(std::uint32_t n) const
+    {
+        const std::uint32_t j = pairs.j[n];
+        __builtin_prefetch(particles.velocity + j), __builtin_prefetch(particles.omega + j);
+        __builtin_prefetch(plan.sum_j.data() + j, 1), __builtin_prefetch(pairs.history + n, 1);
     }
 
     void evaluate_hits(Hits& hits, Pack& overlaps) const

@@ -44,6 +44,23 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>
     list.clear();
     for (const auto& of_range : lists) list.insert(list.end(), of_range.begin(), of_range.end());
 
+    // Pairs of particles first, then those with each boundary, so that packs have one boundary. They keep
+    // their order otherwise.
+    const auto boundary_number = [&](std::uint32_t k) {
+        const std::uint32_t j = pairs.j.data()[k];
+        return (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) + 1 : 0;
+    };
+    std::vector<std::uint32_t> place(2);
+    for (const std::uint32_t k : list) {
+        const std::uint32_t to = boundary_number(k) + 1;
+        if (to >= place.size()) place.resize(to + 1);
+        ++place[to];
+    }
+    for (std::size_t b = 1; b < place.size(); ++b) place[b] += place[b - 1];
+    std::vector<std::uint32_t> by_boundary(list.size());
+    for (const std::uint32_t k : list) by_boundary[place[boundary_number(k)]++] = k;
+    list.swap(by_boundary);
+
     std::vector<std::uint32_t> range_of_block(blocks);
     for (std::uint32_t r = 0; r < ranges(); ++r)
         std::fill(range_of_block.begin() + first_block[r], range_of_block.begin() + first_block[r + 1], r);

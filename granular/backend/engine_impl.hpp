@@ -75,10 +75,10 @@ struct DisplacementSinceBuild {
     const Position *now, *at_build;
     HILDA_HD float operator()(std::uint32_t k) const
     {
-        // owner cells do not change between searches, so the difference is that of the local coordinates
-        const auto x = static_cast<float>(now[k].x - at_build[k].x),
-                   y = static_cast<float>(now[k].y - at_build[k].y),
-                   z = static_cast<float>(now[k].z - at_build[k].z);
+        // without a periodic image, because owner cells do not change between searches
+        const auto x = static_cast<float>(wrapped_difference(now[k].x, at_build[k].x)),
+                   y = static_cast<float>(wrapped_difference(now[k].y, at_build[k].y)),
+                   z = static_cast<float>(wrapped_difference(now[k].z, at_build[k].z));
         return sqrt(x * x + y * y + z * z);
     }
 };

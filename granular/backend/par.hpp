@@ -101,7 +101,7 @@ float largest(Cpu, std::size_t n, const Functor& f, std::size_t serial_below = 2
 /// Prefix sums: out[0] = 0, out[k + 1] = out[k] + in[k], n + 1 numbers. Returns out[n].
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n);
 /// Sorts keys and values by key. Only the lowest `bits` bits of the keys are significant.
-void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int bits);
+void stable_sort_by_key(Cpu, std::uint32_t* keys, std::uint32_t* values, std::size_t n, int bits);
 
 template <class T>
 struct FillWith {

@@ -56,7 +56,7 @@ std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, s
     return out[n];
 }
 
-void stable_sort_by_key(Cpu, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int /*bits*/)
+void stable_sort_by_key(Cpu, std::uint32_t* keys, std::uint32_t* values, std::size_t n, int /*bits*/)
 {
     if (n <= serial_below)
         thrust::stable_sort_by_key(thrust::seq, keys, keys + n, values);

@@ -128,13 +128,13 @@ inline std::uint64_t exclusive_scan(Gpu on, const std::uint32_t* in, std::uint32
 
 struct SortTag;
 struct SortedTag;
-inline void stable_sort_by_key(Gpu on, std::uint64_t* keys, std::uint32_t* values, std::size_t n, int bits)
+inline void stable_sort_by_key(Gpu on, std::uint32_t* keys, std::uint32_t* values, std::size_t n, int bits)
 {
     if (n == 0) return;
     auto& sorted = scratch<SortedTag>();
     sorted.resize(n * (sizeof *keys + sizeof *values));
-    auto* keys_out = reinterpret_cast<std::uint64_t*>(sorted.data());
-    auto* values_out = reinterpret_cast<std::uint32_t*>(keys_out + n);
+    auto* keys_out = reinterpret_cast<std::uint32_t*>(sorted.data());
+    auto* values_out = keys_out + n;
     const auto count = static_cast<std::int64_t>(n);
     std::size_t size = 0;
     check(cub::DeviceRadixSort::SortPairs(nullptr, size, keys, keys_out, values, values_out, count, 0, bits),

@@ -72,13 +72,13 @@ struct MoveAttached {
     HILDA_HD float approach(std::int32_t& at, std::int32_t cell, double x, int axis) const
     {
         const double width = grid.width[axis];
-        double way = (x - grid.low[axis]) / grid.unit - cell * width - at;
+        double way = (x - grid.low[axis]) / grid.unit - cell * width - grid.local(at, cell, axis);
         if (grid.periodic[axis] != 0) {
             const double length = width * (grid.cells[axis] - 1) + grid.last[axis];
             way -= length * rint(way / length);
         }
         const double whole = rint(way);
-        at += static_cast<std::int32_t>(whole);
+        at = wrapped_sum(at, static_cast<std::int32_t>(whole));
         return static_cast<float>(way - whole);
     }
 
@@ -89,11 +89,12 @@ struct MoveAttached {
         const BoundaryPose b = pose[attached[n].boundary];
         const Vec3 d = rotated(b.p, attached[n].X), r = b.r + d, v = b.v + b.omega.cross(d);
         Position p = position[k];
-        const Vec<float> remainder{approach(p.x, CellGrid::x_of(p.cell), r.x, 0),
-                                   approach(p.y, CellGrid::y_of(p.cell), r.y, 1),
-                                   approach(p.z, CellGrid::z_of(p.cell), r.z, 2)};
+        const Vec<float> remainder{approach(p.x, grid.x_of(p.cell), r.x, 0),
+                                   approach(p.y, grid.y_of(p.cell), r.y, 1),
+                                   approach(p.z, grid.z_of(p.cell), r.z, 2)};
         const SplitDisplacement<float> split = split_displacement(remainder, 0);
-        position[k] = {p.cell, p.x + split.x, p.y + split.y, p.z + split.z};
+        position[k] = {p.cell, wrapped_sum(p.x, split.x), wrapped_sum(p.y, split.y),
+                       wrapped_sum(p.z, split.z)};
         compensation[k] = {.displacement = split.remainder};
         velocity[k] = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
                        velocity[k].w};

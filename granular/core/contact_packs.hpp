@@ -44,16 +44,18 @@ struct ContactPacks {
           unit = static_cast<float>(particles.grid.unit);
 
     /// The function difference() for packs
-    static Ints axis_difference(Ints cell_i, Ints cell_j, Ints i, Ints j, const CellGrid& g, int axis)
+    template <class IndexOf>
+    static Ints axis_difference(Ints cell_i, Ints cell_j, Ints i, Ints j, const CellGrid& g, int axis,
+                                const IndexOf& index_of)
     {
-        Ints::V d = cell_i.v - cell_j.v;
-        if (g.periodic[axis] != 0) {
-            const Ints::V n = Ints::V{} + g.cells[axis];
-            d += (2 * d > n ? -n : 2 * d < -n ? n : Ints::V{});
-        }
         using Unsigned = Ints::Unsigned;
-        return {Ints::V(Unsigned(d) * static_cast<std::uint32_t>(g.width[axis]) +
-                        (Unsigned(i.v) - Unsigned(j.v)))};
+        Unsigned out = Unsigned(i.v) - Unsigned(j.v);
+        if (g.periodic[axis] != 0) {
+            const Ints::V d = index_of(cell_i.v) - index_of(cell_j.v), n = Ints::V{} + g.cells[axis];
+            const Ints::V wraps = (2 * d > n ? -n : 2 * d < -n ? n : Ints::V{});
+            out += Unsigned(wraps) * static_cast<std::uint32_t>(g.width[axis]);
+        }
+        return {Ints::V(out)};
     }
 
     /// Integers of the overlap of a pack of pairs
@@ -71,15 +73,13 @@ struct ContactPacks {
     {
         const CellGrid& g = particles.grid;
         const auto a = gather_rows<Ints>(particles.position, i), b = gather_rows<Ints>(particles.position, j);
-        constexpr int mask_x = (1 << CellGrid::bits_x) - 1, mask_y = (1 << CellGrid::bits_y) - 1,
-                      mask_z = (1 << CellGrid::bits_z) - 1;
-        const auto x_of = [](Ints c) { return Ints{c.v & mask_x}; };
-        const auto y_of = [](Ints c) { return Ints{c.v >> CellGrid::bits_x & mask_y}; };
-        const auto z_of = [](Ints c) { return Ints{c.v >> (CellGrid::bits_x + CellGrid::bits_y) & mask_z}; };
+        using V = Ints::V;
+        using Unsigned = Ints::Unsigned;
+        const int mask_x = (1 << g.shift_y) - 1, mask_y = (1 << (g.shift_z - g.shift_y)) - 1;
         Integers out;
-        out.x = axis_difference(x_of(a.x), x_of(b.x), a.y, b.y, g, 0);
-        out.y = axis_difference(y_of(a.x), y_of(b.x), a.z, b.z, g, 1);
-        out.z = axis_difference(z_of(a.x), z_of(b.x), a.w, b.w, g, 2);
+        out.x = axis_difference(a.x, b.x, a.y, b.y, g, 0, [&](V c) { return V(c & mask_x); });
+        out.y = axis_difference(a.x, b.x, a.z, b.z, g, 1, [&](V c) { return V(c >> g.shift_y & mask_y); });
+        out.z = axis_difference(a.x, b.x, a.w, b.w, g, 2, [&](V c) { return V(Unsigned(c) >> g.shift_z); });
         out.D = {to_int(R_i * units_per_metre).v + to_int(R_j * units_per_metre).v};
         out.squares = Squares(out.x, out.y, out.z, out.D);
         return out;

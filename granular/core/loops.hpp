@@ -156,10 +156,7 @@ struct AdvanceOne {
         if (arrays.acc != nullptr) put(arrays.acc[k], acc), put(arrays.alpha[k], alpha);
         if (arrays.step.part == Part::whole || arrays.step.part == Part::before_loads) {
             Position p = arrays.position[k];
-            const auto add = [](std::int32_t& a, std::int32_t b) {  // modulo 2^32, as Ints
-                a = static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
-            };
-            add(p.x, units.x), add(p.y, units.y), add(p.z, units.z);
+            p.x = wrapped_sum(p.x, units.x), p.y = wrapped_sum(p.y, units.y), p.z = wrapped_sum(p.z, units.z);
             arrays.position[k] = p;
             if (arrays.orientation != nullptr) rotate_one(k, moved.rotation);
         }

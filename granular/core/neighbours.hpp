@@ -80,6 +80,8 @@ struct Domain {
     std::uint32_t unused = 0;    ///< explicit padding, because checkpoints store the bytes of a Domain
 };
 
+constexpr double max_cells = 0x7fffffff;  ///< of all replicas
+
 template <class Backend>
 ParticleView particle_view(const Domain& domain, const Particles<Backend>& p)
 {
@@ -109,8 +111,8 @@ public:
 private:
     void sort(const SearchInput& input, Particles<Backend>& particles);
 
-    par::Array<Backend, std::uint64_t> key;
-    par::Array<Backend, std::uint32_t> order, new_index, cell_start, counts;
+    int shift = 0;  ///< see CellStarts
+    par::Array<Backend, std::uint32_t> key, order, new_index, cell_start, counts;
     par::Array<Backend, Float4> scratch;
 };
 

@@ -23,27 +23,30 @@ HILDA_HD inline std::uint32_t fetch_increment(std::uint32_t* counter)
 #endif
 }
 
-/// Assigns a particle to the cell in which it is, and computes its sort key: replica, cell in the order z, y,
-/// x, then id. For a particle that has left the domain all bits of the key are set, and its position is not
-/// changed.
+constexpr std::uint32_t outside_domain = ~std::uint32_t{0};  ///< key of a particle outside the domain
+
+/// Assigns a particle to the cell in which it is, and computes its sort key: the number of the cell in the
+/// order of replicas, z, y, x. For a particle that has left the domain all bits of the key are set, and its
+/// position is not changed.
 struct AssignCell {
     CellGrid grid;
     Position* position;
     const Species* species;
-    const std::uint32_t* id;
-    std::uint64_t* key;
+    std::uint32_t* key;
     std::uint32_t* order;
 
-    /// Normalises one local coordinate; false if it is outside the domain.
-    HILDA_HD bool move(std::int32_t& cell, std::int32_t& at, int axis) const
+    /// Moves a coordinate into the domain along a periodic axis, and finds its cell; false if it is outside
+    /// the domain.
+    HILDA_HD bool move(std::int32_t& cell, std::int32_t& x, int axis) const
     {
         const std::int32_t width = grid.width[axis], cells = grid.cells[axis];
-        std::int32_t steps = at / width;
+        std::int32_t at = grid.local(x, cell, axis), steps = at / width;
         if (at < 0 && steps * width != at) --steps;  // round towards minus infinity
         at -= steps * width;
         cell += steps;
         if (grid.periodic[axis] != 0) {
-            cell += cell < 0 ? cells : cell >= cells ? -cells : 0;
+            const std::int32_t turns = cell < 0 ? cells : cell >= cells ? -cells : 0;
+            cell += turns, x = wrapped_sum(x, wrapped_product(turns, width));
             return true;
         }
         return cell >= 0 && (cell < cells - 1 || (cell == cells - 1 && at <= grid.last[axis]));
@@ -52,55 +55,95 @@ struct AssignCell {
     HILDA_HD void operator()(std::uint32_t k) const
     {
         Position p = position[k];
-        std::int32_t x = CellGrid::x_of(p.cell), y = CellGrid::y_of(p.cell), z = CellGrid::z_of(p.cell);
+        std::int32_t x = grid.x_of(p.cell), y = grid.y_of(p.cell), z = grid.z_of(p.cell);
         const bool in_x = move(x, p.x, 0), in_y = move(y, p.y, 1), in_z = move(z, p.z, 2);
         order[k] = k;
         if (!(in_x && in_y && in_z)) {
-            key[k] = ~std::uint64_t{0};
+            key[k] = outside_domain;
             return;
         }
-        p.cell = CellGrid::pack(x, y, z);
+        p.cell = grid.pack(x, y, z);
         position[k] = p;
-        const std::uint64_t row =
-            (static_cast<std::uint64_t>(species[k].replica) * grid.cells[2] + z) * grid.cells[1] + y;
-        const std::uint64_t number = row * grid.cells[0] + x;
-        key[k] = number << 32 | id[k];
+        key[k] = (species[k].replica * grid.cells[2] + z) * static_cast<std::uint32_t>(grid.cells[1]);
+        key[k] = (key[k] + y) * static_cast<std::uint32_t>(grid.cells[0]) + x;
     }
 };
 
-/// start[c]: index of the first particle in cell c or a later cell, c = 0 … cells. One call per particle, for
-/// sequential access on the CPU.
-struct MarkCellStarts {
-    const std::uint64_t* key;
-    std::uint32_t particles, cells;
-    std::uint32_t* start;
-
-    HILDA_HD void operator()(std::uint32_t k) const  // k = 0 … particles
-    {
-        const std::uint32_t here = k < particles ? static_cast<std::uint32_t>(key[k] >> 32) : cells;
-        for (std::uint32_t c = k > 0 ? static_cast<std::uint32_t>(key[k - 1] >> 32) + 1 : 0; c <= here; ++c)
-            start[c] = k;
-    }
-};
-
-/// The same as MarkCellStarts with one call per cell, by bisection. On a GPU a thread then does not loop over
-/// a long run of empty cells.
-struct FindCellStart {
-    const std::uint64_t* key;
+/// Sorts the particles of each cell by their ids. One call per particle; that of the first particle of a cell
+/// sorts all of the cell. Since the previous search only a few particles have changed their cell.
+struct SortCells {
+    const std::uint32_t *key, *id;
     std::uint32_t particles;
-    std::uint32_t* start;
+    std::uint32_t* order;
 
-    HILDA_HD void operator()(std::uint32_t c) const
+    HILDA_HD void operator()(std::uint32_t k) const
     {
-        std::uint32_t low = 0, high = particles;
+        if (k > 0 && key[k - 1] == key[k]) return;
+        for (std::uint32_t a = k + 1; a < particles && key[a] == key[k]; ++a) {
+            const std::uint32_t moved = order[a], its_id = id[moved];
+            std::uint32_t b = a;
+            for (; b > k && id[order[b - 1]] > its_id; --b) order[b] = order[b - 1];
+            order[b] = moved;
+        }
+    }
+};
+
+/// The first particle of each cell. The numbers of cells have more values than there are particles if the
+/// domain is almost empty; the table therefore has one entry for each group of 2^shift cells, and the search
+/// within a group is a bisection.
+struct CellStarts {
+    const std::uint32_t *key, *start;
+    int shift;
+
+    /// Index of the first particle in this cell or a later one
+    HILDA_HD std::uint32_t operator[](std::uint32_t cell) const
+    {
+        const std::uint32_t group = cell >> shift;
+        std::uint32_t low = start[group];
+        if (cell == group << shift) return low;
+        return first_of(key, low, start[group + 1], cell);
+    }
+    /// Index of the first of the ascending keys from low to high - 1 that is at least `cell`; high if none is
+    HILDA_HD static std::uint32_t first_of(const std::uint32_t* key, std::uint32_t low, std::uint32_t high,
+                                           std::uint32_t cell)
+    {
         while (low < high) {
             const std::uint32_t middle = low + (high - low) / 2;
-            if ((key[middle] >> 32) < c)
+            if (key[middle] < cell)
                 low = middle + 1;
             else
                 high = middle;
         }
-        start[c] = low;
+        return low;
+    }
+};
+
+/// start[g]: index of the first particle in group g or a later one, g = 0 … groups. One call per particle,
+/// for sequential access on the CPU.
+struct MarkCellStarts {
+    const std::uint32_t* key;
+    std::uint32_t particles, groups;
+    int shift;
+    std::uint32_t* start;
+
+    HILDA_HD void operator()(std::uint32_t k) const  // k = 0 … particles
+    {
+        const std::uint32_t here = k < particles ? key[k] >> shift : groups;
+        for (std::uint32_t g = k > 0 ? (key[k - 1] >> shift) + 1 : 0; g <= here; ++g) start[g] = k;
+    }
+};
+
+/// The same as MarkCellStarts with one call per group, by bisection. On a GPU a thread then does not loop over
+/// a long run of empty cells.
+struct FindCellStart {
+    const std::uint32_t* key;
+    std::uint32_t particles;
+    int shift;
+    std::uint32_t* start;
+
+    HILDA_HD void operator()(std::uint32_t g) const
+    {
+        start[g] = CellStarts::first_of(key, 0, particles, g << shift);
     }
 };
 
@@ -121,7 +164,7 @@ struct Search {
     const Position* position;
     const Float4 *velocity, *omega;
     const Species* species;
-    const std::uint32_t* cell_start;
+    CellStarts cell_start;
     float unit, skin;
     float small, largest;  ///< see Domain
     const Boundary* boundary;
@@ -168,9 +211,8 @@ struct Search {
     {
         const std::uint32_t cell = position[k].cell, replica = species[k].replica;
         const float reach = velocity[k].w + largest + skin;
-        const Cells x = cells_within(reach, CellGrid::x_of(cell), 0),
-                    y = cells_within(reach, CellGrid::y_of(cell), 1),
-                    z = cells_within(reach, CellGrid::z_of(cell), 2);
+        const Cells x = cells_within(reach, grid.x_of(cell), 0), y = cells_within(reach, grid.y_of(cell), 1),
+                    z = cells_within(reach, grid.z_of(cell), 2);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
         for (std::int32_t c = z.first; c < z.first + z.count; ++c)
             for (std::int32_t b = y.first; b < y.first + y.count; ++b) {
@@ -209,7 +251,7 @@ struct Search {
     HILDA_HD void search_half(std::uint32_t k, const F& f) const
     {
         const std::uint32_t cell = position[k].cell;
-        const std::int32_t x = CellGrid::x_of(cell), y = CellGrid::y_of(cell), z = CellGrid::z_of(cell);
+        const std::int32_t x = grid.x_of(cell), y = grid.y_of(cell), z = grid.z_of(cell);
         const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
         const std::uint32_t replica = species[k].replica;
         // Half of the 27 cells: those that follow in the order z, y, x of an infinite grid, so that each pair
@@ -399,20 +441,20 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
     const auto cells =
         static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * input.domain.replicas;
     key.resize(n), order.resize(n), new_index.resize(n), scratch.resize(n);
-    par::for_each(
-        on, n,
-        detail::AssignCell{g, p.position.data(), p.species.data(), p.id.data(), key.data(), order.data()});
-    par::stable_sort_by_key(on, key.data(), order.data(), n, 32 + std::bit_width(cells));
+    par::for_each(on, n,
+                  detail::AssignCell{g, p.position.data(), p.species.data(), key.data(), order.data()});
+    par::stable_sort_by_key(on, key.data(), order.data(), n, std::bit_width(cells));
     if (n > 0) {
-        std::uint64_t last = 0;
+        std::uint32_t last = 0;
         par::copy_to_host(on, &last, key.data() + n - 1, sizeof last);
-        if (last == ~std::uint64_t{0}) {
+        if (last == detail::outside_domain) {
             std::uint32_t k = 0, id = 0;
             par::copy_to_host(on, &k, order.data() + n - 1, sizeof k);
             par::copy_to_host(on, &id, p.id.data() + k, sizeof id);
             throw LeftDomain{id};
         }
     }
+    par::for_each(on, n, detail::SortCells{key.data(), p.id.data(), n, order.data()});
     const auto permute = [&](auto& array) {
         using T = std::remove_reference_t<decltype(*array.data())>;
         static_assert(sizeof(T) <= sizeof(Float4));
@@ -428,11 +470,13 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
     par::copy_bytes(on, p.position_at_build.data(), p.position.data(), n * sizeof(Position));
     par::for_each(on, n, detail::Invert{order.data(), new_index.data()});
 
-    cell_start.resize(cells + 1);
+    for (shift = 0; cells >> shift > 4 * std::uint64_t{n} + 4096; ++shift) continue;
+    const std::uint32_t groups = (cells >> shift) + 1;
+    cell_start.resize(groups + 1);
     if constexpr (std::is_same_v<Backend, par::Cpu>)
-        par::for_each(on, n + 1, detail::MarkCellStarts{key.data(), n, cells, cell_start.data()});
+        par::for_each(on, n + 1, detail::MarkCellStarts{key.data(), n, groups, shift, cell_start.data()});
     else
-        par::for_each(on, cells + 1, detail::FindCellStart{key.data(), n, cell_start.data()});
+        par::for_each(on, groups + 1, detail::FindCellStart{key.data(), n, shift, cell_start.data()});
 }
 
 template <class Backend>
@@ -459,7 +503,7 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
                                 .velocity = p.velocity.data(),
                                 .omega = p.omega.data(),
                                 .species = p.species.data(),
-                                .cell_start = cell_start.data(),
+                                .cell_start = {key.data(), cell_start.data(), shift},
                                 .unit = static_cast<float>(domain.grid.unit),
                                 .skin = domain.skin,
                                 .small = domain.small,

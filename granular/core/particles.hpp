@@ -9,15 +9,29 @@
 
 namespace hilda::granular {
 
-/// Position of a particle centre: owner cell and local integer coordinates.
+/// Position of a particle centre: integer coordinates from the low corner of the domain, modulo 2^32, and the
+/// owner cell.
 ///
 /// The difference of two neighbouring positions is an exact integer, wherever they are in the domain. The
-/// owner cell is assigned at a neighbour search. Between searches only the local coordinates change, and they
-/// may lie outside [0, CellGrid::width).
+/// owner cell is assigned at a neighbour search. Between searches only the coordinates change, and the
+/// particle may leave its owner cell by less than a cell width.
 struct alignas(16) Position {
     std::uint32_t cell = 0;            ///< owner cell, packed by CellGrid::pack()
-    std::int32_t x = 0, y = 0, z = 0;  ///< relative to the low corner of the owner cell [CellGrid::unit]
+    std::int32_t x = 0, y = 0, z = 0;  ///< modulo 2^32 [CellGrid::unit]
 };
+/// Sum and difference modulo 2^32
+HILDA_HD inline std::int32_t wrapped_sum(std::int32_t a, std::int32_t b)
+{
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+HILDA_HD inline std::int32_t wrapped_difference(std::int32_t a, std::int32_t b)
+{
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+HILDA_HD inline std::int32_t wrapped_product(std::int32_t a, std::int32_t b)
+{
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b));
+}
 
 /// Four floats in one 16-byte word: a vector and one scalar.
 struct alignas(16) Float4 {
@@ -108,41 +122,48 @@ HILDA_HD inline SplitDisplacement<R> split_displacement(const Vec<R>& displaceme
 /// small particle plus the skin, so that interacting small particles lie in the same cell or in adjacent
 /// cells; see Domain::small.
 struct CellGrid {
-    static constexpr int bits_x = 11, bits_y = 11, bits_z = 10;
+    static constexpr int cell_bits = 32;             ///< bits of a packed cell
     static constexpr std::int32_t widest = 1 << 29;  ///< width of the widest cell [units]
 
     double low[3] = {0, 0, 0};                         ///< low corner of the domain [m]
-    double unit = 1;                                   ///< length unit of local coordinates [m]
+    double unit = 1;                                   ///< length unit of the coordinates [m]
     std::int32_t cells[3] = {1, 1, 1};                 ///< number of cells along each axis
     std::int32_t width[3] = {widest, widest, widest};  ///< width of a cell along each axis [units]
     /// Width of the part of the last cell that is in the domain [units]
     std::int32_t last[3] = {widest, widest, widest};
-    std::int32_t periodic[3] = {0, 0, 0};  ///< 1 along a periodic axis
+    std::int32_t periodic[3] = {0, 0, 0};     ///< 1 along a periodic axis
+    std::int32_t shift_y = 11, shift_z = 22;  ///< first bits of y and z in a packed cell
 
-    /// Cell indices packed into 11, 11 and 10 bits
-    HILDA_HD static std::uint32_t pack(std::uint32_t x, std::uint32_t y, std::uint32_t z)
+    /// The indices of a cell in one word: x in the lowest bits, then y, then z
+    HILDA_HD std::uint32_t pack(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
     {
-        return x | y << bits_x | z << (bits_x + bits_y);
+        return x | y << shift_y | z << shift_z;
     }
-    HILDA_HD static std::int32_t x_of(std::uint32_t cell) { return cell & ((1u << bits_x) - 1); }
-    HILDA_HD static std::int32_t y_of(std::uint32_t cell) { return cell >> bits_x & ((1u << bits_y) - 1); }
-    HILDA_HD static std::int32_t z_of(std::uint32_t cell) { return cell >> (bits_x + bits_y); }
+    HILDA_HD std::int32_t x_of(std::uint32_t cell) const { return cell & ((1u << shift_y) - 1); }
+    HILDA_HD std::int32_t y_of(std::uint32_t cell) const
+    {
+        return cell >> shift_y & ((1u << (shift_z - shift_y)) - 1);
+    }
+    HILDA_HD std::int32_t z_of(std::uint32_t cell) const { return cell >> shift_z; }
+
+    /// Coordinate along an axis relative to the low corner of the cell with this index along it [units]
+    HILDA_HD std::int32_t local(std::int32_t x, std::int32_t cell, int axis) const
+    {
+        return wrapped_difference(x, wrapped_product(cell, width[axis]));
+    }
 };
 
-/// Difference of the positions i - j along one axis [units]; the minimum image along a periodic axis. cell_i,
-/// cell_j: cell indices along the axis; i, j: local coordinates [units].
+/// Difference of the coordinates i - j along one axis [units]; the minimum image along a periodic axis.
+/// cell_i, cell_j: cell indices along the axis.
 ///
 /// The arithmetic is modulo 2^32. The result is exact if the difference is below 2^31 units in magnitude,
-/// which is at least four cell widths. An overflow of an intermediate result does not matter.
+/// which is at least four cell widths.
 HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
                                         std::int32_t j, const CellGrid& g, int axis)
 {
-    std::int32_t d = cell_i - cell_j;
-    if (g.periodic[axis] != 0)
-        d += 2 * d > g.cells[axis] ? -g.cells[axis] : 2 * d < -g.cells[axis] ? g.cells[axis] : 0;
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(d) *
-                                         static_cast<std::uint32_t>(g.width[axis]) +
-                                     (static_cast<std::uint32_t>(i) - static_cast<std::uint32_t>(j)));
+    const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
+    if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return wrapped_difference(i, j);
+    return wrapped_sum(wrapped_difference(i, j), wrapped_product(d > 0 ? -n : n, g.width[axis]));
 }
 
 /// Difference of two positions i - j [units]
@@ -151,17 +172,19 @@ struct Difference {
 };
 HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, const Position& j)
 {
-    return {difference(CellGrid::x_of(i.cell), CellGrid::x_of(j.cell), i.x, j.x, g, 0),
-            difference(CellGrid::y_of(i.cell), CellGrid::y_of(j.cell), i.y, j.y, g, 1),
-            difference(CellGrid::z_of(i.cell), CellGrid::z_of(j.cell), i.z, j.z, g, 2)};
+    return {difference(g.x_of(i.cell), g.x_of(j.cell), i.x, j.x, g, 0),
+            difference(g.y_of(i.cell), g.y_of(j.cell), i.y, j.y, g, 1),
+            difference(g.z_of(i.cell), g.z_of(j.cell), i.z, j.z, g, 2)};
 }
 
 /// Position in the global frame [m]
 HILDA_HD inline Vec<double> global_position(const CellGrid& g, const Position& p)
 {
-    return {g.low[0] + (static_cast<double>(CellGrid::x_of(p.cell)) * g.width[0] + p.x) * g.unit,
-            g.low[1] + (static_cast<double>(CellGrid::y_of(p.cell)) * g.width[1] + p.y) * g.unit,
-            g.low[2] + (static_cast<double>(CellGrid::z_of(p.cell)) * g.width[2] + p.z) * g.unit};
+    const auto coordinate = [&](std::int32_t x, std::int32_t cell, int axis) {
+        return g.low[axis] + (static_cast<double>(cell) * g.width[axis] + g.local(x, cell, axis)) * g.unit;
+    };
+    return {coordinate(p.x, g.x_of(p.cell), 0), coordinate(p.y, g.y_of(p.cell), 1),
+            coordinate(p.z, g.z_of(p.cell), 2)};
 }
 
 /// The radius [units], truncated to an integer. Both particles of a pair use this value, so that the

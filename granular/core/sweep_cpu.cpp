@@ -274,8 +274,11 @@ struct Sweep : detail::ContactPacks {
         return largest_v2;
     }
 
+    // find_hits() and evaluate_hits() are functions of their own: within process_block() they have too few
+    // registers.
+
     /// Lists the contacts among the pairs from `begin` on; clears those that have ended.
-    void find_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
+    [[gnu::noinline, gnu::flatten]] void find_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
     {
         hits.count = hits.ahead_count = 0;
         for (std::uint32_t first = begin; first < end; first += lanes) {
@@ -334,7 +337,7 @@ struct Sweep : detail::ContactPacks {
         __builtin_prefetch(plan.sum_j.data() + j, 1), __builtin_prefetch(pairs.history + n, 1);
     }
 
-    void evaluate_hits(Hits& hits, Pack& overlaps) const
+    [[gnu::noinline, gnu::flatten]] void evaluate_hits(Hits& hits, Pack& overlaps) const
     {
         if (hits.count == 0) return;
         // The last pack repeats the last contact.

@@ -14,7 +14,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 9};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 10};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
 template <class Array>
@@ -27,12 +27,19 @@ bool all_finite(const Array& list)
 bool valid(const Domain& d, const WorldOptions& options)
 {
     const double low[] = {options.low.x, options.low.y, options.low.z};
-    const std::int32_t most[] = {1 << CellGrid::bits_x, 1 << CellGrid::bits_y, 1 << CellGrid::bits_z};
-    for (int k = 0; k < 3; ++k)
+    const std::int32_t y = d.grid.shift_y, z = d.grid.shift_z;
+    if (!(y >= 0 && y <= z && z < CellGrid::cell_bits)) return false;
+    const std::int64_t most[] = {std::int64_t{1} << y, std::int64_t{1} << (z - y),
+                                 std::int64_t{1} << (CellGrid::cell_bits - z)};
+    double cells = d.replicas;
+    for (int k = 0; k < 3; ++k) {
+        cells *= d.grid.cells[k];
         if (d.grid.low[k] != low[k] || d.grid.cells[k] < 1 || d.grid.cells[k] > most[k] ||
             d.grid.width[k] < 1 || d.grid.width[k] > CellGrid::widest || d.grid.last[k] < 0 ||
             d.grid.last[k] > d.grid.width[k] || d.grid.periodic[k] != (options.periodic[k] ? 1 : 0))
             return false;
+    }
+    if (cells > max_cells) return false;
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
     return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
            positive(d.small) && positive(d.largest) && d.replicas >= 1;
@@ -79,9 +86,10 @@ bool same_boundary(const Boundary& now, Boundary saved)
 /// when the neighbour list was built, and has moved by less than a cell since then.
 bool inside(const CellGrid& g, const Position& p)
 {
-    const auto near = [](std::int32_t x) { return x >= -CellGrid::widest && x < 2 * CellGrid::widest; };
-    return CellGrid::x_of(p.cell) < g.cells[0] && CellGrid::y_of(p.cell) < g.cells[1] &&
-           CellGrid::z_of(p.cell) < g.cells[2] && near(p.x) && near(p.y) && near(p.z);
+    const std::int32_t x = g.x_of(p.cell), y = g.y_of(p.cell), z = g.z_of(p.cell);
+    const auto near = [](std::int32_t at) { return at >= -CellGrid::widest && at < 2 * CellGrid::widest; };
+    return x < g.cells[0] && y < g.cells[1] && z < g.cells[2] && near(g.local(p.x, x, 0)) &&
+           near(g.local(p.y, y, 1)) && near(g.local(p.z, z, 2));
 }
 
 /// The n ids are below `limit`, and all differ.

@@ -277,7 +277,8 @@ private:
     void transfer(io::Archive& a);
     void insert_pending();
     Domain domain_of(const std::vector<Particle>& all) const;
-    bool fits(double width, std::uint32_t replicas, std::size_t particles) const;
+    bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
+    [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;
     struct CellPosition {
         Position position;
         Vec<float> remainder;  ///< position minus its whole units [units]

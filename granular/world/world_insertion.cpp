@@ -6,6 +6,7 @@
 #include "io/message.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 namespace hilda::granular {
@@ -89,23 +90,22 @@ Domain World::domain_of(const std::vector<Particle>& all) const
     // of pairs of all others. A pair is listed up to the distance R_i + R_j + skin of the centres.
     in.skin = static_cast<float>(options.skin * diameters[diameters.size() / 2]);
     double cell = cell_diameter(diameters, in.skin);
-    if (!fits(cell + in.skin, in.replicas, all.size())) cell = largest;
+    if (!set_cells(grid, cell + in.skin, in.replicas)) cell = largest;
+    double edge = cell + in.skin;
+    // Cells that are wider than necessary make the length unit coarser.
+    constexpr double largest_factor = 8;
+    while (!set_cells(grid, edge, in.replicas)) {
+        edge *= 1.05;
+        if (edge > largest_factor * (largest + in.skin)) refuse_domain(edge, in.replicas);
+    }
     in.small = static_cast<float>(cell / 2), in.largest = static_cast<float>(largest / 2);
-    const double edge = cell + in.skin;
     const double low[] = {options.low.x, options.low.y, options.low.z},
                  high[] = {options.high.x, options.high.y, options.high.z};
-    double widest = largest + in.skin;
+    double widest = std::max(edge, largest + in.skin);
     for (int k = 0; k < 3; ++k) {
         grid.low[k] = low[k];
         grid.periodic[k] = options.periodic[k];
         const double length = high[k] - low[k];
-        const double cells = options.periodic[k] ? std::floor(length / edge) : std::ceil(length / edge);
-        const int max_cells = k == 2 ? 1 << CellGrid::bits_z : 1 << CellGrid::bits_y;
-        if (cells > max_cells)
-            refuse("domain",
-                   "must not be wider than " + std::to_string(max_cells) +
-                       " cells along one axis; a cell is as wide as the largest diameter and the skin; cells",
-                   cells);
         if (options.periodic[k] && length < 3 * (largest + in.skin))
             refuse("domain",
                    io::formatted(
@@ -113,11 +113,8 @@ Domain World::domain_of(const std::vector<Particle>& all) const
                        "diameter and the skin",
                        1.0001 * 3 * (largest + in.skin), 'x' + k),
                    length);
-        grid.cells[k] = static_cast<std::int32_t>(cells);
-        if (options.periodic[k]) widest = std::max(widest, length / cells);
+        if (options.periodic[k]) widest = std::max(widest, length / grid.cells[k]);
     }
-    const double cells = double(in.replicas) * grid.cells[0] * grid.cells[1] * grid.cells[2];
-    if (cells > 0x7fffffff) refuse("domain", "must not have more than 2^31 cells in all replicas", cells);
     grid.unit = widest / CellGrid::widest;
     for (int k = 0; k < 3; ++k) {
         const double length = high[k] - low[k];
@@ -129,13 +126,36 @@ Domain World::domain_of(const std::vector<Particle>& all) const
     return in;
 }
 
-/// Whether cells of this width are possible in the domain, and do not need more memory than the particles
-bool World::fits(double width, std::uint32_t replicas, std::size_t particles) const
+/// Divides the domain into cells that are at least as wide as `edge`. False if they are too many: a cell is
+/// stored in CellGrid::cell_bits, and its number with the replica in 31 bits.
+bool World::set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const
 {
     const Vec3 size = options.high - options.low;
-    const double x = std::ceil(size.x / width), y = std::ceil(size.y / width), z = std::ceil(size.z / width);
-    return x <= 1 << CellGrid::bits_x && y <= 1 << CellGrid::bits_y && z <= 1 << CellGrid::bits_z &&
-           x * y * z * replicas <= 1e5 + 30 * static_cast<double>(particles);
+    const double length[] = {size.x, size.y, size.z};
+    double all = replicas;
+    int bits[3];
+    for (int k = 0; k < 3; ++k) {
+        const double cells =
+            std::max(options.periodic[k] ? std::floor(length[k] / edge) : std::ceil(length[k] / edge), 1.);
+        all *= cells;
+        if (all > max_cells) return false;
+        grid.cells[k] = static_cast<std::int32_t>(cells);
+        bits[k] =
+            std::max(static_cast<int>(std::bit_width(static_cast<std::uint32_t>(grid.cells[k] - 1))), 1);
+    }
+    grid.shift_y = bits[0], grid.shift_z = bits[0] + bits[1];
+    return bits[0] + bits[1] + bits[2] <= CellGrid::cell_bits;
+}
+
+[[noreturn]] void World::refuse_domain(double edge, std::uint32_t replicas) const
+{
+    refuse("domain",
+           io::formatted("must not have more than 2^31 cells in all replicas; cells that are %.3g m wide, "
+                         "eight times the largest diameter and the skin, are the widest; cells",
+                         edge),
+           replicas * std::ceil((options.high.x - options.low.x) / edge) *
+               std::ceil((options.high.y - options.low.y) / edge) *
+               std::ceil((options.high.z - options.low.z) / edge));
 }
 
 /// Cell and position within the cell of each particle. Throws ParticleLost if a particle that was inserted
@@ -165,7 +185,8 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in,
             at[c] = static_cast<std::int32_t>(std::lround(in_cell));
             remainder[c] = static_cast<float>(in_cell - at[c]);
         }
-        located[k] = {{CellGrid::pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
+        for (int c = 0; c < 3; ++c) at[c] = wrapped_sum(at[c], wrapped_product(cell[c], grid.width[c]));
+        located[k] = {{grid.pack(cell[0], cell[1], cell[2]), at[0], at[1], at[2]},
                       {remainder[0], remainder[1], remainder[2]}};
     }
     return located;
@@ -207,7 +228,8 @@ void World::insert_pending()
         const Particle& particle = all[k];
         const SplitDisplacement<float> split = split_displacement(located[k].remainder, 0);
         const Position at = located[k].position;
-        p.position.data()[k] = {at.cell, at.x + split.x, at.y + split.y, at.z + split.z};
+        p.position.data()[k] = {at.cell, wrapped_sum(at.x, split.x), wrapped_sum(at.y, split.y),
+                                wrapped_sum(at.z, split.z)};
         p.velocity.data()[k] = to_float4(particle.v, particle.radius);
         p.omega.data()[k] = to_float4(particle.omega, particle.fixed ? 0 : 1 / particle.mass);
         p.species.data()[k] = {.material = static_cast<std::uint16_t>(particle.material),

@@ -14,13 +14,13 @@ namespace {
 /// Coordinate along an axis from the low side of the domain [units]
 std::int64_t coordinate(const CellGrid& g, const Position& p, int axis)
 {
-    const std::int32_t cell = axis == 0   ? CellGrid::x_of(p.cell)
-                              : axis == 1 ? CellGrid::y_of(p.cell)
-                                          : CellGrid::z_of(p.cell),
+    const std::int32_t cell = axis == 0   ? g.x_of(p.cell)
+                              : axis == 1 ? g.y_of(p.cell)
+                                          : g.z_of(p.cell),
                        at = axis == 0   ? p.x
                             : axis == 1 ? p.y
                                         : p.z;
-    return std::int64_t{cell} * g.width[axis] + at;
+    return std::int64_t{cell} * g.width[axis] + g.local(at, cell, axis);
 }
 
 /// The side of the domain behind which the particle is, that with the largest distance; -1 if it is inside.

@@ -54,7 +54,8 @@ public:
     /// law_of: index of the law of a pair of materials, materials × materials
     virtual void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                           std::uint32_t materials) = 0;
-    virtual void set_boundaries(const std::vector<Boundary>& boundaries) = 0;
+    /// Returns whether they differ from those of the previous call.
+    virtual bool set_boundaries(const std::vector<Boundary>& boundaries) = 0;
     /// External forces by particle id [N]; an empty list means none.
     virtual void set_forces(const std::vector<Float4>& forces) = 0;
 

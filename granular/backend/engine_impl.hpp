@@ -114,16 +114,17 @@ public:
         send(laws, all), send(law_of, law_of_pair);
     }
 
-    void set_boundaries(const std::vector<Boundary>& all) override
+    bool set_boundaries(const std::vector<Boundary>& all) override
     {
         if (all.size() == last_boundaries.size() &&
             (all.empty() || std::memcmp(static_cast<const void*>(all.data()), last_boundaries.data(),
                                         all.size() * sizeof(Boundary)) == 0))
-            return;
+            return false;
         last_boundaries = all;
         any_free = false;
         for (const Boundary& b : all) any_free = any_free || b.mass > 0;
         send(boundaries, all);
+        return true;
     }
 
     void set_forces(const std::vector<Float4>& all) override { send(force, all); }
@@ -148,11 +149,15 @@ public:
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
+        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries))
+            send(block_start, blocks.start), send(block_boundary, blocks.boundary);
+        BoundaryBlockView near = blocks.view();
+        near.start = block_start.data(), near.boundary = block_boundary.data();
         neighbours.find({.domain = domain,
                          .law_of = one_law ? nullptr : law_of.data(),
                          .materials = materials,
                          .boundary = boundaries.data(),
-                         .boundaries = static_cast<std::uint32_t>(boundaries.size()),
+                         .near = near,
                          .rotation_laws = rotation_laws},
                         own.particle, own.pairs);
         find_attached();
@@ -336,7 +341,8 @@ public:
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
                counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
-               attached_index.bytes() + poses.bytes() + plan.bytes();
+               attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() + block_start.bytes() +
+               block_boundary.bytes();
     }
 
 private:
@@ -490,6 +496,8 @@ private:
     par::Array<Backend, std::uint32_t> attached_index;  ///< see FindAttached
     par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
+    BoundaryBlocks blocks;  ///< of last_boundaries
+    par::Array<Backend, std::uint32_t> block_start, block_boundary;
     SweepPlan plan;  ///< of the CPU
     /// Arguments of find_loads() for the pass in advance()
     struct Pending {

@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include "granular/core/boundary_blocks.hpp"
 #include "granular/core/contact_loop.hpp"
 
 namespace hilda::granular {
@@ -95,8 +96,8 @@ struct SearchInput {
     const std::uint8_t* law_of = nullptr;
     std::uint32_t materials = 1;
     const Boundary* boundary = nullptr;
-    std::uint32_t boundaries = 0;  ///< number of boundaries
-    bool rotation_laws = false;    ///< whether a law of rolling or spin is in use
+    BoundaryBlockView near;      ///< of these boundaries
+    bool rotation_laws = false;  ///< whether a law of rolling or spin is in use
 };
 
 template <class Backend>

@@ -168,7 +168,7 @@ struct Search {
     float unit, skin;
     float small, largest;  ///< see Domain
     const Boundary* boundary;
-    std::uint32_t boundaries;
+    BoundaryBlockView near;
 
     template <class F>
     HILDA_HD void range(std::uint32_t k, std::uint32_t first, std::uint32_t last, const F& f) const
@@ -241,10 +241,14 @@ struct Search {
             search_reach(k, f);
         else
             search_half(k, f);
-        for (std::uint32_t b = 0; b < boundaries; ++b)
-            if (omega[k].w != 0 &&
-                nearest(boundary[b], global_position(grid, position[k])).distance < velocity[k].w + skin)
+        if (omega[k].w == 0) return;
+        const Position at = position[k];
+        const std::uint32_t block = near.block(grid.x_of(at.cell), grid.y_of(at.cell), grid.z_of(at.cell));
+        for (std::uint32_t n = near.start[block]; n < near.start[block + 1]; ++n) {
+            const std::uint32_t b = near.boundary[n];
+            if (nearest(boundary[b], global_position(grid, at)).distance < velocity[k].w + skin)
                 f(PairView::boundary_bit | b);
+        }
     }
 
     template <class F>
@@ -509,7 +513,7 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
                                 .small = domain.small,
                                 .largest = domain.largest,
                                 .boundary = input.boundary,
-                                .boundaries = input.boundaries};
+                                .near = input.near};
     counts.resize(n);
     pairs.start.resize(n + 1), pairs.other_start.resize(n + 1);
     par::for_each(on, n, detail::CountPairs{search, counts.data()});

@@ -225,7 +225,7 @@ void World::from_bytes(const std::string& bytes, const std::string& run_id, cons
     transfer(a);
     more(a);
     a.end();
-    forces_changed = true;
+    forces_changed = boundaries_changed = true;
     Pairs<par::Cpu>& pairs = engine->arrays().pairs;
     pairs.in_contact.resize(pairs.count), pairs.load.resize(pairs.count);
     par::fill(par::Cpu(), pairs.in_contact.data(), pairs.count, std::uint8_t{1});

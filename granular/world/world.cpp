@@ -183,7 +183,7 @@ void World::find_neighbours() const
         engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
     }
     laws_changed = false;
-    engine->set_boundaries(boundaries);
+    send_boundaries();
     try {
         engine->find_neighbours(domain);
     } catch (const TooManyPairs&) {
@@ -213,6 +213,12 @@ StepParameters World::step_parameters(Part part) const
             .velocity_dither = static_cast<std::uint32_t>(SplitMix::mixed(count * SplitMix::step) >> 48)};
 }
 
+/// Gives the boundaries to the engine, and records whether one was changed.
+void World::send_boundaries() const
+{
+    if (engine->set_boundaries(boundaries)) boundaries_changed = true;
+}
+
 /// Integrates the velocities of tools by symplectic Euler. A tool is a boundary with a mass m and a moment of
 /// inertia I.
 ///
@@ -235,6 +241,8 @@ void World::accelerate_tools()
 /// the displacement of the boundary points within the domain [m].
 double World::move_boundaries()
 {
+    if (boundaries_rest && !boundaries_changed) return 0;
+    boundaries_rest = true;
     rotate_frames();
     const double h = options.h;
     double largest = 0;
@@ -242,6 +250,7 @@ double World::move_boundaries()
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
         moved[k] = {b.v, b.omega};
+        boundaries_rest = boundaries_rest && b.v == Vec3{0, 0, 0} && b.omega == Vec3{0, 0, 0} && b.mass == 0;
         b.r += h * b.v;
         double displacement = h * b.v.norm();
         const double angle = h * b.omega.norm();
@@ -290,7 +299,7 @@ void World::one_step()
     const auto find_loads = [&](bool store) {
         take(times.advance);
         update_neighbours();
-        engine->set_boundaries(boundaries);
+        if (verlet) send_boundaries();  // they have moved in this step
         take(times.neighbours);
         engine->find_loads(domain, h, store);
         take(times.loads);
@@ -316,6 +325,7 @@ void World::one_step()
         check_displacement(displacement);
         return displacement;
     };
+    send_boundaries();
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads(true);
@@ -339,6 +349,7 @@ void World::one_step()
         boundary_displacement += move_boundaries();
         if (!is_posed()) move_attached();
     }
+    boundaries_changed = false;
     take(times.advance);
 }
 

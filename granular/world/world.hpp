@@ -309,6 +309,7 @@ private:
     StepParameters step_parameters(Part part) const;
     bool laws_have_energy() const;
     bool boundaries_move();
+    void send_boundaries() const;
     bool is_sample() const;
     void watch_loads();
     void watch_advance();
@@ -359,6 +360,9 @@ private:
     /// Of the boundaries: velocities of the last move and place after it; velocities of the next move
     std::vector<BoundaryVelocity> moved, next_move;
     std::vector<BoundaryPlace> moved_to;
+    /// Whether no boundary moved in the last step, and whether one was changed since then
+    bool boundaries_rest = false;
+    mutable bool boundaries_changed = true;
 
     std::string insertion_error;  ///< message of a failed overlap check; further steps throw it again
     Times times;

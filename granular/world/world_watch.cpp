@@ -43,6 +43,7 @@ void World::set_watch(bool on, long interval)
 /// moves, may be moved by its loads, or was moved from outside.
 bool World::boundaries_move()
 {
+    if (boundaries_rest && !boundaries_changed) return false;
     bool moves = false, free = false, placed = false;
     if (moved.size() != boundaries.size()) {
         moved.clear(), moved_to.clear();

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The boundaries near each block of cells, so that a neighbour search does not test all boundaries for each
+/// particle.
+
+#pragma once
+
+#include "granular/core/boundary.hpp"
+#include "granular/core/particles.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace hilda::granular {
+
+/// Blocks of cells and the boundaries near them, for the functors. The boundaries of block b are
+/// boundary[start[b]] … boundary[start[b + 1] - 1], in ascending order.
+struct BoundaryBlockView {
+    const std::uint32_t *start = nullptr, *boundary = nullptr;
+    std::int32_t shift = 0;                   ///< a block has 2^shift cells along each axis
+    std::int32_t blocks_x = 0, blocks_y = 0;  ///< number of blocks along x and y
+
+    HILDA_HD std::uint32_t block(std::int32_t x, std::int32_t y, std::int32_t z) const
+    {
+        const std::int32_t row = (z >> shift) * blocks_y + (y >> shift);
+        return static_cast<std::uint32_t>(row * blocks_x + (x >> shift));
+    }
+};
+
+/// Blocks of cells with the boundaries whose surface is within the reach of a particle in one of their cells.
+///
+/// The boxes of the blocks are halved repeatedly. A boundary is not near a box if its distance from the
+/// centre, less half of the diagonal, is above the reach: the signed distance changes by at most 1 m per m.
+/// Points behind a boundary have a negative distance, so that it is listed there.
+class BoundaryBlocks {
+public:
+    /// Lists the boundaries for a grid. `reach`: largest radius and skin [m]. Only the boundaries that have
+    /// changed since the previous call are searched. Returns whether the lists have changed.
+    bool update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries);
+
+    /// With pointers to `start` and `boundary`
+    BoundaryBlockView view() const { return {start.data(), boundary.data(), shift, blocks[0], blocks[1]}; }
+
+    std::vector<std::uint32_t> start, boundary;  ///< see BoundaryBlockView
+
+    std::size_t bytes() const;
+
+private:
+    struct Box {
+        std::array<std::int32_t, 3> first, last;  ///< blocks, `last` excluded
+    };
+    void make_blocks(const CellGrid& grid);
+    void search(const Boundary& b, const Box& box, std::vector<std::uint32_t>& found) const;
+
+    /// Members of a boundary that determine its surface
+    struct Surface {
+        Boundary::Shape shape;
+        std::int32_t inside;
+        Vec3 r, axis;
+        double radius, cosine, sine;
+        bool operator==(const Surface&) const = default;
+    };
+    static Surface surface(const Boundary& b)
+    {
+        return {b.shape, b.inside, b.r, b.axis, b.radius, b.cosine, b.sine};
+    }
+
+    CellGrid of;           ///< the grid of the lists
+    double reach_of = -1;  ///< the reach of the lists; negative: there are none
+    std::int32_t shift = 0;
+    std::array<std::int32_t, 3> blocks = {0, 0, 0};
+    std::vector<Surface> surfaces;
+    std::vector<std::vector<std::uint32_t>> near;  ///< blocks near each boundary
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The boundaries near blocks of cells, against all boundaries.
+#include "granular/core/boundary_blocks.hpp"
+#include "granular/case/split_mix.hpp"
+#include "tests/support/grains.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hilda;
+using namespace hilda::tests;
+using granular::Boundary;
+using granular::BoundaryBlocks;
+using granular::BoundaryBlockView;
+using granular::CellGrid;
+
+namespace {
+
+Boundary random_boundary(granular::Random& random, Boundary::Shape shape)
+{
+    Boundary b;
+    b.shape = shape, b.inside = random.number(0, 1) < 0.5 ? 1 : 0;
+    b.r = {random.number(-0.5, 1.5), random.number(-0.5, 1.5), random.number(-0.5, 1.5)};
+    b.axis = random.direction(), b.radius = random.number(0.01, 0.7);
+    const double angle = random.number(0.1, 1.4);
+    b.cosine = std::cos(angle), b.sine = std::sin(angle);
+    return b;
+}
+
+CellGrid grid(std::int32_t cells)
+{
+    CellGrid g;
+    g.low[0] = 0.1, g.low[1] = -0.2;
+    for (int k = 0; k < 3; ++k) g.cells[k] = cells + k;
+    g.unit = 1. / cells / CellGrid::widest;
+    return g;
+}
+
+bool lists(const BoundaryBlockView& view, std::uint32_t block, std::uint32_t boundary)
+{
+    return std::binary_search(view.boundary + view.start[block], view.boundary + view.start[block + 1],
+                              boundary);
+}
+
+}  // namespace
+
+TEST_CASE("the blocks of cells list all boundaries within reach and few others", "[granular][neighbours]")
+{
+    const std::int32_t cells = GENERATE(1, 9, 200);  // with 200, a block has 8 cells along each axis
+    const CellGrid g = grid(cells);
+    const double width = 1. / cells, reach = 0.6 * width;
+    granular::Random random(5);
+    std::vector<Boundary> all;
+    for (const auto shape :
+         {Boundary::Shape::plane, Boundary::Shape::cylinder, Boundary::Shape::cone, Boundary::Shape::sphere})
+        for (int k = 0; k < 20; ++k) all.push_back(random_boundary(random, shape));
+    BoundaryBlocks blocks;
+    REQUIRE(blocks.update(g, reach, all));
+    REQUIRE_FALSE(blocks.update(g, reach, all));
+    const BoundaryBlockView view = blocks.view();
+    long missing = 0, listed = 0, far = 0;
+    for (int n = 0; n < 4000; ++n) {
+        std::int32_t at[3];
+        for (int k = 0; k < 3; ++k)
+            at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
+        const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
+        const Vec3 point{inside(0), inside(1), inside(2)};
+        const std::uint32_t block = view.block(at[0], at[1], at[2]);
+        for (std::uint32_t b = 0; b < all.size(); ++b) {
+            const double distance = nearest(all[b], point).distance;
+            const bool is_listed = lists(view, block, b);
+            listed += is_listed;
+            missing += distance < reach && !is_listed;
+            far += is_listed && distance > reach + std::sqrt(3.) * 1.1 * width * (1 << view.shift);
+        }
+    }
+    CHECK(missing == 0);
+    CHECK(listed > 1000);
+    CHECK(far == 0);
+}
+
+TEST_CASE("the blocks of cells follow boundaries that move, are added, and another grid",
+          "[granular][neighbours]")
+{
+    granular::Random random(9);
+    const auto same = [](const BoundaryBlocks& a, const BoundaryBlocks& b) {
+        return a.start == b.start && a.boundary == b.boundary;
+    };
+    std::vector<Boundary> all(3);
+    BoundaryBlocks kept;
+    for (int round = 0; round < 12; ++round) {
+        all[static_cast<std::size_t>(round % 3)] = random_boundary(random, Boundary::Shape::sphere);
+        if (round % 4 == 3) all.push_back(random_boundary(random, Boundary::Shape::plane));
+        if (round == 10) all.pop_back();
+        const CellGrid g = grid(round < 8 ? 6 : 11);
+        CHECK(kept.update(g, 0.1, all));
+        BoundaryBlocks fresh;
+        fresh.update(g, 0.1, all);
+        CHECK(same(kept, fresh));
+    }
+}

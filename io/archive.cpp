@@ -36,7 +36,11 @@ bool exists(const std::string& file)
 
 std::uint64_t checksum(const char* bytes, std::size_t count)
 {
-    std::uint64_t h = 0xcbf29ce484222325u;
+    return checksum(0xcbf29ce484222325u, bytes, count);
+}
+
+std::uint64_t checksum(std::uint64_t h, const char* bytes, std::size_t count)
+{
     const auto take = [&](std::uint64_t w) { h = (h ^ w) * 0x100000001b3u, h ^= h >> 29; };
     for (; count >= 8; bytes += 8, count -= 8) {
         std::uint64_t w = 0;
@@ -71,10 +75,47 @@ Archive::Archive(const Format& format, std::string_view bytes, std::string name)
     in = bytes.substr(header_size, end - header_size);
 }
 
+Archive::Archive(const Format& format, std::uint64_t length, const Append* to)
+    : append(to), in_pieces(true), has_format(true)
+{
+    out.append(format.letters, letters_size);
+    std::uint64_t version = format.version;
+    value(version), value(length);
+}
+
+void Archive::write(const Format& format, const std::function<void(Archive&)>& write, const Append& append)
+{
+    Archive length(format, 0, nullptr);
+    write(length);
+    Archive a(format, length.passed_on + length.out.size() + number_size, &append);
+    write(a);
+    a.pass_on();
+    a.value(a.sum);
+    a.pass_on();
+}
+
+/// Passes the bytes written so far on.
+void Archive::pass_on()
+{
+    if (append != nullptr) {
+        sum = checksum(sum, out.data(), out.size());
+        (*append)(out);
+    }
+    passed_on += out.size();
+    out.clear();
+}
+
 void Archive::raw(void* at, std::size_t n)
 {
     if (!reading) {
-        out.append(static_cast<const char*>(at), n);
+        const auto* bytes = static_cast<const char*>(at);
+        while (in_pieces && out.size() + n >= piece) {
+            const std::size_t part = piece - out.size();
+            out.append(bytes, part);
+            bytes += part, n -= part;
+            pass_on();
+        }
+        out.append(bytes, n);
         return;
     }
     if (in.size() < n) throw damaged("unexpected end of data");
@@ -115,8 +156,13 @@ bool CheckpointFiles::exist() const { return exists(last) || exists(before); }
 
 void CheckpointFiles::save(const std::string& bytes) const
 {
+    save([&](const Append& append) { append(bytes); });
+}
+
+void CheckpointFiles::save(const std::function<void(const Append&)>& content) const
+{
     const std::string next = last + ".new";
-    write_file(next, bytes);
+    write_file(next, content);
     if (exists(last)) rename_file(last, before);
     rename_file(next, last);
 }
@@ -144,6 +190,11 @@ bool CheckpointFiles::load(
 }
 
 void CheckpointFiles::save_final(const std::string& bytes) const { write_file(final, bytes); }
+
+void CheckpointFiles::save_final(const std::function<void(const Append&)>& content) const
+{
+    write_file(final, content);
+}
 
 void CheckpointFiles::remove_unfinished() const
 {

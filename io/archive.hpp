@@ -4,6 +4,7 @@
 #pragma once
 
 #include "io/error.hpp"
+#include "io/files.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +14,15 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace hilda::io {
 
 /// 64-bit checksum: a variant of FNV-1a over words of eight bytes and the remaining single bytes, with an
 /// additional shift
 std::uint64_t checksum(const char* bytes, std::size_t count);
+/// Continues the checksum `before` of bytes that precede; their number is a multiple of eight.
+std::uint64_t checksum(std::uint64_t before, const char* bytes, std::size_t count);
 
 /// Writes or reads values in a fixed order. One function serves both directions:
 ///
@@ -37,6 +41,9 @@ public:
     /// Writes.
     Archive() = default;
     explicit Archive(const Format& format);
+    /// Writes the values of `write` with a format and passes the bytes on in pieces, so that they are never
+    /// in memory as a whole. `write` is called twice; the first call determines the length.
+    static void write(const Format& format, const std::function<void(Archive&)>& write, const Append& append);
     /// Reads. `file` is for the messages; the bytes must outlive the archive. IoError if the letters, the
     /// version, the length or the checksum are wrong.
     Archive(std::string_view bytes, std::string file) : in(bytes), file(std::move(file)), reading(true) {}
@@ -85,13 +92,21 @@ public:
     std::string bytes();
 
 private:
+    /// Writes an archive of known length in pieces; without `append` only its length is determined.
+    Archive(const Format& format, std::uint64_t length, const Append* append);
+    void pass_on();
     void raw(void* at, std::size_t n);
     IoError damaged(const std::string& what) const
     {
         return IoError(file + ": the checkpoint is damaged: " + what);
     }
 
-    std::string out;      ///< written so far
+    static constexpr std::size_t piece = 1 << 20;  ///< [byte]; a multiple of a word of the checksum
+    const Append* append = nullptr;
+    std::uint64_t passed_on = 0, sum = checksum("", 0);  ///< of the pieces
+    bool in_pieces = false;
+
+    std::string out;      ///< written and not yet passed on
     std::string_view in;  ///< not yet read
     std::string file;
     bool reading = false, has_format = false;
@@ -110,12 +125,15 @@ public:
     bool exist() const;
     /// Writes `checkpoint`; the previous one becomes checkpoint.1. IoError.
     void save(const std::string& bytes) const;
+    /// The same in pieces; see write_file
+    void save(const std::function<void(const Append&)>& content) const;
     /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one
     /// before, with a warning. Without either, calls it for the checkpoint at the end of the run. Returns
     /// false if there is no checkpoint. IoError if none can be read.
     bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
     /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
     void save_final(const std::string& bytes) const;
+    void save_final(const std::function<void(const Append&)>& content) const;
     /// Removes the checkpoints of the unfinished run.
     void remove_unfinished() const;
     /// Removes all checkpoints.

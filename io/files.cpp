@@ -23,7 +23,7 @@ namespace {
 }
 
 /// Writes a text and returns the number of written bytes: all, or fewer after an error, which is in errno
-size_t write_all(int descriptor, const std::string& content)
+size_t write_all(int descriptor, std::string_view content)
 {
     size_t done = 0;
     while (done < content.size()) {
@@ -52,14 +52,14 @@ public:
         if (!renamed) unlink(path.c_str());
     }
 
-    void write(const std::string& content) const
+    void write(std::string_view content) const
     {
         if (write_all(descriptor, content) < content.size()) fail(target);
-        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(target);
     }
 
     void commit()
     {
+        if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(target);
         rename_file(path, target);
         renamed = true;
     }
@@ -84,18 +84,23 @@ void sync_directory(const std::string& path)
 
 void write_file(const std::string& name, const std::string& content)
 {
+    write_file(name, [&](const Append& append) { append(content); });
+}
+
+void write_file(const std::string& name, const std::function<void(const Append&)>& content)
+{
     std::error_code error;
     const fs::path target = fs::weakly_canonical(name, error);  // writes through a symbolic link
     const std::string path = error ? name : target.string();
     if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
         // devices and pipes are written to, not replaced
         std::ofstream out(path, std::ios::binary);
-        out << content << std::flush;
-        if (!out) fail(name);
+        content([&](std::string_view piece) { out << piece; });
+        if (!out.flush()) fail(name);
         return;
     }
     Temporary file(path);
-    file.write(content);
+    content([&](std::string_view piece) { file.write(piece); });
     file.commit();
 }
 

@@ -6,6 +6,7 @@
 #include "io/error.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,11 @@ namespace hilda::io {
 /// its old or its new contents. A symbolic link is followed; a device or pipe is written to directly.
 /// IoError; the temporary file is removed then.
 void write_file(const std::string& path, const std::string& content);
+
+/// Receives the next piece of a content
+using Append = std::function<void(std::string_view piece)>;
+/// The same for a content that is not in memory as a whole: `content` passes its pieces to its argument.
+void write_file(const std::string& path, const std::function<void(const Append&)>& content);
 
 /// Renames a file, replacing an existing file, and synchronises the directory with the disk. IoError.
 void rename_file(const std::string& from, const std::string& to);

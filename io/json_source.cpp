@@ -174,6 +174,13 @@ void JsonSource::rename(const std::string& old_name, const std::string& new_name
     notice("/" + new_name, renamed.back());
 }
 
+void JsonSource::remove(const std::string& key)
+{
+    if (root.members() != nullptr && std::erase_if(std::get<Json::Object>(root.value),
+                                                   [&](const Json::Member& m) { return m.key == key; }) > 0)
+        changed = true;
+}
+
 void JsonSource::notice(const std::string& pointer, const Renamed& key)
 {
     notices.push_back(place(pointer) + ": " + key.old_name + " was renamed to " + key.new_name +

@@ -59,6 +59,8 @@ public:
     /// Accepts an old name of a key of the root object, in the text and in later changes, with an entry in
     /// `notices`. Messages keep the name of the text. Throws PlacedError if the text has both names.
     void rename(const std::string& old_name, const std::string& new_name);
+    /// Removes a member of the root.
+    void remove(const std::string& key);
     std::vector<std::string> notices;  ///< one line with the location for each old name that was used
 
     /// The text as it was read, or the canonical text if a value or a name was changed

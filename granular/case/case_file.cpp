@@ -139,7 +139,12 @@ private:
         const Intervals intervals = read_intervals(o, out.h, out.end);
         out.interval = intervals.rows;
         out.frame_interval = intervals.frames;
-        out.checkpoint_interval = intervals.checkpoints;
+        if (o.has(key_without_effect)) {
+            o.positive(key_without_effect);
+            out.notices.push_back(out.source.place(std::string("/") + key_without_effect) + ": " +
+                                  key_without_effect +
+                                  " has no effect: a checkpoint can be written after every step");
+        }
         world.skin = o.number("skin", world.skin);
         if (!(world.skin > 0 && world.skin <= 1))
             o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
@@ -300,6 +305,7 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     if (environment.seed) seed_fills(out, *environment.seed);
     if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
     CaseReader(out, environment).read();
+    out.source.remove(key_without_effect);
     return out;
 }
 

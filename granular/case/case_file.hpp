@@ -23,7 +23,6 @@ struct Case {
     double h = 0, end = 0;           ///< step and end time [s]
     double interval = 0;             ///< time between rows of run.csv [s]
     double frame_interval = 0;       ///< time between frames [s]
-    double checkpoint_interval = 0;  ///< time between the instants at which a checkpoint can be written [s]
     std::vector<std::string> boundaries = {};  ///< names, by number
     std::vector<int> moving = {};              ///< numbers of the boundaries that move
     std::vector<std::string> notices = {};     ///< warnings, with their location

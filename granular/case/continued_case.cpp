@@ -14,15 +14,13 @@ struct Entry {
     bool is_stated;
 };
 
-/// The three intervals of a case, the stated ones first, which is their order in the text
+/// The intervals of a case, the stated ones first, which is their order in the text
 std::vector<Entry> entries(const io::JsonSource& source)
 {
     ObjectReader o(source, source.root, "");
     const Intervals all = read_intervals(o, o.positive("step"), o.positive("end"));
     std::vector<Entry> list;
-    for (const auto& [key, value] : {std::pair{"interval", all.rows},
-                                     {"frame_interval", all.frames},
-                                     {"checkpoint_interval", all.checkpoints}})
+    for (const auto& [key, value] : {std::pair{"interval", all.rows}, {"frame_interval", all.frames}})
         list.push_back({key, io::shortest(value), o.has(key)});
     std::stable_partition(list.begin(), list.end(), [](const Entry& e) { return e.is_stated; });
     return list;
@@ -38,8 +36,7 @@ Intervals read_intervals(ObjectReader& o, double h, double end)
     // a whole number of rows, which are a whole number of steps apart
     const double row = h * std::max(1., std::round(interval / h)),
                  long_interval = row * std::max(1., std::round(end / 100 / row));
-    const double frames = o.positive("frame_interval", long_interval);
-    return {interval, frames, o.positive("checkpoint_interval", long_interval)};
+    return {interval, o.positive("frame_interval", long_interval)};
 }
 
 double end_of(const io::JsonSource& source) { return ObjectReader(source, source.root, "").positive("end"); }
@@ -58,6 +55,7 @@ std::string identity(io::JsonSource source)
     for (const Entry& e : entries(source))
         if (!e.is_stated) set(source, e);
     source.set("/end=1");
+    source.remove(key_without_effect);
     return source.current_text();
 }
 

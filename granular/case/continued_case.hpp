@@ -9,13 +9,16 @@ namespace hilda::granular {
 
 /// Times between outputs [s]
 struct Intervals {
-    double rows, frames, checkpoints;
+    double rows, frames;
 };
 
-/// Reads `interval`, `frame_interval` and `checkpoint_interval`. Without the first, a run has 1000 rows;
-/// without the others, they are a hundredth of the end or the interval of the rows, whichever is longer.
-/// Throws io::PlacedError.
+/// Reads `interval` and `frame_interval`. Without the first, a run has 1000 rows; without the second, the
+/// frames are a hundredth of the end or the interval of the rows apart, whichever is longer. Throws
+/// io::PlacedError.
 Intervals read_intervals(ObjectReader& o, double h, double end);
+
+/// A key of earlier versions without effect
+inline constexpr const char* key_without_effect = "checkpoint_interval";
 
 /// The end of a case [s]. Throws io::PlacedError.
 double end_of(const io::JsonSource& source);
@@ -24,8 +27,8 @@ double end_of(const io::JsonSource& source);
 /// later end does not change them. Throws io::PlacedError.
 void keep_intervals(io::JsonSource& source, const io::JsonSource& run);
 
-/// The canonical text of a case with its intervals and without its end: two runs with the same text compute
-/// the same states. Throws io::PlacedError.
+/// The canonical text of a case with its intervals and without its end and keys without effect: two runs with
+/// the same text compute the same states. Throws io::PlacedError.
 std::string identity(io::JsonSource source);
 
 }  // namespace hilda::granular

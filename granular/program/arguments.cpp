@@ -104,7 +104,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_flag("--resume", o.resume,
                  "continue the run in the output directory from its last checkpoint; a complete run "
                  "continues to a later --end");
-    value("--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
+    value("--checkpoint", "S",
+          "wall time between checkpoints [s]; 0: only after an interruption; default: 600",
           assign(o.checkpoint, io::nonnegative_number));
     value("--threads", "N", "number of CPU threads, without influence on the results; default: 1",
           assign(o.threads, [](const std::string& option, const std::string& text) {

@@ -12,7 +12,7 @@ struct Options {
     std::string file, output, device_name = "cpu", command_line;
     Device device = {};
     io::SinkOptions outputs;  ///< options of the output formats, such as --no-vtk
-    double checkpoint = 0;    ///< wall time between checkpoints [s]; 0: none are written
+    double checkpoint = 600;  ///< wall time between checkpoints [s]; 0: only after an interruption
     int threads = 1;
     std::vector<Setting> settings;  ///< changes of entries of the case
     std::optional<std::uint64_t> seed;

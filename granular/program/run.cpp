@@ -33,8 +33,7 @@ public:
     CaseRun(const Options& o, Case from)
         : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)), setup{c, o.output, o.outputs},
           id(identity(c.source) + c.files_read), interval(setup.steps_in(c.interval)),
-          checkpoint_interval(setup.steps_in(c.checkpoint_interval)), steps(std::lround(c.end / c.h)),
-          files(o.output), sinks(setup)
+          steps(std::lround(c.end / c.h)), files(o.output), sinks(setup)
     {}
 
     int execute()
@@ -107,46 +106,32 @@ private:
         });
     }
 
-    /// Computes the steps. Checkpoint files are written by wall time, but they hold the state at multiples of
-    /// checkpoint_interval. At each of these instants the neighbour list is rebuilt, whether or not a file is
-    /// written, as in a world that is restored. Neither the clock nor a signal therefore changes the results.
-    /// A snapshot of the last instant is held in memory, for a signal that arrives between two instants.
+    /// Computes the steps. A checkpoint is possible after each of them and does not change the results.
     int run_steps(bool resumed)
     {
         io::ProgressLine line(o.quiet);
         World& w = *c.world;
         try {
             if (!resumed) record();
-            take_snapshot();
             if (resumed && earlier.end != steps) begin_other_end();
             while (w.steps() < steps && io::Interrupt::caught() == 0) {
-                const long instant = (w.steps() / checkpoint_interval + 1) * checkpoint_interval,
-                           next = std::min({steps, instant, sinks.next(w.steps())});
-                while (w.steps() < next && io::Interrupt::caught() == 0) {
-                    w.step();
-                    if (w.watch().warnings != known_warnings)
-                        report_watch(w.watch(), known_warnings, o.strict, [&](const std::string& text) {
-                            line.clear();
-                            warn(io::formatted("t = %.9g s: ", w.t()) + text);
-                        });
-                    if (line.is_due()) line.show(progress());
-                }
-                if (w.steps() < next) break;
+                w.step();
+                if (w.watch().warnings != known_warnings)
+                    report_watch(w.watch(), known_warnings, o.strict, [&](const std::string& text) {
+                        line.clear();
+                        warn(io::formatted("t = %.9g s: ", w.t()) + text);
+                    });
                 record();
-                if (w.steps() % checkpoint_interval == 0 && w.steps() < steps) checkpoint_instant();
+                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) save();
+                if (line.is_due()) line.show(progress());
             }
         } catch (const io::NumericalFailure& e) {
             line.clear();
             io::report(e);
             message = e.what(), status = e.status;
             return io::exit_code::numerical_failure;
-        } catch (const DeviceError&) {
+        } catch (...) {
             line.clear();
-            save();
-            throw;
-        } catch (const std::bad_alloc&) {
-            line.clear();
-            save();
             throw;
         }
         line.clear();
@@ -154,10 +139,9 @@ private:
         status = "interrupted";
         save();
         if (!o.quiet)
-            io::message(
-                io::formatted("hilda: interrupted at t = %.6g s; --resume continues from the checkpoint at t "
-                              "= %.6g s in %s\n",
-                              w.t(), snapshot_time, o.output.c_str()));
+            io::message(io::formatted(
+                "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint in %s\n", w.t(),
+                o.output.c_str()));
         return io::exit_code::signal + io::Interrupt::caught();
     }
 
@@ -176,38 +160,18 @@ private:
         std::remove(file("summary.json").c_str());
     }
 
-    void checkpoint_instant()
+    /// Passes the state of the run on in pieces.
+    void write_state(io::Sinks<CaseSetup>::Saved saved_sinks, const io::Append& append) const
     {
-        // If the instants follow each other quickly, snapshots take at most about a twentieth of the wall
-        // time.
-        const double min_spacing = std::max(0.2, 20 * snapshot_seconds);
-        c.world->invalidate_neighbours();
-        const bool due = o.checkpoint > 0 && seconds_since(saved) > o.checkpoint,
-                   last = steps - c.world->steps() < checkpoint_interval;
-        if (due || last || io::Interrupt::caught() != 0 || seconds_since(snapshot_taken) > min_spacing)
-            take_snapshot();
-        if (due) save();
-    }
-
-    void take_snapshot() { take_snapshot(sinks.save()); }
-    void take_snapshot(io::Sinks<CaseSetup>::Saved saved_sinks)
-    {
-        snapshot.clear();
-        snapshot.shrink_to_fit();  // so that at most one snapshot is in memory
-        const Clock::time_point from = Clock::now();
-        snapshot = c.world->to_bytes(id, [&](io::Archive& a) { a.map(saved_sinks); });
-        snapshot_time = c.world->t();
-        snapshot_taken = Clock::now();
-        snapshot_seconds = seconds_since(from);
+        c.world->write(id, append, [&](io::Archive& a) { a.map(saved_sinks); });
     }
 
     void save()
     {
-        if (snapshot.empty()) return;  // no valid snapshot: the files on the disk remain
         sinks.sync();
-        files.save(snapshot);
+        files.save([&](const io::Append& append) { write_state(sinks.save(), append); });
         saved = Clock::now();
-        log(io::formatted("checkpoint at t = %g s, %zu bytes", snapshot_time, snapshot.size()));
+        log(io::formatted("checkpoint at t = %g s", c.world->t()));
     }
 
     /// Text of the progress line
@@ -228,28 +192,17 @@ private:
     }
 
     /// Writes the remaining outputs, and of a complete run checkpoint.end: the state from which a run to a
-    /// later end continues. This is the last multiple of checkpoint_interval, because the longer run rebuilds
-    /// its neighbour list there and not at this end.
+    /// later end continues.
     void finish(int code)
     {
         const World& w = *c.world;
         const double speed = rate(), seconds = seconds_since(begin);
-        const bool is_done = code == io::exit_code::done,
-                   ends_at_instant = w.steps() % checkpoint_interval == 0;
-        if (is_done && !ends_at_instant) {
-            sinks.sync();
-            files.save_final(snapshot);
-        }
-        snapshot.clear();
-        snapshot.shrink_to_fit();
-        auto saved_sinks = sinks.save();
+        const bool is_done = code == io::exit_code::done;
+        const auto saved_sinks = sinks.save();
         sinks.close();
         const std::string text_of_summary = summary(code, speed, seconds);
         io::write_file(file("summary.json"), text_of_summary);
-        if (is_done && ends_at_instant) {
-            take_snapshot(std::move(saved_sinks));
-            files.save_final(snapshot);
-        }
+        if (is_done) files.save_final([&](const io::Append& append) { write_state(saved_sinks, append); });
         if (is_done) files.remove_unfinished();
         if (o.json)
             std::fputs(text_of_summary.c_str(), stdout);
@@ -270,13 +223,11 @@ private:
                      {"end", c.end},
                      {"interval", c.interval},
                      {"frame_interval", c.frame_interval},
-                     {"checkpoint_interval", c.checkpoint_interval},
                      {"set", c.source.changes},
                      {"warnings", c.notices}};
         s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows}, {"t", w.t()}};
         if (w.removes())
             s["outflow"] = {{"particles", static_cast<long>(w.outflow().count)}, {"mass", w.outflow().mass}};
-        if (status == "interrupted") s["counters"]["t_checkpoint"] = snapshot_time;
         s["kinetic_energy"] = w.kinetic_energy();
         s["watch"] = watch_summary(w.watch());
         s["files"] = sinks.files();
@@ -294,17 +245,15 @@ private:
     const Case c;
     const CaseSetup setup;
     const std::string id;  ///< of the case and its files; see identity()
-    const long interval, checkpoint_interval, steps;
+    const long interval, steps;
     const io::CheckpointFiles files;
     io::Sinks<CaseSetup> sinks;
     long rows = 0;  ///< of run.csv
     long resumed_at = 0;
     std::int64_t known_warnings = 0;  ///< of the watch, which were reported
     EarlierRun earlier;
-    std::string snapshot;                            ///< state at the last instant of a possible checkpoint
-    double snapshot_time = 0, snapshot_seconds = 0;  ///< its time, and the wall time to take it [s]
     std::string message, status = "ok";
-    Clock::time_point begin, saved, snapshot_taken;
+    Clock::time_point begin, saved;
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Serialisation of a world between two steps. Writing a checkpoint invalidates the neighbour list, so that
-// the world that continues and a world that is restored build it at the same step and give bitwise identical
-// results from then on.
+// Serialisation of a world between two steps.
+//
+// A checkpoint does not contain the neighbour list, but the positions for which it was built: the search with
+// these positions gives the same list in the same order. A restored world therefore continues with the list
+// of the saved world, and a checkpoint has no influence on the results, wherever it is taken.
 #include "granular/world/world_impl.hpp"
 #include "io/archive.hpp"
 
@@ -9,6 +11,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <tuple>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -101,31 +105,31 @@ bool valid_ids(const std::uint32_t* id, std::size_t n, std::uint32_t limit)
            std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
-/// The pairs in contact. Only they have a history; the others are found when the neighbour list is rebuilt.
-struct SavedPairs {
-    std::vector<std::uint32_t> i, j;
-    std::vector<Float4> history, rotation_history;
+/// Writes the elements of a pair array that belong to contacts, as Archive::list. Only they have a history.
+template <class T>
+void write_contacts(io::Archive& a, const Pairs<par::Cpu>& pairs, std::size_t contacts,
+                    par::Array<par::Cpu, T>& values)
+{
+    a.count(contacts, sizeof(T));
+    for (std::uint32_t k = 0; contacts > 0 && k < pairs.count; ++k)
+        if (pairs.in_contact.data()[k] != 0) a.value(values.data()[k]);
+}
 
-    explicit SavedPairs(const Pairs<par::Cpu>& pairs)
-    {
-        for (std::uint32_t k = 0; k < pairs.count; ++k) {
-            if (pairs.in_contact.data()[k] == 0) continue;
-            i.push_back(pairs.i.data()[k]), j.push_back(pairs.j.data()[k]);
-            history.push_back(pairs.history.data()[k]);
-            if (pairs.rotation_history.size() > 0)
-                rotation_history.push_back(pairs.rotation_history.data()[k]);
-        }
-    }
-};
+void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs)
+{
+    const std::size_t n =
+        pairs.count - std::count(pairs.in_contact.data(), pairs.in_contact.data() + pairs.count, 0);
+    write_contacts(a, pairs, n, pairs.i), write_contacts(a, pairs, n, pairs.j);
+    write_contacts(a, pairs, n, pairs.history);
+    write_contacts(a, pairs, pairs.rotation_history.size() > 0 ? n : 0, pairs.rotation_history);
+}
 
-template <class Pairs>
-void transfer_pairs(io::Archive& a, Pairs& pairs, std::size_t particles, std::size_t boundaries)
+void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries)
 {
     const std::size_t n = a.list(pairs.i);
     a.check(a.list(pairs.j) == n && a.list(pairs.history) == n, "wrong number of pairs");
     const std::size_t rotation = a.list(pairs.rotation_history);
     a.check(rotation == 0 || rotation == n, "wrong number of pairs");
-    if (!a.reads()) return;
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t j = pairs.j.data()[k];
         const bool valid_j =
@@ -133,16 +137,29 @@ void transfer_pairs(io::Archive& a, Pairs& pairs, std::size_t particles, std::si
         a.check(pairs.i.data()[k] < particles && valid_j, "unknown particle of a pair");
     }
     a.check(all_finite(pairs.history) && all_finite(pairs.rotation_history), "a history that is not finite");
+    // the pairs of a list before a neighbour search
+    pairs.count = static_cast<std::uint32_t>(n);
+    pairs.in_contact.resize(n), pairs.load.resize(n);
+    par::fill(par::Cpu(), pairs.in_contact.data(), n, std::uint8_t{1});
+    par::fill(par::Cpu(), pairs.load.data(), n, Load{});
+    if (pairs.rotation_history.size() == 0) return;
+    pairs.torque.resize(n);
+    par::fill(par::Cpu(), pairs.torque.data(), n, Float4{});
 }
 
 }  // namespace
+
+/// Position of a particle when the neighbour list was built, see Position. Its owner cell is still the same.
+struct World::PlaceAtBuild {
+    std::int32_t x, y, z;
+};
 
 void World::transfer(io::Archive& a)
 {
     a.value(step_count), a.value(rebuild_count), a.value(max_speed), a.value(domain);
     a.check(step_count >= 0 && std::isfinite(max_speed) && valid(domain, options), "invalid domain or time");
-    a.value(record), a.list(moved);
-    a.check(valid(record), "a number of the watch that is not finite");
+    a.value(record), a.value(unsampled_overlap), a.list(moved);
+    a.check(valid(record) && std::isfinite(unsampled_overlap), "a number of the watch that is not finite");
     a.value(next_id), a.value(total_outflow), a.list(removed_particles);
     a.check(total_outflow.count >= 0 && std::isfinite(total_outflow.mass) &&
                 std::all_of(removed_particles.begin(), removed_particles.end(), valid_removed),
@@ -157,8 +174,47 @@ void World::transfer(io::Archive& a)
         if (!moved.empty())
             for (const Boundary& b : boundaries) moved_to.push_back({b.r, b.axis});
     }
-    Arrays<par::Cpu>& all = engine->arrays();
-    Particles<par::Cpu>& p = all.particle;
+    transfer_particles(a);
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    std::size_t n = p.count;
+    a.value(particle_displacement), a.value(boundary_displacement), a.list(boundaries_at_build);
+    a.check(particle_displacement >= 0 && boundary_displacement >= 0, "an invalid displacement");
+    const bool has_list = std::isfinite(particle_displacement);
+    a.check(!has_list || boundaries_at_build.size() == boundaries.size(), "wrong number of boundaries");
+    for (const BoundaryPlace& b : boundaries_at_build)
+        a.check(finite(b.r) && finite(b.axis), "a boundary that is not finite");
+    n = has_list ? n : 0;
+    a.count(n, sizeof(PlaceAtBuild));
+    if (!a.reads()) {
+        for (std::size_t k = 0; k < n; ++k) {
+            const Position& at = p.position_at_build.data()[k];
+            PlaceAtBuild place{at.x, at.y, at.z};
+            a.value(place);
+        }
+        return write_pairs(a, engine->arrays().pairs);
+    }
+    a.check(n == (has_list ? p.count : 0), "wrong number of particles");
+    std::vector<PlaceAtBuild> at_build(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        PlaceAtBuild& place = at_build[k];
+        a.value(place);
+        a.check(inside(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}),
+                "invalid position of a particle");
+    }
+    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size());
+    if (has_list)
+        restore_neighbours(a.name(), std::move(at_build));
+    else
+        engine->arrays_modified();
+    if (posed.empty())
+        attached_changed = !attached.empty();
+    else
+        set_attached();
+}
+
+void World::transfer_particles(io::Archive& a)
+{
+    Particles<par::Cpu>& p = engine->arrays().particle;
     std::size_t n = p.count;
     const auto list = [&](auto& values) { a.check(a.list(values, n) == n, "wrong number of particles"); };
     /// An array that only some schemes use
@@ -167,13 +223,21 @@ void World::transfer(io::Archive& a)
     };
     n = a.list(p.position, n);
     list(p.velocity), list(p.omega), list(p.compensation), list(p.species), list(p.id);
-    a.list(attached), a.list(rotations);
+    if (attached_changed) posed.clear();
+    a.list(attached), a.list(rotations), a.list(posed);
     a.check(valid_attached(attached, next_id, boundaries.size()) &&
                 (rotations.empty() ? attached.empty() : rotations.size() == boundaries.size()),
             "an invalid attached particle");
-    for (const EulerParameters<double>& e : rotations)
-        a.check(std::abs(e.e0 * e.e0 + e.e.dot(e.e) - 1) < 1e-6, "an invalid rotation of a boundary");
-    attached_changed = !attached.empty();
+    const auto is_rotation = [](const EulerParameters<double>& e) {
+        return std::abs(e.e0 * e.e0 + e.e.dot(e.e) - 1) < 1e-6;
+    };
+    a.check(std::all_of(rotations.begin(), rotations.end(), is_rotation) &&
+                (posed.empty() || (!attached.empty() && posed.size() == boundaries.size())) &&
+                std::all_of(posed.begin(), posed.end(),
+                            [&](const BoundaryPose& b) {
+                                return finite(b.r) && finite(b.v) && finite(b.omega) && is_rotation(b.p);
+                            }),
+            "an invalid pose of a boundary");
     const bool previous = detail::uses_previous_acceleration(options.scheme);
     list_if(previous, p.acc), list_if(previous, p.alpha);
     const std::size_t oriented = a.list(p.orientation);
@@ -181,10 +245,7 @@ void World::transfer(io::Archive& a)
         throw io::IoError(a.name() + ": the checkpoint " + (options.orientation ? "has no" : "has") +
                           " orientations, but /orientation of this case is " +
                           (options.orientation ? "true" : "false"));
-    if (!a.reads()) {
-        SavedPairs pairs(all.pairs);
-        return transfer_pairs(a, pairs, n, boundaries.size());
-    }
+    if (!a.reads()) return;
     for (std::size_t k = 0; k < n; ++k)
         a.check(inside(domain.grid, p.position.data()[k]) &&
                     p.species.data()[k].material < materials.size() &&
@@ -196,22 +257,76 @@ void World::transfer(io::Archive& a)
     a.check(forces.empty() || forces.size() == next_id, "wrong number of forces");
     a.check(all_finite(p.velocity) && all_finite(p.omega) && all_finite(p.orientation) && all_finite(forces),
             "a velocity or force that is not finite");
-    transfer_pairs(a, all.pairs, n, boundaries.size());
     p.count = static_cast<std::uint32_t>(n);
     inserted_count = n;
-    all.pairs.count = static_cast<std::uint32_t>(all.pairs.i.size());
+}
+
+/// Builds the neighbour list of the saved world, with the positions for which it was built. Throws
+/// io::IoError.
+void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build)
+{
+    const std::vector<Boundary> now = boundaries;
+    for (std::size_t k = 0; k < boundaries.size(); ++k)
+        boundaries[k].r = boundaries_at_build[k].r, boundaries[k].axis = boundaries_at_build[k].axis;
+    const auto exchange = [&] {
+        Position* const position = engine->arrays().particle.position.data();
+        for (std::size_t k = 0; k < at_build.size(); ++k) {
+            Position& p = position[k];
+            const PlaceAtBuild place = std::exchange(at_build[k], {p.x, p.y, p.z});
+            p.x = place.x, p.y = place.y, p.z = place.z;
+        }
+        engine->arrays_modified();
+    };
+    // The search must not change the order of the particles.
+    const auto order = [&] {
+        const Particles<par::Cpu>& p = engine->arrays().particle;
+        std::uint64_t sum = 0;
+        for (std::size_t k = 0; k < at_build.size(); ++k) {
+            const std::uint32_t words[] = {p.id.data()[k], p.position.data()[k].cell};
+            sum = io::checksum(sum, reinterpret_cast<const char*>(words), sizeof words);
+        }
+        return sum;
+    };
+    const std::uint64_t saved = order();
+    const auto displacements = std::pair(particle_displacement, boundary_displacement);
+    const long rebuilds = rebuild_count;
+    exchange();
+    try {
+        find_neighbours();
+    } catch (const LeftDomain&) {
+        throw io::IoError(file + ": the checkpoint is damaged: a particle outside the domain");
+    } catch (const io::InvalidInput& e) {
+        throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
+    }
+    if (order() != saved) throw io::IoError(file + ": the checkpoint is damaged: the order of the particles");
+    exchange();
+    boundaries = now;
+    std::tie(particle_displacement, boundary_displacement) = displacements;
+    rebuild_count = rebuilds;
 }
 
 std::string World::to_bytes(const std::string& run_id, const std::function<void(io::Archive&)>& more)
 {
+    std::string bytes;
+    write(
+        run_id, [&](std::string_view piece) { bytes += piece; }, more);
+    return bytes;
+}
+
+void World::write(const std::string& run_id, const std::function<void(std::string_view)>& append,
+                  const std::function<void(io::Archive&)>& more)
+{
     insert_pending();
-    io::Archive a(format);
-    std::string run = run_id;
-    a.list(run);
-    transfer(a);
-    more(a);
-    invalidate_neighbours();
-    return a.bytes();
+    unsampled_overlap = larger(unsampled_overlap, engine->take_largest_overlap());
+    io::Archive::write(
+        format,
+        [&](io::Archive& a) {
+            std::string run = run_id;
+            a.list(run);
+            transfer(a);
+            more(a);
+        },
+        append);
 }
 
 void World::from_bytes(const std::string& bytes, const std::string& run_id, const std::string& file,
@@ -226,17 +341,7 @@ void World::from_bytes(const std::string& bytes, const std::string& run_id, cons
     more(a);
     a.end();
     forces_changed = boundaries_changed = true;
-    Pairs<par::Cpu>& pairs = engine->arrays().pairs;
-    pairs.in_contact.resize(pairs.count), pairs.load.resize(pairs.count);
-    par::fill(par::Cpu(), pairs.in_contact.data(), pairs.count, std::uint8_t{1});
-    par::fill(par::Cpu(), pairs.load.data(), pairs.count, Load{});
-    if (pairs.rotation_history.size() > 0) {
-        pairs.torque.resize(pairs.count);
-        par::fill(par::Cpu(), pairs.torque.data(), pairs.count, Float4{});
-    }
-    engine->arrays_modified();
     time = static_cast<double>(step_count) * options.h;
-    invalidate_neighbours();
 }
 
 }  // namespace hilda::granular

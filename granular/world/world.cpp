@@ -193,6 +193,8 @@ void World::find_neighbours() const
                count());
     }
     particle_displacement = boundary_displacement = 0;
+    boundaries_at_build.clear();
+    for (const Boundary& b : boundaries) boundaries_at_build.push_back({b.r, b.axis});
     ++rebuild_count;
 }
 

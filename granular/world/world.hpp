@@ -18,6 +18,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -196,11 +197,15 @@ public:
     void set_omega_locked(bool locked) { rotation_locked = locked; }
 
     /// Serialises the state after the insertion of pending particles. from_bytes() accepts the result only
-    /// with the same `run_id`. Both this world and a restored one rebuild the neighbour list before the
-    /// next step and then continue with bitwise identical results. Throws io::InvalidInput if a pending
-    /// particle cannot be inserted. `more` adds values to the archive.
+    /// with the same `run_id`. A restored world has the same neighbour list and continues with bitwise
+    /// identical results; this world continues as if it had not been serialised. Throws io::InvalidInput if
+    /// a pending particle cannot be inserted. `more` adds values to the archive.
     std::string to_bytes(
         const std::string& run_id, const std::function<void(io::Archive&)>& more = [](io::Archive&) {});
+    /// The same in pieces of about 1 MiB. `more` is called twice.
+    void write(
+        const std::string& run_id, const std::function<void(std::string_view)>& append,
+        const std::function<void(io::Archive&)>& more = [](io::Archive&) {});
     /// Restores the state into a world that was constructed by the same calls. `file` is the file name in
     /// messages; `more` reads the values that the `more` of to_bytes() has added. Throws io::IoError.
     void from_bytes(
@@ -251,7 +256,7 @@ public:
     /// Estimate of the memory that a dense bed needs [bytes], including the temporary memory of the insertion
     static std::size_t bytes_needed(std::size_t particles, bool orientation = false);
     bool has_orientation() const { return options.orientation; }
-    /// Forces a rebuild of the neighbour list before the next step, as in a world restored from a checkpoint
+    /// Forces a rebuild of the neighbour list before the next step.
     void invalidate_neighbours() { particle_displacement = std::numeric_limits<double>::infinity(); }
 
     /// Time scales that limit the step of an explicit scheme. Infinite if no particle can move; the collision
@@ -274,7 +279,10 @@ public:
 private:
     static constexpr std::uint8_t no_law = 255;
 
+    struct PlaceAtBuild;
     void transfer(io::Archive& a);
+    void transfer_particles(io::Archive& a);
+    void restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build);
     void insert_pending();
     Domain domain_of(const std::vector<Particle>& all) const;
     bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
@@ -299,6 +307,7 @@ private:
     void attach(const Particle& p);
     int boundary_of(std::uint32_t id) const;
     void rotate_frames();
+    void set_attached();
     void move_attached();
     bool is_posed() const;
     void add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const;
@@ -343,6 +352,10 @@ private:
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
     /// [m]; infinite if the list must be rebuilt. The list is a cache, therefore these members are mutable.
     mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
+    struct BoundaryPlace {
+        Vec3 r, axis;
+    };
+    mutable std::vector<BoundaryPlace> boundaries_at_build;  ///< places when the neighbour list was built
     mutable long rebuild_count = 0;
     mutable bool laws_changed = true;
     mutable bool particle_lost = false;  ///< a particle is outside the domain, so the list cannot be rebuilt
@@ -353,10 +366,9 @@ private:
     bool watched = true, sampling = false;  ///< sampling: the present step is a sample of the watch
     long node_interval = 0;
     double next_work = 0;  ///< work from t_n on in the present step [J]
+    /// Largest overlap before a checkpoint that no sample has included yet; only of a GPU
+    float unsampled_overlap = 0;
     WatchRecord record;
-    struct BoundaryPlace {
-        Vec3 r, axis;
-    };
     /// Of the boundaries: velocities of the last move and place after it; velocities of the next move
     std::vector<BoundaryVelocity> moved, next_move;
     std::vector<BoundaryPlace> moved_to;

@@ -49,18 +49,25 @@ void World::rotate_frames()
         rotations[b] = turned(rotations[b], options.h * boundaries[b].omega);
 }
 
+/// Passes the list of the attached particles to the engine.
+void World::set_attached()
+{
+    reach.assign(boundaries.size(), 0);
+    for (const AttachedParticle& a : attached)  // positive, to mark the boundary
+        reach[a.boundary] = std::max({reach[a.boundary], a.X.norm(), 1e-30});
+    engine->set_attached(attached);
+    attached_changed = false;
+}
+
 /// Moves the attached particles to the present places of their boundaries and gives them their velocities.
 /// Adds an upper bound of the displacement to particle_displacement. Throws ParticleLost above a cell width.
 void World::move_attached()
 {
     if (attached.empty()) return;
-    poses.resize(boundaries.size()), reach.resize(boundaries.size(), 0);
+    poses.resize(boundaries.size());
     if (attached_changed) {
-        std::fill(reach.begin(), reach.end(), 0);
-        for (const AttachedParticle& a : attached)  // positive, to mark the boundary
-            reach[a.boundary] = std::max({reach[a.boundary], a.X.norm(), 1e-30});
-        engine->set_attached(attached);
-        attached_changed = false, posed.clear();
+        set_attached();
+        posed.clear();
     }
     double largest = 0;
     for (std::size_t k = 0; k < boundaries.size(); ++k) {

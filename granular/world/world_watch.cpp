@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -149,7 +150,9 @@ void World::watch_advance()
     }
     w.work += next_work;
     if (sampling || options.device.kind == Device::cpu)
-        w.largest_overlap = std::max(w.largest_overlap, static_cast<double>(engine->take_largest_overlap()));
+        w.largest_overlap =
+            std::max(w.largest_overlap, static_cast<double>(larger(std::exchange(unsampled_overlap, 0.f),
+                                                                   engine->take_largest_overlap())));
 }
 
 /// Gain of energy that the errors of integrator and laws explain [J].

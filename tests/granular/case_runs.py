@@ -13,7 +13,7 @@ import sys
 CASE = {
     "hilda_case": 1, "name": "cup",
     "domain": {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08]},
-    "step": 5e-6, "end": 0.2, "interval": 1e-2, "frame_interval": 1.5e-2, "checkpoint_interval": 1e-3,
+    "step": 5e-6, "end": 0.2, "interval": 1e-2, "frame_interval": 1.5e-2,
     "orientation": True,
     "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24},
                   {"name": "steel", "density": 7800, "E": 2e8, "nu": 0.3}],

@@ -38,7 +38,7 @@ def main():
         case = json.loads((matrix.SOURCE / "granular/cases/bed.json").read_text())
         case["fill"][0]["high"] = [0.03, 0.02, 0.01]
         interval = 50 * case["step"]
-        case.update(checkpoint_interval=interval, interval=interval, frame_interval=4 * interval)
+        case.update(interval=interval, frame_interval=4 * interval)
         (folder / "bed.json").write_text(json.dumps(case))
         command = [row.granular, "bed.json", "--quiet", "--contacts", "--interval", interval]
         parts = 12

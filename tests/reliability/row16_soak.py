@@ -29,7 +29,7 @@ def main():
     with matrix.scratch() as folder:
         bed = json.loads((matrix.SOURCE / "granular/cases/bed.json").read_text())
         bed["fill"][0]["high"] = [0.03, 0.02, 0.01]
-        bed.update(end=1000, interval=0.1, frame_interval=1000, checkpoint_interval=0.01)
+        bed.update(end=1000, interval=0.1, frame_interval=1000)
         (folder / "bed.json").write_text(json.dumps(bed))
         run = ["--end", "1e6", "--interval", "10", "--quiet", "--checkpoint", "1", "--output"]
         commands = {"double_pendulum": [row.hilda, "run", "double_pendulum", *run, "a"],

@@ -292,13 +292,16 @@ TEST_CASE("old names of keys are read with a notice, and written with the new na
     const granular::Case old = read_case(c.dump(), "file");
     CHECK(old.interval == 2e-3);
     CHECK(old.frame_interval == 5e-3);
-    CHECK(old.checkpoint_interval == 1e-2);
-    REQUIRE(old.notices.size() == 3);
+    REQUIRE(old.notices.size() == 4);
+    CHECK(old.notices[3] ==
+          place(c.dump(), "/checkpoint_every") +
+              ": checkpoint_interval has no effect: a checkpoint can be written after every step");
     CHECK(old.notices[0] ==
           place(c.dump(), "/every") + ": every was renamed to interval; the old name is still read");
     const ordered_json written = ordered_json::parse(old.source.current_text());
     CHECK(written["interval"] == 2e-3);
     CHECK_FALSE(written.contains("every"));
+    CHECK_FALSE(written.contains("checkpoint_interval"));
     CHECK(read_case(old.source.current_text(), "again").notices.empty());
 
     const granular::Environment set{.settings = {{"/every=0.01"}}};

@@ -62,6 +62,30 @@ TEST_CASE("a world restored from a checkpoint continues with bitwise identical r
                       "checkpoint: the checkpoint belongs to another run");
 }
 
+TEST_CASE("checkpoints change neither the results nor the number of searches of a run",
+          "[granular][checkpoint]")
+{
+    auto whole = granular::read_case(bed, "bed"), saved = granular::read_case(bed, "bed");
+    auto resumed = std::make_unique<granular::Case>(granular::read_case(bed, "bed"));
+    whole.world->step(2000);
+    for (int k = 0; k < 40; ++k) {
+        saved.world->step(50), resumed->world->step(50);
+        const std::string bytes = saved.world->to_bytes("run");
+        REQUIRE(resumed->world->to_bytes("run") == bytes);
+        resumed = std::make_unique<granular::Case>(granular::read_case(bed, "bed"));
+        resumed->world->from_bytes(bytes, "run", "checkpoint");
+        REQUIRE(resumed->world->candidates() == saved.world->candidates());
+        REQUIRE(resumed->world->contacts().size() == saved.world->contacts().size());
+    }
+    CHECK(whole.world->rebuilds() > 10);
+    CHECK(whole.world->rebuilds() < 200);
+    CHECK(saved.world->rebuilds() == whole.world->rebuilds());
+    CHECK(resumed->world->rebuilds() == whole.world->rebuilds());
+    const std::string bytes = whole.world->to_bytes("run");
+    CHECK(saved.world->to_bytes("run") == bytes);
+    CHECK(resumed->world->to_bytes("run") == bytes);
+}
+
 TEST_CASE("a checkpoint with a wrong bit or a wrong length is rejected", "[granular][checkpoint]")
 {
     auto c = granular::read_case(bed, "bed");

@@ -58,7 +58,7 @@ struct ComputeBoundaryLoad {
         const std::uint32_t n = which[k], b = pairs.j[n] & ~PairView::boundary_bit;
         const Vec3 F = -to_double(pairs.load[n].F),
                    r = global_position(particles.grid, particles.position[pairs.i[n]]);
-        Vec3 T = contact_lever(boundary[b], r).cross(F);
+        Vec3 T = contact_lever(boundary[b], r, pairs.load[n].M.w).cross(F);
         if (pairs.torque != nullptr) T -= to_double(pairs.torque[n]);
         out[k] = {F, T, b};
     }

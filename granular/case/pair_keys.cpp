@@ -85,6 +85,7 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
     for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
     PairLaw law;
+    if (pair.one_of("lever", {"radius", "contact"}, "radius") == "contact") law.lever = Lever::contact;
     for_each_kind([&]<class Laws>(const char* kind, const char* standard, Laws PairLaw::*member) {
         static const io::JsonSource none("{}", "");
         ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");

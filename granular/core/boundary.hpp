@@ -131,11 +131,11 @@ HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
 }
 
 /// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is closest
-/// to the centre of the particle
-HILDA_HD inline Vec3 contact_lever(const Boundary& b, const Vec3& centre)
+/// to the centre of the particle, or to the one at `depth` below it [m]
+HILDA_HD inline Vec3 contact_lever(const Boundary& b, const Vec3& centre, double depth)
 {
     const Nearest near = nearest(b, centre);
-    return centre - near.distance * near.n - b.r;
+    return centre - (near.distance + depth) * near.n - b.r;
 }
 
 }  // namespace hilda::granular

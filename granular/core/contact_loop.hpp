@@ -11,7 +11,7 @@
 namespace hilda::granular {
 
 /// Load of a contact: force F on body i and -F on body j [N]. The tangential force exerts the torque R M on
-/// either body, with its own radius R and M = -n × F_t [N].
+/// either body, with its own radius R and M [N] of ContactForce. M.w is ContactForce::depth.
 struct alignas(32) Load {
     Float4 F, M;
 };
@@ -103,7 +103,7 @@ HILDA_HD inline void set_rates(ContactPoint<R>& contact, const Vec<R>& v, const 
 /// double precision. Returns false if there is no overlap.
 HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const CellGrid& grid,
                                            const Position& p, const Float4& v, const Float4& w,
-                                           const Boundary& b)
+                                           const Boundary& b, Lever lever = Lever::radius)
 {
     const Vec3 r = global_position(grid, p);
     const Nearest near = nearest(b, r);
@@ -119,6 +119,7 @@ HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const C
     contact.m_eff = 1 / (w.w + b.inverse_mass());
     set_rates(contact, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
               Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
+    if (lever == Lever::contact) move_to_contact_point(contact, Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
     return true;
 }
 

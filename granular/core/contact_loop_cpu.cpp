@@ -218,7 +218,9 @@ struct ContactLoop : detail::ContactPacks {
         contact.h = laws.h, contact.n = narrow(b.axis);
         contact.R_i = contact.R_eff = v.w, contact.R_j = Pack(0.f);
         contact.m_eff = Pack(1.f) / (w.w + Pack(b.inverse_mass()));
-        set_rates(contact, relative, Vec<Pack>{w.x, w.y, w.z}, narrow(b.omega));
+        const Vec<Pack> omega_i{w.x, w.y, w.z}, omega_j = narrow(b.omega);
+        set_rates(contact, relative, omega_i, omega_j);
+        if (law.lever == Lever::contact) move_to_contact_point(contact, omega_i, omega_j);
         overlaps = larger(overlaps, contact.delta / contact.R_i);
         store_loads(evaluate_pack(law, contact, n), n);
     }
@@ -253,7 +255,7 @@ struct ContactLoop : detail::ContactPacks {
             const std::uint32_t at = which[m], i = pairs.i[at];
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],
-                                       particles.omega[i], b)) {
+                                       particles.omega[i], b, law.lever)) {
                 if (pairs.in_contact[at] != 0) clear_contact(at);
                 continue;
             }

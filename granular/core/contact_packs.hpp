@@ -117,6 +117,8 @@ struct ContactPacks {
         set_masses(contact, w_i.w, w_j.w);
         set_rates(contact, Vec<Pack>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
                   Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
+        if (law.lever == Lever::contact)
+            move_to_contact_point(contact, Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
         overlaps = larger(overlaps, contact.delta / smaller(contact.R_i, contact.R_j));
         return evaluate_pack(law, contact, n);
     }
@@ -144,9 +146,10 @@ struct ContactPacks {
         const Pack to_history[4] = {history.u.x, history.u.y, history.u.z,
                                     select(history.slid, -history.age, history.age)};
         store_rows(to_history, [&](int k) { return &pairs.history[n[k]]; });
-        const Vec<Pack> M = -contact.n.cross(out.F_t);
         const Pack zero(0.f);
-        return {{out.F.x, out.F.y, out.F.z, zero}, {M.x, M.y, M.z, zero}, {out.T.x, out.T.y, out.T.z, zero}};
+        return {{out.F.x, out.F.y, out.F.z, zero},
+                {out.M.x, out.M.y, out.M.z, out.depth},
+                {out.T.x, out.T.y, out.T.z, zero}};
     }
 
     /// Stores the loads of the pairs n.

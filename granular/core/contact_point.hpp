@@ -14,12 +14,13 @@ namespace hilda::granular {
 ///
 /// Vectors are in the global frame. The normal and the relative velocities are opposite to those of Eqs. 2.38
 /// and 2.40: the normal points from j to i, and velocities are of i relative to j. The lever arm of the
-/// tangential force is the radius; the overlap is not subtracted. For a boundary as body j, R_j = 0 and R* is
+/// tangential force is the radius, from which the overlap is not subtracted, unless the law has
+/// Lever::contact; see move_to_contact_point(). For a boundary as body j, R_j = 0 and R* is
 /// effective_radius().
 template <class R>
 struct ContactPoint {
     R delta;         ///< overlap [m], positive
-    R R_i, R_j;      ///< radii, the lever arms of the tangential force [m]
+    R R_i, R_j;      ///< radii [m]
     R R_eff, m_eff;  ///< R* = R_i R_j/(R_i + R_j) [m], m* = m_i m_j/(m_i + m_j) [kg]
     Vec<R> n;        ///< unit normal, from j to i
     R v_n;           ///< rate of the overlap dδ/dt [m/s]; positive while the bodies approach
@@ -27,6 +28,37 @@ struct ContactPoint {
     Vec<R> omega;    ///< ω_i - ω_j [rad/s]
     Number<R> h;     ///< step size [s]
 };
+
+/// Lever arms of the tangential force
+enum class Lever : int {
+    radius,   ///< the radii R_i and R_j
+    contact,  ///< (1 - q) R_i and (1 - q) R_j; see lever_reduction()
+};
+
+/// The part q of the radii by which Lever::contact reduces the lever arms, so that the force acts on both
+/// bodies at one point within the overlap:
+///
+///     q = δ/(R_i + R_j),    q = δ/(2 R_i) against a boundary
+///
+/// The lever arm is R - δ/2 between particles of equal radii and against a boundary. The sum of the lever
+/// arms is the distance of the centres: a common rotation of a pair is no sliding, and the angular momentum
+/// of a pair is conserved.
+template <class R>
+HILDA_HD inline R lever_reduction(const ContactPoint<R>& contact)
+{
+    return contact.delta / (contact.R_i + select(contact.R_j > R(0.f), contact.R_j, contact.R_i));
+}
+
+/// Changes the tangential velocity from that of the lever arms R_i and R_j to that of Lever::contact. The
+/// velocity of a boundary is that of its point at the depth δ/2 below the surface.
+template <class R>
+HILDA_HD inline void move_to_contact_point(ContactPoint<R>& contact, const Vec<R>& omega_i,
+                                           const Vec<R>& omega_j)
+{
+    const R q = lever_reduction(contact),
+            depth_j = q * select(contact.R_j > R(0.f), contact.R_j, contact.R_i);
+    contact.v_t += (q * contact.R_i * omega_i + depth_j * omega_j).cross(contact.n);
+}
 
 /// Internal state of a contact, advanced once per step. All entries are zero when the contact begins.
 template <class R>

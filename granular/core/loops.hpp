@@ -36,12 +36,16 @@ struct FindLoad {
     {
         const std::uint32_t i = pairs.i[k], j = pairs.j[k];
         const Position p_i = particles.position[i];
+        const auto law = [&]() -> const PairLaw& {
+            return laws.law[pairs.law == nullptr ? 0 : pairs.law[k]];
+        };
         ContactPoint<float> contact{};
         contact.h = laws.h;
         bool overlaps = false;
         if ((j & PairView::boundary_bit) != 0) {
-            overlaps = find_boundary_contact(contact, particles.grid, p_i, particles.velocity[i],
-                                             particles.omega[i], laws.boundary[j & ~PairView::boundary_bit]);
+            overlaps =
+                find_boundary_contact(contact, particles.grid, p_i, particles.velocity[i], particles.omega[i],
+                                      laws.boundary[j & ~PairView::boundary_bit], law().lever);
         } else {
             // Most listed pairs are not in contact: for these only positions and radii are read.
             const float common = particles.radius;
@@ -63,6 +67,9 @@ struct FindLoad {
                 set_masses(contact, w_i.w, w_j.w);
                 set_rates(contact, Vec<float>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
                           Vec<float>{w_i.x, w_i.y, w_i.z}, Vec<float>{w_j.x, w_j.y, w_j.z});
+                if (law().lever == Lever::contact)
+                    move_to_contact_point(contact, Vec<float>{w_i.x, w_i.y, w_i.z},
+                                          Vec<float>{w_j.x, w_j.y, w_j.z});
             }
         }
         const bool rotation_laws = pairs.rotation_history != nullptr;
@@ -82,11 +89,9 @@ struct FindLoad {
             const Float4 psi = pairs.rotation_history[k];
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
-        const ContactForce<float> out =
-            evaluate(laws.law[pairs.law == nullptr ? 0 : pairs.law[k]], contact, history, rotation_laws);
-        const Vec<float> M = -contact.n.cross(out.F_t);
+        const ContactForce<float> out = evaluate(law(), contact, history, rotation_laws);
         pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
-        pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {M.x, M.y, M.z, 0}};
+        pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {out.M.x, out.M.y, out.M.z, out.depth}};
         if (!rotation_laws) return;
         pairs.rotation_history[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
         pairs.torque[k] = {out.T.x, out.T.y, out.T.z, 0};

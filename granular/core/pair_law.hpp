@@ -26,6 +26,7 @@ struct PairLaw {
     RollingLaws rolling;
     SpinLaws spin;
     CohesionLaws cohesion;
+    Lever lever = Lever::radius;  ///< of the tangential force
 
     /// Whether there is a law of rolling or spin
     bool resists_rotation() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
@@ -55,17 +56,21 @@ inline PairLaw hertz_mindlin(const Material& m, double restitution, double mu = 
 }
 
 /// Force and torque of a contact on body i. Body j is subject to -F and -T, and to the torque of F_t with its
-/// own radius.
+/// own lever arm.
 template <class R>
 struct ContactForce {
     Vec<R> F;    ///< total force [N]
     Vec<R> F_t;  ///< its tangential part [N]
+    Vec<R> M;    ///< torque of F_t over the radius, for both bodies [N]
     Vec<R> T;    ///< torque of rolling and spin [N m]
+    R depth;     ///< distance of the point of application to the surface of i or of the boundary [m]
 };
 
 /// Evaluates the laws of a contact and advances its history by one step.
 ///
-///     F = (F_n - F_c) n + F_t,    T = M_r + M_sp n
+///     F = (F_n - F_c) n + F_t,    M = -(1 - q) n × F_t,    T = M_r + M_sp n
+///
+/// q is 0 with Lever::radius, lever_reduction() with Lever::contact.
 ///
 /// With rotation_laws = false the laws of rolling and spin are not evaluated, and T = 0.
 template <class R>
@@ -79,6 +84,11 @@ HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<
     R attraction{};
     law.cohesion.visit([&](const auto& l) { attraction = l(contact); });
     out.F = (normal.F - attraction) * contact.n + out.F_t;
+    out.M = -contact.n.cross(out.F_t), out.depth = R(0.f);
+    if (law.lever == Lever::contact) {
+        const R q = lever_reduction(contact);
+        out.M = (R(1.f) - q) * out.M, out.depth = q * contact.R_i;
+    }
     out.T = {R(0.f), R(0.f), R(0.f)};
     if (!rotation_laws) return out;
     R k_t = R(0.f), gamma_t = R(0.f);

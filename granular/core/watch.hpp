@@ -198,7 +198,8 @@ struct AddBoundaryLoads {
         Vec3 T{0, 0, 0};
         if (pairs.torque != nullptr) T = to_double(pairs.torque[n]);
         if (u.omega.dot(u.omega) + next.omega.dot(next.omega) > 0)
-            T += contact_lever(boundary[b], global_position(particles.grid, particles.position[pairs.i[n]]))
+            T += contact_lever(boundary[b], global_position(particles.grid, particles.position[pairs.i[n]]),
+                               pairs.load[n].M.w)
                      .cross(F);
         sum.before += F.dot(u.v) + T.dot(u.omega), sum.after += F.dot(next.v) + T.dot(next.omega);
     }

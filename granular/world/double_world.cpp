@@ -8,19 +8,19 @@ void DoubleWorld::find_loads()
     const int n = static_cast<int>(particle.size());
     F.assign(n, {0, 0, 0}), T.assign(n, {0, 0, 0});
     const auto inverse = [](const Particle& p) { return p.fixed ? 0 : 1 / p.mass; };
-    const auto add_contact = [&](int i, int j, ContactPoint<double>& t, double delta) {
-        if (!(delta > 0)) {
+    const auto add_contact = [&](int i, int j, ContactPoint<double>& t, const Vec3& omega_j) {
+        if (!(t.delta > 0)) {
             history.erase({i, j});
             return;
         }
-        t.delta = delta, t.h = options.h;
+        if (law.lever == Lever::contact) move_to_contact_point(t, particle[i].omega, omega_j);
+        t.h = options.h;
         History<double>& state =
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
         state.age += t.h;
         const ContactForce<double> out = evaluate(law, t, state, law.resists_rotation());
-        const Vec3 M = -t.n.cross(out.F_t);
-        F[i] += out.F, T[i] += t.R_i * M + out.T;
-        if (j >= 0) F[j] -= out.F, T[j] += t.R_j * M - out.T;
+        F[i] += out.F, T[i] += t.R_i * out.M + out.T;
+        if (j >= 0) F[j] -= out.F, T[j] += t.R_j * out.M - out.T;
     };
     for (int i = 0; i < n; ++i) {
         const Particle& p = particle[i];
@@ -31,8 +31,9 @@ void DoubleWorld::find_loads()
             const double distance = d.norm();
             t.R_i = p.radius, t.R_j = q.radius, t.n = (1 / distance) * d;
             set_masses(t, inverse(p), inverse(q));
+            t.delta = p.radius + q.radius - distance;
             set_rates(t, p.v - q.v, p.omega, q.omega);
-            add_contact(i, j, t, p.radius + q.radius - distance);
+            add_contact(i, j, t, q.omega);
         }
         for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
             const Nearest near = nearest(boundary[b], p.r);
@@ -41,7 +42,8 @@ void DoubleWorld::find_loads()
             t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
             set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega,
                       boundary[b].omega);
-            if (!p.fixed) add_contact(i, -1 - b, t, p.radius - near.distance);
+            t.delta = p.radius - near.distance;
+            if (!p.fixed) add_contact(i, -1 - b, t, boundary[b].omega);
         }
     }
 }

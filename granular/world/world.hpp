@@ -82,7 +82,9 @@ struct RemovedParticle {
 struct ContactRecord {
     std::uint32_t i = 0, j = 0;  ///< ids; j is the number of a boundary if `boundary` is true
     bool boundary = false;
-    Vec3 C = {0, 0, 0};  ///< point of application of F [m]: on the surface of i, or on the boundary
+    /// Point of application of F [m]: on the surface of i, or on the boundary; within the overlap with
+    /// Lever::contact
+    Vec3 C = {0, 0, 0};
     Vec3 n = {0, 0, 0};  ///< unit normal, directed into i
     double delta = 0;    ///< overlap [m]
     Vec3 F = {0, 0, 0};  ///< force on i [N]

@@ -102,21 +102,22 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
     const Position at = particle.position.data()[i];
     const double R = particle.velocity.data()[i].w;
     const Vec3 r = global_position(domain.grid, at);
+    const double depth = now.load[n - now.begin].M.w;  // 0 with Lever::radius
     if (c.boundary) {
         const Nearest near = nearest(boundaries[c.j], r);
         c.n = near.n, c.delta = R - near.distance;
-        c.C = r - near.distance * near.n;
+        c.C = r - (near.distance + depth) * near.n;
     } else {
         const Vec3 apart = separation(domain.grid, at, particle.position.data()[j]);
         c.n = (1 / apart.norm()) * apart;
         c.delta = R + particle.velocity.data()[j].w - apart.norm();
-        c.C = r - R * c.n;
+        c.C = r - (R - depth) * c.n;
     }
     c.T = to_double(now.torque[n - now.begin]);
     c.F = to_double(now.load[n - now.begin].F), c.u = to_double(now.history[n - now.begin]);
     if (!c.boundary && c.j < c.i) {
         std::swap(c.i, c.j);
-        c.C += c.delta * c.n;  // from the surface of one particle to that of the other
+        if (!(depth > 0)) c.C += c.delta * c.n;  // from the surface of one particle to that of the other
         c.n = -c.n, c.F = -c.F, c.T = -c.T, c.u = -c.u;
     }
     return c;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Speed and spin after an oblique impact over the angle.                                        Fang (2022), Fig. 7.6
 
-    granular-oblique.py DIR     reads DIR/study.csv and DIR/reference.csv, writes DIR/granular-oblique.png
+    granular-oblique.py DIR     reads DIR/study.csv, DIR/reference.csv and DIR/levers.csv, writes DIR/granular-oblique.png
 """
 from drawing import COLOURS, Line2D, directory, grid, lines_below, number, numbers, plt, read, save, where
 
@@ -30,6 +30,8 @@ def draw(folder):
         axes.secondary_xaxis("top", functions=(lambda a: 90 - a, lambda a: 90 - a)).set_xlabel(
             "angle of impact from the wall [deg]", fontsize=9)
         grid(axes)
+    short = [row for row in where(read(folder, "levers.csv"), lever="contact") if number(row["E"]) == 2e5]
+    both[1].plot(numbers(short, "from_normal"), numbers(short, "omega"), "x", color=COLOURS[2], ms=7, zorder=4)
     both[0].set_ylabel(r"tangential restitution $e_t$")
     both[0].axhline(5 / 7, color="0.5", ls=":", lw=1)
     both[0].annotate("5/7: rigid, sticking", (2, 5 / 7), xytext=(0, 3), textcoords="offset points", color="0.4", fontsize=9)
@@ -38,8 +40,9 @@ def draw(folder):
     both[1].set_ylabel(r"spin after the impact $\omega$ [rad/s]")
     handles = [Line2D([], [], color="k", lw=1.4, label="sliding during the whole impact, Eqs. 7.2, 7.3")] + [
         Line2D([], [], color=colour, ls="--", lw=0.9, marker=marker, mfc=colour if marker == "o" else "none", label=label)
-        for marker, colour, label in LAWS.values()]
-    save(figure, folder, "granular-oblique.png", below=lines_below(figure, handles, 3), top=1)
+        for marker, colour, label in LAWS.values()] + [
+        Line2D([], [], color=COLOURS[2], ls="", marker="x", ms=7, label=r"sliding, lever arm $R - \delta/2$, $\delta_m = 0.054 R$")]
+    save(figure, folder, "granular-oblique.png", below=lines_below(figure, handles, 2), top=1)
 
 
 draw(directory())

@@ -124,7 +124,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
-        {"granular-oblique", {"reference.csv", "steps.csv"}},
+        {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}}};
     const auto found = tables.find(study);

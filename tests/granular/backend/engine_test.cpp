@@ -44,6 +44,7 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     law = hertz_mindlin(steel(), 0.8, 0.2);
     law.tangential = granular::MindlinIncremental{.spring = {.k_t = 5e7f, .c = 0.2f}, .cap = {0.3f, 0.2f}};
     law.rolling = granular::PseudoForce{.mu_r = 0.05f, .k_r = 1, .eta_r = 0.1f};
+    law.lever = granular::Lever::contact;
     world.set_law(1, 1, law);
     Boundary drum;
     drum.shape = Boundary::Shape::cylinder, drum.axis = {1, 0, 0}, drum.inside = 1, drum.radius = 6.5 * R;
@@ -105,7 +106,9 @@ std::string mixed_packing(std::unique_ptr<Engine> engine, int n, Scheme scheme)
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     world.set_law(0, 0, law), world.set_law(0, 1, law);
-    world.set_law(1, 1, hertz_mindlin(steel(), 0.8, 0.2));
+    law = hertz_mindlin(steel(), 0.8, 0.2);
+    law.lever = granular::Lever::contact;
+    world.set_law(1, 1, law);
     world.add(Boundary{});
     world.set_watch(true, 0);
     std::mt19937 random(5);

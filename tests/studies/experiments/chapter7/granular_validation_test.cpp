@@ -16,7 +16,7 @@ TEST_CASE("a granular validation is a study that writes its tables as files", "[
     const Ended ended = call(in, {"study", "granular-oblique", "--no-plot", "--check"});
     CAPTURE(ended.err);
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("16 of 16 passed"));
+    CHECK_THAT(ended.out, Contains("18 of 18 passed"));
 
     const auto rows = csv(in / "out/granular-oblique/study.csv");
     REQUIRE(rows.size() == 34);  // two laws, one angle every five degrees
@@ -29,11 +29,12 @@ TEST_CASE("a granular validation is a study that writes its tables as files", "[
     }
     CHECK(csv(in / "out/granular-oblique/reference.csv").size() > 88);
     CHECK(csv(in / "out/granular-oblique/steps.csv").size() == 24);
+    CHECK(csv(in / "out/granular-oblique/levers.csv").size() == 30);
 
     const auto json = nlohmann::json::parse(read(in / "out/granular-oblique/study.json"));
     CHECK(json["study"] == "granular-oblique");
     CHECK(json["grid"] == "quick");
-    CHECK(json["checks"].size() == 16);
+    CHECK(json["checks"].size() == 18);
     for (const auto& check : json["checks"]) CHECK(check["passed"] == true);
 
     // both laws have overlaps of 5.4 % of the radius
@@ -76,7 +77,7 @@ TEST_CASE("hilda granular runs a validation by name unless a file has that name"
     const Scratch in;
     const Ended ended = call(in, {"granular", "oblique"});
     CHECK(ended.code == 0);
-    CHECK_THAT(ended.out, Contains("16 of 16 passed"));
+    CHECK_THAT(ended.out, Contains("18 of 18 passed"));
     CHECK(call(in, {"granular", "oblique", "--quiet"}).out.empty());
 
     const Ended unknown = call(in, {"granular", "obliqe"});

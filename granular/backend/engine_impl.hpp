@@ -109,8 +109,9 @@ public:
     {
         materials = count;
         one_law = all.size() <= 1;
-        rotation_laws = false;
-        for (const PairLaw& l : all) rotation_laws = rotation_laws || l.resists_rotation();
+        rotation_laws = internal = false;
+        for (const PairLaw& l : all)
+            rotation_laws = rotation_laws || l.resists_rotation(), internal = internal || l.has_internal();
         send(laws, all), send(law_of, law_of_pair);
     }
 
@@ -158,7 +159,8 @@ public:
                          .materials = materials,
                          .boundary = boundaries.data(),
                          .near = near,
-                         .rotation_laws = rotation_laws},
+                         .rotation_laws = rotation_laws,
+                         .internal = internal},
                         own.particle, own.pairs);
         find_attached();
         plan.reset();
@@ -351,15 +353,16 @@ private:
     PairView pair_view() const
     {
         const Pairs<Backend>& p = own.pairs;
-        return {p.i.data(),
-                p.j.data(),
-                one_law ? nullptr : p.law.data(),
-                p.history.data(),
-                rotation_laws ? p.rotation_history.data() : nullptr,
-                p.load.data(),
-                rotation_laws ? p.torque.data() : nullptr,
-                p.in_contact.data(),
-                p.count};
+        return {.i = p.i.data(),
+                .j = p.j.data(),
+                .law = one_law ? nullptr : p.law.data(),
+                .history = p.history.data(),
+                .rotation_history = rotation_laws ? p.rotation_history.data() : nullptr,
+                .load = p.load.data(),
+                .torque = rotation_laws ? p.torque.data() : nullptr,
+                .in_contact = p.in_contact.data(),
+                .count = p.count,
+                .internal = internal ? p.internal.data() : nullptr};
     }
 
     LawView law_view(float h) const
@@ -480,6 +483,7 @@ private:
         one(q.other, qf.other), one(q.law, qf.law), one(q.in_contact, qf.in_contact),
             one(q.history, qf.history);
         one(q.rotation_history, qf.rotation_history), one(q.torque, qf.torque), one(q.load, qf.load);
+        one(q.internal, qf.internal);
         p.count = pf.count, q.count = qf.count;
     }
 
@@ -507,7 +511,7 @@ private:
     } pending = {};
     bool sweeps = false;  ///< whether advance() computes the loads as well
     std::uint32_t materials = 1, free_pairs = 0;
-    bool one_law = true, rotation_laws = false, any_free = false;
+    bool one_law = true, rotation_laws = false, internal = false, any_free = false;
     par::Array<Backend, std::uint32_t> counts, offset;  ///< counts: indices of the pairs with free boundaries
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;

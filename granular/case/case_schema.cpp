@@ -41,6 +41,11 @@ public:
             io::shortest(example));
         return 1;
     }
+    float at_least(const char* key, float, const char*, const char* text, double example)
+    {
+        add(key, text, R"("$ref": "#/$defs/positive")", io::shortest(example));
+        return 1;
+    }
     int flag(const char* key, const char* text)
     {
         add(key, text, R"("type": "boolean", "default": false)", "true");

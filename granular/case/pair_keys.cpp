@@ -22,6 +22,16 @@ public:
     {
         return static_cast<float>(own.not_negative(key, default_value));
     }
+    /// 0 if the key is absent. `other` is the name of the key with the value `least`.
+    float at_least(const char* key, float least, const char* other, const char*, double)
+    {
+        if (!own.has(key)) return 0;
+        const double x = own.positive(key);
+        if (static_cast<float>(x) < least)
+            own.fail(key, std::string(key) + " must not be less than " + other + ", " +
+                              io::shortest(static_cast<double>(least)) + ", got " + io::shortest(x));
+        return static_cast<float>(x);
+    }
     int flag(const char* key, const char*) { return own.flag(key, false) ? 1 : 0; }
     double restitution()
     {

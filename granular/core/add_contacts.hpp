@@ -52,6 +52,7 @@ struct AddContacts {
                 const Float4 psi = pairs.rotation_history[n];
                 history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
             }
+            if (pairs.internal != nullptr) set_internal(history, pairs.internal[n]);
             const ElasticEnergy<float> U = elastic_energy(laws.law[pairs.law == nullptr ? 0 : pairs.law[n]],
                                                           contact, history, rotation_laws);
             sum.normal += U.normal, sum.tangential += U.tangential;

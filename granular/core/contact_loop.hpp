@@ -32,10 +32,20 @@ struct PairView {
     /// Receives the largest overlap over the smaller radius, for each chunk of the loop; nullptr: not
     /// computed
     float* largest_overlap = nullptr;
+    /// The internal variables of History in their order; nullptr if no law has internal variables
+    Float4* internal = nullptr;
 };
 
 /// Pairs of a chunk of the loop on the CPU; the number of chunks is that of the elements of largest_overlap.
 constexpr std::uint32_t loop_chunk = 2048;
+
+/// Reads the internal variables of a history from the words x, y, z and w.
+template <class R, class Words>
+HILDA_HD inline void set_internal(History<R>& history, const Words& words)
+{
+    history.largest_overlap = words.x, history.turning = words.y;
+    history.amplitude = words.z, history.reference_force = words.w;
+}
 
 /// The particle arrays that the contact loop reads
 struct ParticleView {

@@ -100,6 +100,7 @@ struct ContactPacks {
         pairs.history[n] = {};
         pairs.load[n] = {};
         if (pairs.rotation_history != nullptr) pairs.rotation_history[n] = {}, pairs.torque[n] = {};
+        if (pairs.internal != nullptr) pairs.internal[n] = {};
     }
 
     /// The loads of a pack of contacts of particles i and j, with one law; n: numbers of the pairs.
@@ -129,7 +130,7 @@ struct ContactPacks {
                                             const std::uint32_t* n) const
     {
         const auto u = gather_rows<Pack>(pairs.history, n);
-        History<Pack> history;
+        History<Pack> history{};
         history.u = {u.x, u.y, u.z};
         history.slid = u.w < Pack(0.f);  // the sign of the age marks sliding
         history.age = abs(u.w) + laws.h;
@@ -138,7 +139,13 @@ struct ContactPacks {
             const auto psi = gather_rows<Pack>(pairs.rotation_history, n);
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
+        if (pairs.internal != nullptr) set_internal(history, gather_rows<Pack>(pairs.internal, n));
         const ContactForce<Pack> out = evaluate(law, contact, history, rotation_laws);
+        if (pairs.internal != nullptr) {
+            const Pack to_internal[4] = {history.largest_overlap, history.turning, history.amplitude,
+                                         history.reference_force};
+            store_rows(to_internal, [&](int k) { return &pairs.internal[n[k]]; });
+        }
         if (rotation_laws) {
             const Pack to_rotation[4] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
             store_rows(to_rotation, [&](int k) { return &pairs.rotation_history[n[k]]; });

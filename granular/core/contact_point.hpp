@@ -68,6 +68,13 @@ struct History {
     Vec<R> psi;    ///< rolling displacement [rad]
     R spin;        ///< angle of relative rotation about n [rad]
     Mask<R> slid;  ///< whether the contact was sliding in the previous step
+
+    // Internal variables of the laws with internal_variables = true. They are stored only if a law of the
+    // world uses them.
+    R largest_overlap = R(0.f);  ///< of `walton-braun` [m]
+    R turning = R(0.f);          ///< of `mindlin-deresiewicz`: force of the last reversal [N]
+    R amplitude = R(0.f);        ///< of `mindlin-deresiewicz`: largest force of first loading [N]
+    R reference_force = R(0.f);  ///< of `mindlin-deresiewicz`: normal force of the state [N], with a sign
 };
 
 /// Result of a normal force law

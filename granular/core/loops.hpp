@@ -77,6 +77,7 @@ struct FindLoad {
             if (pairs.in_contact[k] == 0) return;
             pairs.in_contact[k] = 0, pairs.history[k] = {}, pairs.load[k] = {};
             if (rotation_laws) pairs.rotation_history[k] = {}, pairs.torque[k] = {};
+            if (pairs.internal != nullptr) pairs.internal[k] = {};
             return;
         }
         pairs.in_contact[k] = 1;
@@ -89,7 +90,11 @@ struct FindLoad {
             const Float4 psi = pairs.rotation_history[k];
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
+        if (pairs.internal != nullptr) set_internal(history, pairs.internal[k]);
         const ContactForce<float> out = evaluate(law(), contact, history, rotation_laws);
+        if (pairs.internal != nullptr)
+            pairs.internal[k] = {history.largest_overlap, history.turning, history.amplitude,
+                                 history.reference_force};
         pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
         pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {out.M.x, out.M.y, out.M.z, out.depth}};
         if (!rotation_laws) return;

@@ -47,7 +47,7 @@ template <class Backend>
 struct Pairs {
     par::Array<Backend, std::uint32_t> start, i, j, other_start, other;
     par::Array<Backend, std::uint8_t> law, in_contact;
-    par::Array<Backend, Float4> history, rotation_history, torque;
+    par::Array<Backend, Float4> history, rotation_history, torque, internal;
     par::Array<Backend, Load> load;
     std::uint32_t count = 0;
 
@@ -55,7 +55,7 @@ struct Pairs {
     {
         return start.bytes() + i.bytes() + j.bytes() + other_start.bytes() + other.bytes() + law.bytes() +
                in_contact.bytes() + history.bytes() + rotation_history.bytes() + torque.bytes() +
-               load.bytes();
+               internal.bytes() + load.bytes();
     }
 };
 
@@ -98,6 +98,7 @@ struct SearchInput {
     const Boundary* boundary = nullptr;
     BoundaryBlockView near;      ///< of these boundaries
     bool rotation_laws = false;  ///< whether a law of rolling or spin is in use
+    bool internal = false;       ///< whether a law has internal variables
 };
 
 template <class Backend>
@@ -115,6 +116,7 @@ private:
     int shift = 0;  ///< see CellStarts
     par::Array<Backend, std::uint32_t> key, order, new_index, cell_start, counts;
     par::Array<Backend, Float4> scratch;
+    par::Array<Backend, Float4> saved_internal;  ///< internal variables of the previous list
 };
 
 extern template class Neighbours<par::Cpu>;

@@ -358,7 +358,8 @@ struct SaveContact {
 };
 
 /// Restores a saved history in the new list. Vectors change their sign if the order of the two particles is
-/// reversed. A history whose pair is not in the new list is dropped.
+/// reversed; the internal variables are numbers and do not. A history whose pair is not in the new list is
+/// dropped.
 struct RestoreContact {
     const SavedContact* saved;
     const Float4* saved_rotation;
@@ -366,6 +367,8 @@ struct RestoreContact {
     const std::uint32_t *start, *j;
     Float4 *history, *rotation_history;
     std::uint8_t* in_contact;
+    const Float4* saved_internal;
+    Float4* internal;
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
@@ -395,6 +398,7 @@ struct RestoreContact {
                 const Float4 t = saved_rotation != nullptr ? saved_rotation[k] : Float4{};
                 rotation_history[n] = {sign * t.x, sign * t.y, sign * t.z, t.w};
             }
+            if (saved_internal != nullptr) internal[n] = saved_internal[k];
             return true;
         }
         return false;
@@ -433,7 +437,7 @@ template <class Backend>
 std::size_t Neighbours<Backend>::bytes() const
 {
     return key.bytes() + order.bytes() + new_index.bytes() + cell_start.bytes() + counts.bytes() +
-           scratch.bytes();
+           scratch.bytes() + saved_internal.bytes();
 }
 
 template <class Backend>
@@ -526,6 +530,12 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
     pairs.history.resize(pairs.count), pairs.in_contact.resize(pairs.count);
     if (input.rotation_laws) pairs.rotation_history.resize(pairs.count);
     if (input.law_of != nullptr) pairs.law.resize(pairs.count);
+    const bool had_internal = input.internal && pairs.internal.size() > 0;
+    if (input.internal) {
+        std::swap(pairs.internal, saved_internal);
+        pairs.internal.resize(pairs.count);
+        par::fill(on, pairs.internal.data(), pairs.count, Float4{});
+    }
 
     par::fill(on, counts.data(), n, 0u);
     par::for_each(on, n,
@@ -541,13 +551,13 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
     par::fill(on, pairs.history.data(), pairs.count, Float4{});
     par::fill(on, pairs.in_contact.data(), pairs.count, std::uint8_t{0});
     if (input.rotation_laws) par::fill(on, pairs.rotation_history.data(), pairs.count, Float4{});
-    par::for_each(
-        on, previous_count,
-        detail::RestoreContact{reinterpret_cast<const detail::SavedContact*>(pairs.load.data()),
-                               old.rotation_history != nullptr ? pairs.torque.data() : nullptr,
-                               new_index.data(), pairs.start.data(), pairs.j.data(), pairs.history.data(),
-                               input.rotation_laws ? pairs.rotation_history.data() : nullptr,
-                               pairs.in_contact.data()});
+    par::for_each(on, previous_count,
+                  detail::RestoreContact{
+                      reinterpret_cast<const detail::SavedContact*>(pairs.load.data()),
+                      old.rotation_history != nullptr ? pairs.torque.data() : nullptr, new_index.data(),
+                      pairs.start.data(), pairs.j.data(), pairs.history.data(),
+                      input.rotation_laws ? pairs.rotation_history.data() : nullptr, pairs.in_contact.data(),
+                      had_internal ? saved_internal.data() : nullptr, pairs.internal.data()});
     pairs.load.resize(pairs.count);
     par::fill(on, pairs.load.data(), pairs.count, Load{});
     if (input.rotation_laws) {

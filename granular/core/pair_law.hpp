@@ -19,6 +19,25 @@ constexpr bool has_material_stiffness = [] {
     return false;
 }();
 
+/// Whether a law uses the internal variables of History, as it states by
+/// `static constexpr bool internal_variables = true`
+template <class Law>
+constexpr bool has_internal_variables = [] {
+    if constexpr (requires { Law::internal_variables; }) return Law::internal_variables;
+    return false;
+}();
+
+/// The force of a normal law. A law with internal variables has the history as its second argument.
+template <class Law, class R>
+HILDA_HD inline NormalForce<R> normal_force(const Law& law, const ContactPoint<R>& contact,
+                                            History<R>& history)
+{
+    if constexpr (requires { law(contact, history); })
+        return law(contact, history);
+    else
+        return law(contact);
+}
+
 /// The laws of a pair of materials. The default is `none` for all but the normal law, which must be set.
 struct PairLaw {
     NormalLaws normal;
@@ -30,13 +49,24 @@ struct PairLaw {
 
     /// Whether there is a law of rolling or spin
     bool resists_rotation() const { return !rolling.is<NoRolling>() || !spin.is<NoSpin>(); }
+    /// Whether a law has internal variables
+    bool has_internal() const
+    {
+        bool any = false;
+        const auto check = [&]<class Law>(const Law&) { any = any || has_internal_variables<Law>; };
+        normal.visit(check), tangential.visit(check), rolling.visit(check), spin.visit(check);
+        return any;
+    }
     /// Whether the elastic energy of the normal force and of the cohesion is known: the laws have a member
     /// energy().
     bool has_energy() const
     {
         bool known = true;
         const auto check = [&]<class Law>(const Law&) {
-            known = known && requires(const Law& l, const ContactPoint<float>& c) { l.energy(c); };
+            known = known && (
+                                 requires(const Law& l, const ContactPoint<float>& c) { l.energy(c); } ||
+                                 requires(const Law& l, const ContactPoint<float>& c,
+                                          const History<float>& h) { l.energy(c, h); });
         };
         normal.visit(check), cohesion.visit(check);
         return known;
@@ -78,7 +108,7 @@ HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<
                                          History<R>& history, bool rotation_laws)
 {
     NormalForce<R> normal{};
-    law.normal.visit([&](const auto& l) { normal = l(contact); });
+    law.normal.visit([&](const auto& l) { normal = normal_force(l, contact, history); });
     ContactForce<R> out{};
     law.tangential.visit([&](const auto& l) { out.F_t = l(contact, normal, history); });
     R attraction{};
@@ -113,7 +143,7 @@ struct ElasticEnergy {
 /// The elastic energy of a contact. Of the members of `contact` it uses the overlap, the radii and the
 /// masses. A law without a member energy() contributes nothing.
 ///
-///     normal law, cohesion:        energy(contact)
+///     normal law, cohesion:        energy(contact), or energy(contact, history) with internal variables
 ///     friction, rolling, spin:     energy(contact, k_t, history), k_t the stiffness of the tangential spring
 template <class R>
 HILDA_HD inline ElasticEnergy<R> elastic_energy(const PairLaw& law, const ContactPoint<R>& contact,
@@ -122,8 +152,10 @@ HILDA_HD inline ElasticEnergy<R> elastic_energy(const PairLaw& law, const Contac
     ElasticEnergy<R> U{R(0.f), R(0.f)};
     NormalForce<R> normal{};
     law.normal.visit([&](const auto& l) {
-        normal = l(contact);
+        History<R> now = history;
+        normal = normal_force(l, contact, now);
         if constexpr (requires { l.energy(contact); }) U.normal += l.energy(contact);
+        if constexpr (requires { l.energy(contact, history); }) U.normal += l.energy(contact, history);
     });
     law.cohesion.visit([&](const auto& l) {
         if constexpr (requires { l.energy(contact); }) U.normal += l.energy(contact);

@@ -18,7 +18,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 10};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 11};
 
 bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
 template <class Array>
@@ -122,21 +122,23 @@ void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs)
     write_contacts(a, pairs, n, pairs.i), write_contacts(a, pairs, n, pairs.j);
     write_contacts(a, pairs, n, pairs.history);
     write_contacts(a, pairs, pairs.rotation_history.size() > 0 ? n : 0, pairs.rotation_history);
+    write_contacts(a, pairs, pairs.internal.size() > 0 ? n : 0, pairs.internal);
 }
 
 void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries)
 {
     const std::size_t n = a.list(pairs.i);
     a.check(a.list(pairs.j) == n && a.list(pairs.history) == n, "wrong number of pairs");
-    const std::size_t rotation = a.list(pairs.rotation_history);
-    a.check(rotation == 0 || rotation == n, "wrong number of pairs");
+    const std::size_t rotation = a.list(pairs.rotation_history), internal = a.list(pairs.internal);
+    a.check((rotation == 0 || rotation == n) && (internal == 0 || internal == n), "wrong number of pairs");
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t j = pairs.j.data()[k];
         const bool valid_j =
             (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) < boundaries : j < particles;
         a.check(pairs.i.data()[k] < particles && valid_j, "unknown particle of a pair");
     }
-    a.check(all_finite(pairs.history) && all_finite(pairs.rotation_history), "a history that is not finite");
+    a.check(all_finite(pairs.history) && all_finite(pairs.rotation_history) && all_finite(pairs.internal),
+            "a history that is not finite");
     // the pairs of a list before a neighbour search
     pairs.count = static_cast<std::uint32_t>(n);
     pairs.in_contact.resize(n), pairs.load.resize(n);

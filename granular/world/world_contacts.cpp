@@ -32,7 +32,7 @@ struct World::CurrentLoads {
 
     const Arrays<par::Cpu>& of;
     std::uint32_t begin, count;  ///< number of the first pair, number of pairs
-    Float4 history[most] = {}, rotation_history[most] = {}, torque[most] = {};
+    Float4 history[most] = {}, rotation_history[most] = {}, torque[most] = {}, internal[most] = {};
     Load load[most] = {};
     std::uint8_t in_contact[most] = {};
 
@@ -46,7 +46,7 @@ void World::for_current_loads(const F& f) const
 {
     const Arrays<par::Cpu>& of = engine->arrays();
     const Pairs<par::Cpu>& pairs = of.pairs;
-    const bool rotation_laws = pairs.rotation_history.size() > 0;
+    const bool rotation_laws = pairs.rotation_history.size() > 0, internal = pairs.internal.size() > 0;
     // With velocity Verlet the histories belong to t already. With the other schemes they belong to the
     // previous step.
     const float h =
@@ -64,11 +64,18 @@ void World::for_current_loads(const F& f) const
             std::copy_n(pairs.in_contact.data() + begin, count, now->in_contact);
             if (rotation_laws)
                 std::copy_n(pairs.rotation_history.data() + begin, count, now->rotation_history);
+            if (internal) std::copy_n(pairs.internal.data() + begin, count, now->internal);
             find_loads(par::Cpu(), particles,
-                       {pairs.i.data() + begin, pairs.j.data() + begin,
-                        laws.size() > 1 ? pairs.law.data() + begin : nullptr, now->history,
-                        rotation_laws ? now->rotation_history : nullptr, now->load,
-                        rotation_laws ? now->torque : nullptr, now->in_contact, count},
+                       {.i = pairs.i.data() + begin,
+                        .j = pairs.j.data() + begin,
+                        .law = laws.size() > 1 ? pairs.law.data() + begin : nullptr,
+                        .history = now->history,
+                        .rotation_history = rotation_laws ? now->rotation_history : nullptr,
+                        .load = now->load,
+                        .torque = rotation_laws ? now->torque : nullptr,
+                        .in_contact = now->in_contact,
+                        .count = count,
+                        .internal = internal ? now->internal : nullptr},
                        law_view);
             f(part, *now);
         },

@@ -40,6 +40,8 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     world.set_law(0, 0, law);
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     law.cohesion = granular::ConstantCohesion{.F_c = 1e-5f};
+    law.normal = granular::WaltonBraun{.k_1 = 800, .k_2 = 2000, .S = 100};
+    law.tangential = granular::Mindlin{.spring = {.k_t = 500, .c = 0, .gamma_t = 20}, .cap = {0.4f, 0.4f}};
     world.set_law(0, 1, law);
     law = hertz_mindlin(steel(), 0.8, 0.2);
     law.tangential = granular::MindlinIncremental{.spring = {.k_t = 5e7f, .c = 0.2f}, .cap = {0.3f, 0.2f}};
@@ -105,7 +107,10 @@ std::string mixed_packing(std::unique_ptr<Engine> engine, int n, Scheme scheme)
     World world(o, {glass(), steel()}, std::move(engine));
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
-    world.set_law(0, 0, law), world.set_law(0, 1, law);
+    world.set_law(0, 0, law);
+    law.normal = granular::WaltonBraun{.k_1 = 800, .k_2 = 2000, .S = 100};
+    law.tangential = granular::Mindlin{.spring = {.k_t = 500, .c = 0, .gamma_t = 20}, .cap = {0.4f, 0.4f}};
+    world.set_law(0, 1, law);
     law = hertz_mindlin(steel(), 0.8, 0.2);
     law.lever = granular::Lever::contact;
     world.set_law(1, 1, law);

@@ -22,7 +22,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr double g = 9.81, mu = 0.3, width = 0.09, diameter = 0.0254, bed_height = 0.1;
+constexpr double g = 9.81, mu = 0.3, restitution = 0.5, width = 0.09, diameter = 0.0254, bed_height = 0.1;
 constexpr double rest_speed = 0.01;                           ///< the ball has come to rest [m/s]
 constexpr double longest_impact = 0.2, longest_settling = 1;  // [s]
 constexpr const char* run_id = "cratering";
@@ -39,7 +39,7 @@ struct Bed {
 
     Bed(double R, Device device) : world(options(R, device), {glass()})
     {
-        world.set_law(0, 0, hertz_mindlin(glass(), 0.5, mu));
+        world.set_law(0, 0, hertz_mindlin(glass(), restitution, mu));
         for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
         Boundary sphere;
         sphere.shape = Boundary::Shape::sphere, sphere.radius = diameter / 2;
@@ -152,15 +152,36 @@ struct Bed {
 
 }  // namespace
 
+BedCase bed_case(double R)
+{
+    return {"cratering",
+            {{"R", R},
+             {"h", step_of(R)},
+             {"density", glass().density},
+             {"E", glass().E},
+             {"nu", glass().nu},
+             {"restitution", restitution},
+             {"mu", mu},
+             {"g", g},
+             {"width", width},
+             {"height", bed_height},
+             {"settled energy", Bed::settled_energy}}};
+}
+
 SettledBed settled_bed(double R, const ValidationOptions& options,
                        const std::function<void(double)>& progress)
 {
-    Bed now(R, options.device);
-    now.fill(R);
-    now.settle(R, progress);
-    SettledBed bed{.bytes = "", .surface = now.surface(R), .density = 0};
-    bed.density = now.bulk_density(R, bed.surface);
-    bed.bytes = now.world.to_bytes(run_id);
+    SettledBed bed;
+    options.beds.bed(
+        bed_case(R),
+        [&] {
+            Bed now(R, options.device);
+            now.fill(R);
+            now.settle(R, progress);
+            bed.surface = now.surface(R), bed.density = now.bulk_density(R, bed.surface);
+            bed.bytes = now.world.to_bytes(run_id);
+        },
+        [&](io::Archive& a) { a.value(bed.surface), a.value(bed.density), a.list(bed.bytes); });
     return bed;
 }
 

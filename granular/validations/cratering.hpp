@@ -18,8 +18,11 @@ struct SettledBed {
     double density = 0;  ///< bulk density [kg/m³]
 };
 
-/// A bed of grains of radius R [m] and about 10 cm depth. `progress` receives values from 0 to 1. Throws
-/// io::NumericalFailure if the bed does not settle.
+/// What determines the bed of grains of radius R
+BedCase bed_case(double R);
+
+/// A bed of grains of radius R [m] and about 10 cm depth, from ValidationOptions::beds if it is kept there.
+/// `progress` receives values from 0 to 1. Throws io::NumericalFailure if the bed does not settle.
 SettledBed settled_bed(
     double R, const ValidationOptions& options, const std::function<void(double)>& progress = [](double) {});
 

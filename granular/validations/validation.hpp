@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include "granular/validations/settled_beds.hpp"
 #include "granular/world/world.hpp"
 #include "io/archive.hpp"
 #include "io/registry.hpp"
@@ -72,6 +73,7 @@ struct ValidationOptions {
     std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
 
     ValidationProgress kept = {};  ///< of an interrupted validation
+    SettledBeds beds = {};         ///< settled beds of earlier runs
 
     /// Adds the warnings of a run at its end.
     void include(const std::string& run, const World& world) const

@@ -9,11 +9,13 @@
 #include "io/progress.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/framework/table.hpp"
+#include "studies/running/provenance.hpp"
 
 #include "granular/validations/validation.hpp"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 
 namespace hilda::studies {
@@ -57,6 +59,15 @@ granular::ValidationProgress kept_by(const StudyContext& study, granular::Valida
     return kept;
 }
 
+/// The folder "settled" beside the output directory; empty without an output directory
+std::string folder_of_beds(const std::string& output)
+{
+    if (output.empty()) return {};
+    std::filesystem::path path = std::filesystem::absolute(output).lexically_normal();
+    if (!path.has_filename()) path = path.parent_path();  // of "DIR/"
+    return (path.parent_path() / "settled").string();
+}
+
 granular::ValidationResult result_of(const Validation& validation, const StudyContext& study,
                                      granular::ValidationWarnings& warnings)
 {
@@ -65,6 +76,7 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
     options.full = study.options.grid == "full";
     options.warnings = &of_part;
     options.kept = kept_by(study, warnings, of_part);
+    options.beds = {.folder = folder_of_beds(study.options.output), .program = version_line()};
     io::ProgressLine line(study.options.quiet);
     options.progress = [&](double share) {
         if (line.is_due())

@@ -87,9 +87,11 @@ public:
     /// the boundaries in the previous and in the next move; empty if no boundary moves.
     virtual ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
                                        const std::vector<BoundaryVelocity>& after) = 0;
-    /// Sums over the particles. Copies the velocities for kinetic_sums(), unless only the applied forces are
-    /// summed.
+    /// Sums over the particles. Copies the positions for contact_sums() and the velocities for
+    /// kinetic_sums(), unless only the applied forces are summed.
     virtual ParticleSums particle_sums(const Domain& domain, bool only_forces) = 0;
+    /// Sums over the contacts at the positions of particle_sums(), with the histories of find_loads();
+    /// after particle_sums() and advance().
     virtual ContactSums contact_sums(const Domain& domain, float h) = 0;
     /// See AddKinetic; after particle_sums() and advance().
     virtual KineticSums kinetic_sums(double s) = 0;

@@ -289,6 +289,8 @@ public:
     ParticleSums particle_sums(const Domain& domain, bool only_forces) override
     {
         const Particles<Backend>& p = own.particle;
+        if (!only_forces)
+            par::copy_bytes(on, neighbours.position_copy(), p.position.data(), p.count * sizeof(Position));
         par::for_each(on, particle_blocks.size(),
                       AddParticles{.particles = particle_view(domain, p),
                                    .velocity_copy = only_forces ? nullptr : velocity_copy.data(),
@@ -303,8 +305,9 @@ public:
 
     ContactSums contact_sums(const Domain& domain, float h) override
     {
-        add_contacts(on, particle_view(domain, own.particle), pair_view(), law_view(h),
-                     contact_blocks.data());
+        ParticleView particles = particle_view(domain, own.particle);
+        particles.position = neighbours.position_copy();
+        add_contacts(on, particles, pair_view(), law_view(h), contact_blocks.data());
         return total(contact_blocks, host_contact_blocks);
     }
 

@@ -6,6 +6,7 @@
 ///     build/native/hilda_granular_benchmark 50000         with 1, 2, 4 … threads
 ///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
 ///     build/native/hilda_granular_benchmark watch 10000   cost of the watch: CPU time of steps with and without it
+///     build/native/hilda_granular_benchmark rows 50000    cost of a row of run.csv, in CPU times of a step
 ///
 /// For the bed at rest the program then prints the memory throughput of each part of a step: the bytes that
 /// it has to transfer at least, divided by its time, also as a fraction of the throughput of a copy.
@@ -150,6 +151,41 @@ void report_watch(const char* phase, World& world, long first)
     std::fflush(stdout);
 }
 
+/// Prints the CPU times of a step and of the parts of a row of run.csv: the totals, the kinetic energy, and
+/// the sample of the watch. Medians of rounds in which all of them alternate.
+void report_row(const char* phase, World& world, long first)
+{
+    world.set_watch(true);
+    world.step(first);
+    world.step(2 * watch_limit::interval - world.steps() % watch_limit::interval);
+    enum Part { step, totals, kinetic, sampled, parts };
+    std::vector<double> times[parts];
+    constexpr long many = 8;
+    for (int round = 0; round < 41; ++round) {
+        const auto measure = [&](Part part, const auto& f) {
+            const double begin = cpu_time();
+            f();
+            times[part].push_back(cpu_time() - begin);
+        };
+        world.set_watch(true);
+        world.step(1);
+        measure(step, [&] { world.step(many); });
+        times[step].back() /= many;
+        measure(totals, [&] { world.totals(); });
+        measure(kinetic, [&] { world.kinetic_energy(); });
+        world.set_watch(true, world.steps() + 1);  // a sample in the next step
+        measure(sampled, [&] { world.step(1); });
+    }
+    for (std::vector<double>& t : times)
+        std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
+    const auto median = [&](Part part) { return times[part][times[part].size() / 2]; };
+    const double one = median(step), sample = median(sampled) - one;
+    std::printf("%9zu %-8s %9.0f %9.2f %9.2f %9.2f %9.2f\n", world.count(), phase, 1e6 * one,
+                median(totals) / one, median(kinetic) / one, sample / one,
+                (median(totals) + median(kinetic) + sample) / one);
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
@@ -164,10 +200,22 @@ try {
         report_watch("at rest", world, std::lround(0.25 / h));
         return 0;
     }
+    if (argc == 3 && std::strcmp(argv[1], "rows") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
+        omp_set_num_threads(1);
+        World world = bed(std::strtoul(argv[2], nullptr, 10), {});
+        std::printf(
+            "                       step  parts of a row, in steps\n"
+            "particles phase        [us]    totals    energy    sample       all\n");
+        report_row("falling", world, 20);
+        report_row("at rest", world, std::lround(0.1 / h));
+        return 0;
+    }
     const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;
     const bool gpu = argc > 2 && std::strcmp(argv[2], "cuda") == 0;
     if (n < 1 || (argc > 2 && !gpu)) {
-        std::fprintf(stderr, "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES\n");
+        std::fprintf(
+            stderr,
+            "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES | rows PARTICLES\n");
         return 2;
     }
     World world = bed(n, {.kind = gpu ? Device::cuda : Device::cpu});

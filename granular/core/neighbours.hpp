@@ -109,6 +109,8 @@ public:
     void find(const SearchInput& input, Particles<Backend>& particles, Pairs<Backend>& pairs);
 
     std::size_t bytes() const;
+    /// A copy of the positions in memory that is not used between two searches
+    Position* position_copy() { return reinterpret_cast<Position*>(scratch.data()); }
 
 private:
     void sort(const SearchInput& input, Particles<Backend>& particles);

@@ -40,7 +40,9 @@ public:
     {
         io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
         io::OutputLock lock(o.output);
-        c.world->set_watch(true, interval);
+        // Rows that follow quickly have no sample each, because a sample takes about the time of a step.
+        constexpr long least = watch_limit::interval / 2;
+        c.world->set_watch(true, interval * std::max(1L, (least + interval - 1) / interval));
         for (const std::string& n : c.notices) warn(n);
         check_step();
         insert_particles(c);  // rejects invalid particles before files are written

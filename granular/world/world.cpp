@@ -292,7 +292,6 @@ void World::one_step()
 {
     const auto h = static_cast<float>(options.h);
     const bool verlet = options.scheme == Scheme::velocity_verlet;
-    const bool sample = watched && is_sample();  // whether the loads are needed before the particles move
     Lap lap;
     const auto take = [&](double& to) {
         if (timed) engine->wait();
@@ -337,13 +336,13 @@ void World::one_step()
         particle_displacement += advance(Part::before_loads);
         boundary_displacement += move_boundaries();
         if (!is_posed()) move_attached();
-        find_loads(sample);
+        find_loads(false);
         accelerate_tools();
         watch_loads();
         advance(Part::after_loads);
         watch_advance();
     } else {
-        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads(sample);
+        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads(false);
         accelerate_tools();
         watch_loads();
         particle_displacement += advance(Part::whole);

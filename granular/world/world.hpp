@@ -146,8 +146,8 @@ public:
     /// after a complete step, if the run is watched.
     void step(long n = 1);
     /// Whether the run is watched, with a sample every watch_limit::interval steps and, if `node_interval` is
-    /// positive, in the last step before each multiple of it. The default is a watched run. The watch does
-    /// not change the results.
+    /// positive, in the last step before each multiple of it. A sample takes about the time of a step.
+    /// The default is a watched run. The watch does not change the results.
     void set_watch(bool on, long node_interval = 0);
     /// What the watch has found so far
     const WatchRecord& watch() const { return record; }

@@ -76,7 +76,7 @@ bool World::is_sample() const
 }
 
 /// Loads of the present step at t_n, before the particles are advanced: impulses and work of the boundaries
-/// and, in a sample, momentum, potential and elastic energy.
+/// and, in a sample, momentum and potential energy.
 ///
 /// A boundary that moves with u before and u' after t_n does the work h/2 F·(u + u'). W at t_n has the first
 /// half of it.
@@ -103,12 +103,8 @@ void World::watch_loads()
     const Vec3 g_periodic{component(options.periodic[0], g.x), component(options.periodic[1], g.y),
                           component(options.periodic[2], g.z)};
     if (sampling) {
-        const ContactSums contacts = engine->contact_sums(domain, static_cast<float>(options.h));
         w.mass = all.mass, w.momentum = all.momentum;
         w.potential = -(g - g_periodic).dot(all.moment);
-        w.normal = contacts.normal, w.tangential = contacts.tangential;
-        w.deep_fraction = contacts.contacts > 0 ? contacts.deep / contacts.contacts : 0;
-        w.largest_deep_fraction = std::max(w.largest_deep_fraction, w.deep_fraction);
         w.largest_momentum = std::max(w.largest_momentum, all.momentum_size);
         w.largest_displacement = std::max(w.largest_displacement, h * all.rate);
         if (w.is_balanced == 0) w.momentum_offset = w.momentum - w.impulse;
@@ -122,7 +118,7 @@ void World::watch_loads()
     next_work = 0.5 * h * loads.after + h * g_periodic.dot(w.momentum_offset + w.impulse);
 }
 
-/// After the particles are advanced: completes a sample by the kinetic energy at t_n.
+/// After the particles are advanced: completes a sample by the elastic and kinetic energies at t_n.
 void World::watch_advance()
 {
     if (!watched) return;
@@ -135,6 +131,10 @@ void World::watch_advance()
         const double s = options.scheme == Scheme::symplectic_euler  ? 1
                          : options.scheme == Scheme::velocity_verlet ? 2
                                                                      : 0;
+        const ContactSums contacts = engine->contact_sums(domain, static_cast<float>(options.h));
+        w.normal = contacts.normal, w.tangential = contacts.tangential;
+        w.deep_fraction = contacts.contacts > 0 ? contacts.deep / contacts.contacts : 0;
+        w.largest_deep_fraction = std::max(w.largest_deep_fraction, w.deep_fraction);
         const KineticSums T = engine->kinetic_sums(s);
         w.kinetic = T.translation + T.rotation;
         const double E = w.kinetic + w.potential + w.normal + w.tangential;

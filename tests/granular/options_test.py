@@ -89,7 +89,8 @@ def resume(runs, case, particles):
 
 def strict(runs, case, watch):
     """The watch over a run: its summary, its warnings, and --strict"""
-    expect(watch["samples"] == 3 and not watch["energy"]["passive"] and watch["warnings"] == []
+    # 20 steps with a row every 10 steps: the first sample only
+    expect(watch["samples"] == 1 and not watch["energy"]["passive"] and watch["warnings"] == []
            and 0 < watch["largest_displacement"] < 0.1 and len(watch["momentum"]["impulse"]) == 3,
            f"the watch: {watch}")
     grain = {"radius": 1e-3, "material": "glass"}
@@ -97,6 +98,8 @@ def strict(runs, case, watch):
                      particles=[dict(grain, r=[0.008, 0.01, 0.05], v=[2, 0, 0]),
                                 dict(grain, r=[0.012, 0.01, 0.05], v=[-2, 0, 0])])
     err = runs.finish(hits, "--output", "hits")
+    # 500 steps with a row every 50 steps: the first, in every 128th, and in the last before every 100th
+    expect(runs.summary("hits")["watch"]["samples"] == 1 + 3 + 5, "number of samples")
     warning = r"hilda: warning: t = \S+ s: an overlap of 0.05\d* of the smaller radius is above 0.05"
     expect(len(re.findall(warning, err)) == 1, f"one warning: {err}")
     watch = runs.summary("hits")["watch"]

@@ -46,7 +46,7 @@ bool valid(const Domain& d, const WorldOptions& options)
     if (cells > max_cells) return false;
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
     return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
-           positive(d.small) && positive(d.largest) && d.replicas >= 1;
+           positive(d.small) && positive(d.largest) && d.replicas >= 1 && d.replicas <= 1 << 16;
 }
 
 bool valid(const WatchRecord& w)

@@ -176,6 +176,14 @@ public:
         std::vector<Wrench> on_boundary;
     };
     Totals totals() const;
+    /// The same of one replica, and sums over its particles
+    struct ReplicaTotals : Totals {
+        std::size_t particles = 0;
+        double kinetic_energy = 0;  ///< [J]
+        Vec3 momentum = {0, 0, 0};  ///< [kg m/s]
+    };
+    /// Sums of the replicas 0, 1, ..., also of those without particles
+    std::vector<ReplicaTotals> replica_totals() const;
 
     /// Registers a callback that is called at the beginning of each step, at t(). It may set velocities of
     /// boundaries and applied forces, and add particles. It must not register further callbacks. Callbacks
@@ -301,6 +309,8 @@ private:
     void for_current_loads(const F& f) const;
     void update_for_query() const;
     ContactRecord contact(const CurrentLoads& now, std::uint32_t pair) const;
+    template <class To>
+    void add_totals(const To& to) const;
     void update_neighbours();
     void find_neighbours() const;
     void rebuild_neighbours();

@@ -154,32 +154,38 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
     return on[static_cast<std::size_t>(b)];
 }
 
-World::Totals World::totals() const
+/// Adds all contacts to the totals *to(number of the replica); the stress is that over a volume of 1.
+template <class To>
+void World::add_totals(const To& to) const
 {
     update_for_query();
     const Arrays<par::Cpu>& of = engine->arrays();
     const Position* position = of.particle.position.data();
     const Float4* omega = of.particle.omega.data();
     // Partial sums over fixed parts of the pairs, added in order: the result does not depend on the number of
-    // threads.
+    // threads. Pairs are ordered by replica; a part has one sum for each replica in it.
     struct Sum {
+        Totals* to = nullptr;
         std::size_t contacts = 0;
         std::array<double, 9> stress = {};
         std::vector<ContactRecord> with_boundaries;  ///< those that load a boundary
     };
-    std::vector<Sum> sums(CurrentLoads::parts(of.pairs.count));
-    const auto add_stress = [](Sum& to, const Vec3& l, const Float4& F) {
+    std::vector<std::vector<Sum>> sums(CurrentLoads::parts(of.pairs.count));
+    const auto add_stress = [](Sum& sum, const Vec3& l, const Float4& F) {
         const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
         for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) to.stress[3 * a + b] += from_j[a] * on_i[b];
-        ++to.contacts;
+            for (int b = 0; b < 3; ++b) sum.stress[3 * a + b] += from_j[a] * on_i[b];
+        ++sum.contacts;
     };
     for_current_loads([&](std::uint32_t part, const CurrentLoads& now) {
-        Sum sum;
+        std::vector<Sum> of_part;
         for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n) {
             if (!now.touching(n)) continue;
             const std::uint32_t i = of.pairs.i.data()[n], j = of.pairs.j.data()[n];
             const Float4 F = now.load[n - now.begin].F;
+            Totals* const replica = to(of.particle.species.data()[i].replica);
+            if (of_part.empty() || of_part.back().to != replica) of_part.emplace_back().to = replica;
+            Sum& sum = of_part.back();
             if ((j & PairView::boundary_bit) == 0) {
                 add_stress(sum, separation(domain.grid, position[i], position[j]), F);
                 const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
@@ -190,15 +196,40 @@ World::Totals World::totals() const
                 sum.with_boundaries.push_back(c);
             }
         }
-        sums[part] = std::move(sum);
+        sums[part] = std::move(of_part);
     });
+    for (const std::vector<Sum>& of_part : sums)
+        for (const Sum& sum : of_part) {
+            sum.to->contacts += sum.contacts;
+            for (int k = 0; k < 9; ++k) sum.to->stress[k] += sum.stress[k];
+            for (const ContactRecord& c : sum.with_boundaries) add_wrench(sum.to->on_boundary, c);
+        }
+}
+
+World::Totals World::totals() const
+{
     Totals all{.contacts = 0, .stress = {}, .on_boundary = std::vector<Wrench>(boundaries.size())};
-    for (const Sum& sum : sums) {
-        all.contacts += sum.contacts;
-        for (int k = 0; k < 9; ++k) all.stress[k] += sum.stress[k];
-        for (const ContactRecord& c : sum.with_boundaries) add_wrench(all.on_boundary, c);
+    add_totals([&](std::uint16_t) { return &all; });
+    for (double& part : all.stress) part /= volume();
+    return all;
+}
+
+std::vector<World::ReplicaTotals> World::replica_totals() const
+{
+    std::vector<ReplicaTotals> all;
+    for (const Particle& p : particles()) {
+        if (p.replica >= all.size()) all.resize(p.replica + std::size_t{1});
+        ReplicaTotals& sum = all[p.replica];
+        ++sum.particles;
+        sum.kinetic_energy +=
+            0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
+        sum.momentum += p.mass * p.v;
     }
-    for (int k = 0; k < 9; ++k) all.stress[k] /= volume();
+    if (inserted_count > 0) all.resize(std::max<std::size_t>(all.size(), domain.replicas));
+    for (ReplicaTotals& sum : all) sum.on_boundary.resize(boundaries.size());
+    add_totals([&](std::uint16_t replica) -> Totals* { return &all[replica]; });
+    for (ReplicaTotals& sum : all)
+        for (double& part : sum.stress) part /= volume();
     return all;
 }
 

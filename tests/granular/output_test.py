@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The columns of run.csv: loads of all boundaries, and the motion of those that move.
+"""The columns of run.csv, loads of all boundaries and the motion of those that move, and the rows of replicas.
 
     output_test.py PROGRAM
 """
@@ -9,11 +9,11 @@ import math
 import sys
 import tempfile
 
-from case_runs import Runs, expect
+from case_runs import CASE, Runs, expect
 
 
-def rows_of(runs, output):
-    with open(runs.folder / output / "run.csv", encoding="utf-8") as table:
+def rows_of(runs, output, file="run.csv"):
+    with open(runs.folder / output / file, encoding="utf-8") as table:
         return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(table)]
 
 
@@ -42,6 +42,29 @@ def main():
         runs.finish(still, "--quiet", "--output", "still")
         names = list(rows_of(runs, "still")[0])
         expect(names[-1] == "floor_Tz" and "floor_z" not in names, f"a boundary at rest has no motion: {names}")
+
+        # three replicas: the rows of each, and their sums
+        fills = [dict(CASE["fill"][0], replica=k, seed=k, low=[0.003, 0.003, 0.002 * k]) for k in (0, 1, 2)]
+        three = runs.case("three", boundaries=[floor, CASE["boundaries"][1]], fill=fills, end=0.06, interval=0.015)
+        runs.finish(three, "--quiet", "--output", "three", "--replica-rows")
+        whole = rows_of(runs, "three")
+        parts = rows_of(runs, "three", "replicas.csv")
+        expect(len(parts) == 3 * len(whole) and [row["replica"] for row in parts[:4]] == [0, 1, 2, 0], "rows of replicas")
+        particles = (runs.folder / "three" / "particles.csv").read_text().count("\n") - 1
+        for k, row in enumerate(whole):
+            mine = parts[3 * k:3 * k + 3]
+            expect(sum(one["particles"] for one in mine) == particles, f"numbers of particles: {mine}")
+            expect(all(one["t"] == row["t"] for one in mine), f"times: {mine}")
+            for name in ("kinetic_energy", "contacts", *(f"{b}_{c}{a}" for b in ("floor", "wall") for c in "FT" for a in "xyz")):
+                total, size = sum(one[name] for one in mine), sum(abs(one[name]) for one in mine)
+                expect(abs(total - row[name]) <= 1e-8 * size, f"{name} at {row['t']} s: {total} and {row[name]}")
+        expect(len({row["kinetic_energy"] for row in parts[3:6]}) == 3 and parts[-1]["contacts"] > 50, f"{parts[3:6]} {parts[-1]}")
+        expect("replicas.csv" in runs.summary("three")["files"], "summary.json lists the file")
+        alone = runs.case("alone", boundaries=[floor, CASE["boundaries"][1]], fill=[dict(fills[1], replica=0)],
+                          end=0.06, interval=0.015)
+        runs.finish(alone, "--quiet", "--output", "alone", "--replica-rows")
+        first = rows_of(runs, "alone", "replicas.csv")[0]
+        expect(dict(first, replica=1) == parts[1], f"a replica alone: {first} {parts[1]}")
     print("run.csv has the motion of moving boundaries")
 
 

@@ -20,9 +20,9 @@ struct Case {
     io::JsonSource source;
     std::string name = {};
     std::unique_ptr<World> world = {};
-    double h = 0, end = 0;           ///< step and end time [s]
-    double interval = 0;             ///< time between rows of run.csv [s]
-    double frame_interval = 0;       ///< time between frames [s]
+    double h = 0, end = 0;                     ///< step and end time [s]
+    double interval = 0;                       ///< time between rows of run.csv [s]
+    double frame_interval = 0;                 ///< time between frames [s]
     std::vector<std::string> boundaries = {};  ///< names, by number
     std::vector<int> moving = {};              ///< numbers of the boundaries that move
     std::vector<std::string> notices = {};     ///< warnings, with their location

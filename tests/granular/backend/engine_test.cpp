@@ -37,6 +37,8 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     o.h = 5e-6, o.scheme = scheme, o.orientation = scheme != Scheme::chung;
     World world(o, {glass(), steel()}, std::move(engine));
     PairLaw law = hertz_mindlin(glass(), 0.5, 0.4);
+    law.tangential = granular::MindlinDeresiewicz{
+        .spring = granular::TangentialSpring::of_materials(glass(), glass(), 0.5), .mu = 0.4f};
     world.set_law(0, 0, law);
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     law.cohesion = granular::ConstantCohesion{.F_c = 1e-5f};
@@ -109,7 +111,7 @@ std::string mixed_packing(std::unique_ptr<Engine> engine, int n, Scheme scheme)
     law.rolling = granular::Epsd{.mu_r = 0.1f, .eta_r = 0.3f};
     world.set_law(0, 0, law);
     law.normal = granular::WaltonBraun{.k_1 = 800, .k_2 = 2000, .S = 100};
-    law.tangential = granular::Mindlin{.spring = {.k_t = 500, .c = 0, .gamma_t = 20}, .cap = {0.4f, 0.4f}};
+    law.tangential = granular::MindlinDeresiewicz{.spring = {.k_t = 500, .c = 0, .gamma_t = 20}, .mu = 0.4f};
     world.set_law(0, 1, law);
     law = hertz_mindlin(steel(), 0.8, 0.2);
     law.lever = granular::Lever::contact;

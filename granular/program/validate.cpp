@@ -71,6 +71,10 @@ int validate(const Validation& v, ValidationOptions options, bool quiet, bool st
     options.progress = [&](double share) {
         if (line.is_due()) line.show(v.name + ' ' + std::to_string(std::lround(100 * share)) + " %");
     };
+    if (!quiet)
+        options.announce = [&](const std::string& text) {
+            io::message("hilda: " + v.name + ": " + text + '\n');
+        };
     ValidationResult result;
     ValidationWarnings warnings;
     options.warnings = &warnings;

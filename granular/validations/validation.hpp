@@ -71,6 +71,8 @@ struct ValidationOptions {
     Device device = {};                                    ///< device of all worlds
     ValidationWarnings* warnings = nullptr;                ///< receives the warnings of all worlds
     std::function<void(double)> progress = [](double) {};  ///< called with the completed fraction, in [0, 1]
+    /// Called at the start of a validation that takes more than some minutes, with a line that says how long
+    std::function<void(const std::string&)> announce = [](const std::string&) {};
 
     ValidationProgress kept = {};  ///< of an interrupted validation
     SettledBeds beds = {};         ///< settled beds of earlier runs

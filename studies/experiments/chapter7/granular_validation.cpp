@@ -77,6 +77,10 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
     options.warnings = &of_part;
     options.kept = kept_by(study, warnings, of_part);
     options.beds = {.folder = folder_of_beds(study.options.output), .program = version_line()};
+    if (!study.options.quiet)
+        options.announce = [&](const std::string& text) {
+            io::message("hilda: study " + study.name + ": " + text + '\n');
+        };
     io::ProgressLine line(study.options.quiet);
     options.progress = [&](double share) {
         if (line.is_due())
@@ -136,6 +140,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
+        {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}}};

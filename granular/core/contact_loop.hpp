@@ -11,7 +11,7 @@
 namespace hilda::granular {
 
 /// Load of a contact: force F on body i and -F on body j [N]. The tangential force exerts the torque R M on
-/// either body, with its own radius R and M [N] of ContactForce. M.w is ContactForce::depth.
+/// either body, with its own radius R and M [N] of FrictionTorque. M.w is FrictionTorque::depth.
 struct alignas(32) Load {
     Float4 F, M;
 };

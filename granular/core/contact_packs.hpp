@@ -129,6 +129,20 @@ struct ContactPacks {
     [[gnu::flatten]] PackLoad evaluate_pack(const PairLaw& law, const ContactPoint<Pack>& contact,
                                             const std::uint32_t* n) const
     {
+        return pairs.internal != nullptr ? evaluate_with_internal(law, contact, n)
+                                         : evaluate_pack<false>(law, contact, n);
+    }
+    /// Not inlined, so that the code of worlds without internal variables stays short and fast
+    [[gnu::noinline, gnu::flatten]] PackLoad evaluate_with_internal(const PairLaw& law,
+                                                                    const ContactPoint<Pack>& contact,
+                                                                    const std::uint32_t* n) const
+    {
+        return evaluate_pack<true>(law, contact, n);
+    }
+    template <bool with_internal>
+    PackLoad evaluate_pack(const PairLaw& law, const ContactPoint<Pack>& contact,
+                           const std::uint32_t* n) const
+    {
         const auto u = gather_rows<Pack>(pairs.history, n);
         History<Pack> history{};
         history.u = {u.x, u.y, u.z};
@@ -139,9 +153,9 @@ struct ContactPacks {
             const auto psi = gather_rows<Pack>(pairs.rotation_history, n);
             history.psi = {psi.x, psi.y, psi.z}, history.spin = psi.w;
         }
-        if (pairs.internal != nullptr) set_internal(history, gather_rows<Pack>(pairs.internal, n));
-        const ContactForce<Pack> out = evaluate(law, contact, history, rotation_laws);
-        if (pairs.internal != nullptr) {
+        if constexpr (with_internal) set_internal(history, gather_rows<Pack>(pairs.internal, n));
+        const ContactForce<Pack> out = evaluate<with_internal>(law, contact, history, rotation_laws);
+        if constexpr (with_internal) {
             const Pack to_internal[4] = {history.largest_overlap, history.turning, history.amplitude,
                                          history.reference_force};
             store_rows(to_internal, [&](int k) { return &pairs.internal[n[k]]; });
@@ -153,10 +167,9 @@ struct ContactPacks {
         const Pack to_history[4] = {history.u.x, history.u.y, history.u.z,
                                     select(history.slid, -history.age, history.age)};
         store_rows(to_history, [&](int k) { return &pairs.history[n[k]]; });
+        const auto [M, depth] = friction_torque(law, contact, out.F_t);
         const Pack zero(0.f);
-        return {{out.F.x, out.F.y, out.F.z, zero},
-                {out.M.x, out.M.y, out.M.z, out.depth},
-                {out.T.x, out.T.y, out.T.z, zero}};
+        return {{out.F.x, out.F.y, out.F.z, zero}, {M.x, M.y, M.z, depth}, {out.T.x, out.T.y, out.T.z, zero}};
     }
 
     /// Stores the loads of the pairs n.

@@ -92,11 +92,12 @@ struct FindLoad {
         }
         if (pairs.internal != nullptr) set_internal(history, pairs.internal[k]);
         const ContactForce<float> out = evaluate(law(), contact, history, rotation_laws);
+        const FrictionTorque<float> torque = friction_torque(law(), contact, out.F_t);
         if (pairs.internal != nullptr)
             pairs.internal[k] = {history.largest_overlap, history.turning, history.amplitude,
                                  history.reference_force};
         pairs.history[k] = {history.u.x, history.u.y, history.u.z, history.slid ? -history.age : history.age};
-        pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {out.M.x, out.M.y, out.M.z, out.depth}};
+        pairs.load[k] = {{out.F.x, out.F.y, out.F.z, 0}, {torque.M.x, torque.M.y, torque.M.z, torque.depth}};
         if (!rotation_laws) return;
         pairs.rotation_history[k] = {history.psi.x, history.psi.y, history.psi.z, history.spin};
         pairs.torque[k] = {out.T.x, out.T.y, out.T.z, 0};

@@ -91,44 +91,60 @@ template <class R>
 struct ContactForce {
     Vec<R> F;    ///< total force [N]
     Vec<R> F_t;  ///< its tangential part [N]
-    Vec<R> M;    ///< torque of F_t over the radius, for both bodies [N]
     Vec<R> T;    ///< torque of rolling and spin [N m]
-    R depth;     ///< distance of the point of application to the surface of i or of the boundary [m]
 };
+
+/// Torque of the tangential force
+template <class R>
+struct FrictionTorque {
+    Vec<R> M;  ///< torque over the radius, for both bodies [N]
+    R depth;   ///< distance of the point of application to the surface of i or of the boundary [m]
+};
+
+/// The torque of the tangential force of a contact: M = -(1 - q) n × F_t, with q = 0 for Lever::radius and
+/// lever_reduction() for Lever::contact.
+template <class R>
+HILDA_HD inline FrictionTorque<R> friction_torque(const PairLaw& law, const ContactPoint<R>& contact,
+                                                  const Vec<R>& F_t)
+{
+    const Vec<R> M = -contact.n.cross(F_t);
+    if (law.lever == Lever::radius) return {M, R(0.f)};
+    const R q = lever_reduction(contact);
+    return {(R(1.f) - q) * M, q * contact.R_i};
+}
 
 /// Evaluates the laws of a contact and advances its history by one step.
 ///
-///     F = (F_n - F_c) n + F_t,    M = -(1 - q) n × F_t,    T = M_r + M_sp n
+///     F = (F_n - F_c) n + F_t,    T = M_r + M_sp n
 ///
-/// q is 0 with Lever::radius, lever_reduction() with Lever::contact.
-///
-/// With rotation_laws = false the laws of rolling and spin are not evaluated, and T = 0.
-template <class R>
+/// With rotation_laws = false the laws of rolling and spin are not evaluated, and T = 0. With with_internal =
+/// false no law of the world has internal variables, and the code of such laws is left out.
+template <bool with_internal = true, class R>
 HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<R>& contact,
                                          History<R>& history, bool rotation_laws)
 {
+    const auto visit = [](const auto& laws, const auto& f) {
+        laws.visit([&]<class Law>(const Law& l) {
+            if constexpr (with_internal || !has_internal_variables<Law>) f(l);
+        });
+    };
     NormalForce<R> normal{};
-    law.normal.visit([&](const auto& l) { normal = normal_force(l, contact, history); });
+    visit(law.normal, [&](const auto& l) { normal = normal_force(l, contact, history); });
     ContactForce<R> out{};
-    law.tangential.visit([&](const auto& l) { out.F_t = l(contact, normal, history); });
+    visit(law.tangential, [&](const auto& l) { out.F_t = l(contact, normal, history); });
     R attraction{};
     law.cohesion.visit([&](const auto& l) { attraction = l(contact); });
     out.F = (normal.F - attraction) * contact.n + out.F_t;
-    out.M = -contact.n.cross(out.F_t), out.depth = R(0.f);
-    if (law.lever == Lever::contact) {
-        const R q = lever_reduction(contact);
-        out.M = (R(1.f) - q) * out.M, out.depth = q * contact.R_i;
-    }
     out.T = {R(0.f), R(0.f), R(0.f)};
     if (!rotation_laws) return out;
     R k_t = R(0.f), gamma_t = R(0.f);
-    law.tangential.visit([&](const auto& l) {
+    visit(law.tangential, [&](const auto& l) {
         if constexpr (requires { l.spring; })
             k_t = l.spring.stiffness(normal), gamma_t = l.spring.damping(contact, normal);
     });
-    law.rolling.visit([&](const auto& l) { out.T += l(contact, normal, k_t, history); });
+    visit(law.rolling, [&](const auto& l) { out.T += l(contact, normal, k_t, history); });
     R about_n{};
-    law.spin.visit([&](const auto& l) { about_n = l(contact, normal, k_t, gamma_t, history); });
+    visit(law.spin, [&](const auto& l) { about_n = l(contact, normal, k_t, gamma_t, history); });
     out.T += about_n * contact.n;
     return out;
 }

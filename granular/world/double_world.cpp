@@ -19,8 +19,9 @@ void DoubleWorld::find_loads()
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
         state.age += t.h;
         const ContactForce<double> out = evaluate(law, t, state, law.resists_rotation());
-        F[i] += out.F, T[i] += t.R_i * out.M + out.T;
-        if (j >= 0) F[j] -= out.F, T[j] += t.R_j * out.M - out.T;
+        const Vec3 M = friction_torque(law, t, out.F_t).M;
+        F[i] += out.F, T[i] += t.R_i * M + out.T;
+        if (j >= 0) F[j] -= out.F, T[j] += t.R_j * M - out.T;
     };
     for (int i = 0; i < n; ++i) {
         const Particle& p = particle[i];

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Creation of an engine.
+// Creation of an engine, and the neighbour search on the CPU.
 #include "granular/backend/engine_impl.hpp"
+#include "granular/core/neighbours_impl.hpp"
 
 namespace hilda::granular {
+
+template class Neighbours<par::Cpu>;
 
 std::unique_ptr<Engine> make_engine(Device device)
 {

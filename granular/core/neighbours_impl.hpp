@@ -133,8 +133,8 @@ struct MarkCellStarts {
     }
 };
 
-/// The same as MarkCellStarts with one call per group, by bisection. On a GPU a thread then does not loop over
-/// a long run of empty cells.
+/// The same as MarkCellStarts with one call per group, by bisection. On a GPU a thread then does not loop
+/// over a long run of empty cells.
 struct FindCellStart {
     const std::uint32_t* key;
     std::uint32_t particles;

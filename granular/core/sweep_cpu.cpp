@@ -328,8 +328,8 @@ struct Sweep : detail::ContactPacks {
         }
     }
 
-    /// Requests what the contact n reads and is not in the cache of one core: rows of its particle j, which is
-    /// far from i in memory, and its history.
+    /// Requests what the contact n reads and is not in the cache of one core: rows of its particle j, which
+    /// is far from i in memory, and its history.
     void prefetch(std::uint32_t n) const
     {
         const std::uint32_t j = pairs.j[n];

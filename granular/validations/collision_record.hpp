@@ -39,9 +39,9 @@ struct Collision {
 /// Speed below which the projectile is nearly at rest [m/s]
 constexpr double slow_speed = 0.01;
 
-/// The collision of a record with filtered acceleration. The stop is the first sample with a_low < 0.1 g after
-/// 0.9 t_s. t_s is the first time after the peak with |v| < slow_speed; without one, both are the end of the
-/// record.                                 As in the post-processing of the dissertation's simulations
+/// The collision of a record with filtered acceleration. The stop is the first sample with a_low < 0.1 g
+/// after 0.9 t_s. t_s is the first time after the peak with |v| < slow_speed; without one, both are the end
+/// of the record.                          As in the post-processing of the dissertation's simulations
 Collision collision(const CollisionRecord& record);
 
 }  // namespace hilda::granular

@@ -325,9 +325,10 @@ private:
         out.push_back({what, measured, lower, upper});
     }
 
-    /// Straight line by least squares through the published peaks of this μ_r over the speed. A peak is that of
-    /// one chain of beads for less than a millisecond. The published one of μ_r = 0.09 and 0.51 m/s, 25.8 m/s²,
-    /// is twice that without rolling friction; here the peaks of five places lie between 12 and 17 m/s².
+    /// Straight line by least squares through the published peaks of this μ_r over the speed. A peak is that
+    /// of one chain of beads for less than a millisecond. The published one of μ_r = 0.09 and 0.51 m/s, 25.8
+    /// m/s², is twice that without rolling friction; here the peaks of five places lie between 12 and 17
+    /// m/s².
     static double peak_of_line(double mu_r, double speed)
     {
         double n = 0, v = 0, peak = 0, vv = 0, v_peak = 0;

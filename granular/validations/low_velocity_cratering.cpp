@@ -231,11 +231,11 @@ CollisionRecord impact(const SlowImpact& of, const std::vector<Vec3>& beads, con
         out.z.push_back(ball().r.z - ball_radius), out.v.push_back(ball().v.z);
         out.a.push_back(k > 0 ? (ball().v.z - before) / of.h : -of.g);
         slow = slow || (t > 2 * free_fall && std::abs(ball().v.z) < slow_speed);
-        if (!slow || k % 100 != 0) continue;
+        if (!slow || k % 20 != 0) continue;
         out.a_low = low_pass(out.a, cut_off, 1 / sample);
         const Collision c = collision(out);
-        // The filter needs some samples after the stop.
-        stopped = c.slowed && c.end + 200 < out.z.size();
+        // The filter forgets a sample within 50 samples (poles at 0.8).
+        stopped = c.slowed && c.end + 100 < out.z.size();
     }
     options.include(io::formatted("mu_r = %g, %g m/s at x = %g, g = %g m/s^2, H = %g m", of.mu_r, of.speed,
                                   of.x, of.g, of.height),

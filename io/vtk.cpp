@@ -58,25 +58,57 @@ void VtkPolyData::end_section()
 template <class Number>
 void VtkPolyData::array(const std::string& name, int components, const std::vector<Number>& values)
 {
-    const std::string type = std::is_integral_v<Number>      ? "Int32"
-                             : std::is_same_v<Number, float> ? "Float32"
-                                                             : "Float64";
-    xml += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-           std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(blocks.size()) +
-           "\"/>\n";
-    const std::uint64_t size = values.size() * sizeof(Number);
-    blocks.append(reinterpret_cast<const char*>(&size), sizeof size);
-    blocks.append(reinterpret_cast<const char*>(values.data()), size);
+    array<Number>(name, components, values.size(), [values](const std::function<void(Number)>& put) {
+        for (const Number x : values) put(x);
+    });
 }
 template void VtkPolyData::array(const std::string&, int, const std::vector<float>&);
 template void VtkPolyData::array(const std::string&, int, const std::vector<double>&);
 template void VtkPolyData::array(const std::string&, int, const std::vector<std::int32_t>&);
 
-std::string VtkPolyData::text()
+template <class Number>
+void VtkPolyData::array(const std::string& name, int components, std::size_t count,
+                        std::function<void(const std::function<void(Number)>&)> numbers)
+{
+    const std::string type = std::is_integral_v<Number>      ? "Int32"
+                             : std::is_same_v<Number, float> ? "Float32"
+                                                             : "Float64";
+    xml += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+           std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(size) + "\"/>\n";
+    const std::uint64_t bytes = count * sizeof(Number);
+    size += sizeof bytes + bytes;
+    blocks.emplace_back([bytes, numbers = std::move(numbers)](const Append& append) {
+        constexpr std::size_t full = 1 << 20;
+        std::string piece(reinterpret_cast<const char*>(&bytes), sizeof bytes);
+        numbers([&](Number x) {
+            piece.append(reinterpret_cast<const char*>(&x), sizeof x);
+            if (piece.size() < full) return;
+            append(piece);
+            piece.clear();
+        });
+        append(piece);
+    });
+}
+template void VtkPolyData::array(const std::string&, int, std::size_t,
+                                 std::function<void(const std::function<void(float)>&)>);
+template void VtkPolyData::array(const std::string&, int, std::size_t,
+                                 std::function<void(const std::function<void(double)>&)>);
+template void VtkPolyData::array(const std::string&, int, std::size_t,
+                                 std::function<void(const std::function<void(std::int32_t)>&)>);
+
+void VtkPolyData::write(const Append& append)
 {
     end_section();
-    xml += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + blocks + "\n</AppendedData>\n";
-    return std::move(xml += "</VTKFile>\n");
+    append(xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
+    for (const auto& block : blocks) block(append);
+    append("\n</AppendedData>\n</VTKFile>\n");
+}
+
+std::string VtkPolyData::text()
+{
+    std::string all;
+    write([&](std::string_view piece) { all += piece; });
+    return all;
 }
 
 namespace {

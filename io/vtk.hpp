@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include "io/files.hpp"
+
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -23,13 +26,22 @@ public:
     /// Number: float, double or std::int32_t
     template <class Number>
     void array(const std::string& name, int components, const std::vector<Number>& values);
+    /// The same for numbers that are not in a list: write() calls numbers(put), which passes each of the
+    /// `count` numbers to put.
+    template <class Number>
+    void array(const std::string& name, int components, std::size_t count,
+               std::function<void(const std::function<void(Number)>& put)> numbers);
+    /// Ends the file and passes it on in pieces.
+    void write(const Append& append);
     /// Ends the file and returns it.
     std::string text();
 
 private:
     void end_section();
 
-    std::string xml, open_section, blocks;
+    std::string xml, open_section;
+    std::vector<std::function<void(const Append&)>> blocks;  ///< they pass the arrays on
+    std::size_t size = 0;                                    ///< of all blocks [byte]
 };
 
 /// A list of files with their times [s] (.pvd). Successive files with the same time are parts of one frame.

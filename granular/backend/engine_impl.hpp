@@ -166,8 +166,9 @@ public:
         plan.reset();
         free_pairs = 0;
         if (any_free)
-            free_pairs = list_pairs(
-                detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), nullptr}, counts);
+            free_pairs =
+                list_pairs(detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), nullptr},
+                           with_free_boundary);
         if (watched) prepare_watch();
     }
 
@@ -232,9 +233,10 @@ public:
     {
         wrenches.assign(last_boundaries.size(), Wrench{});
         boundary_loads.resize(free_pairs);
-        par::for_each(on, free_pairs,
-                      detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(),
-                                                  boundaries.data(), counts.data(), boundary_loads.data()});
+        par::for_each(
+            on, free_pairs,
+            detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(), boundaries.data(),
+                                        with_free_boundary.data(), boundary_loads.data()});
         host_boundary_loads.resize(free_pairs);
         par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
                           free_pairs * sizeof(detail::BoundaryLoad));
@@ -293,8 +295,7 @@ public:
             par::copy_bytes(on, neighbours.position_copy(), p.position.data(), p.count * sizeof(Position));
         par::for_each(on, particle_blocks.size(),
                       AddParticles{.particles = particle_view(domain, p),
-                                   .velocity_copy = only_forces ? nullptr : velocity_copy.data(),
-                                   .omega_copy = only_forces ? nullptr : omega_copy.data(),
+                                   .copy = only_forces ? nullptr : velocities_copy.data(),
                                    .force = force.size() > 0 ? force.data() : nullptr,
                                    .id = p.id.data(),
                                    .count = p.count,
@@ -317,8 +318,7 @@ public:
         par::for_each(on, kinetic_blocks.size(),
                       AddKinetic{.velocity = p.velocity.data(),
                                  .omega = p.omega.data(),
-                                 .velocity_before = velocity_copy.data(),
-                                 .omega_before = omega_copy.data(),
+                                 .before = velocities_copy.data(),
                                  .s = s,
                                  .count = p.count,
                                  .out = kinetic_blocks.data()},
@@ -345,7 +345,7 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               counts.bytes() + offset.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
+               with_free_boundary.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
                attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() + block_start.bytes() +
                block_boundary.bytes();
     }
@@ -385,17 +385,23 @@ private:
     }
 
     /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there
-    /// are.
+    /// are. Called after a neighbour search.
     template <class Flag>
     std::uint32_t list_pairs(Flag flag, par::Array<Backend, std::uint32_t>& list)
     {
         const std::uint32_t n = own.pairs.count;
-        list.resize(n), offset.resize(n + 1);
-        flag.flag = list.data();
+        if (n == 0) return 0;
+        // Flags and offsets are in the memory of the loads, which are zero after a neighbour search.
+        static_assert(sizeof(Load) >= 3 * sizeof(std::uint32_t));
+        auto* const memory = reinterpret_cast<std::uint32_t*>(own.pairs.load.data());
+        std::uint32_t* const offset = memory + n;
+        flag.flag = memory;
         par::for_each(on, n, flag);
-        const std::uint64_t count = par::exclusive_scan(on, list.data(), offset.data(), n);
-        par::for_each(on, n, detail::CompactIndices{offset.data(), list.data()});
-        return static_cast<std::uint32_t>(count);
+        const auto count = static_cast<std::uint32_t>(par::exclusive_scan(on, memory, offset, n));
+        list.resize(count);
+        par::for_each(on, n, detail::CompactIndices{offset, list.data()});
+        par::fill(on, own.pairs.load.data(), std::min(n, (2 * n + 1) / 8 + 1), Load{});
+        return count;
     }
 
     /// Lists the pairs with external loads and provides the memory of the sums.
@@ -409,7 +415,7 @@ private:
         if (par::largest(on, n, detail::IsFixed{omega}) > 0)
             fixed_pairs =
                 list_pairs(FlagFixedPair{own.pairs.i.data(), own.pairs.j.data(), omega, nullptr}, with_fixed);
-        velocity_copy.resize(n), omega_copy.resize(n);
+        velocities_copy.resize(n);
         particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
         contact_blocks.resize(watch_blocks(pairs));
         external_blocks.resize(watch_blocks(boundary_pairs) + watch_blocks(fixed_pairs));
@@ -431,7 +437,7 @@ private:
 
     std::size_t watch_bytes() const
     {
-        return with_boundary.bytes() + with_fixed.bytes() + velocity_copy.bytes() + omega_copy.bytes() +
+        return with_boundary.bytes() + with_fixed.bytes() + velocities_copy.bytes() +
                particle_blocks.bytes() + kinetic_blocks.bytes() + contact_blocks.bytes() +
                external_blocks.bytes() + overlaps.bytes() + velocities_before.bytes() +
                velocities_after.bytes();
@@ -515,7 +521,7 @@ private:
     bool sweeps = false;  ///< whether advance() computes the loads as well
     std::uint32_t materials = 1, free_pairs = 0;
     bool one_law = true, rotation_laws = false, internal = false, any_free = false;
-    par::Array<Backend, std::uint32_t> counts, offset;  ///< counts: indices of the pairs with free boundaries
+    par::Array<Backend, std::uint32_t> with_free_boundary;  ///< numbers of these pairs
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
     std::vector<Wrench> wrenches;
@@ -525,7 +531,7 @@ private:
     bool watched = false;
     std::uint32_t boundary_pairs = 0, fixed_pairs = 0;
     par::Array<Backend, std::uint32_t> with_boundary, with_fixed;  ///< numbers of these pairs
-    par::Array<Backend, Float4> velocity_copy, omega_copy;
+    par::Array<Backend, Velocities> velocities_copy;
     par::Array<Backend, BoundaryVelocity> velocities_before, velocities_after;
     par::Array<Backend, float> overlaps;
     /// Largest overlap since the last call of take_largest_overlap() and before the last neighbour search

@@ -36,6 +36,7 @@ struct Environment {
     static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
     std::size_t memory = any, device_memory = any;  ///< available memory of the host and of the GPU [bytes]
+    bool lists_contacts = false;                    ///< whether a table of all contacts is written
     Device device = {};
     std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
     std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...

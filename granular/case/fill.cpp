@@ -47,23 +47,21 @@ double estimated_count(const FillSpec& f)
     return f.type->estimated_count(f, f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius});
 }
 
-std::vector<Particle> fill(const FillSpec& f)
+void fill(const FillSpec& f, const std::function<void(const Particle&)>& use)
 {
     if (!f.particles.empty()) {
-        std::vector<Particle> all = f.particles;
-        for (Particle& p : all) {
+        for (Particle p : f.particles) {
             p.replica = f.replica, p.attached_to = f.attached_to;
             if (f.material >= 0) p.material = f.material;
+            use(p);
         }
-        return all;
+        return;
     }
     const Vec3 margin{f.radius, f.radius, f.radius}, low = f.low + margin, high = f.high - margin;
     Random random(f.seed);
     std::vector<Vec3> places = f.type->centres(f, low, high, random);
     if (f.max_count > 0 && places.size() > f.max_count) places.resize(f.max_count);
     const double free = f.jitter * (f.spacing / 2 - f.radius) / std::sqrt(3.);
-    std::vector<Particle> all;
-    all.reserve(places.size());
     for (const Vec3& r : places) {
         Particle p;
         p.radius = random.number(f.least_radius, f.radius);
@@ -72,8 +70,14 @@ std::vector<Particle> fill(const FillSpec& f)
         p.r = {std::clamp(p.r.x, low.x, high.x), std::clamp(p.r.y, low.y, high.y),
                std::clamp(p.r.z, low.z, high.z)};
         p.v = f.v + f.random_v * random.direction();
-        all.push_back(p);
+        use(p);
     }
+}
+
+std::vector<Particle> fill(const FillSpec& f)
+{
+    std::vector<Particle> all;
+    fill(f, [&](const Particle& p) { all.push_back(p); });
     return all;
 }
 

@@ -7,6 +7,8 @@
 #include "granular/case/split_mix.hpp"
 #include "io/type_schema.hpp"
 
+#include <functional>
+
 namespace hilda::granular {
 
 struct FillType;
@@ -57,7 +59,9 @@ std::vector<Particle> particles_of_csv(const std::string& text, const std::strin
 /// Estimated number of particles
 double estimated_count(const FillSpec& filling);
 
-/// Generates the particles. The result is the same on all platforms (see SplitMix). Throws io::InvalidInput.
+/// Generates the particles and passes each to `use`. The result is the same on all platforms (see SplitMix).
+/// Throws io::InvalidInput.
+void fill(const FillSpec& filling, const std::function<void(const Particle&)>& use);
 std::vector<Particle> fill(const FillSpec& filling);
 
 }  // namespace hilda::granular

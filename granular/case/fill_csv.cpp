@@ -103,6 +103,7 @@ const bool registered = io::Registry<FillType>::add(
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file)
 {
     std::vector<Particle> all;
+    all.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
     io::read_csv(text, file, [&](const io::CsvRow& row) { all.push_back(particle(row)); });
     if (all.empty()) throw io::InvalidInput(file + ": contains no particles");
     return all;

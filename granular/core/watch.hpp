@@ -78,11 +78,16 @@ struct BoundaryVelocity {
     Vec3 v, omega;  ///< [m/s], [rad/s]
 };
 
+/// Velocities of a particle in single precision
+struct Velocities {
+    Vec<float> v, omega;  ///< [m/s], [rad/s]
+};
+
 /// Particle sums of a block; copies the velocities for AddKinetic.
 struct AddParticles {
     ParticleView particles;
-    Float4 *velocity_copy, *omega_copy;  ///< nullptr: only the applied forces are summed
-    const Float4* force;                 ///< by particle id [N]; nullptr if there are none
+    Velocities* copy;     ///< nullptr: only the applied forces are summed
+    const Float4* force;  ///< by particle id [N]; nullptr if there are none
     const std::uint32_t* id;
     std::uint32_t count;
     ParticleSums* out;
@@ -93,14 +98,14 @@ struct AddParticles {
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const Float4 v = particles.velocity[k], w = particles.omega[k];
-            if (velocity_copy != nullptr) velocity_copy[k] = v, omega_copy[k] = w;
+            if (copy != nullptr) copy[k] = {{v.x, v.y, v.z}, {w.x, w.y, w.z}};
             if (!(w.w > 0)) continue;
             const Vec3 v_k = to_double(v);
             if (force != nullptr) {
                 const Vec3 F = to_double(force[id[k]]);
                 sum.force += F, sum.force_power += F.dot(v_k);
             }
-            if (velocity_copy == nullptr) continue;
+            if (copy == nullptr) continue;
             const double m = 1 / static_cast<double>(w.w), speed = v_k.norm();
             sum.mass += m, sum.momentum += m * v_k, sum.momentum_size += m * speed;
             sum.moment += m * global_position(particles.grid, particles.position[k]);
@@ -117,7 +122,8 @@ struct AddParticles {
 /// With the velocities v_{n-1/2} before and v_{n+1/2} = v + s (v' - v) after t_n, T + U(x_n) is constant for
 /// linear springs and for gravity, whatever the step.
 struct AddKinetic {
-    const Float4 *velocity, *omega, *velocity_before, *omega_before;
+    const Float4 *velocity, *omega;
+    const Velocities* before;
     double s;
     std::uint32_t count;
     KineticSums* out;
@@ -126,16 +132,16 @@ struct AddKinetic {
     {
         KineticSums sum;
         const std::uint32_t end = end_of_block(block, count);
-        const auto product = [&](const Float4& before, const Float4& after) {
-            const Vec3 a{before.x, before.y, before.z}, b{after.x, after.y, after.z};
+        const auto product = [&](const Vec<float>& first, const Float4& after) {
+            const Vec3 a{first.x, first.y, first.z}, b{after.x, after.y, after.z};
             return a.dot(a + s * (b - a));
         };
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
-            const Float4 w = omega_before[k], v = velocity_before[k];
+            const Float4 v = velocity[k], w = omega[k];
             if (!(w.w > 0)) continue;
             const double m = 1 / static_cast<double>(w.w), R = v.w;
-            sum.translation += 0.5 * m * product(v, velocity[k]);
-            sum.rotation += 0.2 * m * R * R * product(w, omega[k]);
+            sum.translation += 0.5 * m * product(before[k].v, v);
+            sum.rotation += 0.2 * m * R * R * product(before[k].omega, w);
         }
         out[block] = sum;
     }

@@ -38,7 +38,8 @@ public:
         io::make_directory(directory + "vtk");
         if (!w.all_boundaries().empty())
             io::write_file(directory + boundary_frame(w.steps() / steps), boundaries_vtp(w));
-        io::write_file(directory + frame(w.steps() / steps), particles_vtp(w));
+        io::write_file(directory + frame(w.steps() / steps),
+                       [&](const io::Append& append) { particles_vtp(w, append); });
     }
 
     /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run

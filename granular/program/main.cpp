@@ -13,6 +13,7 @@
 #include "io/files.hpp"
 #include "io/program.hpp"
 
+#include <malloc.h>
 #include <omp.h>
 #include <cstdio>
 #include <filesystem>
@@ -41,8 +42,11 @@ std::string folder_of(const std::string& file)
 
 int run_case(const Options& o)
 {
-    Environment here{
-        .memory = available_memory(), .device = o.device, .settings = o.settings, .seed = o.seed};
+    Environment here{.memory = available_memory(),
+                     .lists_contacts = o.outputs.contains("--contacts"),
+                     .device = o.device,
+                     .settings = o.settings,
+                     .seed = o.seed};
     make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     if (!o.allow_paths) here.folder = folder_of(o.file);
@@ -92,5 +96,7 @@ int run_program(int argc, char** argv)
 int main(int argc, char** argv)
 {
     let_threads_sleep(argc, argv);
+    mallopt(M_MMAP_THRESHOLD,
+            1 << 20);  // arrays and texts of all particles return to the system when they end
     return io::run_program([&] { return run_program(argc, argv); });
 }

@@ -21,8 +21,11 @@ public:
     void node(const World&) override {}
     void close() override
     {
-        io::write_file(directory + "/particles.csv", particles_csv(world));
-        if (with_contacts) io::write_file(directory + "/contacts.csv", contacts_csv(world));
+        io::write_file(directory + "/particles.csv",
+                       [&](const io::Append& append) { particles_csv(world, append); });
+        if (with_contacts)
+            io::write_file(directory + "/contacts.csv",
+                           [&](const io::Append& append) { contacts_csv(world, append); });
     }
     std::vector<std::string> files() const override
     {

@@ -17,65 +17,78 @@ void append(std::string& to, const Vec3& v)
     }
 }
 
+/// Passes a long text on.
+void pass_on_full(std::string& text, const io::Append& append_piece)
+{
+    constexpr std::size_t full = 1 << 20;
+    if (text.size() < full) return;
+    append_piece(text);
+    text.clear();
+}
+
 }  // namespace
 
 std::string particles_csv(const World& world)
 {
+    std::string csv;
+    particles_csv(world, [&](std::string_view piece) { csv += piece; });
+    return csv;
+}
+
+void particles_csv(const World& world, const io::Append& append_piece)
+{
     const bool orientation = world.has_orientation();
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
     csv += orientation ? ",e0,e1,e2,e3\n" : "\n";
-    csv.reserve((orientation ? 300 : 220) * world.count());
-    for (const Particle& p : world.particles()) {
+    world.each_particle([&](const Particle& p) {
         csv += std::to_string(p.id) + ',' + std::to_string(p.material) + ',';
         io::append_number(csv, p.radius);
         append(csv, p.r), append(csv, p.v), append(csv, p.omega);
         for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', io::append_number(csv, p.e[k]);
         csv += '\n';
-    }
-    return csv;
+        pass_on_full(csv, append_piece);
+    });
+    append_piece(csv);
 }
 
-std::string contacts_csv(const World& world)
+void contacts_csv(const World& world, const io::Append& append_piece)
 {
     std::string csv = "i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz\n";
-    const std::vector<ContactRecord> all = world.contacts();
-    csv.reserve(240 * all.size());
-    for (const ContactRecord& c : all) {
+    for (const ContactRecord& c : world.contacts()) {
         csv += std::to_string(c.i) + ',' + std::to_string(c.j) + ',' + (c.boundary ? '1' : '0');
         append(csv, c.n);
         csv += ',';
         io::append_number(csv, c.delta);
         append(csv, c.F), append(csv, c.u);
         csv += '\n';
+        pass_on_full(csv, append_piece);
     }
-    return csv;
+    append_piece(csv);
 }
 
-std::string particles_vtp(const World& world)
+void particles_vtp(const World& world, const io::Append& append_piece)
 {
-    std::vector<float> radius;
-    std::vector<double> r, v, omega, e;
-    std::vector<std::int32_t> material, id;
-    for (const Particle& p : world.particles()) {
-        id.push_back(static_cast<std::int32_t>(p.id));
-        radius.push_back(static_cast<float>(p.radius)), material.push_back(p.material);
-        r.insert(r.end(), {p.r.x, p.r.y, p.r.z});
-        v.insert(v.end(), {p.v.x, p.v.y, p.v.z});
-        omega.insert(omega.end(), {p.omega.x, p.omega.y, p.omega.z});
-        e.insert(e.end(), p.e.begin(), p.e.end());
-    }
-    io::VtkPolyData file({{"NumberOfPoints", id.size()}});
+    io::VtkPolyData file({{"NumberOfPoints", world.count()}});
+    const auto array = [&]<class Number>(const char* name, int components, Number, const auto& value) {
+        file.array<Number>(name, components, world.count() * static_cast<std::size_t>(components),
+                           [&world, value](const std::function<void(Number)>& put) {
+                               world.each_particle([&](const Particle& p) {
+                                   for (const auto x : value(p)) put(static_cast<Number>(x));
+                               });
+                           });
+    };
+    const auto three = [](const Vec3& v) { return std::array{v.x, v.y, v.z}; };
     file.section("PointData");
-    file.array("radius", 1, radius);
-    file.array("velocity", 3, v);
-    file.array("angular velocity", 3, omega);
+    array("radius", 1, float{}, [](const Particle& p) { return std::array{p.radius}; });
+    array("velocity", 3, double{}, [&](const Particle& p) { return three(p.v); });
+    array("angular velocity", 3, double{}, [&](const Particle& p) { return three(p.omega); });
     // Order e0, e1, e2, e3, as vtkGlyph3DMapper (representation 3D Glyphs) expects quaternions
-    if (world.has_orientation()) file.array("orientation", 4, e);
-    file.array("material", 1, material);
-    file.array("id", 1, id);
+    if (world.has_orientation()) array("orientation", 4, double{}, [](const Particle& p) { return p.e; });
+    array("material", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.material}; });
+    array("id", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.id}; });
     file.section("Points");
-    file.array("Points", 3, r);
-    return file.text();
+    array("Points", 3, double{}, [&](const Particle& p) { return three(p.r); });
+    file.write(append_piece);
 }
 
 std::array<double, 9> stress(const World& world, const std::vector<ContactRecord>& contacts, double volume)

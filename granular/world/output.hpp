@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Output of a world: tables (CSV) and frames for ParaView (VTK), as strings.
+/// Output of a world: tables (CSV) and frames for ParaView (VTK).
 
 #pragma once
 
 #include "granular/world/world.hpp"
+#include "io/files.hpp"
 
 namespace hilda::granular {
 
 /// One line per particle, ordered by id: id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z, and
 /// e0,e1,e2,e3 if the world integrates orientations. SI units, global frame.
 std::string particles_csv(const World& world);
+/// The same in pieces of about 1 MiB
+void particles_csv(const World& world, const io::Append& append);
 /// One line per contact: i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz. See ContactRecord.
-std::string contacts_csv(const World& world);
+void contacts_csv(const World& world, const io::Append& append);
 /// The particles as points with radius, velocity, angular velocity, material, id and, if integrated,
-/// orientation. VTK XML PolyData with raw appended data.
-std::string particles_vtp(const World& world);
+/// orientation. VTK XML PolyData with raw appended data, in pieces.
+void particles_vtp(const World& world, const io::Append& append);
 
 /// Love-Weber stress of the contacts over a volume V [m³]:
 ///

@@ -140,6 +140,8 @@ public:
     /// it is inserted during a run, schemes that use the previous acceleration start it with that of
     /// gravity.
     std::uint32_t add(const Particle& particle);
+    /// Reserves memory for further particles.
+    void reserve(std::size_t particles) { pending.reserve(pending.size() + particles); }
 
     /// Inserts pending particles and computes n ≥ 0 steps. Throws io::InvalidInput if a pending particle
     /// cannot be inserted (with n = 0 as well), ParticleLost, DeviceError; OverlapTooLarge and EnergyCreated
@@ -155,6 +157,8 @@ public:
     long steps() const { return step_count; }
 
     std::vector<Particle> particles() const;  ///< state at t, ordered by id, pending particles last
+    /// Calls f for each particle, in the same order, without a list of all.
+    void each_particle(const std::function<void(const Particle&)>& f) const;
     /// Contacts at t: those between particles, with i < j, then those with boundaries. Each group is
     /// ordered by i, then by j. Throws ParticleLost if the neighbour list has to be rebuilt and a particle
     /// is outside the domain.
@@ -263,8 +267,8 @@ public:
     double copy_rate() { return engine->copy_rate(); }
     /// Memory of all arrays on the device [bytes]
     std::size_t bytes() const { return engine->bytes(); }
-    /// Estimate of the memory that a dense bed needs [bytes], including the temporary memory of the insertion
-    static std::size_t bytes_needed(std::size_t particles, bool orientation = false);
+    /// Estimate of the memory of all arrays on the device for a dense bed [bytes]
+    static std::size_t bytes_needed(std::size_t particles, bool rotation_laws, bool orientation);
     bool has_orientation() const { return options.orientation; }
     /// Forces a rebuild of the neighbour list before the next step.
     void invalidate_neighbours() { particle_displacement = std::numeric_limits<double>::infinity(); }
@@ -294,6 +298,8 @@ private:
     void transfer_particles(io::Archive& a);
     void restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build);
     void insert_pending();
+    void insert(const std::vector<Particle>& all);
+    Particle particle_at(std::uint32_t k) const;
     Domain domain_of(const std::vector<Particle>& all) const;
     bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
     [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;

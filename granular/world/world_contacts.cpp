@@ -138,9 +138,16 @@ std::vector<ContactRecord> World::contacts() const
         for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n)
             if (now.touching(n)) parts[part].push_back(contact(now, n));
     });
+    std::size_t number = 0;
+    for (const auto& part : parts) number += part.size();
     std::vector<ContactRecord> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    std::stable_sort(all.begin(), all.end(), [](const ContactRecord& a, const ContactRecord& b) {
+    all.reserve(number);
+    for (auto& part : parts) {
+        all.insert(all.end(), part.begin(), part.end());
+        std::vector<ContactRecord>().swap(part);
+    }
+    // Keys differ, so that the order is unique; std::stable_sort needs more memory.
+    std::sort(all.begin(), all.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return std::tie(a.boundary, a.i, a.j) < std::tie(b.boundary, b.i, b.j);
     });
     return all;
@@ -217,14 +224,14 @@ World::Totals World::totals() const
 std::vector<World::ReplicaTotals> World::replica_totals() const
 {
     std::vector<ReplicaTotals> all;
-    for (const Particle& p : particles()) {
+    each_particle([&](const Particle& p) {
         if (p.replica >= all.size()) all.resize(p.replica + std::size_t{1});
         ReplicaTotals& sum = all[p.replica];
         ++sum.particles;
         sum.kinetic_energy +=
             0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
         sum.momentum += p.mass * p.v;
-    }
+    });
     if (inserted_count > 0) all.resize(std::max<std::size_t>(all.size(), domain.replicas));
     for (ReplicaTotals& sum : all) sum.on_boundary.resize(boundaries.size());
     add_totals([&](std::uint16_t replica) -> Totals* { return &all[replica]; });

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <tuple>
+#include <utility>
 
 namespace hilda::granular {
 
@@ -201,9 +202,32 @@ void World::insert_pending()
     if (pending.empty()) return;
     if (laws.empty()) refuse("world", "at least one law must be set", "none");
     if (removes()) remove_outside();
-    const std::vector<Particle> all = particles();
+    const std::uint32_t first = next_id;
+    if (inserted_count > 0) {
+        insert(particles());
+    } else {  // without a copy
+        const std::vector<Particle> all = std::exchange(pending, {});
+        try {
+            insert(all);
+        } catch (...) {
+            if (inserted_count == 0) pending = all;
+            throw;
+        }
+    }
+    rebuild_neighbours();
+    try {
+        check_overlaps(first);
+    } catch (const io::InvalidInput& e) {
+        insertion_error = e.what();
+        throw;
+    }
+}
+
+/// Writes these particles to the arrays, ordered by id.
+void World::insert(const std::vector<Particle>& all)
+{
     const Domain next = domain_of(all);
-    const std::vector<CellPosition> located = cell_positions(next, all);
+    std::vector<CellPosition> located = cell_positions(next, all);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
     const std::uint32_t first = next_id;
@@ -253,21 +277,14 @@ void World::insert_pending()
                                                     rounding_error(e2), rounding_error(e3)};
         }
     }
-    for (const Particle& particle : pending)
-        if (particle.attached_to >= 0) attach(particle);
-    pending.clear();
+    for (const Particle& particle : all)
+        if (particle.id >= first && particle.attached_to >= 0) attach(particle);
+    std::vector<Particle>().swap(pending);
     start_balance();
     inserted_count = all.size();
     next_id = all.back().id + 1;
     if (!forces.empty()) forces.resize(next_id), forces_changed = true;
     engine->arrays_modified();
-    rebuild_neighbours();
-    try {
-        check_overlaps(first);
-    } catch (const io::InvalidInput& e) {
-        insertion_error = e.what();
-        throw;
-    }
 }
 
 /// Checks that each pair of materials that can be in contact has a law. Throws io::InvalidInput.

@@ -9,37 +9,53 @@ namespace hilda::granular {
 
 using namespace detail;
 
-std::vector<Particle> World::particles() const
+/// State of the particle with index k in the arrays
+Particle World::particle_at(std::uint32_t k) const
 {
     const Particles<par::Cpu>& in = engine->arrays().particle;
-    const CellGrid& grid = domain.grid;
-    std::vector<Particle> all(in.count);
-    const bool none_removed = next_id == in.count;
-    for (std::uint32_t k = 0; k < in.count; ++k) {
-        const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
-        const Compensation& compensation = in.compensation.data()[k];
-        const Species species = in.species.data()[k];
-        Particle& p = all[none_removed ? in.id.data()[k] : k];
-        p.id = in.id.data()[k];
-        p.r = global_position(grid, in.position.data()[k]) +
-              grid.unit * to_double(unpack_remainder<float>(compensation.displacement));
-        p.v = to_double(v) + to_double(load_bfloat16(compensation.v));
-        p.omega = to_double(w) + to_double(load_bfloat16(compensation.omega));
-        if (in.orientation.size() > 0) {
-            const Float4 e = in.orientation.data()[k], remainder = in.orientation_compensation.data()[k];
-            p.e = unit({double(e.x) + remainder.x, double(e.y) + remainder.y, double(e.z) + remainder.z,
-                        double(e.w) + remainder.w});
-        }
-        p.radius = v.w;
-        p.material = species.material;
-        p.replica = species.replica;
-        p.fixed = w.w == 0;
-        p.mass = p.fixed ? sphere_mass(p.radius, materials[species.material].density)
-                         : 1 / static_cast<double>(w.w);
+    const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
+    const Compensation& compensation = in.compensation.data()[k];
+    const Species species = in.species.data()[k];
+    Particle p;
+    p.id = in.id.data()[k];
+    p.r = global_position(domain.grid, in.position.data()[k]) +
+          domain.grid.unit * to_double(unpack_remainder<float>(compensation.displacement));
+    p.v = to_double(v) + to_double(load_bfloat16(compensation.v));
+    p.omega = to_double(w) + to_double(load_bfloat16(compensation.omega));
+    if (in.orientation.size() > 0) {
+        const Float4 e = in.orientation.data()[k], remainder = in.orientation_compensation.data()[k];
+        p.e = unit({double(e.x) + remainder.x, double(e.y) + remainder.y, double(e.z) + remainder.z,
+                    double(e.w) + remainder.w});
     }
-    if (!none_removed)
-        std::sort(all.begin(), all.end(), [](const Particle& p, const Particle& q) { return p.id < q.id; });
-    all.insert(all.end(), pending.begin(), pending.end());
+    p.radius = v.w;
+    p.material = species.material;
+    p.replica = species.replica;
+    p.fixed = w.w == 0;
+    p.mass =
+        p.fixed ? sphere_mass(p.radius, materials[species.material].density) : 1 / static_cast<double>(w.w);
+    return p;
+}
+
+void World::each_particle(const std::function<void(const Particle&)>& f) const
+{
+    const std::uint32_t* const id = engine->arrays().particle.id.data();
+    std::vector<std::uint32_t> order(engine->arrays().particle.count);
+    if (next_id == order.size()) {  // none was removed
+        for (std::uint32_t k = 0; k < order.size(); ++k) order[id[k]] = k;
+    } else {
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
+    }
+    for (const std::uint32_t k : order) f(particle_at(k));
+    for (const Particle& p : pending) f(p);
+}
+
+std::vector<Particle> World::particles() const
+{
+    std::vector<Particle> all;
+    all.reserve(count());
+    each_particle([&](const Particle& p) { all.push_back(p); });
     return all;
 }
 
@@ -73,16 +89,15 @@ double World::kinetic_energy() const
 Vec3 World::momentum() const
 {
     Vec3 P{0, 0, 0};
-    for (const Particle& p : particles()) P += p.mass * p.v;
+    each_particle([&](const Particle& p) { P += p.mass * p.v; });
     return P;
 }
 
 World::StepLimits World::step_limits(double least_speed) const
 {
     StepLimits limits;
-    const std::vector<Particle> all = particles();
     double speed = least_speed;
-    for (const Particle& p : all) speed = std::max(speed, p.v.norm());
+    each_particle([&](const Particle& p) { speed = std::max(speed, p.v.norm()); });
     const auto add_collision = [&](double mass, double R) {
         double& shortest = limits.collision;
         const auto add = [&](const auto& l) {
@@ -100,10 +115,10 @@ World::StepLimits World::step_limits(double least_speed) const
         };
         for (const PairLaw& law : laws) law.normal.visit(add);
     };
-    for (const Particle& p : all) {
+    each_particle([&](const Particle& p) {
         const Material& m = materials[static_cast<std::size_t>(p.material)];
         const double G = m.E / (2 * (1 + m.nu));
-        if (p.fixed) continue;
+        if (p.fixed) return;
         limits.rayleigh =
             std::min(limits.rayleigh, M_PI * p.radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766));
         add_collision(p.mass / 2, p.radius / 2);  // of two equal particles
@@ -111,7 +126,7 @@ World::StepLimits World::step_limits(double least_speed) const
             if (b.inside != 0 && b.radius > p.radius && b.radius < 2 * p.radius)
                 add_collision(1 / (1 / p.mass + b.inverse_mass()),
                               effective_radius(b, p.radius, nearest(b, b.r)));
-    }
+    });
     return limits;
 }
 
@@ -120,14 +135,19 @@ bool World::laws_have_energy() const
     return std::all_of(laws.begin(), laws.end(), [](const PairLaw& law) { return law.has_energy(); });
 }
 
-std::size_t World::bytes_needed(std::size_t n, bool orientation)
+std::size_t World::bytes_needed(std::size_t n, bool rotation_laws, bool orientation)
 {
-    // arrays of a world with rolling and spin laws; 6 pairs per particle
-    constexpr std::size_t of_particle = 3 * sizeof(Position) + 6 * sizeof(Float4) + sizeof(Compensation) +
-                                        sizeof(Species) + 40,
-                          of_pair = 3 * sizeof(Float4) + sizeof(Load) + 14, pairs = 6;
-    return n *
-           (of_particle + (orientation ? 2 * sizeof(Float4) : 0) + pairs * of_pair + 2 * sizeof(Particle));
+    // A settled bed of equal spheres has 3.5 to 4 pairs per particle with the default skin.
+    constexpr double pairs = 3.6, head_room = 1 + 1 / 32.;
+    constexpr double of_state = 2 * sizeof(Position) + 2 * sizeof(Float4) + sizeof(Compensation) +
+                                sizeof(Species) + sizeof(std::uint32_t),
+                     of_search = sizeof(Float4) + sizeof(std::uint64_t) + 5 * sizeof(std::uint32_t),
+                     of_watch = sizeof(Velocities) + sizeof(ParticleSums) / 64., of_sweep = sizeof(Load),
+                     of_pair = 3 * sizeof(std::uint32_t) + sizeof(Float4) + sizeof(Load) + 2;
+    const double each = of_state + of_search + of_watch + of_sweep + pairs * of_pair +
+                        (rotation_laws ? sizeof(Float4) * (1 + 2 * pairs) : 0) +
+                        (orientation ? 2 * sizeof(Float4) : 0);
+    return static_cast<std::size_t>(head_room * each * static_cast<double>(n));
 }
 
 }  // namespace hilda::granular

@@ -479,9 +479,9 @@ TEST_CASE("a case that exceeds the available memory is rejected before memory is
                Catch::EndsWith(" GB of memory of the GPU; 64 GB are available"));
     c["fill"][0]["count"] = 100;
     CHECK_NOTHROW(read_case(c.dump(), "file", {.memory = 64'000'000'000}));
-    CHECK_THAT(refusal(c.dump(), {.memory = 100'000}),
+    CHECK_THAT(refusal(c.dump(), {.memory = 10'000}),
                Catch::StartsWith("file: /fill: 101 particles need about ") &&
-                   Catch::EndsWith(" GB of memory; 0.0001 GB are available"));
+                   Catch::EndsWith(" GB of memory; 1e-05 GB are available"));
     c["domain"]["high"] = {1, 1, 1e4};
     c["fill"][0]["low"] = {0, 0, 0.7};
     c["particles"] = ordered_json::array();

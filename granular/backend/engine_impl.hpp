@@ -18,25 +18,37 @@ namespace hilda::granular {
 
 namespace detail {
 
-/// flag[n] = 1 for a pair with a boundary that has a mass
-struct FlagFreeBoundaryPair {
+/// Whether a pair has a boundary with a mass
+struct HasFreeBoundary {
     const std::uint32_t* j;
     const Boundary* boundary;
-    std::uint32_t* flag;
-    HILDA_HD void operator()(std::uint32_t n) const
+    HILDA_HD bool operator()(std::uint32_t n) const
     {
-        flag[n] =
-            (j[n] & PairView::boundary_bit) != 0 && boundary[j[n] & ~PairView::boundary_bit].mass > 0 ? 1 : 0;
+        return (j[n] & PairView::boundary_bit) != 0 && boundary[j[n] & ~PairView::boundary_bit].mass > 0;
     }
 };
 
-/// Writes the indices of the flagged pairs, in their order.
-struct CompactIndices {
-    const std::uint32_t* offset;  ///< number of flagged pairs before each pair
-    std::uint32_t* which;
-    HILDA_HD void operator()(std::uint32_t n) const
+/// Counts the pairs of a block that fulfil a condition, and writes their numbers in their order.
+template <class Condition>
+struct ListPairs {
+    static constexpr std::uint32_t block = 64;
+
+    Condition is_listed;
+    std::uint32_t pairs;
+    std::uint32_t* count;         ///< of the pairs of each block
+    const std::uint32_t* before;  ///< number of listed pairs before each block
+    std::uint32_t* list;          ///< nullptr: the pairs are only counted
+
+    HILDA_HD void operator()(std::uint32_t number) const
     {
-        if (offset[n + 1] > offset[n]) which[offset[n]] = n;
+        const std::uint32_t begin = number * block, end = pairs - begin < block ? pairs : begin + block;
+        std::uint32_t listed = 0;
+        for (std::uint32_t n = begin; n < end; ++n) {
+            if (!is_listed(n)) continue;
+            if (list != nullptr) list[before[number] + listed] = n;
+            ++listed;
+        }
+        if (list == nullptr) count[number] = listed;
     }
 };
 
@@ -56,10 +68,11 @@ struct ComputeBoundaryLoad {
     HILDA_HD void operator()(std::uint32_t k) const
     {
         const std::uint32_t n = which[k], b = pairs.j[n] & ~PairView::boundary_bit;
-        const Vec3 F = -to_double(pairs.load[n].F),
+        const Load& load = pairs.load_of(n);
+        const Vec3 F = -to_double(load.F),
                    r = global_position(particles.grid, particles.position[pairs.i[n]]);
-        Vec3 T = contact_lever(boundary[b], r, pairs.load[n].M.w).cross(F);
-        if (pairs.torque != nullptr) T -= to_double(pairs.torque[n]);
+        Vec3 T = contact_lever(boundary[b], r, load.M.w).cross(F);
+        if (pairs.torque != nullptr) T -= to_double(pairs.torque_of(n));
         out[k] = {F, T, b};
     }
 };
@@ -166,33 +179,33 @@ public:
         plan.reset();
         free_pairs = 0;
         if (any_free)
-            free_pairs =
-                list_pairs(detail::FlagFreeBoundaryPair{own.pairs.j.data(), boundaries.data(), nullptr},
-                           with_free_boundary);
+            free_pairs = list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), boundaries.data()},
+                                    with_free_boundary);
         if (watched) prepare_watch();
     }
 
     void find_loads(const Domain& domain, float h, bool store) override
     {
         host_is_current = false;
+        if constexpr (is_cpu) {
+            const SweepPlan::Ahead ahead = store     ? SweepPlan::Ahead::all
+                                           : watched ? SweepPlan::Ahead::with_fixed
+                                                     : SweepPlan::Ahead::none;
+            if (!plan.is_for(omp_get_max_threads(), ahead)) {
+                plan.make(own.particle, own.pairs, omp_get_max_threads(), ahead);
+                resize_overlaps();
+            }
+        }
         PairView pairs = pair_view();
         if (watched) pairs.largest_overlap = overlaps.data();
         const ParticleView particles = particle_view(domain, own.particle);
         if constexpr (is_cpu) {
-            if (!store) {
-                if (plan.threads() != omp_get_max_threads()) {
-                    plan.make(own.particle, own.pairs, omp_get_max_threads(), watched);
-                    resize_overlaps();
-                    if (watched) pairs.largest_overlap = overlaps.data();
-                }
-                find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
-                                  static_cast<std::uint32_t>(plan.list.size()));
-                pending = {particles, pairs, law_view(h)};
-                sweeps = true;
-                return;
-            }
+            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
+                              static_cast<std::uint32_t>(plan.list.size()));
+            pending = {particles, pairs, law_view(h)};
+        } else {
+            granular::find_loads(on, particles, pairs, law_view(h));
         }
-        granular::find_loads(on, particles, pairs, law_view(h));
     }
 
     float advance(const StepParameters& step) override
@@ -216,10 +229,12 @@ public:
                                  .force = force.size() > 0 ? force.data() : nullptr,
                                  .id = p.id.data(),
                                  .step = step};
-        if constexpr (is_cpu)
-            if (std::exchange(sweeps, false))
-                return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, p.count);
-        return granular::advance(on, p.count, arrays);
+        if constexpr (is_cpu) {
+            if (step.part == Part::before_loads) return advance_before_loads(on, p.count, arrays);
+            return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, p.count);
+        } else {
+            return granular::advance(on, p.count, arrays);
+        }
     }
 
     float largest_displacement() override
@@ -345,9 +360,9 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               with_free_boundary.bytes() + boundary_loads.bytes() + watch_bytes() + attached.bytes() +
-               attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() + block_start.bytes() +
-               block_boundary.bytes();
+               with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
+               attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
+               block_start.bytes() + block_boundary.bytes();
     }
 
 private:
@@ -365,7 +380,8 @@ private:
                 .torque = rotation_laws ? p.torque.data() : nullptr,
                 .in_contact = p.in_contact.data(),
                 .count = p.count,
-                .internal = internal ? p.internal.data() : nullptr};
+                .internal = internal ? p.internal.data() : nullptr,
+                .stored = is_cpu ? plan.stored() : StoredLoads{}};
     }
 
     LawView law_view(float h) const
@@ -384,24 +400,20 @@ private:
                                    static_cast<std::uint32_t>(attached.size()), attached_index.data()});
     }
 
-    /// Writes the numbers of the pairs that `flag` marks to `list`, in their order. Returns how many there
-    /// are. Called after a neighbour search.
-    template <class Flag>
-    std::uint32_t list_pairs(Flag flag, par::Array<Backend, std::uint32_t>& list)
+    /// Writes the numbers of the pairs that fulfil a condition to `list`, in their order. Returns how many
+    /// there are. Called after a neighbour search.
+    template <class Condition>
+    std::uint32_t list_pairs(const Condition& condition, par::Array<Backend, std::uint32_t>& list)
     {
-        const std::uint32_t n = own.pairs.count;
-        if (n == 0) return 0;
-        // Flags and offsets are in the memory of the loads, which are zero after a neighbour search.
-        static_assert(sizeof(Load) >= 3 * sizeof(std::uint32_t));
-        auto* const memory = reinterpret_cast<std::uint32_t*>(own.pairs.load.data());
-        std::uint32_t* const offset = memory + n;
-        flag.flag = memory;
-        par::for_each(on, n, flag);
-        const auto count = static_cast<std::uint32_t>(par::exclusive_scan(on, memory, offset, n));
-        list.resize(count);
-        par::for_each(on, n, detail::CompactIndices{offset, list.data()});
-        par::fill(on, own.pairs.load.data(), std::min(n, (2 * n + 1) / 8 + 1), Load{});
-        return count;
+        using List = detail::ListPairs<Condition>;
+        const std::uint32_t n = own.pairs.count, blocks = (n + List::block - 1) / List::block;
+        listed_counts.resize(2 * std::size_t{blocks} + 1);
+        std::uint32_t *const count = listed_counts.data(), *const before = count + blocks;
+        par::for_each(on, blocks, List{condition, n, count, before, nullptr});
+        const auto listed = static_cast<std::uint32_t>(par::exclusive_scan(on, count, before, blocks));
+        list.resize(listed);
+        if (listed > 0) par::for_each(on, blocks, List{condition, n, count, before, list.data()});
+        return listed;
     }
 
     /// Lists the pairs with external loads and provides the memory of the sums.
@@ -411,10 +423,10 @@ private:
         const Float4* const omega = own.particle.omega.data();
         boundary_pairs = fixed_pairs = 0;
         if (boundaries.size() > 0)
-            boundary_pairs = list_pairs(FlagBoundaryPair{own.pairs.j.data(), nullptr}, with_boundary);
+            boundary_pairs = list_pairs(HasBoundary{own.pairs.j.data()}, with_boundary);
         if (par::largest(on, n, detail::IsFixed{omega}) > 0)
             fixed_pairs =
-                list_pairs(FlagFixedPair{own.pairs.i.data(), own.pairs.j.data(), omega, nullptr}, with_fixed);
+                list_pairs(HasFixedParticle{own.pairs.i.data(), own.pairs.j.data(), omega}, with_fixed);
         velocities_copy.resize(n);
         particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
         contact_blocks.resize(watch_blocks(pairs));
@@ -488,11 +500,10 @@ private:
             one(p.acc, pf.acc), one(p.alpha, pf.alpha);
         one(p.orientation, pf.orientation), one(p.orientation_compensation, pf.orientation_compensation);
         one(p.position_at_build, pf.position_at_build);
-        one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.other_start, qf.other_start);
-        one(q.other, qf.other), one(q.law, qf.law), one(q.in_contact, qf.in_contact),
-            one(q.history, qf.history);
-        one(q.rotation_history, qf.rotation_history), one(q.torque, qf.torque), one(q.load, qf.load);
-        one(q.internal, qf.internal);
+        // The host does not use the loads.
+        one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.law, qf.law);
+        one(q.in_contact, qf.in_contact), one(q.history, qf.history);
+        one(q.rotation_history, qf.rotation_history), one(q.internal, qf.internal);
         p.count = pf.count, q.count = qf.count;
     }
 
@@ -518,10 +529,10 @@ private:
         PairView pairs;
         LawView laws;
     } pending = {};
-    bool sweeps = false;  ///< whether advance() computes the loads as well
     std::uint32_t materials = 1, free_pairs = 0;
     bool one_law = true, rotation_laws = false, internal = false, any_free = false;
     par::Array<Backend, std::uint32_t> with_free_boundary;  ///< numbers of these pairs
+    par::Array<Backend, std::uint32_t> listed_counts;       ///< memory of list_pairs()
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
     std::vector<Wrench> wrenches;

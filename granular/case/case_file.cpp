@@ -68,8 +68,9 @@ void check_memory(const io::JsonSource& source, double particles, double largest
     const Vec3 size = o.high - o.low;
     const double edge = largest * (1 + o.skin),
                  cells = (size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) * (replicas + 1.);
-    const double in_world =
-        1e-3 * static_cast<double>(World::bytes_needed(1000, rotation_laws, o.orientation));
+    const auto in_world = [&](Device::Kind device) {
+        return 1e-3 * static_cast<double>(World::bytes_needed(1000, rotation_laws, o.orientation, device));
+    };
     const auto check = [&](const char* place, double many, const char* of, double each, std::size_t have,
                            const char* where) {
         if (many * each <= static_cast<double>(have)) return;
@@ -79,8 +80,9 @@ void check_memory(const io::JsonSource& source, double particles, double largest
         source.fail(place, what);
     };
     check("/fill", particles, "particles",
-          in_world + of_output + (available.lists_contacts ? of_contacts : 0), available.memory, "");
-    check("/fill", particles, "particles", in_world, available.device_memory, " of the GPU");
+          in_world(Device::cpu) + of_output + (available.lists_contacts ? of_contacts : 0), available.memory,
+          "");
+    check("/fill", particles, "particles", in_world(Device::cuda), available.device_memory, " of the GPU");
     if (particles > 0)
         check("/domain", cells, "cells", of_cell, std::min(available.memory, available.device_memory), "");
 }

@@ -8,12 +8,32 @@
 #include "granular/core/pair_law.hpp"
 #include "granular/core/particles.hpp"
 
+#include <bit>
+
 namespace hilda::granular {
 
 /// Load of a contact: force F on body i and -F on body j [N]. The tangential force exerts the torque R M on
 /// either body, with its own radius R and M [N] of FrictionTorque. M.w is FrictionTorque::depth.
 struct alignas(32) Load {
     Float4 F, M;
+};
+
+/// The pairs whose loads are stored, in their order: slot(n) is the number of the load of pair n. On the CPU
+/// most loads are added to their particles at once and not stored; see sweep.hpp.
+struct StoredLoads {
+    const std::uint64_t* marks = nullptr;   ///< one bit per pair; nullptr: all pairs
+    const std::uint32_t* before = nullptr;  ///< number of marked pairs before each word of marks
+
+    HILDA_HD std::uint32_t slot(std::uint32_t n) const
+    {
+        if (marks == nullptr) return n;
+        const std::uint64_t lower = marks[n >> 6] & ((std::uint64_t{1} << (n & 63)) - 1);
+#ifdef __CUDA_ARCH__
+        return before[n >> 6] + static_cast<std::uint32_t>(__popcll(lower));
+#else
+        return before[n >> 6] + static_cast<std::uint32_t>(std::popcount(lower));
+#endif
+    }
 };
 
 /// The neighbour list with loads and histories. i is the index of a particle. j is the index of a particle,
@@ -25,8 +45,8 @@ struct PairView {
     const std::uint8_t* law;   ///< index into LawView::law; nullptr if there is a single law
     Float4* history;           ///< u [m]; w: age [s], negative while sliding; zero without contact
     Float4* rotation_history;  ///< psi [rad]; w: spin [rad]; nullptr without laws of rolling and spin
-    Load* load;
-    Float4* torque;            ///< of rolling and spin on body i [N m]; nullptr if rotation_history is
+    Load* load;                ///< by slot; see StoredLoads
+    Float4* torque;  ///< of rolling and spin on body i [N m], by slot; nullptr if rotation_history is
     std::uint8_t* in_contact;  ///< 1 if the bodies overlap
     std::uint32_t count;       ///< number of pairs
     /// Receives the largest overlap over the smaller radius, for each chunk of the loop; nullptr: not
@@ -34,6 +54,10 @@ struct PairView {
     float* largest_overlap = nullptr;
     /// The internal variables of History in their order; nullptr if no law has internal variables
     Float4* internal = nullptr;
+    StoredLoads stored = {};
+
+    HILDA_HD Load& load_of(std::uint32_t n) const { return load[stored.slot(n)]; }
+    HILDA_HD Float4& torque_of(std::uint32_t n) const { return torque[stored.slot(n)]; }
 };
 
 /// Pairs of a chunk of the loop on the CPU; the number of chunks is that of the elements of largest_overlap.

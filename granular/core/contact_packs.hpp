@@ -94,13 +94,19 @@ struct ContactPacks {
         return integers(i, j, R_i, R_j);
     }
 
-    void clear_contact(std::uint32_t n) const
+    void clear_history(std::uint32_t n) const
     {
         pairs.in_contact[n] = 0;
         pairs.history[n] = {};
-        pairs.load[n] = {};
-        if (pairs.rotation_history != nullptr) pairs.rotation_history[n] = {}, pairs.torque[n] = {};
+        if (pairs.rotation_history != nullptr) pairs.rotation_history[n] = {};
         if (pairs.internal != nullptr) pairs.internal[n] = {};
+    }
+    /// The same for a pair with a stored load
+    void clear_contact(std::uint32_t n) const
+    {
+        clear_history(n);
+        pairs.load_of(n) = {};
+        if (pairs.rotation_history != nullptr) pairs.torque_of(n) = {};
     }
 
     /// The loads of a pack of contacts of particles i and j, with one law; n: numbers of the pairs.
@@ -175,9 +181,12 @@ struct ContactPacks {
     /// Stores the loads of the pairs n.
     void store_loads(const PackLoad& load, const std::uint32_t* n) const
     {
-        store_rows(load.F, [&](int k) { return &pairs.load[n[k]].F; });
-        store_rows(load.M, [&](int k) { return &pairs.load[n[k]].M; });
-        if (pairs.rotation_history != nullptr) store_rows(load.T, [&](int k) { return &pairs.torque[n[k]]; });
+        std::uint32_t slot[lanes];
+        for (int k = 0; k < lanes; ++k) slot[k] = pairs.stored.slot(n[k]);
+        store_rows(load.F, [&](int k) { return &pairs.load[slot[k]].F; });
+        store_rows(load.M, [&](int k) { return &pairs.load[slot[k]].M; });
+        if (pairs.rotation_history != nullptr)
+            store_rows(load.T, [&](int k) { return &pairs.torque[slot[k]]; });
     }
 };
 

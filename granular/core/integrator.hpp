@@ -147,8 +147,8 @@ struct AdvanceView {
     Float4 *velocity, *omega;
     Compensation* compensation;
     Float4 *acc, *alpha;  ///< of the previous step; nullptr if the scheme does not use them
-    Float4 *orientation, *orientation_compensation;  ///< nullptr unless orientations are stored
-    const std::uint32_t *start, *other_start, *other;
+    Float4 *orientation, *orientation_compensation;    ///< nullptr unless orientations are stored
+    const std::uint32_t *start, *other_start, *other;  ///< the last two and the loads: not used on the CPU
     const Load* load;
     const std::uint8_t* in_contact;  ///< the load of a pair without contact is zero
     const Float4* torque;            ///< nullptr without laws of rolling and spin
@@ -157,11 +157,9 @@ struct AdvanceView {
     StepParameters step;
 };
 
-/// Advances all particles. The loads of a particle are summed in the order of its pairs, so that the result
-/// does not depend on the number of threads. Returns the largest |v|² of the particles that are not fixed
-/// [m²/s²]; NaN if one is NaN.
-float advance(par::Cpu, std::uint32_t particles, const AdvanceView& arrays);
-/// The same for the other back ends; see loops.hpp.
+/// Advances all particles on a back end other than the CPU, which has sweep(); see loops.hpp. The loads of a
+/// particle are summed in the order of its pairs, so that the result does not depend on the number of
+/// threads. Returns the largest |v|² of the particles that are not fixed [m²/s²]; NaN if one is NaN.
 template <class Backend>
 float advance(Backend on, std::uint32_t particles, const AdvanceView& arrays);
 

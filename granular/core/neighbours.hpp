@@ -9,6 +9,8 @@
 #include "granular/core/boundary_blocks.hpp"
 #include "granular/core/contact_loop.hpp"
 
+#include <type_traits>
+
 namespace hilda::granular {
 
 /// The particle arrays of a back end. A neighbour search sorts them by (replica, cell, id).
@@ -43,8 +45,12 @@ struct Particles {
 ///
 /// Compressed sparse rows: the pairs with particle p as i are start[p] … start[p + 1] - 1. The pairs with p
 /// as j are other[other_start[p]] … other[other_start[p + 1] - 1].
+///
+/// On the CPU `other` is empty, and `load` and `torque` are those of some pairs; see SweepPlan.
 template <class Backend>
 struct Pairs {
+    static constexpr bool stores_all_loads = !std::is_same_v<Backend, par::Cpu>;
+
     par::Array<Backend, std::uint32_t> start, i, j, other_start, other;
     par::Array<Backend, std::uint8_t> law, in_contact;
     par::Array<Backend, Float4> history, rotation_history, torque, internal;
@@ -101,6 +107,12 @@ struct SearchInput {
     bool internal = false;       ///< whether a law has internal variables
 };
 
+/// A contact of the previous list with its history; see PairView.
+struct SavedContact {
+    std::uint32_t i, j;
+    float x, y, z, w;
+};
+
 template <class Backend>
 class Neighbours {
 public:
@@ -114,11 +126,15 @@ public:
 
 private:
     void sort(const SearchInput& input, Particles<Backend>& particles);
+    /// Saves the contacts of the list. Returns their number.
+    std::uint32_t save(const Pairs<Backend>& pairs, bool rotation, bool internal);
 
     int shift = 0;  ///< see CellStarts
     par::Array<Backend, std::uint32_t> key, order, new_index, cell_start, counts;
     par::Array<Backend, Float4> scratch;
-    par::Array<Backend, Float4> saved_internal;  ///< internal variables of the previous list
+    par::Array<Backend, SavedContact> saved;  ///< of the previous list
+    par::Array<Backend, Float4> saved_rotation, saved_internal;
+    par::Array<Backend, std::uint32_t> saved_count;  ///< one number
 };
 
 extern template class Neighbours<par::Cpu>;

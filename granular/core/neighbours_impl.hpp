@@ -13,13 +13,13 @@ namespace hilda::granular {
 
 namespace detail {
 
-/// Atomic increment; returns the previous value.
-HILDA_HD inline std::uint32_t fetch_increment(std::uint32_t* counter)
+/// Atomic addition; returns the previous value.
+HILDA_HD inline std::uint32_t fetch_add(std::uint32_t* counter, std::uint32_t n)
 {
 #ifdef __CUDA_ARCH__
-    return atomicAdd(counter, 1u);
+    return atomicAdd(counter, n);
 #else
-    return __atomic_fetch_add(counter, 1u, __ATOMIC_RELAXED);
+    return __atomic_fetch_add(counter, n, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -314,7 +314,7 @@ struct FillPairs {
     Search search;
     const std::uint32_t* start;
     std::uint32_t *i, *j;
-    std::uint32_t* counts_as_j;  ///< number of pairs with a particle as j
+    std::uint32_t* counts_as_j;  ///< number of pairs with a particle as j; nullptr: not counted
     std::uint8_t* law;
     const std::uint8_t* law_of;  ///< nullptr if there is a single law
     std::uint32_t materials;
@@ -325,7 +325,7 @@ struct FillPairs {
         search(k, [&](std::uint32_t other) {
             i[n] = k, j[n] = other;
             const bool particle = (other & PairView::boundary_bit) == 0;
-            if (particle) fetch_increment(&counts_as_j[other]);
+            if (particle && counts_as_j != nullptr) fetch_add(&counts_as_j[other], 1);
             if (law_of != nullptr)
                 law[n] = law_of[search.species[k].material * materials +
                                 (particle ? search.species[other].material
@@ -335,25 +335,32 @@ struct FillPairs {
     }
 };
 
-/// A pair with its history. It is stored in the memory of the loads, which are not valid during a neighbour
-/// search.
-struct SavedContact {
-    std::uint32_t i, j;
-    float age, x;
-    float y, z;
-    std::uint32_t in_contact, unused;
-};
-static_assert(sizeof(SavedContact) == sizeof(Load));
+/// Saves the contacts among the pairs of a block, and those of rotation and internal variables where there
+/// are any. Their order depends on the order in which the blocks are processed.
+struct SaveContacts {
+    static constexpr std::uint32_t block = 64;
 
-/// Saves the history of a pair of the previous list; rotation_history is saved in `torque`.
-struct SaveContact {
     PairView pairs;
-    HILDA_HD void operator()(std::uint32_t k) const
+    std::uint32_t* count;  ///< number of contacts that are saved
+    SavedContact* to;      ///< nullptr: the contacts are only counted
+    Float4 *rotation, *internal;
+
+    HILDA_HD void operator()(std::uint32_t number) const
     {
-        const Float4 u = pairs.history[k];
-        auto* to = reinterpret_cast<SavedContact*>(&pairs.load[k]);
-        *to = {pairs.i[k], pairs.j[k], u.w, u.x, u.y, u.z, pairs.in_contact[k], 0};
-        if (pairs.rotation_history != nullptr) pairs.torque[k] = pairs.rotation_history[k];
+        const std::uint32_t begin = number * block,
+                            end = pairs.count - begin < block ? pairs.count : begin + block;
+        std::uint32_t contacts = 0;
+        for (std::uint32_t n = begin; n < end; ++n) contacts += pairs.in_contact[n] != 0 ? 1 : 0;
+        std::uint32_t k = fetch_add(count, contacts);
+        if (to == nullptr) return;
+        for (std::uint32_t n = begin; n < end; ++n) {
+            if (pairs.in_contact[n] == 0) continue;
+            const Float4 u = pairs.history[n];
+            to[k] = {pairs.i[n], pairs.j[n], u.x, u.y, u.z, u.w};
+            if (rotation != nullptr) rotation[k] = pairs.rotation_history[n];
+            if (internal != nullptr) internal[k] = pairs.internal[n];
+            ++k;
+        }
     }
 };
 
@@ -373,7 +380,6 @@ struct RestoreContact {
     HILDA_HD void operator()(std::uint32_t k) const
     {
         const SavedContact s = saved[k];
-        if (s.in_contact == 0) return;
         std::uint32_t a = new_index[s.i], b = s.j;
         float sign = 1;
         if ((b & PairView::boundary_bit) == 0) {
@@ -392,7 +398,7 @@ struct RestoreContact {
     {
         for (std::uint32_t n = start[a]; n < start[a + 1]; ++n) {
             if (j[n] != b) continue;
-            history[n] = {sign * s.x, sign * s.y, sign * s.z, s.age};
+            history[n] = {sign * s.x, sign * s.y, sign * s.z, s.w};
             in_contact[n] = 1;
             if (rotation_history != nullptr) {
                 const Float4 t = saved_rotation != nullptr ? saved_rotation[k] : Float4{};
@@ -412,7 +418,7 @@ struct FillOthers {
     HILDA_HD void operator()(std::uint32_t n) const
     {
         if ((j[n] & PairView::boundary_bit) != 0) return;
-        other[other_start[j[n]] + fetch_increment(&next[j[n]])] = n;
+        other[other_start[j[n]] + fetch_add(&next[j[n]], 1)] = n;
     }
 };
 
@@ -437,7 +443,8 @@ template <class Backend>
 std::size_t Neighbours<Backend>::bytes() const
 {
     return key.bytes() + order.bytes() + new_index.bytes() + cell_start.bytes() + counts.bytes() +
-           scratch.bytes() + saved_internal.bytes();
+           scratch.bytes() + saved.bytes() + saved_rotation.bytes() + saved_internal.bytes() +
+           saved_count.bytes();
 }
 
 template <class Backend>
@@ -488,21 +495,45 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
 }
 
 template <class Backend>
+std::uint32_t Neighbours<Backend>::save(const Pairs<Backend>& pairs, bool rotation, bool internal)
+{
+    const Backend on;
+    const PairView view{.i = pairs.i.data(),
+                        .j = pairs.j.data(),
+                        .law = nullptr,
+                        .history = pairs.history.data(),
+                        .rotation_history = pairs.rotation_history.data(),
+                        .load = nullptr,
+                        .torque = nullptr,
+                        .in_contact = pairs.in_contact.data(),
+                        .count = pairs.count,
+                        .internal = pairs.internal.data()};
+    const auto each_block = [&](SavedContact* to, Float4* of_rotation, Float4* of_internal) {
+        constexpr std::uint32_t block = detail::SaveContacts::block;
+        saved_count.resize(1);
+        par::fill(on, saved_count.data(), 1, 0u);
+        par::for_each(on, (pairs.count + block - 1) / block,
+                      detail::SaveContacts{view, saved_count.data(), to, of_rotation, of_internal});
+    };
+    each_block(nullptr, nullptr, nullptr);
+    std::uint32_t contacts = 0;
+    par::copy_to_host(on, &contacts, saved_count.data(), sizeof contacts);
+    saved.resize(contacts), saved_rotation.resize(rotation ? contacts : 0);
+    saved_internal.resize(internal ? contacts : 0);
+    if (contacts > 0)
+        each_block(saved.data(), rotation ? saved_rotation.data() : nullptr,
+                   internal ? saved_internal.data() : nullptr);
+    return contacts;
+}
+
+template <class Backend>
 void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, Pairs<Backend>& pairs)
 {
     const Backend on;
-    const std::uint32_t n = p.count, previous_count = pairs.count;
-    const PairView old{
-        pairs.i.data(),
-        pairs.j.data(),
-        nullptr,
-        pairs.history.data(),
-        input.rotation_laws && pairs.rotation_history.size() > 0 ? pairs.rotation_history.data() : nullptr,
-        pairs.load.data(),
-        pairs.torque.data(),
-        pairs.in_contact.data(),
-        previous_count};
-    par::for_each(on, previous_count, detail::SaveContact{old});
+    const std::uint32_t n = p.count;
+    const bool had_rotation = input.rotation_laws && pairs.rotation_history.size() > 0,
+               had_internal = input.internal && pairs.internal.size() > 0;
+    const std::uint32_t contacts = save(pairs, had_rotation, had_internal);
     sort(input, p);
 
     const Domain& domain = input.domain;
@@ -519,51 +550,51 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
                                 .boundary = input.boundary,
                                 .near = input.near};
     counts.resize(n);
-    pairs.start.resize(n + 1), pairs.other_start.resize(n + 1);
+    pairs.start.resize(n + 1);
     par::for_each(on, n, detail::CountPairs{search, counts.data()});
     // Pair indices have 31 bits. The exact sum is computed only if the bound n * maximum exceeds the limit.
     const double bound = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
     if (bound >= PairView::boundary_bit && detail::sum(on, counts.data(), n) >= PairView::boundary_bit)
         throw TooManyPairs();
     pairs.count = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), pairs.start.data(), n));
-    pairs.i.resize(pairs.count), pairs.j.resize(pairs.count), pairs.other.resize(pairs.count);
+    pairs.i.resize(pairs.count), pairs.j.resize(pairs.count);
     pairs.history.resize(pairs.count), pairs.in_contact.resize(pairs.count);
     if (input.rotation_laws) pairs.rotation_history.resize(pairs.count);
     if (input.law_of != nullptr) pairs.law.resize(pairs.count);
-    const bool had_internal = input.internal && pairs.internal.size() > 0;
-    if (input.internal) {
-        std::swap(pairs.internal, saved_internal);
-        pairs.internal.resize(pairs.count);
-        par::fill(on, pairs.internal.data(), pairs.count, Float4{});
-    }
+    if (input.internal) pairs.internal.resize(pairs.count);
 
-    par::fill(on, counts.data(), n, 0u);
+    constexpr bool lists_others = Pairs<Backend>::stores_all_loads;
+    if constexpr (lists_others) par::fill(on, counts.data(), n, 0u);
     par::for_each(on, n,
-                  detail::FillPairs{search, pairs.start.data(), pairs.i.data(), pairs.j.data(), counts.data(),
-                                    pairs.law.data(), input.law_of, input.materials});
-    par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
-    par::fill(on, counts.data(), n, 0u);
-    par::for_each(on, pairs.count,
-                  detail::FillOthers{pairs.i.data(), pairs.j.data(), pairs.other_start.data(), counts.data(),
-                                     pairs.other.data()});
-    par::for_each(on, n, detail::SortRows{pairs.other_start.data(), pairs.other.data()});
+                  detail::FillPairs{search, pairs.start.data(), pairs.i.data(), pairs.j.data(),
+                                    lists_others ? counts.data() : nullptr, pairs.law.data(), input.law_of,
+                                    input.materials});
+    if constexpr (lists_others) {
+        pairs.other_start.resize(n + 1), pairs.other.resize(pairs.count);
+        par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
+        par::fill(on, counts.data(), n, 0u);
+        par::for_each(on, pairs.count,
+                      detail::FillOthers{pairs.i.data(), pairs.j.data(), pairs.other_start.data(),
+                                         counts.data(), pairs.other.data()});
+        par::for_each(on, n, detail::SortRows{pairs.other_start.data(), pairs.other.data()});
+        pairs.load.resize(pairs.count);
+        par::fill(on, pairs.load.data(), pairs.count, Load{});
+        if (input.rotation_laws) {
+            pairs.torque.resize(pairs.count);
+            par::fill(on, pairs.torque.data(), pairs.count, Float4{});
+        }
+    }
 
     par::fill(on, pairs.history.data(), pairs.count, Float4{});
     par::fill(on, pairs.in_contact.data(), pairs.count, std::uint8_t{0});
     if (input.rotation_laws) par::fill(on, pairs.rotation_history.data(), pairs.count, Float4{});
-    par::for_each(on, previous_count,
+    if (input.internal) par::fill(on, pairs.internal.data(), pairs.count, Float4{});
+    par::for_each(on, contacts,
                   detail::RestoreContact{
-                      reinterpret_cast<const detail::SavedContact*>(pairs.load.data()),
-                      old.rotation_history != nullptr ? pairs.torque.data() : nullptr, new_index.data(),
+                      saved.data(), had_rotation ? saved_rotation.data() : nullptr, new_index.data(),
                       pairs.start.data(), pairs.j.data(), pairs.history.data(),
                       input.rotation_laws ? pairs.rotation_history.data() : nullptr, pairs.in_contact.data(),
                       had_internal ? saved_internal.data() : nullptr, pairs.internal.data()});
-    pairs.load.resize(pairs.count);
-    par::fill(on, pairs.load.data(), pairs.count, Load{});
-    if (input.rotation_laws) {
-        pairs.torque.resize(pairs.count);
-        par::fill(on, pairs.torque.data(), pairs.count, Float4{});
-    }
 }
 
 }  // namespace hilda::granular

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time integration on the CPU, a pack of particles at a time: with stored loads, and in one pass with the
-// force laws.
+// Time integration on the CPU, a pack of particles at a time, in one pass with the force laws.
 #include "granular/core/contact_packs.hpp"
 #include "granular/core/sweep.hpp"
 
@@ -28,30 +27,9 @@ void add_vector(T& to, const T& term)
 void add(Load& to, const Load& load) { add_vector<Float8>(to, load); }
 void add(Float4& to, const Float4& torque) { add_vector<Float4V>(to, torque); }
 
-/// Sums of the loads of a particle as i and as j in its pairs: F and M, and the torque T of rolling and spin
-struct Sums {
-    Load as_i = {}, as_j = {};
-    Float4 torque_as_i = {}, torque_as_j = {};
-};
-
 /// Advances packs of particles.
 struct AdvancePacks {
     const AdvanceView& arrays;
-
-    /// Sums over the stored loads of particle k
-    Sums stored(std::uint32_t k) const
-    {
-        Sums out;
-        for (std::uint32_t n = arrays.start[k]; n < arrays.start[k + 1]; ++n) add(out.as_i, arrays.load[n]);
-        for (std::uint32_t m = arrays.other_start[k]; m < arrays.other_start[k + 1]; ++m)
-            add(out.as_j, arrays.load[arrays.other[m]]);
-        if (arrays.torque == nullptr) return out;
-        for (std::uint32_t n = arrays.start[k]; n < arrays.start[k + 1]; ++n)
-            add(out.torque_as_i, arrays.torque[n]);
-        for (std::uint32_t m = arrays.other_start[k]; m < arrays.other_start[k + 1]; ++m)
-            add(out.torque_as_j, arrays.torque[arrays.other[m]]);
-        return out;
-    }
 
     /// Load of a particle from its sums. Action and reaction: F and T of its pairs as j have the opposite
     /// sign; M has the same sign for both particles.
@@ -174,19 +152,6 @@ struct AdvancePacks {
         return valid == lanes ? advance<true>(first, valid, load, torques)
                               : advance<false>(first, valid, load, torques);
     }
-
-    /// Advances a pack of particles with the stored loads.
-    Pack advance_stored(std::uint32_t first, std::uint32_t valid) const
-    {
-        if (arrays.step.part == Part::before_loads) return advance(first, valid, nullptr, nullptr);
-        alignas(64) Load loads[lanes];
-        alignas(64) Float4 torques[lanes];
-        for (std::uint32_t k = 0; k < valid; ++k) {
-            const Sums s = stored(first + k);
-            set_total(s.as_i, s.as_j, loads[k]), set_total(s.torque_as_i, s.torque_as_j, torques[k]);
-        }
-        return advance(first, valid, loads, arrays.torque != nullptr ? torques : nullptr);
-    }
 };
 
 /// Elementwise maximum; NaN if one is NaN
@@ -232,8 +197,9 @@ struct Sweep : detail::ContactPacks {
     /// Adds the stored load of a pair to the sums of its particle j.
     void add_to_j(std::uint32_t n) const
     {
-        add(plan.sum_j.data()[pairs.j[n]], pairs.load[n]);
-        if (rotates) add(plan.torque_j.data()[pairs.j[n]], pairs.torque[n]);
+        const std::uint32_t slot = pairs.stored.slot(n);
+        add(plan.sum_j.data()[pairs.j[n]], pairs.load[slot]);
+        if (rotates) add(plan.torque_j.data()[pairs.j[n]], pairs.torque[slot]);
     }
 
     [[gnu::flatten]] Pack process_block(std::uint32_t number, Hits& hits) const
@@ -283,18 +249,18 @@ struct Sweep : detail::ContactPacks {
         hits.count = hits.ahead_count = 0;
         for (std::uint32_t first = begin; first < end; first += lanes) {
             const std::uint32_t *i = pairs.i + first, *j = pairs.j + first;
-            const std::uint8_t *in_contact = pairs.in_contact + first, *is_ahead = plan.ahead.data() + first;
+            const std::uint8_t* in_contact = pairs.in_contact + first;
             std::uint32_t copy_i[lanes], copy_j[lanes];
-            std::uint8_t copy_contact[lanes] = {}, copy_ahead[lanes] = {};
+            std::uint8_t copy_contact[lanes] = {};
             const std::uint32_t valid = std::min<std::uint32_t>(lanes, end - first);
             if (first + lanes > pairs.count) {  // the last pack of the list
                 for (std::uint32_t k = 0; k < lanes; ++k)
                     copy_i[k] = i[std::min(k, valid - 1)], copy_j[k] = j[std::min(k, valid - 1)];
-                std::copy_n(in_contact, valid, copy_contact), std::copy_n(is_ahead, valid, copy_ahead);
-                i = copy_i, j = copy_j, in_contact = copy_contact, is_ahead = copy_ahead;
+                std::copy_n(in_contact, valid, copy_contact);
+                i = copy_i, j = copy_j, in_contact = copy_contact;
             }
             const unsigned of_range = (2u << (valid - 1)) - 1, before = flags(in_contact) & of_range,
-                           ahead = flags(is_ahead);
+                           ahead = plan.marks_from(first);
             const unsigned near = of_range & ~ahead;
             Ints i_words, j_words;
             std::memcpy(&i_words, i, sizeof i_words), std::memcpy(&j_words, j, sizeof j_words);
@@ -305,7 +271,7 @@ struct Sweep : detail::ContactPacks {
             const unsigned touching = found.squares.positive() & near;
             set_flags(pairs.in_contact + first, touching, near);
             for (unsigned ended = before & near & ~touching; ended != 0; ended &= ended - 1)
-                clear_contact(first + static_cast<std::uint32_t>(__builtin_ctz(ended)));
+                clear_history(first + static_cast<std::uint32_t>(__builtin_ctz(ended)));
             for (unsigned stored = before & ahead; stored != 0; stored &= stored - 1) {
                 const auto k = static_cast<unsigned>(__builtin_ctz(stored));
                 hits.ahead[hits.ahead_count++] = {
@@ -423,7 +389,7 @@ struct Sweep : detail::ContactPacks {
             const auto [before, n] = hits.ahead[a];
             add_range(h, before);
             h = before;
-            add_to_i(pairs.i[n], as_vector<V>(stored[n]));
+            add_to_i(pairs.i[n], as_vector<V>(stored[pairs.stored.slot(n)]));
         }
         add_range(h, hits.count);
     }
@@ -431,14 +397,15 @@ struct Sweep : detail::ContactPacks {
 
 }  // namespace
 
-float advance(par::Cpu cpu, std::uint32_t particles, const AdvanceView& arrays)
+float advance_before_loads(par::Cpu cpu, std::uint32_t particles, const AdvanceView& arrays)
 {
     const AdvancePacks packs{arrays};
     return par::largest(
         cpu, (particles + lanes - 1) / lanes,
         [&](std::uint32_t k) {
+            const std::uint32_t first = k * lanes;
             return largest(
-                packs.advance_stored(k * lanes, std::min<std::uint32_t>(lanes, particles - k * lanes)));
+                packs.advance(first, std::min<std::uint32_t>(lanes, particles - first), nullptr, nullptr));
         },
         128);
 }

@@ -3,13 +3,13 @@
 #include "granular/core/sweep.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace hilda::granular {
 
-void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>& pairs, int threads,
-                     bool fixed_ahead)
+void SweepPlan::make(const Particles<par::Cpu>& particles, Pairs<par::Cpu>& pairs, int threads, Ahead ahead)
 {
-    planned_threads = threads;
+    planned_threads = threads, planned = ahead;
     const std::uint32_t n = particles.count, blocks = (n + block - 1) / block;
     const std::uint32_t* const start = pairs.start.data();
     // Ranges of about the same work; a range of a few blocks is not worth a thread.
@@ -23,7 +23,6 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>
         if (work(b) * most >= work(blocks) * first_block.size()) first_block.push_back(b);
     first_block.push_back(blocks);
 
-    ahead.assign(pairs.count, 0);
     std::vector<std::vector<std::uint32_t>> lists(ranges());
     par::for_each(
         par::Cpu(), ranges(),
@@ -34,15 +33,29 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>
                     const std::uint32_t j = pairs.j.data()[k];
                     const bool boundary = (j & PairView::boundary_bit) != 0;
                     const auto fixed = [&](std::uint32_t a) { return !(particles.omega.data()[a].w > 0); };
-                    if (!(boundary || j < p / block * block || j >= end ||
-                          (fixed_ahead && (fixed(p) || fixed(j)))))
-                        continue;
-                    ahead[k] = 1, lists[r].push_back(k);
+                    if (boundary || j < p / block * block || j >= end || ahead == Ahead::all ||
+                        (ahead == Ahead::with_fixed && (fixed(p) || fixed(j))))
+                        lists[r].push_back(k);
                 }
         },
         1);
     list.clear();
-    for (const auto& of_range : lists) list.insert(list.end(), of_range.begin(), of_range.end());
+    for (auto& of_range : lists) {
+        list.insert(list.end(), of_range.begin(), of_range.end());
+        of_range = {};
+    }
+
+    // SweepPlan::marks_from() reads beyond the last pair.
+    marks.assign(pairs.count / 64 + 2, 0), marks_before.assign(marks.size(), 0);
+    for (const std::uint32_t k : list) marks[k >> 6] |= std::uint64_t{1} << (k & 63);
+    for (std::size_t w = 1; w < marks.size(); ++w)
+        marks_before[w] = marks_before[w - 1] + static_cast<std::uint32_t>(std::popcount(marks[w - 1]));
+    pairs.load.resize(list.size());
+    par::fill(par::Cpu(), pairs.load.data(), list.size(), Load{});
+    if (pairs.rotation_history.size() > 0) {
+        pairs.torque.resize(list.size());
+        par::fill(par::Cpu(), pairs.torque.data(), list.size(), Float4{});
+    }
 
     // Pairs of particles first, then those with each boundary, so that packs have one boundary. They keep
     // their order otherwise.
@@ -93,9 +106,10 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, const Pairs<par::Cpu>
 std::size_t SweepPlan::bytes() const
 {
     std::size_t words = 0;
-    for (const auto* v : {&first_block, &list, &early_start, &early, &late_start, &late})
+    for (const auto* v : {&first_block, &list, &early_start, &early, &late_start, &late, &marks_before})
         words += v->capacity();
-    return words * sizeof(std::uint32_t) + ahead.capacity() + sum_j.bytes() + torque_j.bytes();
+    return words * sizeof(std::uint32_t) + marks.capacity() * sizeof(std::uint64_t) + sum_j.bytes() +
+           torque_j.bytes();
 }
 
 }  // namespace hilda::granular

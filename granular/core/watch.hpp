@@ -147,25 +147,19 @@ struct AddKinetic {
     }
 };
 
-/// flag[n] = 1 for a pair with a boundary
-struct FlagBoundaryPair {
+/// Whether a pair has a boundary
+struct HasBoundary {
     const std::uint32_t* j;
-    std::uint32_t* flag;
-    HILDA_HD void operator()(std::uint32_t n) const
-    {
-        flag[n] = (j[n] & PairView::boundary_bit) != 0 ? 1 : 0;
-    }
+    HILDA_HD bool operator()(std::uint32_t n) const { return (j[n] & PairView::boundary_bit) != 0; }
 };
 
-/// flag[n] = 1 for a pair with a fixed particle
-struct FlagFixedPair {
+/// Whether a pair of particles has a fixed one
+struct HasFixedParticle {
     const std::uint32_t *i, *j;
     const Float4* omega;
-    std::uint32_t* flag;
-    HILDA_HD void operator()(std::uint32_t n) const
+    HILDA_HD bool operator()(std::uint32_t n) const
     {
-        const bool particles = (j[n] & PairView::boundary_bit) == 0;
-        flag[n] = particles && !(omega[i[n]].w > 0 && omega[j[n]].w > 0) ? 1 : 0;
+        return (j[n] & PairView::boundary_bit) == 0 && !(omega[i[n]].w > 0 && omega[j[n]].w > 0);
     }
 };
 
@@ -187,8 +181,8 @@ struct AddBoundaryLoads {
         // for the one before it.
         Vec3 even{0, 0, 0}, odd{0, 0, 0};
         for (std::uint32_t k = block * watch_block; k < end; k += 2) {
-            even += to_double(pairs.load[which[k]].F);
-            if (k + 1 < end) odd += to_double(pairs.load[which[k + 1]].F);
+            even += to_double(pairs.load_of(which[k]).F);
+            if (k + 1 < end) odd += to_double(pairs.load_of(which[k + 1]).F);
         }
         sum.F = even + odd;
         if (before != nullptr)
@@ -200,12 +194,13 @@ struct AddBoundaryLoads {
     {
         const std::uint32_t b = pairs.j[n] & ~PairView::boundary_bit;
         const BoundaryVelocity u = before[b], next = after[b];
-        const Vec3 F = to_double(pairs.load[n].F);
+        const Load& load = pairs.load_of(n);
+        const Vec3 F = to_double(load.F);
         Vec3 T{0, 0, 0};
-        if (pairs.torque != nullptr) T = to_double(pairs.torque[n]);
+        if (pairs.torque != nullptr) T = to_double(pairs.torque_of(n));
         if (u.omega.dot(u.omega) + next.omega.dot(next.omega) > 0)
             T += contact_lever(boundary[b], global_position(particles.grid, particles.position[pairs.i[n]]),
-                               pairs.load[n].M.w)
+                               load.M.w)
                      .cross(F);
         sum.before += F.dot(u.v) + T.dot(u.omega), sum.after += F.dot(next.v) + T.dot(next.omega);
     }
@@ -226,9 +221,10 @@ struct AddFixedLoads {
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const std::uint32_t n = which[k];
             if (pairs.in_contact[n] == 0) continue;
-            const Vec3 F = to_double(pairs.load[n].F), M = to_double(pairs.load[n].M);
+            const Load& load = pairs.load_of(n);
+            const Vec3 F = to_double(load.F), M = to_double(load.M);
             Vec3 T{0, 0, 0};
-            if (pairs.torque != nullptr) T = to_double(pairs.torque[n]);
+            if (pairs.torque != nullptr) T = to_double(pairs.torque_of(n));
             const bool i_fixed = !(particles.omega[pairs.i[n]].w > 0);
             const std::uint32_t fixed = i_fixed ? pairs.i[n] : pairs.j[n];
             const double R = particles.velocity[fixed].w;

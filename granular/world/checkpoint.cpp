@@ -141,12 +141,8 @@ void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, s
             "a history that is not finite");
     // the pairs of a list before a neighbour search
     pairs.count = static_cast<std::uint32_t>(n);
-    pairs.in_contact.resize(n), pairs.load.resize(n);
+    pairs.in_contact.resize(n);
     par::fill(par::Cpu(), pairs.in_contact.data(), n, std::uint8_t{1});
-    par::fill(par::Cpu(), pairs.load.data(), n, Load{});
-    if (pairs.rotation_history.size() == 0) return;
-    pairs.torque.resize(n);
-    par::fill(par::Cpu(), pairs.torque.data(), n, Float4{});
 }
 
 }  // namespace

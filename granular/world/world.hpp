@@ -268,7 +268,8 @@ public:
     /// Memory of all arrays on the device [bytes]
     std::size_t bytes() const { return engine->bytes(); }
     /// Estimate of the memory of all arrays on the device for a dense bed [bytes]
-    static std::size_t bytes_needed(std::size_t particles, bool rotation_laws, bool orientation);
+    static std::size_t bytes_needed(std::size_t particles, bool rotation_laws, bool orientation,
+                                    Device::Kind device);
     bool has_orientation() const { return options.orientation; }
     /// Forces a rebuild of the neighbour list before the next step.
     void invalidate_neighbours() { particle_displacement = std::numeric_limits<double>::infinity(); }

@@ -121,8 +121,7 @@ void World::remove_outside()
         rows.push_back(n);
     }
     keep(pairs.i, rows), keep(pairs.j, rows), keep(pairs.in_contact, rows), keep(pairs.history, rows);
-    keep(pairs.rotation_history, rows), keep(pairs.torque, rows), keep(pairs.load, rows);
-    keep(pairs.internal, rows);
+    keep(pairs.rotation_history, rows), keep(pairs.internal, rows);
     pairs.count = static_cast<std::uint32_t>(rows.size());
     engine->arrays_modified();
     start_balance();

@@ -135,17 +135,21 @@ bool World::laws_have_energy() const
     return std::all_of(laws.begin(), laws.end(), [](const PairLaw& law) { return law.has_energy(); });
 }
 
-std::size_t World::bytes_needed(std::size_t n, bool rotation_laws, bool orientation)
+std::size_t World::bytes_needed(std::size_t n, bool rotation_laws, bool orientation, Device::Kind device)
 {
-    // A settled bed of equal spheres has 3.5 to 4 pairs per particle with the default skin.
-    constexpr double pairs = 3.6, head_room = 1 + 1 / 32.;
+    // A settled bed of equal spheres has 3.5 to 4 pairs per particle with the default skin, and 2.3 to 2.5
+    // contacts. The CPU stores the loads of 2 to 7 % of the pairs; see SweepPlan.
+    constexpr double pairs = 3.6, contacts = 2.3, head_room = 1 + 1 / 32.;
+    const double loads = device == Device::cpu ? 0.06 * pairs : pairs;
     constexpr double of_state = 2 * sizeof(Position) + 2 * sizeof(Float4) + sizeof(Compensation) +
                                 sizeof(Species) + sizeof(std::uint32_t),
-                     of_search = sizeof(Float4) + sizeof(std::uint64_t) + 5 * sizeof(std::uint32_t),
+                     of_search = sizeof(Float4) + sizeof(std::uint64_t) + 5 * sizeof(std::uint32_t) +
+                                 contacts * sizeof(SavedContact),
                      of_watch = sizeof(Velocities) + sizeof(ParticleSums) / 64., of_sweep = sizeof(Load),
-                     of_pair = 3 * sizeof(std::uint32_t) + sizeof(Float4) + sizeof(Load) + 2;
-    const double each = of_state + of_search + of_watch + of_sweep + pairs * of_pair +
-                        (rotation_laws ? sizeof(Float4) * (1 + 2 * pairs) : 0) +
+                     of_pair = 2 * sizeof(std::uint32_t) + sizeof(Float4) + 2,
+                     of_load = sizeof(Load) + 2 * sizeof(std::uint32_t);
+    const double each = of_state + of_search + of_watch + of_sweep + pairs * of_pair + loads * of_load +
+                        (rotation_laws ? sizeof(Float4) * (1 + contacts + pairs + loads) : 0) +
                         (orientation ? 2 * sizeof(Float4) : 0);
     return static_cast<std::size_t>(head_room * each * static_cast<double>(n));
 }

@@ -3,7 +3,12 @@
 #pragma once
 
 #include "granular/core/neighbours.hpp"
+#include "granular/core/searched_rows.hpp"
+#ifndef __CUDACC__
+#include "granular/core/searched_rows_cpu.hpp"
+#endif
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numeric>
@@ -159,6 +164,7 @@ struct Invert {
 ///
 /// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
 /// finds all small ones and the large ones with higher indices in the cells within its reach.
+template <class Backend>
 struct Search {
     CellGrid grid;
     const Position* position;
@@ -169,13 +175,21 @@ struct Search {
     float small, largest;  ///< see Domain
     const Boundary* boundary;
     BoundaryBlockView near;
+    SearchedRows<Backend> rows;
 
+    /// The partners of particle k among the particles from `first` to `last` - 1. If k is small, all of them
+    /// have the same periodic image.
     template <class F>
     HILDA_HD void range(std::uint32_t k, std::uint32_t first, std::uint32_t last, const F& f) const
     {
         const Position at = position[k];
         const float radius_and_skin = velocity[k].w + skin;
         const bool fixed = omega[k].w == 0, is_large = velocity[k].w > small;
+        if constexpr (SearchedRows<Backend>::in_packs)
+            if (!fixed && !is_large) {
+                if (first < last) rows.range(grid, at, position[first], radius_and_skin, first, last, f);
+                return;
+            }
         for (std::uint32_t j = first; j < last; ++j) {
             if (velocity[j].w > small && !(is_large && j > k)) continue;
             const Difference d = difference(grid, at, position[j]);
@@ -283,14 +297,26 @@ struct Search {
     }
 };
 
+/// The partners that CountPairs finds, up to `width` of each particle, so that FillPairs does not search again
+struct KeptPartners {
+    std::uint32_t* partner;
+    std::uint32_t width;
+};
+
 /// Number of partners of a particle
+template <class Backend>
 struct CountPairs {
-    Search search;
+    Search<Backend> search;
     std::uint32_t* count;
+    KeptPartners kept;
     HILDA_HD void operator()(std::uint32_t k) const
     {
         std::uint32_t n = 0;
-        search(k, [&](std::uint32_t) { ++n; });
+        std::uint32_t* const to = kept.partner + std::size_t{k} * kept.width;
+        search(k, [&](std::uint32_t other) {
+            if (n < kept.width) to[n] = other;
+            ++n;
+        });
         count[k] = n;
     }
 };
@@ -310,8 +336,10 @@ std::uint64_t sum(Backend on, const std::uint32_t* numbers, std::uint32_t n)
 }
 
 /// Writes the row of a particle: partners and laws.
+template <class Backend>
 struct FillPairs {
-    Search search;
+    Search<Backend> search;
+    KeptPartners kept;
     const std::uint32_t* start;
     std::uint32_t *i, *j;
     std::uint32_t* counts_as_j;  ///< number of pairs with a particle as j; nullptr: not counted
@@ -322,7 +350,7 @@ struct FillPairs {
     HILDA_HD void operator()(std::uint32_t k) const
     {
         std::uint32_t n = start[k];
-        search(k, [&](std::uint32_t other) {
+        const auto put = [&](std::uint32_t other) {
             i[n] = k, j[n] = other;
             const bool particle = (other & PairView::boundary_bit) == 0;
             if (particle && counts_as_j != nullptr) fetch_add(&counts_as_j[other], 1);
@@ -331,7 +359,11 @@ struct FillPairs {
                                 (particle ? search.species[other].material
                                           : search.boundary[other & ~PairView::boundary_bit].material)];
             ++n;
-        });
+        };
+        const std::uint32_t count = start[k + 1] - n;
+        if (count > kept.width) return search(k, put);
+        const std::uint32_t* const from = kept.partner + std::size_t{k} * kept.width;
+        for (std::uint32_t m = 0; m < count; ++m) put(from[m]);
     }
 };
 
@@ -455,7 +487,8 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
     const CellGrid& g = input.domain.grid;
     const auto cells =
         static_cast<std::uint32_t>(g.cells[0]) * g.cells[1] * g.cells[2] * input.domain.replicas;
-    key.resize(n), order.resize(n), new_index.resize(n), scratch.resize(n);
+    key.resize(n), order.resize(n), new_index.resize(n);
+    scratch.resize(n + detail::SearchedRows<Backend>::padding);
     par::for_each(on, n,
                   detail::AssignCell{g, p.position.data(), p.species.data(), key.data(), order.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n, std::bit_width(cells));
@@ -537,28 +570,35 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
     sort(input, p);
 
     const Domain& domain = input.domain;
-    const detail::Search search{.grid = domain.grid,
-                                .position = p.position.data(),
-                                .velocity = p.velocity.data(),
-                                .omega = p.omega.data(),
-                                .species = p.species.data(),
-                                .cell_start = {key.data(), cell_start.data(), shift},
-                                .unit = static_cast<float>(domain.grid.unit),
-                                .skin = domain.skin,
-                                .small = domain.small,
-                                .largest = domain.largest,
-                                .boundary = input.boundary,
-                                .near = input.near};
+    const detail::Search<Backend> search{
+        .grid = domain.grid,
+        .position = p.position.data(),
+        .velocity = p.velocity.data(),
+        .omega = p.omega.data(),
+        .species = p.species.data(),
+        .cell_start = {key.data(), cell_start.data(), shift},
+        .unit = static_cast<float>(domain.grid.unit),
+        .skin = domain.skin,
+        .small = domain.small,
+        .largest = domain.largest,
+        .boundary = input.boundary,
+        .near = input.near,
+        .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()}};
     counts.resize(n);
     pairs.start.resize(n + 1);
-    par::for_each(on, n, detail::CountPairs{search, counts.data()});
+    // The histories have been saved. Their memory keeps the partners that are found.
+    static_assert(sizeof(Float4) % sizeof(std::uint32_t) == 0);
+    const detail::KeptPartners kept{
+        reinterpret_cast<std::uint32_t*>(pairs.history.data()),
+        static_cast<std::uint32_t>(pairs.history.bytes() / sizeof(std::uint32_t) / std::max(n, 1u))};
+    par::for_each(on, n, detail::CountPairs<Backend>{search, counts.data(), kept});
     // Pair indices have 31 bits. The exact sum is computed only if the bound n * maximum exceeds the limit.
     const double bound = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
     if (bound >= PairView::boundary_bit && detail::sum(on, counts.data(), n) >= PairView::boundary_bit)
         throw TooManyPairs();
     pairs.count = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), pairs.start.data(), n));
     pairs.i.resize(pairs.count), pairs.j.resize(pairs.count);
-    pairs.history.resize(pairs.count), pairs.in_contact.resize(pairs.count);
+    pairs.in_contact.resize(pairs.count);
     if (input.rotation_laws) pairs.rotation_history.resize(pairs.count);
     if (input.law_of != nullptr) pairs.law.resize(pairs.count);
     if (input.internal) pairs.internal.resize(pairs.count);
@@ -566,9 +606,9 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
     constexpr bool lists_others = Pairs<Backend>::stores_all_loads;
     if constexpr (lists_others) par::fill(on, counts.data(), n, 0u);
     par::for_each(on, n,
-                  detail::FillPairs{search, pairs.start.data(), pairs.i.data(), pairs.j.data(),
-                                    lists_others ? counts.data() : nullptr, pairs.law.data(), input.law_of,
-                                    input.materials});
+                  detail::FillPairs<Backend>{search, kept, pairs.start.data(), pairs.i.data(), pairs.j.data(),
+                                             lists_others ? counts.data() : nullptr, pairs.law.data(),
+                                             input.law_of, input.materials});
     if constexpr (lists_others) {
         pairs.other_start.resize(n + 1), pairs.other.resize(pairs.count);
         par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
@@ -585,6 +625,7 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         }
     }
 
+    pairs.history.resize(pairs.count);
     par::fill(on, pairs.history.data(), pairs.count, Float4{});
     par::fill(on, pairs.in_contact.data(), pairs.count, std::uint8_t{0});
     if (input.rotation_laws) par::fill(on, pairs.rotation_history.data(), pairs.count, Float4{});

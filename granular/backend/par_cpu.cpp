@@ -25,12 +25,15 @@ void* allocate(Cpu, std::size_t bytes)
     if (bytes == 0) return nullptr;
     // Huge pages: the loops access a dozen arrays at once. With small pages a step of 50 000 particles takes
     // twice the time.
-    constexpr std::size_t large = 2 << 20;
-    const std::size_t page = bytes >= large ? large : 64, rounded = (bytes + page - 1) / page * page;
-    void* memory = std::aligned_alloc(page, rounded);
+    constexpr std::size_t huge = 2 << 20;
+    const auto round_up = [&](std::size_t to) { return (bytes + to - 1) / to * to; };
+    // The last huge page is used if it is mostly full, so that at most a quarter of the memory is unused.
+    const bool fills = 5 * bytes >= 4 * round_up(huge);
+    const std::size_t rounded = fills ? round_up(huge) : round_up(64);
+    void* memory = std::aligned_alloc(fills || bytes > huge ? huge : 64, rounded);
     if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-    if (page == large) madvise(memory, rounded, MADV_HUGEPAGE);
+    if (rounded >= huge) madvise(memory, rounded / huge * huge, MADV_HUGEPAGE);
 #endif
     return memory;
 }

@@ -61,8 +61,7 @@ def main():
             expect(count == 2 * SIDE**3, f"number of particles: {count}")
             expect(used < 700 * count, f"{name}: {used / count} bytes per particle")
             expect(0.9 < asked / of_world < 1.1, f"{name}: {asked} bytes are asked for, a particle has {of_world}")
-            # Arrays are rounded up to huge pages.
-            expect(own < 1.25 * of_world, f"{name}: {own} bytes are used, a particle has {of_world}")
+            expect(own < 1.1 * of_world, f"{name}: {own} bytes are used, a particle has {of_world}")
 
 
 if __name__ == "__main__":

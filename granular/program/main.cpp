@@ -8,7 +8,6 @@
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
-#include "granular/program/waiting_threads.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/program.hpp"
@@ -95,7 +94,6 @@ int run_program(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    let_threads_sleep(argc, argv);
     mallopt(M_MMAP_THRESHOLD,
             1 << 20);  // arrays and texts of all particles return to the system when they end
     return io::run_program([&] { return run_program(argc, argv); });

@@ -121,8 +121,11 @@ Domain World::domain_of(const std::vector<Particle>& all) const
         const double length = high[k] - low[k];
         grid.width[k] = static_cast<std::int32_t>(
             std::lround((options.periodic[k] ? length / grid.cells[k] : edge) / grid.unit));
-        grid.last[k] = static_cast<std::int32_t>(
-            std::lround(length / grid.unit - double(grid.width[k]) * (grid.cells[k] - 1)));
+        // The rounding of the width, multiplied by the number of cells, can exceed the limits of the last
+        // cell. The period is a whole number of cells.
+        const long last = std::lround(length / grid.unit - double(grid.width[k]) * (grid.cells[k] - 1)),
+                   width = grid.width[k];
+        grid.last[k] = static_cast<std::int32_t>(options.periodic[k] ? width : std::clamp(last, 0L, width));
     }
     return in;
 }

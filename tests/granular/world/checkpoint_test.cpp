@@ -86,6 +86,37 @@ TEST_CASE("checkpoints change neither the results nor the number of searches of 
     CHECK(resumed->world->to_bytes("run") == bytes);
 }
 
+// The width of a cell is a whole number of units, so that the cells together are a little wider or narrower
+// than the domain.
+TEST_CASE("a checkpoint of a domain of any width is accepted", "[granular][checkpoint]")
+{
+    constexpr double R = 1e-3, largest = 5 * R;
+    const bool periodic = GENERATE(false, true);
+    int number = 0;
+    for (double width = 34 * R; width < 68 * R; width += 0.37 * R) {
+        CAPTURE(periodic, width);
+        WorldOptions o;
+        o.high = {width, 1.1 * width, 1.3 * width}, o.periodic = {periodic, periodic, periodic};
+        o.h = 1e-5;
+        const auto world = [&] {
+            World w(o, {glass()});
+            w.set_law(0, 0, hertz_mindlin(glass(), 0.5, 0.5));
+            return w;
+        };
+        World saved = world();
+        saved.add(Particle{.r = {0.5 * width, 0.5 * width, 0.5 * width}, .radius = largest});
+        for (int k = 0; k < 12; ++k)
+            saved.add(Particle{.r = {(1 + 2.1 * k) * R, R, R}, .radius = R, .v = {-2, -1, 1}});
+        saved.step(20);
+        World restored = world();
+        REQUIRE_NOTHROW(restored.from_bytes(saved.to_bytes("run"), "run", "checkpoint"));
+        saved.step(20), restored.step(20);
+        REQUIRE(same(saved, restored));
+        ++number;
+    }
+    CHECK(number > 90);
+}
+
 TEST_CASE("a checkpoint with a wrong bit or a wrong length is rejected", "[granular][checkpoint]")
 {
     auto c = granular::read_case(bed, "bed");

@@ -58,7 +58,8 @@ int run_case(const Options& o)
     const std::optional<io::JsonSource> earlier =
         o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
     if (earlier) here.continues = &*earlier;
-    return run(o, read_case(text, o.file, here));
+    const auto read = [&] { return read_case(text, o.file, here); };
+    return run(o, read(), read);
 }
 
 int run_program(int argc, char** argv)

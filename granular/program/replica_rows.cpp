@@ -29,6 +29,7 @@ private:
     {
         std::size_t number = 0;
         for (const World::ReplicaTotals& replica : w.replica_totals()) {
+            w.check_loads(replica);
             text += io::formatted("%.12g,%zu,%zu,%.9g", w.t(), number++, replica.particles,
                                   replica.kinetic_energy);
             append(text, replica.momentum);

@@ -34,6 +34,7 @@ private:
     void append(std::string& text, const World& w) override
     {
         const World::Totals totals = w.totals();
+        w.check_loads(totals);
         text +=
             io::formatted("%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts, w.candidates());
         if (w.removes())

@@ -30,22 +30,19 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 
 class CaseRun : private io::Verbosity {
 public:
-    CaseRun(const Options& o, Case from)
-        : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)), setup{c, o.output, o.outputs},
-          id(identity(c.source) + c.files_read), interval(setup.steps_in(c.interval)),
-          steps(std::lround(c.end / c.h)), files(o.output), sinks(setup)
+    CaseRun(const Options& o, Case from, const std::function<Case()>& read_again)
+        : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)),
+          read_again(read_again), setup{c, o.output, o.outputs}, id(identity(c.source) + c.files_read),
+          interval(setup.steps_in(c.interval)), steps(std::lround(c.end / c.h)), files(o.output), sinks(setup)
     {}
 
     int execute()
     {
         io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
         io::OutputLock lock(o.output);
-        // Rows that follow quickly have no sample each, because a sample takes about the time of a step.
-        constexpr long least = watch_limit::interval / 2;
-        c.world->set_watch(true, interval * std::max(1L, (least + interval - 1) / interval));
         for (const std::string& n : c.notices) warn(n);
         check_step();
-        insert_particles(c);  // rejects invalid particles before files are written
+        start();  // rejects invalid particles before files are written
         log(io::formatted("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(),
                           c.boundaries.size(), steps, c.h));
         lock.create();
@@ -72,9 +69,18 @@ public:
 private:
     std::string file(const std::string& name) const { return o.output + '/' + name; }
 
+    /// Inserts the particles.
+    void start() const
+    {
+        // Rows that follow quickly have no sample each, because a sample takes about the time of a step.
+        constexpr long least = watch_limit::interval / 2;
+        c.world->set_watch(true, interval * std::max(1L, (least + interval - 1) / interval));
+        insert_particles(c);
+    }
+
     /// Compares the step with World::step_limits. Warns above 1/5 of the Rayleigh time or 1/15 of the
     /// collision time. Rejects a step above the stability limit, the smaller of the Rayleigh time and 2/π of
-    /// the collision time, unless --force is given.
+    /// the collision time, unless --force is given, or was given when the run that is resumed was started.
     void check_step() const
     {
         const World::StepLimits limits = c.world->step_limits();
@@ -82,7 +88,8 @@ private:
         if (c.h > stable) {
             const std::string what =
                 io::formatted("step must not be above %.3g s, the stability limit, got %g", stable, c.h);
-            if (!o.force) c.source.fail("/step", what + "; --force overrides");
+            const bool accepted = o.force || (o.resume && earlier_case(o.output));  // at the start of the run
+            if (!accepted) c.source.fail("/step", what + "; --force overrides");
             warn(c.source.place("/step") + ": " + what);
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
             warn(c.source.place("/step") + ": " +
@@ -102,8 +109,20 @@ private:
                 a.map(saved_sinks);
                 sinks.open(saved_sinks, from);
             });
+            const long most = std::max(earlier.end, steps);
+            if (c.world->steps() > most)
+                throw io::IoError(
+                    io::formatted("%s: the checkpoint is damaged: the run has at most %ld steps, got %ld",
+                                  from.c_str(), most, c.world->steps()));
+            try {
+                check_state();
+            } catch (const NotFiniteState& e) {
+                throw io::IoError(from + ": the checkpoint is damaged: " + e.what());
+            } catch (const ParticleLost&) {  // the first step reports it
+            }
             if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
             rows = c.world->steps() / interval + 1;  // including t = 0
+            recorded = written = c.world->steps();
             log(io::formatted("continues from %s at t = %g s", from.c_str(), c.world->t()));
         });
     }
@@ -124,13 +143,18 @@ private:
                         warn(io::formatted("t = %.9g s: ", w.t()) + text);
                     });
                 record();
-                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) save();
+                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) {
+                    w.check_finite();
+                    save();
+                }
                 if (line.is_due()) line.show(progress());
             }
+            check_state();  // also the forces, which contacts.csv has
         } catch (const io::NumericalFailure& e) {
             line.clear();
             io::report(e);
             message = e.what(), status = e.status;
+            save_last_state();
             return io::exit_code::numerical_failure;
         } catch (...) {
             line.clear();
@@ -147,10 +171,76 @@ private:
         return io::exit_code::signal + io::Interrupt::caught();
     }
 
+    /// Passes the state to the sinks that take it. Throws NotFiniteState before it is written.
     void record()
     {
-        sinks.node(c.world->steps(), *c.world);
-        if (c.world->steps() % interval == 0) ++rows;
+        const long n = c.world->steps();
+        if (n == 0 || sinks.next(n - 1) == n) {
+            c.world->check_finite();
+            sinks.node(n, *c.world);
+            written = n;
+        }
+        recorded = n;
+        if (n % interval == 0) ++rows;
+    }
+
+    /// Throws NotFiniteState if the state or a contact force is not finite.
+    void check_state() const
+    {
+        c.world->check_finite();
+        c.world->check_loads(c.world->totals());
+    }
+    bool has_finite_state() const
+    {
+        try {
+            check_state();
+            return true;
+        } catch (const NotFiniteState&) {
+            return false;
+        }
+    }
+
+    /// After a numerical failure: brings the run to the last finite state and saves it, so that the outputs
+    /// are those of this state and --resume continues from it.
+    void save_last_state()
+    {
+        const long failed_after = c.world->steps();
+        if (c.world->is_complete() && has_finite_state()) {
+            if (recorded < failed_after) record();  // a failure that the watch found after the step
+        } else {
+            compute_again(c.world->is_complete() ? failed_after - 1 : failed_after);
+            if (!has_finite_state()) compute_again(written);
+        }
+        save();
+    }
+
+    /// Computes the steps since the last checkpoint, or since the start, again, up to this one. A step that
+    /// has failed leaves no state, and a copy before each step would double the memory. The results are the
+    /// same.
+    void compute_again(long last)
+    {
+        log("computes the steps before the failure again");
+        c.world.reset();  // its memory is needed
+        Case again = read_again();
+        if (identity(again.source) + again.files_read != id)
+            throw io::IoError(o.file +
+                              ": the case has changed during the run; the state before the failure "
+                              "cannot be computed again");
+        c.world = std::move(again.world);
+        start();
+        sinks = io::Sinks<CaseSetup>(setup);
+        rows = 0;
+        io::ProgressLine line(o.quiet);
+        if (!load()) {
+            sinks.open();
+            record();
+        }
+        while (c.world->steps() < last && io::Interrupt::caught() == 0) {
+            c.world->step();
+            record();
+            if (line.is_due()) line.show(progress());
+        }
+        line.clear();
     }
 
     /// The run in the directory has another end from here on. It is incomplete, and it can be resumed at any
@@ -244,13 +334,15 @@ private:
     }
 
     const Options& o;
-    const Case c;
+    Case c;
+    const std::function<Case()>& read_again;
     const CaseSetup setup;
     const std::string id;  ///< of the case and its files; see identity()
     const long interval, steps;
     const io::CheckpointFiles files;
     io::Sinks<CaseSetup> sinks;
-    long rows = 0;  ///< of run.csv
+    long rows = 0;                    ///< of run.csv
+    long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0;
     std::int64_t known_warnings = 0;  ///< of the watch, which were reported
     EarlierRun earlier;
@@ -260,6 +352,9 @@ private:
 
 }  // namespace
 
-int run(const Options& options, Case c) { return CaseRun(options, std::move(c)).execute(); }
+int run(const Options& options, Case c, const std::function<Case()>& read_again)
+{
+    return CaseRun(options, std::move(c), read_again).execute();
+}
 
 }  // namespace hilda::granular

@@ -5,9 +5,12 @@
 
 #include "granular/program/arguments.hpp"
 
+#include <functional>
+
 namespace hilda::granular {
 
-/// Runs a case to its end and returns the exit code. Throws io::InvalidInput, io::IoError, DeviceError.
-int run(const Options& options, Case c);
+/// Runs a case to its end and returns the exit code. `read_again` reads the same case, for the state before a
+/// numerical failure. Throws io::InvalidInput, io::IoError, DeviceError.
+int run(const Options& options, Case c, const std::function<Case()>& read_again);
 
 }  // namespace hilda::granular

@@ -170,8 +170,10 @@ void World::rebuild_neighbours()
         find_neighbours();
     } catch (const LeftDomain& lost) {
         if (!removes()) throw_left(lost.id);
+        const bool before = std::exchange(in_step, true);
         remove_outside();
         find_neighbours();
+        in_step = before;
     }
 }
 
@@ -284,6 +286,7 @@ void World::step(long n)
         insert_pending();
         one_step();
         time = static_cast<double>(++step_count) * options.h;
+        in_step = false;
         if (watched) check_watch();
     }
 }
@@ -302,6 +305,7 @@ void World::one_step()
         update_neighbours();
         if (verlet) send_boundaries();  // they have moved in this step
         take(times.neighbours);
+        in_step = true;
         engine->find_loads(domain, h, store);
         take(times.loads);
     };
@@ -321,6 +325,7 @@ void World::one_step()
     // Depending on the scheme, a step moves the particles with the velocity before or after its update. The
     // bound of the displacement uses the larger one.
     const auto advance = [&](Part part) {
+        in_step = true;
         const float before = std::exchange(max_speed, std::sqrt(engine->advance(step_parameters(part))));
         const double displacement = options.h * static_cast<double>(par::nan_max(before, max_speed));
         check_displacement(displacement);

@@ -42,6 +42,13 @@ public:
     double t;          ///< [s]
 };
 
+/// The state of a world or a contact force is not finite. what() has the particle or contact, the time and
+/// the value.
+class NotFiniteState : public io::NumericalFailure {
+public:
+    explicit NotFiniteState(const std::string& what) : NumericalFailure("not_finite", what) {}
+};
+
 /// A sphere: its properties and its state
 struct Particle {
     Vec3 r = {0, 0, 0};                     ///< centre, in the global frame [m]
@@ -153,6 +160,10 @@ public:
     void set_watch(bool on, long node_interval = 0);
     /// What the watch has found so far
     const WatchRecord& watch() const { return record; }
+    /// Throws NotFiniteState if a number of the state at t is not finite. Takes much less time than totals().
+    void check_finite() const;
+    /// Whether the state is that of t(). False after an exception in the middle of a step.
+    bool is_complete() const { return !in_step; }
     double t() const { return time; }
     long steps() const { return step_count; }
 
@@ -180,6 +191,8 @@ public:
         std::vector<Wrench> on_boundary;
     };
     Totals totals() const;
+    /// Throws NotFiniteState if the contact forces at t, of which these are the totals, are not finite.
+    void check_loads(const Totals& totals) const;
     /// The same of one replica, and sums over its particles
     struct ReplicaTotals : Totals {
         std::size_t particles = 0;
@@ -345,6 +358,7 @@ private:
     double gain_tolerance() const;
     void check_watch();
     [[noreturn]] void throw_overlap() const;
+    void check_histories() const;
     [[noreturn]] void throw_lost(std::uint32_t k, const std::string& how) const;
 
     WorldOptions options;
@@ -380,6 +394,7 @@ private:
     mutable bool particle_lost = false;  ///< a particle is outside the domain, so the list cannot be rebuilt
     float max_speed = 0;                 ///< largest speed of the particles after the last step [m/s]
     long step_count = 0;
+    bool in_step = false;  ///< the arrays are between those of two instants
     bool rotation_locked = false, forces_changed = false, timed = false;
 
     bool watched = true, sampling = false;  ///< sampling: the present step is a sample of the watch

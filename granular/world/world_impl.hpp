@@ -44,6 +44,12 @@ inline double sphere_mass(double radius, double density)
 }
 
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
+inline bool finite(const Float4& a)
+{
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z) && std::isfinite(a.w);
+}
+/// The first number of the record that is not finite; 0 if all are
+double not_finite(const WatchRecord& record);
 /// From the centre of j to that of i [m]
 inline Vec3 separation(const CellGrid& g, const Position& i, const Position& j)
 {

@@ -62,6 +62,8 @@ bool World::is_removed(std::uint32_t id) const
 void World::throw_left(std::uint32_t id) const
 {
     particle_lost = true;
+    // The search has changed owner cells: a restored world has to search again, and finds the particle.
+    particle_displacement = std::numeric_limits<double>::infinity();
     const std::uint32_t* ids = engine->arrays().particle.id.data();
     throw_lost(static_cast<std::uint32_t>(std::find(ids, ids + inserted_count, id) - ids),
                "has left the domain");
